@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Checks everything, as CI does, and stops at the first failure.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=scripts/setup.sh
+source scripts/setup.sh
+# shellcheck source=scripts/display.sh
+source scripts/display.sh
+
+current_step=
+
+main() {
+    trap finish EXIT
+    step "Set-up" set_up virtual-display
+    step "Format" cargo fmt --check
+    check_features --no-default-features
+    check_features --no-default-features --features document
+    check_features --no-default-features --features render
+    check_features
+    step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
+    step "Window" test_window
+    printf '\nEverything passed in %d s.\n' "$SECONDS"
+}
+
+finish() {
+    local status=$?
+    stop_virtual_display
+    if [[ $status -ne 0 ]]; then
+        printf '\n==> FAILED: %s\n' "$current_step" >&2
+    fi
+}
+
+# step HEADING COMMAND...
+step() {
+    local started=$SECONDS
+    current_step=$1
+    shift
+    printf '\n==> %s\n' "$current_step"
+    "$@"
+    printf '==> %s: %d s\n' "$current_step" $((SECONDS - started))
+}
+
+check_features() {
+    local features=${*:-default features}
+    step "Clippy, $features" cargo clippy --locked --all-targets "$@" -- -D warnings
+    step "Tests, $features" cargo test --locked "$@"
+}
+
+test_window() {
+    local test=(cargo test --locked --test window -- --ignored --nocapture)
+    if is_linux; then
+        start_virtual_display
+        # A Wayland desktop would get the window instead.
+        env -u WAYLAND_DISPLAY DISPLAY="$virtual_display" "${test[@]}"
+        stop_virtual_display
+    else
+        "${test[@]}"
+    fi
+}
+
+main "$@"

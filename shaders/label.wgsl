@@ -1,0 +1,30 @@
+// Words: one rectangle of the glyph atlas each, in pixels.
+
+struct Instance {
+    @location(0) place: vec4f, // left, top, width, height in pixels
+    @location(1) source: vec4f, // the same in the atlas, 0 to 1
+    @location(2) colour: vec4f,
+}
+
+struct Glyph {
+    @builtin(position) position: vec4f,
+    @location(0) at: vec2f,
+    @location(1) @interpolate(flat) colour: vec4f,
+}
+
+@group(1) @binding(0) var atlas: texture_2d<f32>;
+@group(1) @binding(1) var atlas_sampler: sampler;
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Glyph {
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
+    let pixel = i.place.xy + corner * i.place.zw;
+    let clip = vec2f(pixel.x, -pixel.y) * 2.0 / view.size + vec2f(-1.0, 1.0);
+    return Glyph(vec4f(clip, 1.0, 1.0), i.source.xy + corner * i.source.zw, i.colour);
+}
+
+@fragment
+fn fragment(g: Glyph) -> @location(0) vec4f {
+    let cover = textureSample(atlas, atlas_sampler, g.at).r;
+    return vec4f(g.colour.rgb, g.colour.a * cover);
+}

@@ -1,0 +1,174 @@
+//! `ik-arm solve`: poses as JSON Lines, each line on its own.
+
+mod line;
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use line::LineError;
+
+/// The longest line, in bytes and without its end: what a line may ask of the memory.
+const LONGEST_LINE: usize = 64 * 1024;
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+#[derive(clap::Args)]
+#[command(after_help = r#"Each line in is an object; only "hand" (relative to root) is required:
+  {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"elbow_spin_deg":0}
+Each line out is a pose, with elbow and hand in the world:
+  {"reach":"reached|too_far|too_close","elbow":[x,y,z],"hand":[x,y,z],"distance":D,
+   "theta_z_deg":…,"theta_y_deg":…,"theta_e_deg":…,"along":…,"out":…}
+A bad line gives {"line":N,"error":"…"} in its place; the exit code is then 1."#)]
+pub struct Args {
+    /// File of poses, or - for standard input
+    #[arg(value_name = "FILE", default_value = "-")]
+    file: PathBuf,
+}
+
+pub fn run(args: &Args) -> ExitCode {
+    let solved = Input::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
+    match solved {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        // Whoever reads the poses has seen enough: `ik-arm solve | head` is no failure.
+        Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+            ExitCode::SUCCESS
+        }
+        Err(failure) => {
+            // Not eprintln!, which panics where stderr cannot be written.
+            let _ = writeln!(io::stderr(), "ik-arm solve: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Why a run ends before its input does.
+#[derive(Debug, Error)]
+enum Failure {
+    #[error("cannot open {name}: {error}")]
+    Open { name: String, error: io::Error },
+    #[error("cannot read {name}: {error}")]
+    Read { name: String, error: io::Error },
+    #[error("cannot write to standard output: {0}")]
+    Write(io::Error),
+}
+
+/// Answers every line and returns how many were bad.
+fn solve_lines(mut input: Input, output: impl Write) -> Result<u64, Failure> {
+    let mut output = BufWriter::new(output);
+    let mut bad = 0;
+    loop {
+        // The next read may wait for whoever writes the lines, who may wait for the answers.
+        if !input.has_line() {
+            output.flush().map_err(Failure::Write)?;
+        }
+        let Some(line) = input.next_line()? else { return Ok(bad) };
+        if line.is_blank() {
+            continue;
+        }
+        let written = match line.bytes().and_then(line::solve) {
+            Ok(answer) => write_line(&mut output, &answer),
+            Err(error) => {
+                bad += 1;
+                write_line(&mut output, &BadLine { line: line.number, error: error.message() })
+            }
+        };
+        written.map_err(Failure::Write)?;
+    }
+}
+
+/// What stands in a bad line's place.
+#[derive(Serialize)]
+struct BadLine {
+    line: u64,
+    error: String,
+}
+
+fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *output, value)?;
+    output.write_all(b"\n")
+}
+
+/// Where the lines come from.
+struct Input {
+    name: String,
+    reader: BufReader<Box<dyn Read>>,
+    /// The last line, with its end; reused from line to line.
+    line: Vec<u8>,
+    number: u64,
+}
+
+impl Input {
+    fn open(path: &Path) -> Result<Self, Failure> {
+        if path == Path::new("-") {
+            return Ok(Self::new("standard input".to_owned(), Box::new(io::stdin().lock())));
+        }
+        let name = path.display().to_string();
+        match File::open(path) {
+            Ok(file) => Ok(Self::new(name, Box::new(file))),
+            Err(error) => Err(Failure::Open { name, error }),
+        }
+    }
+
+    fn new(name: String, reader: Box<dyn Read>) -> Self {
+        let reader = BufReader::with_capacity(LONGEST_LINE, reader);
+        Self { name, reader, line: Vec::new(), number: 0 }
+    }
+
+    /// Whether the next line is here already, whole.
+    fn has_line(&self) -> bool {
+        self.reader.buffer().contains(&b'\n')
+    }
+
+    fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
+        match self.read_line() {
+            Ok(true) => {
+                self.number += 1;
+                Ok(Some(Line::new(self.number, &self.line)))
+            }
+            Ok(false) => Ok(None),
+            Err(error) => Err(Failure::Read { name: self.name.clone(), error }),
+        }
+    }
+
+    /// False at the end of the input. Of a line that is too long only the start is kept.
+    fn read_line(&mut self) -> io::Result<bool> {
+        let longest = LONGEST_LINE + b"\r\n".len();
+        self.line.clear();
+        let read = (&mut self.reader).take(longest as u64).read_until(b'\n', &mut self.line)?;
+        if read == longest && !self.line.ends_with(b"\n") {
+            self.reader.skip_until(b'\n')?;
+        }
+        Ok(read > 0)
+    }
+}
+
+/// A line as it was read, without its end.
+struct Line<'a> {
+    number: u64,
+    content: &'a [u8],
+}
+
+impl<'a> Line<'a> {
+    fn new(number: u64, read: &'a [u8]) -> Self {
+        let content = read.strip_suffix(b"\n").unwrap_or(read);
+        let content = content.strip_suffix(b"\r").unwrap_or(content);
+        let mark = if number == 1 { BYTE_ORDER_MARK } else { b"" };
+        Self { number, content: content.strip_prefix(mark).unwrap_or(content) }
+    }
+
+    fn is_blank(&self) -> bool {
+        self.content.len() <= LONGEST_LINE && self.content.trim_ascii().is_empty()
+    }
+
+    fn bytes(&self) -> Result<&'a [u8], LineError> {
+        if self.content.len() > LONGEST_LINE {
+            return Err(LineError::TooLong);
+        }
+        Ok(self.content)
+    }
+}

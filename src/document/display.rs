@@ -1,0 +1,68 @@
+/// One thing in the picture that can be switched on and off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    Cursor,
+    Pointer,
+    InnerLimit,
+    OuterLimit,
+    GridXy,
+    GridXz,
+    GridYz,
+    Ground,
+    Axes,
+    Labels,
+    Shadow,
+}
+
+impl Layer {
+    /// The four guides of the paper.
+    pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
+
+    /// What surrounds the arm.
+    pub const SURROUNDINGS: [Self; 7] = [
+        Self::GridXy,
+        Self::GridXz,
+        Self::GridYz,
+        Self::Ground,
+        Self::Axes,
+        Self::Labels,
+        Self::Shadow,
+    ];
+}
+
+/// Which layers are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Display {
+    shown: u16,
+}
+
+impl Display {
+    pub fn shows(self, layer: Layer) -> bool {
+        self.shown & bit(layer) != 0
+    }
+
+    #[must_use]
+    pub fn with(mut self, layer: Layer, shown: bool) -> Self {
+        if shown {
+            self.shown |= bit(layer);
+        } else {
+            self.shown &= !bit(layer);
+        }
+        self
+    }
+}
+
+impl Default for Display {
+    /// The whole scene, with Cursor and Pointer; the limits would veil the arm.
+    fn default() -> Self {
+        let nothing = Self { shown: 0 };
+        Layer::SURROUNDINGS
+            .into_iter()
+            .chain([Layer::Cursor, Layer::Pointer])
+            .fold(nothing, |display, layer| display.with(layer, true))
+    }
+}
+
+fn bit(layer: Layer) -> u16 {
+    1 << layer as u16
+}

@@ -1,0 +1,3 @@
+//! Pure numbers: solvers that know nothing of files, windows or GPUs.
+
+pub mod two_bone;

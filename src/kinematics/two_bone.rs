@@ -1,0 +1,305 @@
+//! Two bones in closed form: where the elbow is when the hand is at the cursor.
+//!
+//! ```text
+//!                 elbow
+//!                  o              y  Socket space: +x is the Pointer, from the
+//!          upper ╱ │ ╲ lower      │  shoulder through the hand; +y is the side
+//!           d₁ ╱   │ out ╲ d₂     │  the elbow is on; right-handed.
+//!            ╱ θe  │ oₑ    ╲      └── x
+//!  shoulder o──────┴─────────o hand ─ ─ ─ · cursor
+//!            along hₑ
+//!            └─── distance D ───┘
+//! ```
+//!
+//! Everything is in Root space: the shoulder is the origin, +x right, +y up, +z towards the
+//! viewer, right-handed. Lengths share any one unit; angles are radians.
+//!
+//! # The mathematics
+//!
+//! With d₁, d₂ the bone lengths, L = d₁ + d₂, δ = d₁ − d₂ and c the cursor:
+//!
+//! ```text
+//! D  = clamp(|c|, |δ|, L)
+//! hₑ = ½ (D + δ·L/D)
+//! oₑ = ½ √((L+D)(L−D) · (D+δ)/D · (D−δ)/D)         Heron's formula, factored
+//! ```
+//!
+//! No arc cosine and no tangent stands between the cursor and the elbow, so the pose is as exact
+//! near a straight or folded arm as anywhere else: limb lengths and hand hold to 3e-7·L. The
+//! textbook form (d₁² − d₂² + D²)/2D misses by 3e-4·L when one bone is thirty times the other.
+//! The elbow itself is ill-conditioned where the arm is nearly straight or folded, whatever the
+//! formula: there oₑ moves like √(L − D).
+//!
+//! # What breaks
+//!
+//! - The elbow's reference direction is the Limb frame's +y, as in the seed. It is singular where
+//!   the Pointer is vertical: a hand that passes over ±y turns the elbow around. Straight up or
+//!   down the frame's yaw is the caller's last one ([`Facing`]).
+//! - A cursor at the shoulder has no direction; it takes the caller's last one.
+//!
+//! # Sources
+//!
+//! E. Palmieri, *IK-Rigging in three.js*, 2014, section 2 (hierarchy, θ_z, θ_y, θ_e); R. Juckett,
+//! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles
+//! of a Needle-like Triangle*, 2014 (why Heron's formula must be factored).
+
+use core::f32::consts::PI;
+
+use glam::{Mat3, Vec2, Vec3};
+use thiserror::Error;
+
+/// Two bones joined at an elbow, with the shoulder at the origin.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm::kinematics::two_bone::{Reach, TwoBone};
+///
+/// let arm = TwoBone::new(200.0, 300.0)?;
+/// let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 0.0);
+///
+/// assert_eq!(pose.reach, Reach::Reached);
+/// assert_eq!(pose.hand, Vec3::new(250.0, 120.0, 60.0));
+/// assert!((pose.elbow.length() - 200.0).abs() < 1e-4);
+/// assert!((pose.elbow.distance(pose.hand) - 300.0).abs() < 1e-4);
+/// # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoBone {
+    upper: f32,
+    lower: f32,
+}
+
+/// A bone length that no arm can have.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{bone} length is {value}; it must be a finite number above 0")]
+pub struct LengthError {
+    /// Which bone: `"upper"` or `"lower"`.
+    pub bone: &'static str,
+    /// The length that was given.
+    pub value: f32,
+}
+
+/// Whether the hand is at the cursor, and if not, which limit holds it back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// The hand is the cursor, bit for bit.
+    Reached,
+    /// The cursor is beyond the outer limit L: the arm is straight and points at it.
+    TooFar,
+    /// The cursor is inside the inner limit |δ|: the arm is folded and points at it.
+    TooClose,
+}
+
+/// Where the arm faces: what a caller keeps from one pose to the next, so that a cursor without a
+/// direction of its own (at the shoulder, or straight above or below it) leaves the arm as it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// Unit vector from the shoulder to the hand: the Pointer, ŵ.
+    pub direction: Vec3,
+    /// Cosine and sine of the yaw θ_z: the direction seen from above, as (x, z), of unit length.
+    pub heading: Vec2,
+}
+
+/// A solved arm, in Root space. The same D feeds every field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Where the two bones meet.
+    pub elbow: Vec3,
+    /// Where the lower bone ends: the cursor when it is [`Reach::Reached`], else on a limit sphere.
+    pub hand: Vec3,
+    /// Whether the hand is at the cursor.
+    pub reach: Reach,
+    /// D, from shoulder to hand.
+    pub distance: f32,
+    /// h_e, the elbow's Socket-space x: how far along the Pointer it is (negative when the lower
+    /// bone reaches back past the shoulder).
+    pub along: f32,
+    /// o_e ≥ 0, the elbow's Socket-space y: how far out from the Pointer it is.
+    pub out: f32,
+    /// The Pointer's direction and heading. Keep it for the next [`TwoBone::solve_from`].
+    pub facing: Facing,
+}
+
+impl TwoBone {
+    /// # Errors
+    ///
+    /// Refuses a length that is not finite or not above 0, and says which bone it is.
+    pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
+        for (bone, value) in [("upper", upper), ("lower", lower)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(LengthError { bone, value });
+            }
+        }
+        Ok(Self { upper, lower })
+    }
+
+    /// d₁, from shoulder to elbow.
+    pub fn upper(self) -> f32 {
+        self.upper
+    }
+
+    /// d₂, from elbow to hand.
+    pub fn lower(self) -> f32 {
+        self.lower
+    }
+
+    /// L = d₁ + d₂, the farthest that the hand can be (`f32::MAX` where the sum is beyond it).
+    pub fn outer_limit(self) -> f32 {
+        (self.upper + self.lower).min(f32::MAX)
+    }
+
+    /// |δ| = |d₁ − d₂|, the nearest that the hand can be.
+    pub fn inner_limit(self) -> f32 {
+        (self.upper - self.lower).abs()
+    }
+
+    /// Poses the hand at `cursor` (Root space) with the elbow turned by `elbow_spin` (ψ, radians,
+    /// right-handed about the Pointer) from the Limb frame's +y.
+    ///
+    /// A cursor without a direction takes [`Facing::default`]; see [`Self::solve_from`].
+    ///
+    /// # Panics
+    ///
+    /// In debug builds, if an argument is not finite; in release builds the pose is then
+    /// meaningless. Callers check numbers where they enter the program.
+    pub fn solve(self, cursor: Vec3, elbow_spin: f32) -> Pose {
+        self.solve_from(cursor, elbow_spin, Facing::default())
+    }
+
+    /// As [`Self::solve`], for callers that keep the arm's last [`Facing`]: it is used where the
+    /// cursor is at the shoulder (direction) or straight above or below it (yaw).
+    pub fn solve_from(self, cursor: Vec3, elbow_spin: f32, last: Facing) -> Pose {
+        debug_assert!(cursor.is_finite(), "cursor is {cursor}");
+        debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
+
+        let unit = power_of_two_near(self.upper.max(self.lower));
+        let scale = unit.recip();
+        let (upper, lower) = (self.upper * scale, self.lower * scale);
+        let (sum, difference) = (upper + lower, upper - lower);
+
+        let facing = Facing::towards(cursor, last);
+        let asked = length_in(cursor, unit);
+        let distance = asked.clamp(difference.abs(), sum);
+        let (along, out) = elbow_in_socket(upper, lower, distance);
+
+        let (reach, hand) = if asked > sum {
+            (Reach::TooFar, saturate(facing.direction * distance, unit))
+        } else if asked < difference.abs() {
+            (Reach::TooClose, saturate(facing.direction * distance, unit))
+        } else {
+            (Reach::Reached, cursor)
+        };
+
+        let limb = facing.limb_frame();
+        let (sin, cos) = elbow_spin.sin_cos();
+        let elbow = limb.x_axis * along + (limb.y_axis * cos + limb.z_axis * sin) * out;
+
+        Pose {
+            elbow: saturate(elbow, unit),
+            hand,
+            reach,
+            distance: (distance * unit).min(f32::MAX),
+            along: along * unit,
+            out: out * unit,
+            facing,
+        }
+    }
+}
+
+impl Pose {
+    /// θ_z, the Pointer's angle about −y from +x: `atan2(z, x)`, in (−π, π].
+    pub fn yaw(&self) -> f32 {
+        self.facing.heading.y.atan2(self.facing.heading.x)
+    }
+
+    /// θ_y, the Pointer's angle above the xz-plane: `atan2(y, h_c)`, in [−π/2, π/2].
+    pub fn pitch(&self) -> f32 {
+        let Vec3 { x, y, z } = self.facing.direction;
+        y.atan2(x.hypot(z))
+    }
+
+    /// θ_e, the angle at the shoulder between Pointer and upper bone, in [0, π].
+    pub fn shoulder_angle(&self) -> f32 {
+        self.out.atan2(self.along)
+    }
+
+    /// φ, the inner angle at the elbow: π straight, 0 folded.
+    pub fn elbow_angle(&self) -> f32 {
+        let at_hand = self.out.atan2(self.distance - self.along);
+        PI - self.shoulder_angle() - at_hand
+    }
+}
+
+impl Default for Facing {
+    /// Along Root's +x.
+    fn default() -> Self {
+        Self { direction: Vec3::X, heading: Vec2::X }
+    }
+}
+
+impl Facing {
+    /// Faces the cursor, as far as it says where that is.
+    ///
+    /// A cursor at the shoulder keeps the last direction, one straight above or below it the last
+    /// heading.
+    pub fn towards(cursor: Vec3, last: Self) -> Self {
+        if cursor == Vec3::ZERO {
+            return last;
+        }
+        Self {
+            direction: (cursor * power_of_two_near(cursor.abs().max_element()).recip()).normalize(),
+            heading: heading(cursor).unwrap_or(last.heading),
+        }
+    }
+
+    /// The Limb's rotation, R_y(−θ_z)·R_z(θ_y): its +x is the Pointer, its +y the direction in
+    /// which the elbow stands out when it is not spun, its +z level.
+    pub fn limb_frame(self) -> Mat3 {
+        let Vec2 { x: cos_yaw, y: sin_yaw } = self.heading;
+        let sin_pitch = self.direction.y;
+        let cos_pitch = self.direction.x * cos_yaw + self.direction.z * sin_yaw;
+        Mat3::from_cols(
+            self.direction,
+            Vec3::new(-sin_pitch * cos_yaw, cos_pitch, -sin_pitch * sin_yaw),
+            Vec3::new(-sin_yaw, 0.0, cos_yaw),
+        )
+    }
+}
+
+/// The vector seen from above, scaled before it is squared: it may be tiny beside the height.
+fn heading(v: Vec3) -> Option<Vec2> {
+    let flat = Vec2::new(v.x, v.z);
+    (flat != Vec2::ZERO)
+        .then(|| (flat * power_of_two_near(flat.abs().max_element()).recip()).normalize())
+}
+
+/// |v| in units of `unit`, a power of two; infinite where that overflows.
+fn length_in(v: Vec3, unit: f32) -> f32 {
+    let own_unit = power_of_two_near(v.abs().max_element());
+    (v * own_unit.recip()).length() * (own_unit / unit)
+}
+
+/// (h_e, o_e) for lengths near 1.
+fn elbow_in_socket(upper: f32, lower: f32, distance: f32) -> (f32, f32) {
+    let (sum, difference) = (upper + lower, upper - lower);
+    if distance == 0.0 {
+        return (0.0, upper);
+    }
+    let along = 0.5 * (distance + difference * (sum / distance));
+    let squared = (sum + distance)
+        * (sum - distance)
+        * ((distance + difference) / distance)
+        * ((distance - difference) / distance);
+    (along.clamp(-upper, upper), 0.5 * squared.max(0.0).sqrt())
+}
+
+/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too.
+fn power_of_two_near(value: f32) -> f32 {
+    const EXPONENT: u32 = 0x7f80_0000;
+    f32::from_bits(value.to_bits() & EXPONENT).clamp(f32::MIN_POSITIVE, 2.0_f32.powi(126))
+}
+
+/// Back to the caller's unit; a result that rounds past the largest number is that number.
+fn saturate(v: Vec3, unit: f32) -> Vec3 {
+    (v * unit).clamp(Vec3::MIN, Vec3::MAX)
+}

@@ -1,0 +1,11 @@
+//! x
+#[cfg(feature = "app")]
+pub mod cli;
+#[cfg(feature = "document")]
+pub mod document;
+pub mod kinematics;
+#[cfg(feature = "render")]
+pub mod render;
+pub mod rig;
+#[cfg(feature = "document")]
+pub mod scene;

@@ -1,0 +1,38 @@
+use super::{Gpu, pipeline};
+
+pub(super) const SHADER: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/planes.wgsl"),
+    include_str!("../../shaders/backdrop.wgsl"),
+);
+
+/// Draws the sky, the ground and the grids behind everything else.
+#[derive(Debug)]
+pub(super) struct Backdrop {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Backdrop {
+    pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
+        let pipeline = pipeline::build(
+            gpu,
+            &pipeline::Kind {
+                label: "backdrop",
+                shader: SHADER,
+                fragment: "fragment",
+                layouts: &[view],
+                buffers: &[],
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                cull: None,
+                depth: wgpu::CompareFunction::Equal,
+                opaque: true,
+            },
+        );
+        Self { pipeline }
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,131 @@
+use image::RgbaImage;
+use thiserror::Error;
+
+use super::Gpu;
+
+/// What a renderer draws on: an image, four samples for each of its pixels, and their depths.
+#[derive(Debug)]
+pub struct Canvas {
+    width: u32,
+    height: u32,
+    image: wgpu::Texture,
+    pub(super) colour: wgpu::TextureView,
+    pub(super) samples: wgpu::TextureView,
+    pub(super) depth: wgpu::TextureView,
+}
+
+/// Why a drawn picture could not be read back.
+#[derive(Debug, Error)]
+pub enum ReadError {
+    #[error("the device did not finish the picture: {0}")]
+    Poll(#[from] wgpu::PollError),
+    #[error("the picture could not be read from the device: {0}")]
+    Map(#[from] wgpu::BufferAsyncError),
+    #[error("the picture could not be read from the device: {0}")]
+    Range(#[from] wgpu::MapRangeError),
+    #[error("the device gave a picture of the wrong size")]
+    Size,
+}
+
+impl Canvas {
+    /// Linear light is written, sRGB is stored.
+    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+    pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+    pub(super) const SAMPLES: u32 = 4;
+
+    /// Sides below 1 are 1; the longest is [`Gpu::longest_side`].
+    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let side = |length: u32| length.clamp(1, gpu.longest_side());
+        let (width, height) = (side(width), side(height));
+        let texture = |label, format, sample_count, usage, view_formats: &[_]| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats,
+            })
+        };
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let shown = drawn | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        let unconverted = [Self::FORMAT.remove_srgb_suffix()];
+        let image = texture("canvas image", Self::FORMAT, 1, shown, &unconverted);
+        let samples = texture("canvas samples", Self::FORMAT, Self::SAMPLES, drawn, &[]);
+        let depth = texture("canvas depth", Self::DEPTH, Self::SAMPLES, drawn, &[]);
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        Self {
+            width,
+            height,
+            colour: view(&image),
+            samples: view(&samples),
+            depth: view(&depth),
+            image,
+        }
+    }
+
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    pub fn aspect(&self) -> f32 {
+        self.width as f32 / self.height as f32
+    }
+
+    /// The image as it is stored, without conversion from sRGB: for those who blend in it.
+    pub fn stored_view(&self) -> wgpu::TextureView {
+        self.image.create_view(&wgpu::TextureViewDescriptor {
+            label: Some("canvas as stored"),
+            format: Some(Self::FORMAT.remove_srgb_suffix()),
+            ..Default::default()
+        })
+    }
+
+    /// Waits for the device and takes the picture to memory.
+    ///
+    /// # Errors
+    ///
+    /// If the device fails meanwhile.
+    pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, ReadError> {
+        const PIXEL: u32 = 4;
+        let row = self.width * PIXEL;
+        let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("canvas read"),
+            size: u64::from(padded_row) * u64::from(self.height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            self.image.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_row),
+                    rows_per_image: None,
+                },
+            },
+            self.image.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // Nobody waits any more only if the wait itself failed.
+            let _ = sender.send(result);
+        });
+        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
+        let mapped = buffer.get_mapped_range(..)?;
+        let pixels = mapped
+            .chunks_exact(padded_row as usize)
+            .flat_map(|padded| &padded[..row as usize])
+            .copied()
+            .collect();
+        RgbaImage::from_raw(self.width, self.height, pixels).ok_or(ReadError::Size)
+    }
+}

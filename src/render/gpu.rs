@@ -1,0 +1,72 @@
+use thiserror::Error;
+
+/// A graphics device and the way to it.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    pub instance: wgpu::Instance,
+    pub adapter: wgpu::Adapter,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// Why there is nothing to draw with.
+#[derive(Debug, Error)]
+pub enum GpuError {
+    #[error(
+        "no graphics adapter was found ({0})\n\
+         Install a Vulkan driver; without a graphics card, a software one will do:\n  \
+         Debian, Ubuntu:  apt install mesa-vulkan-drivers libvulkan1\n  \
+         Fedora:          dnf install mesa-vulkan-drivers vulkan-loader\n  \
+         Arch:            pacman -S vulkan-swrast vulkan-icd-loader"
+    )]
+    NoAdapter(#[from] wgpu::RequestAdapterError),
+    #[error("the graphics adapter {adapter} gives no device: {source}")]
+    NoDevice { adapter: String, source: wgpu::RequestDeviceError },
+}
+
+impl Gpu {
+    /// A device that draws pictures without a window.
+    ///
+    /// `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several.
+    ///
+    /// # Errors
+    ///
+    /// If there is no adapter, or it gives no device.
+    pub fn headless() -> Result<Self, GpuError> {
+        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        Self::new(wgpu::Instance::new(descriptor), None)
+    }
+
+    /// A device that can show what it draws on `surface`, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such adapter, or it gives no device.
+    pub fn new(
+        instance: wgpu::Instance,
+        surface: Option<&wgpu::Surface<'_>>,
+    ) -> Result<Self, GpuError> {
+        let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env_or_default(
+            &instance, surface,
+        ))?;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("ik-arm"),
+            required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|source| GpuError::NoDevice { adapter: adapter.get_info().name, source })?;
+        Ok(Self { instance, adapter, device, queue })
+    }
+
+    /// The adapter's name and the interface it is reached by: "llvmpipe (Vulkan)".
+    pub fn name(&self) -> String {
+        let info = self.adapter.get_info();
+        format!("{} ({})", info.name, info.backend)
+    }
+
+    /// The longest side that a picture can have here.
+    pub fn longest_side(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+}

@@ -1,0 +1,86 @@
+use core::f32::consts::{PI, TAU};
+
+use bytemuck::Pod;
+use glam::{Vec2, Vec3};
+use wgpu::util::DeviceExt as _;
+
+use super::Gpu;
+
+/// Triangles on the device, counter-clockwise seen from outside.
+#[derive(Debug)]
+pub(super) struct Mesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+impl Mesh {
+    pub fn new<V: Pod>(gpu: &Gpu, label: &str, vertices: &[V], indices: &[u16]) -> Self {
+        let buffer = |contents, usage| {
+            let label = Some(label);
+            gpu.device
+                .create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage })
+        };
+        Self {
+            vertices: buffer(bytemuck::cast_slice(vertices), wgpu::BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX),
+            count: indices.len() as u32,
+        }
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: &wgpu::Buffer, count: u32) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_vertex_buffer(1, instances.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..self.count, 0, 0..count);
+    }
+}
+
+/// Points around a unit circle, the first again at the end.
+pub(super) fn circle(segments: u16) -> impl Iterator<Item = Vec2> + Clone {
+    (0..=segments).map(move |i| Vec2::from_angle(TAU * f32::from(i % segments) / f32::from(segments)))
+}
+
+/// A unit sphere: points (which are its normals too) and triangles.
+pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
+    let rings = segments / 2;
+    let points = (0..=rings)
+        .flat_map(|ring| {
+            let level = Vec2::from_angle(PI * f32::from(ring) / f32::from(rings));
+            circle(segments).map(move |around| {
+                Vec3::new(level.y * around.x, level.x, -level.y * around.y)
+            })
+        })
+        .collect();
+    (points, grid(rings, segments))
+}
+
+/// Triangles over rows of points, each row closed by its first point again. Rows run downwards,
+/// points in a row to the right, as seen from outside.
+pub(super) fn grid(rows: u16, columns: u16) -> Vec<u16> {
+    let point = |row: u16, column: u16| row * (columns + 1) + column;
+    (0..rows)
+        .flat_map(|row| (0..columns).map(move |column| (row, column)))
+        .flat_map(|(row, column)| {
+            let (left, right) = (point(row, column), point(row, column + 1));
+            let (below_left, below_right) = (point(row + 1, column), point(row + 1, column + 1));
+            [left, below_left, right, right, below_left, below_right]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sphere_is_round_and_faces_outwards() {
+        let (points, indices) = sphere(32);
+        assert!(points.iter().all(|point| (point.length() - 1.0).abs() < 1e-6));
+        for triangle in indices.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|corner| points[usize::from(triangle[corner])]);
+            let normal = (b - a).cross(c - a);
+            assert!(normal.dot(a + b + c) >= -1e-9, "{triangle:?} faces inwards");
+        }
+    }
+}

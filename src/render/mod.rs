@@ -1,0 +1,36 @@
+//! Draws a [`Scene`](crate::scene::Scene) with wgpu: the same code for the window, a PNG and the
+//! test images.
+//!
+//! A [`Renderer`] holds the pipelines and is made once for a device; a [`Canvas`] is what it draws
+//! on. Each thing drawn has one file here and one shader of the same name.
+
+mod backdrop;
+mod canvas;
+mod dash;
+mod font;
+mod gpu;
+mod instances;
+mod label;
+mod mesh;
+mod picture;
+mod pipeline;
+mod renderer;
+mod shell;
+mod solid;
+mod view;
+
+pub use canvas::{Canvas, ReadError};
+pub use gpu::{Gpu, GpuError};
+pub use picture::{Picture, SaveError, Timings, save};
+pub use renderer::Renderer;
+
+/// Every shader with the name of its file, whole as it is compiled.
+pub fn shaders() -> [(&'static str, &'static str); 5] {
+    [
+        ("backdrop", backdrop::SHADER),
+        ("dash", dash::SHADER),
+        ("label", label::SHADER),
+        ("shell", shell::SHADER),
+        ("solid", solid::SHADER),
+    ]
+}

@@ -1,0 +1,65 @@
+use super::{Canvas, Gpu};
+
+/// What makes one pipeline of the scene differ from another.
+pub(super) struct Kind<'a> {
+    pub label: &'static str,
+    pub shader: &'static str,
+    pub fragment: &'static str,
+    pub layouts: &'a [&'a wgpu::BindGroupLayout],
+    pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
+    pub topology: wgpu::PrimitiveTopology,
+    pub cull: Option<wgpu::Face>,
+    /// Depth falls with distance.
+    pub depth: wgpu::CompareFunction,
+    /// Opaque things hide what is behind them, others are laid over it.
+    pub opaque: bool,
+}
+
+pub(super) fn build(gpu: &Gpu, kind: &Kind<'_>) -> wgpu::RenderPipeline {
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(kind.label),
+        source: wgpu::ShaderSource::Wgsl(kind.shader.into()),
+    });
+    let layouts: Vec<_> = kind.layouts.iter().copied().map(Some).collect();
+    let buffers: Vec<_> = kind.buffers.iter().cloned().map(Some).collect();
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(kind.label),
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(kind.label),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &buffers,
+        },
+        primitive: wgpu::PrimitiveState {
+            topology: kind.topology,
+            cull_mode: kind.cull,
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: Canvas::DEPTH,
+            depth_write_enabled: Some(kind.opaque),
+            depth_compare: Some(kind.depth),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: Canvas::SAMPLES, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(kind.fragment),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: Canvas::FORMAT,
+                blend: (!kind.opaque).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

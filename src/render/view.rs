@@ -1,0 +1,133 @@
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+use super::Gpu;
+use crate::scene::{Colour, Scene};
+
+/// The most limbs that cast shadows at once.
+const SHADOWS: usize = 32;
+
+/// What every shader of the scene sees, as `view.wgsl` has it.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+struct Uniform {
+    clip_from_world: Mat4,
+    eye: Vec3,
+    orthographic: f32,
+    forward: Vec3,
+    focus_distance: f32,
+    right: Vec3,
+    pixel_scale: f32,
+    up: Vec3,
+    shadow_strength: f32,
+    stage_centre: Vec3,
+    stage_radius: f32,
+    size: Vec2,
+    shadow_count: u32,
+    planes: u32,
+    sky_top: Vec4,
+    sky_bottom: Vec4,
+    ground: Vec4,
+    grid: Vec4,
+    axes: [Vec4; 3],
+    shadows: [Capsule; SHADOWS],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+struct Capsule {
+    base: Vec3,
+    base_radius: f32,
+    tip: Vec3,
+    tip_radius: f32,
+}
+
+const _: () = assert!(size_of::<Capsule>() == 32);
+const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 7 * 16 + SHADOWS * 32);
+
+/// The uniform on the device.
+#[derive(Debug)]
+pub(super) struct View {
+    buffer: wgpu::Buffer,
+    pub layout: wgpu::BindGroupLayout,
+    pub group: wgpu::BindGroup,
+}
+
+impl View {
+    pub fn new(gpu: &Gpu) -> Self {
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("view"),
+            size: size_of::<Uniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("view"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        Self { buffer, layout, group }
+    }
+
+    /// `scale` is how many pixels a point has.
+    pub fn upload(&self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
+        let uniform = Uniform::new(scene, size, scale);
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
+    }
+}
+
+impl Uniform {
+    /// How much of what is below the ground shows through it.
+    const GROUND_OPACITY: f32 = 0.55;
+
+    fn new(scene: &Scene, (width, height): (u32, u32), scale: f32) -> Self {
+        let (palette, stage) = (&scene.palette, &scene.stage);
+        let projection = scene.camera.projection(width as f32 / height as f32);
+        let linear = |colour: Colour| Vec4::from_array(colour.linear());
+        let planes = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
+        let mut shadows = [Capsule::zeroed(); SHADOWS];
+        for (capsule, shadow) in shadows.iter_mut().zip(&scene.shadows) {
+            *capsule = Capsule {
+                base: shadow.base,
+                base_radius: shadow.base_radius,
+                tip: shadow.tip,
+                tip_radius: shadow.tip_radius,
+            };
+        }
+        Self {
+            clip_from_world: projection.clip_from_world,
+            eye: projection.eye,
+            orthographic: if projection.orthographic { 1.0 } else { 0.0 },
+            forward: projection.forward,
+            focus_distance: scene.camera.distance,
+            right: projection.right,
+            pixel_scale: scale,
+            up: projection.up,
+            shadow_strength: palette.shadow,
+            stage_centre: stage.centre,
+            stage_radius: stage.radius,
+            size: Vec2::new(width as f32, height as f32),
+            shadow_count: scene.shadows.len().min(SHADOWS) as u32,
+            planes: planes.iter().rev().fold(0, |bits, &on| bits << 1 | u32::from(on)),
+            sky_top: linear(palette.sky_top),
+            sky_bottom: linear(palette.sky_bottom),
+            ground: linear(palette.ground.with_opacity(Self::GROUND_OPACITY)),
+            grid: linear(palette.grid),
+            axes: palette.axes.map(linear),
+            shadows,
+        }
+    }
+}

@@ -1,0 +1,169 @@
+use glam::{Affine3A, Mat3A, Vec3};
+
+use super::Cone;
+use crate::kinematics::two_bone::{Pose, TwoBone};
+
+/// What hangs in the hierarchy, parents before children.
+///
+/// ```text
+/// Root                 translation = shoulder in the world
+///  ├ Limb              rotation = R_y(−θ_z)·R_z(θ_y): turns the Pointer, its +x, onto the hand
+///  │  ├ Socket         rotation = R_x(ψ): spins the elbow about the Pointer
+///  │  │  ├ UpperLimb   from the origin to (h_e, o_e, 0)
+///  │  │  ├ LowerLimb   from (h_e, o_e, 0) to (D, 0, 0)
+///  │  │  ├ Elbow       at (h_e, o_e, 0)
+///  │  │  └ Hand        at (D, 0, 0)
+///  │  └ Pointer        along +x, as long as the whole arm
+///  ├ Cursor            where the hand is asked to be
+///  ├ InnerLimit        sphere of radius |d₁ − d₂|
+///  └ OuterLimit        sphere of radius d₁ + d₂
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Root,
+    Limb,
+    Socket,
+    UpperLimb,
+    LowerLimb,
+    Elbow,
+    Hand,
+    Pointer,
+    Cursor,
+    InnerLimit,
+    OuterLimit,
+}
+
+impl Part {
+    pub const ALL: [Self; 11] = [
+        Self::Root,
+        Self::Limb,
+        Self::Socket,
+        Self::UpperLimb,
+        Self::LowerLimb,
+        Self::Elbow,
+        Self::Hand,
+        Self::Pointer,
+        Self::Cursor,
+        Self::InnerLimit,
+        Self::OuterLimit,
+    ];
+
+    /// The part whose transform carries this one's.
+    pub fn parent(self) -> Option<Self> {
+        match self {
+            Self::Root => None,
+            Self::Limb | Self::Cursor | Self::InnerLimit | Self::OuterLimit => Some(Self::Root),
+            Self::Socket | Self::Pointer => Some(Self::Limb),
+            Self::UpperLimb | Self::LowerLimb | Self::Elbow | Self::Hand => Some(Self::Socket),
+        }
+    }
+}
+
+/// A posed arm as a hierarchy of rigid transforms.
+///
+/// World transforms are products down the hierarchy, never the solver's own points: that the two
+/// agree is a test.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmRig {
+    local: [Affine3A; Part::ALL.len()],
+    upper: Cone,
+    lower: Cone,
+    pointer: Cone,
+    inner_limit: f32,
+    outer_limit: f32,
+}
+
+impl ArmRig {
+    /// The seed's limbs are 30 units thick where they begin and 20 where they end, on an arm of
+    /// 500; other arms are as thick for their length, unless a short bone would drown in its joint.
+    const BASE_RADIUS: f32 = 30.0;
+    const TIP_RADIUS: f32 = 20.0;
+    const POINTER_RADIUS: f32 = 4.0;
+    const SEED_LENGTH: f32 = 500.0;
+
+    /// Hangs a pose (Root space) with its spin (radians) below a shoulder at `root` (world). The
+    /// `cursor` is in Root space, as it was given to the solver.
+    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, elbow_spin: f32, pose: &Pose) -> Self {
+        let thickness = Self::thickness(arm);
+        let (base_radius, tip_radius) =
+            (Self::BASE_RADIUS * thickness, Self::TIP_RADIUS * thickness);
+        let elbow = Vec3::new(pose.along, pose.out, 0.0);
+        let hand = Vec3::new(pose.distance, 0.0, 0.0);
+        let (upper_limb, upper) = Cone::in_xy_plane(Vec3::ZERO, elbow, base_radius, tip_radius);
+        let (lower_limb, lower) = Cone::in_xy_plane(elbow, hand, base_radius, tip_radius);
+        let pointer_radius = Self::POINTER_RADIUS * thickness;
+
+        let local = Part::ALL.map(|part| match part {
+            Part::Root => Affine3A::from_translation(root),
+            Part::Limb => Affine3A::from_mat3(pose.facing.limb_frame()),
+            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(elbow_spin).into()),
+            Part::UpperLimb => upper_limb,
+            Part::LowerLimb => lower_limb,
+            Part::Elbow => Affine3A::from_translation(elbow),
+            Part::Hand => Affine3A::from_translation(hand),
+            Part::Cursor => Affine3A::from_translation(cursor),
+            Part::Pointer | Part::InnerLimit | Part::OuterLimit => Affine3A::IDENTITY,
+        });
+        Self {
+            local,
+            upper,
+            lower,
+            pointer: Cone {
+                length: arm.outer_limit(),
+                base_radius: pointer_radius,
+                tip_radius: pointer_radius,
+            },
+            inner_limit: arm.inner_limit(),
+            outer_limit: arm.outer_limit(),
+        }
+    }
+
+    /// How thick an arm is, as a multiple of the seed's.
+    pub fn thickness(arm: TwoBone) -> f32 {
+        let shorter = arm.upper().min(arm.lower());
+        (arm.outer_limit() / Self::SEED_LENGTH).min(shorter / Self::BASE_RADIUS)
+    }
+
+    /// The part's transform in its parent.
+    pub fn local(&self, part: Part) -> Affine3A {
+        self.local[part as usize]
+    }
+
+    /// The part's transform in the world.
+    pub fn world(&self, part: Part) -> Affine3A {
+        match part.parent() {
+            Some(parent) => self.world(parent) * self.local(part),
+            None => self.local(part),
+        }
+    }
+
+    /// Where the part's origin is in the world.
+    pub fn origin(&self, part: Part) -> Vec3 {
+        self.world(part).translation.into()
+    }
+
+    /// The upper limb's shape, along its own +x.
+    pub fn upper(&self) -> Cone {
+        self.upper
+    }
+
+    /// The lower limb's shape, along its own +x.
+    pub fn lower(&self) -> Cone {
+        self.lower
+    }
+
+    /// The Pointer's shape, along the Limb's +x.
+    pub fn pointer(&self) -> Cone {
+        self.pointer
+    }
+
+    /// Radius of the sphere that the hand cannot enter.
+    pub fn inner_limit(&self) -> f32 {
+        self.inner_limit
+    }
+
+    /// Radius of the sphere that the hand cannot leave.
+    pub fn outer_limit(&self) -> f32 {
+        self.outer_limit
+    }
+}

@@ -1,0 +1,7 @@
+//! The arm as the seed has it: a hierarchy of transforms with limbs and guides hung in it.
+
+mod arm;
+mod cone;
+
+pub use arm::{ArmRig, Part};
+pub use cone::Cone;

@@ -1,0 +1,135 @@
+use glam::Vec3;
+
+use super::{Ball, Dash, Label, Scene, Shadow, Shell, Side, Solid};
+use crate::document::{Arm, Display, Layer};
+use crate::kinematics::two_bone::{Pose, Reach};
+use crate::rig::{ArmRig, Part};
+
+/// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
+const SHOULDER_BALL: f32 = 31.0;
+const ELBOW_BALL: f32 = 31.0;
+const HAND_BALL: f32 = 21.0;
+const CURSOR_BALL: f32 = 11.0;
+
+/// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.
+pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
+    let rig = arm.rig(pose);
+    let thickness = ArmRig::thickness(arm.bones);
+    add_limbs(scene, &rig, thickness);
+    add_guides(scene, &rig, thickness, display);
+    if display.shows(Layer::Cursor) && pose.reach != Reach::Reached {
+        add_gap(scene, &rig, thickness);
+    }
+    if display.shows(Layer::Labels) {
+        add_labels(scene, &rig, thickness);
+    }
+    if display.shows(Layer::Shadow) {
+        add_shadows(scene, &rig, thickness);
+    }
+}
+
+fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+    let palette = scene.palette;
+    scene.solids.extend([
+        Solid { place: rig.world(Part::UpperLimb), shape: rig.upper(), colour: palette.upper },
+        Solid { place: rig.world(Part::LowerLimb), shape: rig.lower(), colour: palette.lower },
+    ]);
+    let joints =
+        [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
+    scene.balls.extend(joints.map(|(part, radius)| Ball {
+        centre: rig.origin(part),
+        radius: radius * thickness,
+        colour: palette.joint,
+    }));
+}
+
+fn add_guides(scene: &mut Scene, rig: &ArmRig, thickness: f32, display: Display) {
+    let colour = scene.palette.guide;
+    if display.shows(Layer::Cursor) {
+        scene.guide_balls.push(Ball {
+            centre: rig.origin(Part::Cursor),
+            radius: CURSOR_BALL * thickness,
+            colour,
+        });
+    }
+    if display.shows(Layer::Pointer) {
+        scene.guide_solids.push(Solid {
+            place: rig.world(Part::Pointer),
+            shape: rig.pointer(),
+            colour,
+        });
+    }
+    for (layer, part, radius) in [
+        (Layer::InnerLimit, Part::InnerLimit, rig.inner_limit()),
+        (Layer::OuterLimit, Part::OuterLimit, rig.outer_limit()),
+    ] {
+        if display.shows(layer) && radius > 0.0 {
+            scene.shells.push(Shell { centre: rig.origin(part), radius, colour });
+        }
+    }
+}
+
+/// The way from the hand to a Cursor that it does not reach, with its length.
+fn add_gap(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+    let (hand, cursor) = (rig.origin(Part::Hand), rig.origin(Part::Cursor));
+    let colour = scene.palette.accent;
+    scene.dashes.push(Dash { from: hand, to: cursor, colour });
+    scene.labels.push(Label {
+        at: cursor,
+        clearance: CURSOR_BALL * thickness,
+        side: Side::Below,
+        text: format!("{:.1} short", hand.distance(cursor)),
+        colour,
+    });
+}
+
+fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+    let colour = scene.palette.text;
+    let named = [
+        (Part::Root, SHOULDER_BALL, "Root"),
+        (Part::Elbow, ELBOW_BALL, "Elbow"),
+        (Part::Hand, HAND_BALL, "Hand"),
+    ];
+    scene.labels.extend(named.map(|(part, radius, name)| Label {
+        at: rig.origin(part),
+        clearance: radius * thickness,
+        side: Side::Above,
+        text: name.to_owned(),
+        colour,
+    }));
+}
+
+fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+    let [root, elbow, hand] = [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
+    let limbs = [
+        (root, SHOULDER_BALL, elbow, rig.upper().tip_radius / thickness),
+        (elbow, rig.lower().base_radius / thickness, hand, HAND_BALL),
+    ];
+    scene.shadows.extend(limbs.into_iter().filter_map(|(base, base_radius, tip, tip_radius)| {
+        above_ground(Shadow {
+            base,
+            base_radius: base_radius * thickness,
+            tip,
+            tip_radius: tip_radius * thickness,
+        })
+    }));
+}
+
+/// The part of a limb above y = 0: what is below casts no shadow on it.
+fn above_ground(limb: Shadow) -> Option<Shadow> {
+    let at = |part: f32| {
+        let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * part;
+        (limb.base.lerp(limb.tip, part), radius)
+    };
+    let (base_y, tip_y) = (limb.base.y, limb.tip.y);
+    let crossing = base_y / (base_y - tip_y);
+    let (from, to) = match (base_y >= 0.0, tip_y >= 0.0) {
+        (true, true) => return Some(limb),
+        (true, false) => (0.0, crossing),
+        (false, true) => (crossing, 1.0),
+        (false, false) => return None,
+    };
+    let ((base, base_radius), (tip, tip_radius)) = (at(from), at(to));
+    let flat = |v: Vec3| Vec3 { y: v.y.max(0.0), ..v };
+    Some(Shadow { base: flat(base), base_radius, tip: flat(tip), tip_radius })
+}

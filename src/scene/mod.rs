@@ -1,0 +1,166 @@
+//! What to draw: plain lists of solids, balls, shells, dashes and labels, made from a document.
+//!
+//! Nothing here knows how things are drawn; nothing in [`crate::render`] knows what they mean.
+
+mod arm;
+mod palette;
+
+use glam::{Affine3A, Vec3};
+
+pub use palette::{Colour, Palette, Theme};
+
+use crate::document::{Camera, Display, Document, Layer};
+use crate::kinematics::two_bone::Pose;
+use crate::rig::Cone;
+
+/// A picture to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub camera: Camera,
+    pub palette: Palette,
+    pub stage: Stage,
+    /// What casts a shadow on the ground, above it.
+    pub shadows: Vec<Shadow>,
+    pub solids: Vec<Solid>,
+    pub balls: Vec<Ball>,
+    /// Solids and balls that show faintly through what hides them.
+    pub guide_solids: Vec<Solid>,
+    pub guide_balls: Vec<Ball>,
+    pub shells: Vec<Shell>,
+    pub dashes: Vec<Dash>,
+    pub labels: Vec<Label>,
+}
+
+/// The planes around the arm: which are drawn, and the middle and radius within which they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage {
+    pub grid_xy: bool,
+    pub grid_xz: bool,
+    pub grid_yz: bool,
+    pub ground: bool,
+    pub centre: Vec3,
+    pub radius: f32,
+}
+
+/// A cone at a rigid place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solid {
+    pub place: Affine3A,
+    pub shape: Cone,
+    pub colour: Colour,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    pub centre: Vec3,
+    pub radius: f32,
+    pub colour: Colour,
+}
+
+/// A sphere that one can see through, with a brighter rim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shell {
+    pub centre: Vec3,
+    pub radius: f32,
+    pub colour: Colour,
+}
+
+/// A dashed line, as wide on screen wherever it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dash {
+    pub from: Vec3,
+    pub to: Vec3,
+    pub colour: Colour,
+}
+
+/// Words beside a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    pub at: Vec3,
+    /// What the words must not cover: a ball of this radius around the point.
+    pub clearance: f32,
+    /// Whether the words stand above the ball's right side or below it.
+    pub side: Side,
+    pub text: String,
+    pub colour: Colour,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Above,
+    Below,
+}
+
+/// A limb as its shadow sees it: two balls and what is between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shadow {
+    pub base: Vec3,
+    pub base_radius: f32,
+    pub tip: Vec3,
+    pub tip_radius: f32,
+}
+
+impl Scene {
+    /// The document as it stands. `pose` is the document's arm solved.
+    pub fn new(document: &Document, pose: &Pose, theme: Theme) -> Self {
+        let Document { arm, camera, display } = document;
+        let palette = Palette::new(theme);
+        let mut scene = Self {
+            camera: *camera,
+            palette,
+            stage: Stage::around(arm.root, arm.bones.outer_limit(), *display),
+            shadows: Vec::new(),
+            solids: Vec::new(),
+            balls: Vec::new(),
+            guide_solids: Vec::new(),
+            guide_balls: Vec::new(),
+            shells: Vec::new(),
+            dashes: Vec::new(),
+            labels: Vec::new(),
+        };
+        if display.shows(Layer::Axes) {
+            scene.add_axes(arm.bones.outer_limit());
+        }
+        arm::add(&mut scene, arm, pose, *display);
+        scene
+    }
+
+    /// Three arrows from the world's origin, half as long as the arm.
+    fn add_axes(&mut self, arm_length: f32) {
+        let length = 0.5 * arm_length;
+        let (shaft, head, head_length) = (length * 0.007, length * 0.024, length * 0.09);
+        for (axis, colour) in Vec3::AXES.into_iter().zip(self.palette.axes) {
+            let neck = axis * (length - head_length);
+            self.add_solid(Vec3::ZERO, neck, shaft, shaft, colour);
+            self.add_solid(neck, axis * length, head, 0.0, colour);
+        }
+    }
+
+    fn add_solid(
+        &mut self,
+        base: Vec3,
+        tip: Vec3,
+        base_radius: f32,
+        tip_radius: f32,
+        colour: Colour,
+    ) {
+        let (place, shape) = Cone::between(base, tip, base_radius, tip_radius);
+        self.solids.push(Solid { place, shape, colour });
+    }
+}
+
+impl Stage {
+    /// The planes reach well past the arm, so that it has ground to stand on wherever it points.
+    const RADIUS: f32 = 1.7;
+
+    fn around(centre: Vec3, arm_length: f32, display: Display) -> Self {
+        Self {
+            grid_xy: display.shows(Layer::GridXy),
+            grid_xz: display.shows(Layer::GridXz),
+            grid_yz: display.shows(Layer::GridYz),
+            ground: display.shows(Layer::Ground),
+            centre,
+            radius: Self::RADIUS * arm_length,
+        }
+    }
+}

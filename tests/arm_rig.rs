@@ -1,0 +1,224 @@
+//! The hierarchy agrees with the solver, in the world.
+
+mod common;
+
+use common::{
+    Case, EXACT, U, anywhere, bones, config, directions, limb_rotation, limits, within,
+    yaw_and_pitch,
+};
+use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
+use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::rig::{ArmRig, Cone, Part};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
+
+/// The hierarchy as the paper has it.
+const PARENTS: [(Part, Option<Part>); 11] = [
+    (Part::Root, None),
+    (Part::Limb, Some(Part::Root)),
+    (Part::Socket, Some(Part::Limb)),
+    (Part::UpperLimb, Some(Part::Socket)),
+    (Part::LowerLimb, Some(Part::Socket)),
+    (Part::Elbow, Some(Part::Socket)),
+    (Part::Hand, Some(Part::Socket)),
+    (Part::Pointer, Some(Part::Limb)),
+    (Part::Cursor, Some(Part::Root)),
+    (Part::InnerLimit, Some(Part::Root)),
+    (Part::OuterLimit, Some(Part::Root)),
+];
+
+/// A posed arm that stands somewhere in the world.
+#[derive(Debug)]
+struct Standing {
+    case: Case,
+    root: Vec3,
+    pose: Pose,
+    rig: ArmRig,
+}
+
+impl Standing {
+    /// A point of Root space in the world.
+    fn in_world(&self, at: Vec3) -> DVec3 {
+        self.root.as_dvec3() + at.as_dvec3()
+    }
+
+    /// What a point of the arm may be off by.
+    fn bound(&self) -> f64 {
+        let Pose { elbow, hand, .. } = self.pose;
+        let points = [self.root.as_dvec3(), self.in_world(elbow), self.in_world(hand)];
+        world_bound(limits(self.case.arm).1, &points)
+    }
+
+    /// A point of a part's own space in the world, in f64 from there.
+    fn point(&self, part: Part, x: f32) -> DVec3 {
+        at(self.rig.world(part), x)
+    }
+}
+
+/// So far along a transform's +x.
+fn at(transform: Affine3A, x: f32) -> DVec3 {
+    transform.as_daffine3().transform_point3(DVec3::X * f64::from(x))
+}
+
+/// The accuracy in Root space, and two units in the last place of the largest coordinate.
+fn world_bound(length: f64, points: &[DVec3]) -> f64 {
+    let largest = points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max) as f32;
+    EXACT * length + 2.0 * f64::from(largest.next_up() - largest)
+}
+
+/// Every coordinate up to ±1e6, at every scale.
+fn places() -> impl Strategy<Value = Vec3> {
+    (directions(), -2.0..6.0_f64).prop_map(|(to, exponent)| (to * 10_f64.powf(exponent)).as_vec3())
+}
+
+fn standing() -> impl Strategy<Value = Standing> {
+    (anywhere(), places()).prop_map(|(case, root)| {
+        let pose = case.solve();
+        let rig = ArmRig::new(case.arm, root, case.cursor, case.spin, &pose);
+        Standing { case, root, pose, rig }
+    })
+}
+
+/// Right-handed and orthonormal, after so many turns, each with axes as accurate as hands.
+fn is_rotation(transform: Affine3A, turns: u32) -> TestCaseResult {
+    let (axes, error) = (transform.as_daffine3().matrix3, EXACT * f64::from(turns));
+    let skew = axes.transpose() * axes - DMat3::IDENTITY;
+    within("orthonormality", largest_entry(skew), 2.0 * error)?;
+    within("handedness", (axes.determinant() - 1.0).abs(), 3.0 * error)
+}
+
+fn largest_entry(matrix: DMat3) -> f64 {
+    matrix.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max)
+}
+
+#[test]
+fn parts_are_in_the_order_of_the_enum_and_parents_come_before_children() {
+    assert_eq!(Part::ALL, PARENTS.map(|(part, _)| part));
+    for (index, (part, parent)) in PARENTS.into_iter().enumerate() {
+        assert_eq!(part as usize, index);
+        assert_eq!(part.parent(), parent);
+        assert!(parent.is_none_or(|parent| (parent as usize) < index), "{part:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn elbow_and_hand_are_where_the_solver_says(arm in standing()) {
+        for (part, solved) in [(Part::Elbow, arm.pose.elbow), (Part::Hand, arm.pose.hand)] {
+            let origin = arm.rig.origin(part).as_dvec3();
+            within("joint", origin.distance(arm.in_world(solved)), arm.bound())?;
+        }
+    }
+
+    #[test]
+    fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in standing()) {
+        let (upper, lower) = (arm.rig.upper(), arm.rig.lower());
+        for (what, end, joint) in [
+            ("shoulder end", arm.point(Part::UpperLimb, 0.0), Vec3::ZERO),
+            ("upper elbow end", arm.point(Part::UpperLimb, upper.length), arm.pose.elbow),
+            ("lower elbow end", arm.point(Part::LowerLimb, 0.0), arm.pose.elbow),
+            ("hand end", arm.point(Part::LowerLimb, lower.length), arm.pose.hand),
+        ] {
+            within(what, end.distance(arm.in_world(joint)), arm.bound())?;
+        }
+        let ((upper_length, lower_length), (_, length)) = (bones(arm.case.arm), limits(arm.case.arm));
+        within("upper length", (f64::from(upper.length) - upper_length).abs(), EXACT * length)?;
+        within("lower length", (f64::from(lower.length) - lower_length).abs(), EXACT * length)?;
+        for part in [Part::UpperLimb, Part::LowerLimb] {
+            prop_assert_eq!(arm.rig.local(part).matrix3.z_axis, glam::Vec3A::Z, "not a hinge");
+        }
+    }
+
+    #[test]
+    fn the_pointer_is_as_long_as_the_arm_and_passes_through_hand_and_cursor(arm in standing()) {
+        let Standing { case, root, pose, rig } = &arm;
+        let length = limits(case.arm).1;
+        within("length", (f64::from(rig.pointer().length) - length).abs(), U * length)?;
+
+        let start = arm.point(Part::Pointer, 0.0);
+        prop_assert_eq!(start, root.as_dvec3());
+        let along = (arm.point(Part::Pointer, rig.pointer().length) - start) / length;
+        let cursor = arm.in_world(case.cursor);
+        let reach = length.max(case.cursor.as_dvec3().length());
+        let cursor_bound = world_bound(reach, &[root.as_dvec3(), cursor]);
+        for (point, bound) in [
+            (arm.in_world(pose.hand), arm.bound()),
+            (rig.origin(Part::Cursor).as_dvec3(), cursor_bound),
+        ] {
+            let ahead = (point - start).dot(along);
+            prop_assert!(ahead >= -bound, "the pointer points away");
+            within("distance from the line", point.distance(start + along * ahead), bound)?;
+        }
+        within("cursor", rig.origin(Part::Cursor).as_dvec3().distance(cursor), cursor_bound)?;
+    }
+
+    #[test]
+    fn the_limit_spheres_are_about_the_shoulder(arm in standing()) {
+        for (part, radius, limit) in [
+            (Part::InnerLimit, arm.rig.inner_limit(), limits(arm.case.arm).0),
+            (Part::OuterLimit, arm.rig.outer_limit(), limits(arm.case.arm).1),
+        ] {
+            prop_assert_eq!(arm.rig.world(part), Affine3A::from_translation(arm.root));
+            prop_assert_eq!(radius, limit as f32);
+        }
+    }
+
+    #[test]
+    fn limb_and_socket_turn_by_the_papers_angles(arm in standing()) {
+        let turns = [
+            (Part::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
+            (Part::Socket, DMat3::from_rotation_x(arm.case.spin.into())),
+        ];
+        for (part, turn) in turns {
+            let local = arm.rig.local(part);
+            prop_assert_eq!(local.translation, glam::Vec3A::ZERO);
+            within("turn", largest_entry(local.as_daffine3().matrix3 - turn), EXACT)?;
+        }
+    }
+
+    #[test]
+    fn world_transforms_are_rotations_and_products_up_the_parents(arm in standing()) {
+        for (part, _) in PARENTS {
+            let mut product = Mat4::from(arm.rig.local(part)).as_dmat4();
+            let (mut child, mut turns) = (part, 0);
+            while let Some(parent) = PARENTS[child as usize].1 {
+                product = Mat4::from(arm.rig.local(parent)).as_dmat4() * product;
+                (child, turns) = (parent, turns + 1);
+            }
+            let world = arm.rig.world(part);
+            is_rotation(world, turns)?;
+            // Two products of rotations; each sums three terms of Σ|aᵢₖ bₖⱼ| ≤ 1.
+            let turned = world.as_daffine3().matrix3 - DMat3::from_mat4(product);
+            within("rotation", largest_entry(turned), 2.0 * 3.0 * U)?;
+            let place = product.w_axis.truncate();
+            let reach = limits(arm.case.arm).1;
+            let bound = world_bound(reach, &[arm.root.as_dvec3(), place]);
+            within("place", arm.rig.origin(part).as_dvec3().distance(place), bound)?;
+        }
+    }
+
+    #[test]
+    fn a_cone_between_two_points_lands_on_both(
+        base in places(), direction in directions(), exponent in -2.0..4.0_f64,
+    ) {
+        let tip = (base.as_dvec3() + direction * 10_f64.powf(exponent)).as_vec3();
+        let (placed, cone) = Cone::between(base, tip, 3.0, 2.0);
+        is_rotation(placed, 1)?;
+        prop_assert_eq!(at(placed, 0.0), base.as_dvec3());
+        let (base, tip) = (base.as_dvec3(), tip.as_dvec3());
+        let bound = world_bound(base.distance(tip), &[base, tip]);
+        within("tip", at(placed, cone.length).distance(tip), bound)?;
+        prop_assert_eq!((cone.base_radius, cone.tip_radius), (3.0, 2.0));
+    }
+}
+
+#[test]
+fn a_cone_without_a_length_keeps_x() {
+    let here = Vec3::new(1.0, 2.0, 3.0);
+    let (placed, cone) = Cone::between(here, here, 3.0, 2.0);
+    assert_eq!(cone.length, 0.0);
+    assert_eq!(at(placed, 1.0), (here + Vec3::X).as_dvec3());
+    is_rotation(placed, 1).unwrap();
+}
