@@ -1,5 +1,7 @@
-// Everything behind the solids: the sky, and the planes in front of it. Drawn after them, at the
+// Everything behind the solids: the sky, and planes and shells in front of it. Drawn after them, at the
 // far end of the depth range, so that only what they leave free is computed.
+
+const FARTHEST = 1e30;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -9,5 +11,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return vec4f(behind_planes(sky(position.xy), pixel_ray(position.xy), 1e30), 1.0);
+    let ray = pixel_ray(position.xy);
+    let planes = behind_planes(sky(position.xy), ray, FARTHEST);
+    return vec4f(behind_shells(planes, ray, FARTHEST), 1.0);
 }

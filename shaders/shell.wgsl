@@ -1,26 +1,37 @@
-// A sphere that one can see through: a faint fill, and a rim where it turns away from the eye.
+// Spheres that one can see through, met analytically: a faint fill, and a rim where the surface
+// turns away from the eye. Both sides count, so that it is right from inside too.
 
-struct Instance {
-    @location(1) centre_radius: vec4f,
-    @location(2) colour: vec4f,
+const FILL_OPACITY = 0.045;
+const RIM_OPACITY = 0.5;
+
+// How much one sphere hides of what is at `limit` along the ray.
+fn opacity(shell: Shell, ray: Ray, limit: f32) -> f32 {
+    let squared = dot(ray.direction, ray.direction);
+    let from_centre = ray.origin - shell.centre;
+    let middle = -dot(from_centre, ray.direction) / squared;
+    let nearest = from_centre + ray.direction * middle;
+    let miss = length(nearest);
+    let half_chord = sqrt(max(shell.radius * shell.radius - miss * miss, 0.0));
+    let half_along = half_chord * inverseSqrt(squared);
+
+    // Half the chord over the radius is the cosine between the normal and the ray, on both sides.
+    let turned = 1.0 - half_chord / shell.radius;
+    let turned_squared = turned * turned;
+    let edge = saturate(0.5 + (shell.radius - miss) / pixel_size(middle));
+    let side = (FILL_OPACITY + RIM_OPACITY * turned_squared * turned_squared * turned) * edge;
+
+    let sides = middle + vec2f(-half_along, half_along);
+    let seen = sides > vec2f(nearest_along()) & sides < vec2f(limit);
+    let passing = select(vec2f(1.0), vec2f(1.0 - side), seen);
+    return 1.0 - passing.x * passing.y;
 }
 
-struct Surface {
-    @builtin(position) position: vec4f,
-    @location(0) normal: vec3f,
-    @location(1) @interpolate(flat) colour: vec4f,
-}
-
-@vertex
-fn vertex(@location(0) unit: vec3f, i: Instance) -> Surface {
-    let world = i.centre_radius.xyz + unit * i.centre_radius.w;
-    return Surface(view.clip_from_world * vec4f(world, 1.0), unit, i.colour);
-}
-
-@fragment
-fn fragment(s: Surface) -> @location(0) vec4f {
-    let towards = normalize(pixel_ray(s.position.xy).direction);
-    let turned = 1.0 - abs(dot(normalize(s.normal), towards));
-    let rim = pow(turned, 5.0);
-    return vec4f(s.colour.rgb, s.colour.a * (0.045 + 0.5 * rim));
+// A colour at `limit` along the ray, with every shell laid over it.
+fn behind_shells(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
+    var colour = behind;
+    for (var i = 0u; i < view.shell_count; i++) {
+        let shell = view.shells[i];
+        colour = mix(colour, shell.colour.rgb, opacity(shell, ray, limit));
+    }
+    return colour;
 }

@@ -1,10 +1,17 @@
-// What every shader of the scene sees: camera, lights, colours, and the planes' settings.
+// What every shader of the scene sees: camera, lights, colours, and the planes' settings. Colours
+// are as a screen has them (sRGB); light is added up in linear space and then encoded.
 
 struct Capsule {
     base: vec3f,
     base_radius: f32,
     tip: vec3f,
     tip_radius: f32,
+}
+
+struct Shell {
+    centre: vec3f,
+    radius: f32,
+    colour: vec4f,
 }
 
 struct View {
@@ -21,55 +28,66 @@ struct View {
     stage_radius: f32,
     size: vec2f,
     shadow_count: u32,
-    planes: u32, // bits: the grids in which x, y, z is 0; the ground
+    shell_count: u32,
+    shown: vec4f, // 1 or 0: the grids in which x, y, z is 0; the ground
     sky_top: vec4f,
     sky_bottom: vec4f,
     ground: vec4f,
     grid: vec4f,
     axes: array<vec4f, 3>,
     shadows: array<Capsule, 32>,
+    shells: array<Shell, 4>,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
 
 // The seed's two lights, and a soft light from everywhere: bluish above, warm below.
 const KEY_DIRECTION = vec3f(0.298142, 0.596285, 0.745356);
-const KEY = vec3f(0.84, 0.82, 0.78);
+const KEY = vec3f(0.76, 0.74, 0.70);
 const FILL_DIRECTION = vec3f(-0.842152, 0.421076, -0.336861);
-const FILL = vec3f(0.20, 0.22, 0.26);
-const SKY_AMBIENT = vec3f(0.36, 0.38, 0.42);
-const GROUND_AMBIENT = vec3f(0.20, 0.18, 0.16);
+const FILL = vec3f(0.22, 0.24, 0.28);
+const SKY_AMBIENT = vec3f(0.34, 0.36, 0.40);
+const GROUND_AMBIENT = vec3f(0.13, 0.12, 0.11);
 
 struct Ray {
     origin: vec3f,
-    direction: vec3f,
-    // How both change from one pixel to the next, across and down.
-    origin_dx: vec3f,
-    origin_dy: vec3f,
-    direction_dx: vec3f,
-    direction_dy: vec3f,
+    direction: vec3f, // not normalised
 }
 
-// The half line seen at a pixel; the direction is not normalised.
+// The half line seen at a pixel.
 fn pixel_ray(position: vec2f) -> Ray {
     let step = 2.0 / view.size;
     let at = vec2f(position.x * step.x - 1.0, 1.0 - position.y * step.y);
     let aside = view.right * at.x + view.up * at.y;
-    let dx = view.right * step.x;
-    let dy = -view.up * step.y;
-    let flat = view.orthographic;
     return Ray(
-        view.eye + aside * flat,
-        view.forward + aside * (1.0 - flat),
-        dx * flat,
-        dy * flat,
-        dx * (1.0 - flat),
-        dy * (1.0 - flat),
+        view.eye + aside * view.orthographic,
+        view.forward + aside * (1.0 - view.orthographic),
     );
+}
+
+// An orthographic picture has no eye to be behind.
+fn nearest_along() -> f32 {
+    return -1e30 * view.orthographic;
+}
+
+// How large a pixel is in the world, `along` a ray.
+fn pixel_size(along: f32) -> f32 {
+    let depth = mix(abs(along), 1.0, view.orthographic);
+    return max(depth * length(view.up) * 2.0 / view.size.y, 1e-6);
 }
 
 fn sky(position: vec2f) -> vec3f {
     return mix(view.sky_top.rgb, view.sky_bottom.rgb, position.y / view.size.y);
+}
+
+fn decoded(colour: vec3f) -> vec3f {
+    let high = pow((colour + 0.055) / 1.055, vec3f(2.4));
+    return select(high, colour / 12.92, colour <= vec3f(0.04045));
+}
+
+fn encoded(light: vec3f) -> vec3f {
+    let high = 1.055 * pow(light, vec3f(1.0 / 2.4)) - 0.055;
+    return select(high, light * 12.92, light <= vec3f(0.0031308));
 }
 
 // Matte: two directional lights and the sky's and the ground's own light.
@@ -77,7 +95,7 @@ fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, normal.y * 0.5 + 0.5);
     let key = KEY * max(dot(normal, KEY_DIRECTION), 0.0);
     let fill = FILL * max(dot(normal, FILL_DIRECTION), 0.0);
-    return colour * (ambient + key + fill);
+    return encoded(decoded(colour) * (ambient + key + fill));
 }
 
 // Far things fade into the sky behind them.

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    Case, EXACT, U, anywhere, bones, config, directions, limb_rotation, limits, within,
-    yaw_and_pitch,
+    Case, EXACT, U, anywhere, bones, config, directions, limb_rotation, limits, power_of_ten,
+    within, yaw_and_pitch,
 };
 use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
 use ik_arm::kinematics::two_bone::Pose;
@@ -49,13 +49,13 @@ impl Standing {
         world_bound(limits(self.case.arm).1, &points)
     }
 
-    /// A point of a part's own space in the world, in f64 from there.
+    /// The point so far along a part's +x, in the world.
     fn point(&self, part: Part, x: f32) -> DVec3 {
         at(self.rig.world(part), x)
     }
 }
 
-/// So far along a transform's +x.
+/// The point so far along a transform's +x.
 fn at(transform: Affine3A, x: f32) -> DVec3 {
     transform.as_daffine3().transform_point3(DVec3::X * f64::from(x))
 }
@@ -68,7 +68,7 @@ fn world_bound(length: f64, points: &[DVec3]) -> f64 {
 
 /// Every coordinate up to ±1e6, at every scale.
 fn places() -> impl Strategy<Value = Vec3> {
-    (directions(), -2.0..6.0_f64).prop_map(|(to, exponent)| (to * 10_f64.powf(exponent)).as_vec3())
+    (directions(), power_of_ten(-2.0..6.0)).prop_map(|(to, distance)| (to * distance).as_vec3())
 }
 
 fn standing() -> impl Strategy<Value = Standing> {
@@ -123,9 +123,9 @@ proptest! {
         ] {
             within(what, end.distance(arm.in_world(joint)), arm.bound())?;
         }
-        let ((upper_length, lower_length), (_, length)) = (bones(arm.case.arm), limits(arm.case.arm));
-        within("upper length", (f64::from(upper.length) - upper_length).abs(), EXACT * length)?;
-        within("lower length", (f64::from(lower.length) - lower_length).abs(), EXACT * length)?;
+        let (bones, bound) = (bones(arm.case.arm), EXACT * limits(arm.case.arm).1);
+        within("upper length", (f64::from(upper.length) - bones.0).abs(), bound)?;
+        within("lower length", (f64::from(lower.length) - bones.1).abs(), bound)?;
         for part in [Part::UpperLimb, Part::LowerLimb] {
             prop_assert_eq!(arm.rig.local(part).matrix3.z_axis, glam::Vec3A::Z, "not a hinge");
         }
@@ -139,7 +139,7 @@ proptest! {
 
         let start = arm.point(Part::Pointer, 0.0);
         prop_assert_eq!(start, root.as_dvec3());
-        let along = (arm.point(Part::Pointer, rig.pointer().length) - start) / length;
+        let along = (arm.point(Part::Pointer, rig.pointer().length) - start).normalize();
         let cursor = arm.in_world(case.cursor);
         let reach = length.max(case.cursor.as_dvec3().length());
         let cursor_bound = world_bound(reach, &[root.as_dvec3(), cursor]);
@@ -189,7 +189,7 @@ proptest! {
             }
             let world = arm.rig.world(part);
             is_rotation(world, turns)?;
-            // Two products of rotations; each sums three terms of Σ|aᵢₖ bₖⱼ| ≤ 1.
+            // Two products of rotations; each rounds the terms of Σ aᵢₖbₖⱼ, Σ|aᵢₖbₖⱼ| ≤ 1, thrice.
             let turned = world.as_daffine3().matrix3 - DMat3::from_mat4(product);
             within("rotation", largest_entry(turned), 2.0 * 3.0 * U)?;
             let place = product.w_axis.truncate();
@@ -201,16 +201,23 @@ proptest! {
 
     #[test]
     fn a_cone_between_two_points_lands_on_both(
-        base in places(), direction in directions(), exponent in -2.0..4.0_f64,
+        base in prop_oneof![places(), Just(Vec3::ZERO)],
+        direction in directions(),
+        length in prop_oneof![power_of_ten(-2.0..4.0), power_of_ten(-40.0..38.0)],
     ) {
-        let tip = (base.as_dvec3() + direction * 10_f64.powf(exponent)).as_vec3();
-        let (placed, cone) = Cone::between(base, tip, 3.0, 2.0);
-        is_rotation(placed, 1)?;
-        prop_assert_eq!(at(placed, 0.0), base.as_dvec3());
-        let (base, tip) = (base.as_dvec3(), tip.as_dvec3());
-        let bound = world_bound(base.distance(tip), &[base, tip]);
-        within("tip", at(placed, cone.length).distance(tip), bound)?;
-        prop_assert_eq!((cone.base_radius, cone.tip_radius), (3.0, 2.0));
+        let tip = (base.as_dvec3() + direction * length).as_vec3();
+        let (flat_base, flat_tip) = (base.with_z(0.0), tip.with_z(0.0));
+        for (base, tip, (placed, cone)) in [
+            (base, tip, Cone::between(base, tip, 3.0, 2.0)),
+            (flat_base, flat_tip, Cone::in_xy_plane(flat_base, flat_tip, 3.0, 2.0)),
+        ] {
+            is_rotation(placed, 1)?;
+            prop_assert_eq!(at(placed, 0.0), base.as_dvec3());
+            prop_assert_eq!((cone.base_radius, cone.tip_radius), (3.0, 2.0));
+            let (base, tip) = (base.as_dvec3(), tip.as_dvec3());
+            let bound = world_bound(base.distance(tip), &[base, tip]);
+            within("tip", at(placed, cone.length).distance(tip), bound)?;
+        }
     }
 }
 

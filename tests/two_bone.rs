@@ -5,8 +5,8 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use common::{
-    Case, EXACT, U, anywhere, arms, bones, config, directions, in_reach, limb_rotation, limits,
-    out_of_reach, within, yaw_and_pitch,
+    Case, EXACT, U, anywhere, arms, bones, config, directions, either_sign, in_reach,
+    limb_rotation, limits, out_of_reach, within, yaw_and_pitch,
 };
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
@@ -111,7 +111,7 @@ proptest! {
 
     #[test]
     fn moving_one_coordinate_leaves_the_other_two_of_the_hand(
-        case in in_reach(), axis in 0..3_usize, share in 0.0..1.0, side in prop::bool::ANY,
+        case in in_reach(), axis in 0..3_usize, share in either_sign(0.0..1.0),
     ) {
         // From where the moved cursor leaves the inner limit to where it meets the outer one, clear
         // of both by eight roundings.
@@ -121,7 +121,7 @@ proptest! {
         let [from, to] = [inner * (1.0 + 8.0 * U), outer * (1.0 - 8.0 * U)]
             .map(|limit| (limit * limit - kept.length_squared()).max(0.0).sqrt());
         let mut moved = case.cursor;
-        moved[axis] = (from + (to - from) * share) as f32 * if side { 1.0 } else { -1.0 };
+        moved[axis] = (from.copysign(share) + (to - from) * share) as f32;
 
         let (before, after) = (case.solve().hand, Case { cursor: moved, ..case }.solve().hand);
         for other in 0..3 {
@@ -157,12 +157,13 @@ proptest! {
         let (pose, (yaw, pitch)) = (case.solve(), yaw_and_pitch(cursor));
         let twin = Twin::new(arm, cursor.as_dvec3().length(), (yaw, pitch), spin);
 
-        // |c|: three roundings under the root (halved), one of it; clamping spreads no error.
+        // |c| is 2.5 U of itself off: three roundings under the root, halved, and the root's own.
+        // L and |δ| are U off; a clamp adds nothing to the largest.
         let distance = f64::from(pose.distance);
         within("D", (distance - twin.distance).abs(), 2.5 * U * length)?;
 
-        // D moves h_e by (D − δL/D)/2 ≤ d₂ times its 2.5; δ, L, quotient and product cost four
-        // roundings of ½|δ|L/D ≤ ½L; the sum one of d₁: together 4.5 of L at most.
+        // D's 2.5 U move h_e by ½|D − δL/D| ≤ d₂ times as much; δ, L, quotient and product cost
+        // four roundings of ½|δ|L/D ≤ ½L; the sum costs one of d₁: together 4.5 U of L at most.
         let along = f64::from(pose.along);
         within("along", (along - twin.elbow_socket.x).abs(), 4.5 * U * length)?;
 
@@ -181,7 +182,7 @@ proptest! {
         let off = FRAC_PI_2 * bound.hypot(4.5 * U * length);
         let at_shoulder = (f64::from(pose.shoulder_angle()) - twin.shoulder_angle).abs();
         within("shoulder angle", at_shoulder, off / upper + 4.0 * U)?;
-        // π is rounded, and so are two angles and two differences: five times 4 U at most.
+        // π, two angles and two differences are rounded: five times 4 U at most.
         let at_elbow = (f64::from(pose.elbow_angle()) - twin.elbow_angle).abs();
         within("elbow angle", at_elbow, off / upper + off / lower + 20.0 * U)?;
     }
@@ -203,27 +204,24 @@ proptest! {
 
     #[test]
     fn straight_above_and_below_the_yaw_is_the_last_or_none(
-        case in anywhere(), last in directions(), below in prop::bool::ANY,
+        case in anywhere(), last in directions(), up in either_sign(Just(1.0)),
     ) {
         let Case { arm, cursor, spin } = case;
         let height = (cursor.as_dvec3().length() as f32).max(f32::from_bits(1));
-        let height = if below { -height } else { height };
-        let cursor = Vec3::Y * height;
+        let (cursor, pitch) = (Vec3::Y * height * up, FRAC_PI_2 * f64::from(up));
         let last = last.as_vec3();
         for (pose, yaw) in [
             (arm.solve(cursor, spin), 0.0),
             (arm.solve_from(cursor, spin, arm.solve(last, 0.0).facing), yaw_and_pitch(last).0),
         ] {
-            let pitch = FRAC_PI_2.copysign(height.into());
-            agrees(&pose, arm, &Twin::new(arm, f64::from(height).abs(), (yaw, pitch), spin))?;
+            agrees(&pose, arm, &Twin::new(arm, height.into(), (yaw, pitch), spin))?;
         }
     }
 
     #[test]
     fn exactly_at_a_limit_is_reached_and_the_next_number_is_not(
-        arm in arms(), axis in prop::sample::select(vec![Vec3::X, Vec3::Y, Vec3::Z]), sign in 0..2,
+        arm in arms(), axis in either_sign(prop::sample::select(&Vec3::AXES)),
     ) {
-        let axis = if sign == 0 { axis } else { -axis };
         let (inner, outer) = (arm.inner_limit(), arm.outer_limit());
         let reach = |radius: f32| arm.solve(axis * radius, 1.0).reach;
         prop_assert_eq!(reach(outer), Reach::Reached);
@@ -237,14 +235,12 @@ proptest! {
     #[test]
     fn every_finite_cursor_gives_a_finite_pose(
         upper in sizes(), lower in sizes(), equal in prop::bool::ANY,
-        cursor in [sizes(), sizes(), sizes()], minus in 0..8_usize,
-        spin in prop::num::f32::NORMAL | prop::num::f32::NEGATIVE | prop::num::f32::POSITIVE,
+        cursor in [either_sign(sizes()), either_sign(sizes()), either_sign(sizes())],
+        spin in either_sign(sizes()),
     ) {
         let [upper, lower] = [upper, lower].map(|length| length.max(f32::from_bits(1)));
         let arm = TwoBone::new(upper, if equal { upper } else { lower }).unwrap();
-        let mut cursor = Vec3::from_array(cursor);
-        (0..3).filter(|axis| minus >> axis & 1 == 1).for_each(|axis| cursor[axis] *= -1.0);
-
+        let cursor = Vec3::from_array(cursor);
         let pose = arm.solve(cursor, spin);
         let Pose { elbow, hand, distance, along, out, facing, .. } = pose;
         prop_assert!(elbow.is_finite() && hand.is_finite(), "{:?}", pose);

@@ -28,8 +28,8 @@ pub enum ReadError {
 }
 
 impl Canvas {
-    /// Linear light is written, sRGB is stored.
-    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+    /// The shaders encode light as sRGB themselves: once a pixel instead of once a sample.
+    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
     pub(super) const SAMPLES: u32 = 4;
 
@@ -37,7 +37,7 @@ impl Canvas {
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let side = |length: u32| length.clamp(1, gpu.longest_side());
         let (width, height) = (side(width), side(height));
-        let texture = |label, format, sample_count, usage, view_formats: &[_]| {
+        let texture = |label, format, sample_count, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -46,15 +46,14 @@ impl Canvas {
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage,
-                view_formats,
+                view_formats: &[],
             })
         };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let shown = drawn | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-        let unconverted = [Self::FORMAT.remove_srgb_suffix()];
-        let image = texture("canvas image", Self::FORMAT, 1, shown, &unconverted);
-        let samples = texture("canvas samples", Self::FORMAT, Self::SAMPLES, drawn, &[]);
-        let depth = texture("canvas depth", Self::DEPTH, Self::SAMPLES, drawn, &[]);
+        let image = texture("canvas image", Self::FORMAT, 1, shown);
+        let samples = texture("canvas samples", Self::FORMAT, Self::SAMPLES, drawn);
+        let depth = texture("canvas depth", Self::DEPTH, Self::SAMPLES, drawn);
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         Self {
             width,
@@ -74,13 +73,9 @@ impl Canvas {
         self.width as f32 / self.height as f32
     }
 
-    /// The image as it is stored, without conversion from sRGB: for those who blend in it.
-    pub fn stored_view(&self) -> wgpu::TextureView {
-        self.image.create_view(&wgpu::TextureViewDescriptor {
-            label: Some("canvas as stored"),
-            format: Some(Self::FORMAT.remove_srgb_suffix()),
-            ..Default::default()
-        })
+    /// The image, to be shown in another one.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.colour
     }
 
     /// Waits for the device and takes the picture to memory.

@@ -66,6 +66,6 @@ impl Dashes {
 
 impl Instance {
     fn new(dash: &Dash) -> Self {
-        Self { from: dash.from, to: dash.to, colour: dash.colour.linear() }
+        Self { from: dash.from, to: dash.to, colour: dash.colour.channels() }
     }
 }

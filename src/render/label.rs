@@ -169,8 +169,8 @@ impl Atlas {
         };
         let pen = point + Vec2::new(away, drop);
         let palette = &scene.palette;
-        let halo = palette.sky_bottom.with_opacity(0.55).linear();
-        let colour = label.colour.linear();
+        let halo = palette.sky_bottom.with_opacity(0.55).channels();
+        let colour = label.colour.channels();
         let around = HALO.into_iter().map(|offset| (offset * self.scale, halo));
         around
             .chain([(Vec2::ZERO, colour)])

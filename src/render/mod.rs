@@ -15,7 +15,6 @@ mod mesh;
 mod picture;
 mod pipeline;
 mod renderer;
-mod shell;
 mod solid;
 mod view;
 
@@ -25,12 +24,11 @@ pub use picture::{Picture, SaveError, Timings, save};
 pub use renderer::Renderer;
 
 /// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 5] {
+pub fn shaders() -> [(&'static str, &'static str); 4] {
     [
         ("backdrop", backdrop::SHADER),
         ("dash", dash::SHADER),
         ("label", label::SHADER),
-        ("shell", shell::SHADER),
         ("solid", solid::SHADER),
     ]
 }

@@ -1,7 +1,6 @@
 use super::backdrop::Backdrop;
 use super::dash::Dashes;
 use super::label::Labels;
-use super::shell::Shells;
 use super::solid::Solids;
 use super::view::View;
 use super::{Canvas, Gpu};
@@ -13,7 +12,6 @@ pub struct Renderer {
     view: View,
     solids: Solids,
     backdrop: Backdrop,
-    shells: Shells,
     dashes: Dashes,
     labels: Labels,
 }
@@ -24,7 +22,6 @@ impl Renderer {
         Self {
             solids: Solids::new(gpu, &view.layout),
             backdrop: Backdrop::new(gpu, &view.layout),
-            shells: Shells::new(gpu, &view.layout),
             dashes: Dashes::new(gpu, &view.layout),
             labels: Labels::new(gpu, &view.layout),
             view,
@@ -36,7 +33,6 @@ impl Renderer {
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         self.view.upload(gpu, scene, canvas.size(), scale);
         self.solids.upload(gpu, scene);
-        self.shells.upload(gpu, scene);
         self.dashes.upload(gpu, scene);
         self.labels.upload(gpu, scene, canvas.size(), scale);
 
@@ -68,7 +64,6 @@ impl Renderer {
         self.solids.draw(&mut pass);
         self.backdrop.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
-        self.shells.draw(&mut pass);
         self.dashes.draw(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);

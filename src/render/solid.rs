@@ -9,6 +9,7 @@ use crate::scene::{Ball, Scene, Solid};
 pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
     include_str!("../../shaders/planes.wgsl"),
+    include_str!("../../shaders/shell.wgsl"),
     include_str!("../../shaders/solid.wgsl"),
 );
 
@@ -137,7 +138,7 @@ impl Instance {
             z: axes.z_axis,
             tip_radius: solid.shape.tip_radius,
             origin: solid.place.translation.into(),
-            colour: solid.colour.linear(),
+            colour: solid.colour.channels(),
         }
     }
 
@@ -150,7 +151,7 @@ impl Instance {
             z: Vec3::Z,
             tip_radius: ball.radius,
             origin: ball.centre,
-            colour: ball.colour.linear(),
+            colour: ball.colour.channels(),
         }
     }
 }

@@ -7,6 +7,9 @@ use crate::scene::{Colour, Scene};
 /// The most limbs that cast shadows at once.
 const SHADOWS: usize = 32;
 
+/// The most see-through spheres at once.
+const SHELLS: usize = 4;
+
 /// What every shader of the scene sees, as `view.wgsl` has it.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -24,13 +27,15 @@ struct Uniform {
     stage_radius: f32,
     size: Vec2,
     shadow_count: u32,
-    planes: u32,
+    shell_count: u32,
+    shown: Vec4,
     sky_top: Vec4,
     sky_bottom: Vec4,
     ground: Vec4,
     grid: Vec4,
     axes: [Vec4; 3],
     shadows: [Capsule; SHADOWS],
+    shells: [Sphere; SHELLS],
 }
 
 #[repr(C)]
@@ -42,8 +47,18 @@ struct Capsule {
     tip_radius: f32,
 }
 
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+struct Sphere {
+    centre: Vec3,
+    radius: f32,
+    colour: Vec4,
+}
+
 const _: () = assert!(size_of::<Capsule>() == 32);
-const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 7 * 16 + SHADOWS * 32);
+const _: () = assert!(size_of::<Sphere>() == 32);
+const _: () =
+    assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + (SHADOWS + SHELLS) * 32);
 
 /// The uniform on the device.
 #[derive(Debug)]
@@ -96,8 +111,8 @@ impl Uniform {
     fn new(scene: &Scene, (width, height): (u32, u32), scale: f32) -> Self {
         let (palette, stage) = (&scene.palette, &scene.stage);
         let projection = scene.camera.projection(width as f32 / height as f32);
-        let linear = |colour: Colour| Vec4::from_array(colour.linear());
-        let planes = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
+        let screen = |colour: Colour| Vec4::from_array(colour.channels());
+        let shown = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
         let mut shadows = [Capsule::zeroed(); SHADOWS];
         for (capsule, shadow) in shadows.iter_mut().zip(&scene.shadows) {
             *capsule = Capsule {
@@ -106,6 +121,11 @@ impl Uniform {
                 tip: shadow.tip,
                 tip_radius: shadow.tip_radius,
             };
+        }
+        let mut shells = [Sphere::zeroed(); SHELLS];
+        for (sphere, shell) in shells.iter_mut().zip(&scene.shells) {
+            let colour = screen(shell.colour);
+            *sphere = Sphere { centre: shell.centre, radius: shell.radius, colour };
         }
         Self {
             clip_from_world: projection.clip_from_world,
@@ -121,13 +141,15 @@ impl Uniform {
             stage_radius: stage.radius,
             size: Vec2::new(width as f32, height as f32),
             shadow_count: scene.shadows.len().min(SHADOWS) as u32,
-            planes: planes.iter().rev().fold(0, |bits, &on| bits << 1 | u32::from(on)),
-            sky_top: linear(palette.sky_top),
-            sky_bottom: linear(palette.sky_bottom),
-            ground: linear(palette.ground.with_opacity(Self::GROUND_OPACITY)),
-            grid: linear(palette.grid),
-            axes: palette.axes.map(linear),
+            shell_count: scene.shells.len().min(SHELLS) as u32,
+            shown: Vec4::from_array(shown.map(|shown| if shown { 1.0 } else { 0.0 })),
+            sky_top: screen(palette.sky_top),
+            sky_bottom: screen(palette.sky_bottom),
+            ground: screen(palette.ground.with_opacity(Self::GROUND_OPACITY)),
+            grid: screen(palette.grid),
+            axes: palette.axes.map(screen),
             shadows,
+            shells,
         }
     }
 }

@@ -15,13 +15,9 @@ impl Colour {
         Self([r, g, b, (opacity * 255.0).round() as u8])
     }
 
-    /// Linear light, with opacity.
-    pub fn linear(self) -> [f32; 4] {
-        let [r, g, b, a] = self.0.map(|channel| f32::from(channel) / 255.0);
-        let [r, g, b] = [r, g, b].map(|v| {
-            if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
-        });
-        [r, g, b, a]
+    /// Red, green, blue and opacity from 0 to 1, still sRGB.
+    pub fn channels(self) -> [f32; 4] {
+        self.0.map(|channel| f32::from(channel) / 255.0)
     }
 }
 
