@@ -1,5 +1,7 @@
 //! x
 #[cfg(feature = "app")]
+pub mod app;
+#[cfg(feature = "app")]
 pub mod cli;
 #[cfg(feature = "document")]
 pub mod document;
@@ -9,3 +11,7 @@ pub mod render;
 pub mod rig;
 #[cfg(feature = "document")]
 pub mod scene;
+#[cfg(feature = "document")]
+pub mod session;
+#[cfg(feature = "app")]
+pub mod ui;

@@ -8,10 +8,10 @@ use glam::Vec3;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::document::{Arm, AxisView, Camera, Display, Document, Layer};
+use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, Theme};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
-use crate::scene::{Scene, Theme};
+use crate::scene::Scene;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -248,7 +248,9 @@ impl FromStr for Size {
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let side = |text: &str| {
-            text.parse().ok().filter(|side| (1..=Self::MAX).contains(side) && !text.starts_with('+'))
+            text.parse()
+                .ok()
+                .filter(|side| (1..=Self::MAX).contains(side) && !text.starts_with('+'))
         };
         text.split_once('x')
             .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))

@@ -129,11 +129,7 @@ impl Camera {
         let distance = (self.distance * factor).clamp(nearest, farthest);
         let (across, upwards) = self.half_extent(aspect);
         let towards = 1.0 - distance / self.distance;
-        Self {
-            target: self.target + (across * at.x + upwards * at.y) * towards,
-            distance,
-            ..self
-        }
+        Self { target: self.target + (across * at.x + upwards * at.y) * towards, distance, ..self }
     }
 
     /// Looks at a sphere from where it looks now, near enough that the sphere fills the picture.
@@ -260,7 +256,8 @@ mod tests {
     fn a_ray_passes_through_the_point_that_projects_to_its_place() {
         for camera in cameras() {
             let projection = camera.projection(ASPECT);
-            for point in [Vec3::ZERO, Vec3::new(100.0, 60.0, -80.0), Vec3::new(-90.0, 10.0, 120.0)] {
+            for point in [Vec3::ZERO, Vec3::new(100.0, 60.0, -80.0), Vec3::new(-90.0, 10.0, 120.0)]
+            {
                 let at = projection.project(point).expect("before the eye");
                 let ray = projection.ray(at);
                 let off = (point - ray.origin).cross(ray.direction.normalize()).length();

@@ -9,7 +9,7 @@ mod display;
 
 pub use arm::Arm;
 pub use camera::{AxisView, Camera, Projection, Ray};
-pub use display::{Display, Layer};
+pub use display::{Display, Layer, Theme};
 
 /// Everything that a file holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -5,10 +5,8 @@ use super::instances::Instances;
 use super::{Gpu, pipeline};
 use crate::scene::{Dash, Scene};
 
-pub(super) const SHADER: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/dash.wgsl"),
-);
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/dash.wgsl"),);
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]

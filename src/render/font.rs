@@ -93,7 +93,6 @@ impl Font {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -56,6 +56,10 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|source| GpuError::NoDevice { adapter: adapter.get_info().name, source })?;
+        device.on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
+        device.set_device_lost_callback(|reason, message| {
+            log::error!("the graphics device was lost ({reason:?}): {message}");
+        });
         Ok(Self { instance, adapter, device, queue })
     }
 

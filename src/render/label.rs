@@ -7,10 +7,8 @@ use super::instances::Instances;
 use super::{Gpu, pipeline};
 use crate::scene::{Label, Scene, Side};
 
-pub(super) const SHADER: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/label.wgsl"),
-);
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/label.wgsl"),);
 
 /// The height of a line, in points.
 const SIZE: f32 = 15.0;

@@ -88,7 +88,12 @@ impl Solids {
         };
         Self {
             visible: pipeline("solid", "fragment", wgpu::CompareFunction::Greater, true),
-            hidden: pipeline("solid, hidden", "fragment_hidden", wgpu::CompareFunction::Less, false),
+            hidden: pipeline(
+                "solid, hidden",
+                "fragment_hidden",
+                wgpu::CompareFunction::Less,
+                false,
+            ),
             cone: cone(gpu),
             ball: ball(gpu),
             cones: Instances::new("cones"),

@@ -57,8 +57,7 @@ struct Sphere {
 
 const _: () = assert!(size_of::<Capsule>() == 32);
 const _: () = assert!(size_of::<Sphere>() == 32);
-const _: () =
-    assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + (SHADOWS + SHELLS) * 32);
+const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + (SHADOWS + SHELLS) * 32);
 
 /// The uniform on the device.
 #[derive(Debug)]

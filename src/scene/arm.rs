@@ -34,8 +34,7 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
         Solid { place: rig.world(Part::UpperLimb), shape: rig.upper(), colour: palette.upper },
         Solid { place: rig.world(Part::LowerLimb), shape: rig.lower(), colour: palette.lower },
     ]);
-    let joints =
-        [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
+    let joints = [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
     scene.balls.extend(joints.map(|(part, radius)| Ball {
         centre: rig.origin(part),
         radius: radius * thickness,
@@ -77,8 +76,8 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     scene.labels.push(Label {
         at: cursor,
         clearance: CURSOR_BALL * thickness,
-        side: Side::Below,
-        text: format!("{:.1} short", hand.distance(cursor)),
+        side: Side::Above,
+        text: format!("{:.1}", hand.distance(cursor)),
         colour,
     });
 }
@@ -86,14 +85,14 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
 fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     let colour = scene.palette.text;
     let named = [
-        (Part::Root, SHOULDER_BALL, "Root"),
-        (Part::Elbow, ELBOW_BALL, "Elbow"),
-        (Part::Hand, HAND_BALL, "Hand"),
+        (Part::Root, SHOULDER_BALL, Side::Below, "Root"),
+        (Part::Elbow, ELBOW_BALL, Side::Above, "Elbow"),
+        (Part::Hand, HAND_BALL, Side::Below, "Hand"),
     ];
-    scene.labels.extend(named.map(|(part, radius, name)| Label {
+    scene.labels.extend(named.map(|(part, radius, side, name)| Label {
         at: rig.origin(part),
         clearance: radius * thickness,
-        side: Side::Above,
+        side,
         text: name.to_owned(),
         colour,
     }));

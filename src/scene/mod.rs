@@ -7,9 +7,9 @@ mod palette;
 
 use glam::{Affine3A, Vec3};
 
-pub use palette::{Colour, Palette, Theme};
+pub use palette::{Colour, Palette};
 
-use crate::document::{Camera, Display, Document, Layer};
+use crate::document::{Camera, Display, Document, Layer, Theme};
 use crate::kinematics::two_bone::Pose;
 use crate::rig::Cone;
 

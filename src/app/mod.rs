@@ -1,0 +1,183 @@
+//! The window: winit's event loop, the surface, and the frames drawn on it.
+
+mod jobs;
+mod present;
+mod settings;
+mod window;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use thiserror::Error;
+use winit::application::ApplicationHandler;
+use winit::error::EventLoopError;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
+
+use crate::render::GpuError;
+use crate::session::{Action, Session};
+use settings::Settings;
+use window::{AppWindow, Repaint};
+
+/// Why there is no window.
+#[derive(Debug, Error)]
+pub enum AppError {
+    #[error(
+        "no window can be opened: {0}\n\
+         Without a display, `ik-arm render -o arm.png` draws a picture instead"
+    )]
+    NoDisplay(EventLoopError),
+    #[error("the window was closed by its system: {0}")]
+    EventLoop(EventLoopError),
+    #[error("the system does not open a window: {0}")]
+    Window(#[from] winit::error::OsError),
+    #[error("the window cannot be drawn in: {0}")]
+    Surface(#[from] wgpu::CreateSurfaceError),
+    #[error("the graphics adapter {0} cannot draw in this window")]
+    Unsupported(String),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// What comes from elsewhere than the window.
+#[derive(Debug)]
+enum UserEvent {
+    Accesskit(egui_winit::accesskit_winit::Event),
+    /// Something that ran beside the window says how it ended.
+    Report(String),
+    PicturePath(Option<PathBuf>),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for UserEvent {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accesskit(event)
+    }
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+///
+/// If there is no display or nothing to draw with.
+pub fn run() -> Result<(), AppError> {
+    let started = Instant::now();
+    let event_loop =
+        EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
+    let settings = Settings::load();
+    let mut app = App {
+        started,
+        proxy: event_loop.create_proxy(),
+        session: Session::new(settings.preferences),
+        settings,
+        state: State::Suspended,
+    };
+    event_loop.run_app(&mut app).map_err(AppError::EventLoop)?;
+    match app.state {
+        State::Failed(error) => Err(error),
+        State::Suspended | State::Active(_) => Ok(()),
+    }
+}
+
+struct App {
+    started: Instant,
+    proxy: EventLoopProxy<UserEvent>,
+    session: Session,
+    settings: Settings,
+    state: State,
+}
+
+enum State {
+    Suspended,
+    Active(Box<AppWindow>),
+    Failed(AppError),
+}
+
+impl App {
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        let State::Active(window) = &mut self.state else {
+            return;
+        };
+        let drawn = window.redraw(&mut self.session, &self.proxy);
+        if window.frames() == 1 {
+            log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
+        }
+        match drawn {
+            Repaint::Quit => event_loop.exit(),
+            Repaint::At(time) => event_loop.set_control_flow(ControlFlow::WaitUntil(time)),
+            Repaint::OnInput => event_loop.set_control_flow(ControlFlow::Wait),
+        }
+    }
+}
+
+impl ApplicationHandler<UserEvent> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if matches!(self.state, State::Active(_)) {
+            return;
+        }
+        let settings = std::mem::take(&mut self.settings);
+        match AppWindow::open(event_loop, settings, self.proxy.clone()) {
+            Ok(window) => self.state = State::Active(Box::new(window)),
+            Err(error) => {
+                self.state = State::Failed(error);
+                event_loop.exit();
+            }
+        }
+    }
+
+    fn suspended(&mut self, _: &ActiveEventLoop) {
+        self.state = State::Suspended;
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, State::Active(window)) = (cause, &self.state)
+        {
+            window.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        // Before egui sees it, whose answer to a redraw is to ask for another.
+        if event == WindowEvent::RedrawRequested {
+            self.redraw(event_loop);
+            return;
+        }
+        let State::Active(window) = &mut self.state else {
+            return;
+        };
+        match &event {
+            WindowEvent::CloseRequested => {
+                event_loop.exit();
+                return;
+            }
+            WindowEvent::Resized(size) => window.resize(size.width, size.height),
+            _ => {}
+        }
+        if window.on_event(&event) {
+            window.request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, event: UserEvent) {
+        let State::Active(window) = &mut self.state else {
+            return;
+        };
+        match event {
+            UserEvent::Accesskit(event) => window.on_accesskit(event),
+            UserEvent::Report(message) => {
+                self.session.apply(Action::Report(message));
+            }
+            UserEvent::PicturePath(path) => {
+                self.session.apply(jobs::chosen(path));
+            }
+        }
+        window.request_redraw();
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        if let State::Active(window) = &self.state {
+            log::info!("{} frames drawn", window.frames());
+            window.settings(*self.session.preferences()).save();
+        }
+    }
+}

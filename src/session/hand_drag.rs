@@ -1,0 +1,348 @@
+use core::fmt;
+
+use glam::Vec3;
+
+use crate::document::Ray;
+
+/// Which part of the hand's handles is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handle {
+    /// The hand itself: it moves in the plane of the picture.
+    Free,
+    /// An arrow: 0, 1, 2 for x, y, z.
+    Axis(usize),
+    /// A square: the plane in which coordinate 0, 1 or 2 stays.
+    Plane(usize),
+}
+
+/// What a key makes of a drag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constraint {
+    Axis(usize),
+    Plane(usize),
+}
+
+/// Where the pointer is now, and the keys that change what that means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DragInput {
+    pub ray: Ray,
+    /// A tenth of the way.
+    pub precise: bool,
+    /// To whole steps.
+    pub snap: bool,
+}
+
+/// A hand that is held. Where it goes is computed from where everything was at the press, never
+/// from the last move, so that nothing drifts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandDrag {
+    handle: Handle,
+    constraint: Option<Constraint>,
+    /// The Root-space cursor and the shoulder at the press.
+    start: Vec3,
+    root: Vec3,
+    /// Normal of the picture.
+    forward: Vec3,
+    pressed: Ray,
+    now: DragInput,
+    /// Where precision began, so that it goes on from there.
+    slow: Option<Slow>,
+    typed: String,
+    last: Vec3,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slow {
+    on: bool,
+    ray: Ray,
+    offset: Vec3,
+}
+
+impl HandDrag {
+    const PRECISION: f32 = 0.1;
+    const SNAP: f32 = 10.0;
+    const PRECISE_SNAP: f32 = 1.0;
+
+    /// Takes hold of the hand at `start` (Root space) below a shoulder at `root`.
+    pub(super) fn new(handle: Handle, start: Vec3, root: Vec3, forward: Vec3, ray: Ray) -> Self {
+        let now = DragInput { ray, precise: false, snap: false };
+        Self {
+            handle,
+            constraint: None,
+            start,
+            root,
+            forward,
+            pressed: ray,
+            now,
+            slow: None,
+            typed: String::new(),
+            last: start,
+        }
+    }
+
+    pub fn handle(&self) -> Handle {
+        self.handle
+    }
+
+    /// What the drag is held to, by the handle or by a key.
+    pub fn constraint(&self) -> Option<Constraint> {
+        self.constraint.or(match self.handle {
+            Handle::Free => None,
+            Handle::Axis(axis) => Some(Constraint::Axis(axis)),
+            Handle::Plane(axis) => Some(Constraint::Plane(axis)),
+        })
+    }
+
+    /// The offset as it is typed; empty while the pointer leads.
+    pub fn typed(&self) -> &str {
+        &self.typed
+    }
+
+    /// How far the hand has been moved.
+    pub fn moved(&self) -> Vec3 {
+        self.last - self.start
+    }
+
+    pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
+        self.constraint = constraint;
+        self.slow = None;
+    }
+
+    pub(super) fn set_typed(&mut self, typed: String) {
+        self.typed = typed;
+    }
+
+    pub(super) fn set_input(&mut self, input: DragInput) {
+        if input.precise != self.now.precise {
+            let offset = self.pointed();
+            self.slow = Some(Slow { on: input.precise, ray: self.now.ray, offset });
+        }
+        self.now = input;
+    }
+
+    /// Where the hand is to be, in Root space. Coordinates that the drag does not move keep every
+    /// bit.
+    pub(super) fn hand(&mut self) -> Vec3 {
+        let offset = if self.typed.is_empty() {
+            self.pointed()
+        } else {
+            offset_of(&self.typed, self.constraint()).unwrap_or(Vec3::ZERO)
+        };
+        let snap = self.now.snap && self.typed.is_empty();
+        let step = if self.now.precise { Self::PRECISE_SNAP } else { Self::SNAP };
+        for axis in 0..3 {
+            if self.is_moved(axis) {
+                let to = self.start[axis] + offset[axis];
+                self.last[axis] = if snap { (to / step).round() * step } else { to };
+            } else {
+                self.last[axis] = self.start[axis];
+            }
+        }
+        self.last
+    }
+
+    fn is_moved(&self, axis: usize) -> bool {
+        match self.constraint() {
+            None => true,
+            Some(Constraint::Axis(moved)) => axis == moved,
+            Some(Constraint::Plane(kept)) => axis != kept,
+        }
+    }
+
+    /// The offset that the pointer asks for.
+    fn pointed(&self) -> Vec3 {
+        let Some(Slow { on, ray, offset }) = self.slow else {
+            return self.between(self.pressed, self.now.ray).unwrap_or(self.last - self.start);
+        };
+        let since = self.between(ray, self.now.ray).unwrap_or(Vec3::ZERO);
+        offset + since * if on { Self::PRECISION } else { 1.0 }
+    }
+
+    /// How far the hand goes when the pointer goes from one ray to another; nothing if the pointer
+    /// is where the line or plane it drags along cannot be.
+    fn between(&self, from: Ray, to: Ray) -> Option<Vec3> {
+        let held = self.root + self.start;
+        let offset = match self.constraint() {
+            Some(Constraint::Axis(axis)) => {
+                let axis = Vec3::AXES[axis];
+                axis * (to.nearest_on_line(held, axis)? - from.nearest_on_line(held, axis)?)
+            }
+            Some(Constraint::Plane(axis)) => {
+                let normal = Vec3::AXES[axis];
+                to.meets_plane(held, normal)? - from.meets_plane(held, normal)?
+            }
+            None => to.meets_plane(held, self.forward)? - from.meets_plane(held, self.forward)?,
+        };
+        offset.is_finite().then_some(offset)
+    }
+}
+
+/// What numbers mean when they are typed while a hand is held: the first is for the first
+/// coordinate that the drag moves, and so on.
+fn offset_of(typed: &str, constraint: Option<Constraint>) -> Option<Vec3> {
+    let axes: &[usize] = match constraint {
+        None => &[0, 1, 2],
+        Some(Constraint::Axis(0)) => &[0],
+        Some(Constraint::Axis(1)) => &[1],
+        Some(Constraint::Axis(_)) => &[2],
+        Some(Constraint::Plane(0)) => &[1, 2],
+        Some(Constraint::Plane(1)) => &[0, 2],
+        Some(Constraint::Plane(_)) => &[0, 1],
+    };
+    let mut offset = Vec3::ZERO;
+    for (axis, number) in axes.iter().zip(typed.split(',')) {
+        let number = number.trim();
+        if !number.is_empty() && number != "-" {
+            offset[*axis] = number.parse().ok().filter(|number: &f32| number.is_finite())?;
+        }
+    }
+    Some(offset)
+}
+
+impl fmt::Display for Constraint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Axis(0) => "along x",
+            Self::Axis(1) => "along y",
+            Self::Axis(_) => "along z",
+            Self::Plane(0) => "in the yz-plane",
+            Self::Plane(1) => "in the xz-plane",
+            Self::Plane(_) => "in the xy-plane",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::document::Camera;
+
+    const START: Vec3 = Vec3::new(250.0, 120.0, 60.0);
+    const ROOT: Vec3 = Vec3::new(30.0, -20.0, 10.0);
+
+    fn drag(handle: Handle) -> (HandDrag, crate::document::Projection) {
+        let projection = Camera::default().projection(1.6);
+        let at = projection.project(ROOT + START).expect("in the picture");
+        let ray = projection.ray(at);
+        (HandDrag::new(handle, START, ROOT, projection.forward, ray), projection)
+    }
+
+    fn input(ray: Ray) -> DragInput {
+        DragInput { ray, precise: false, snap: false }
+    }
+
+    #[test]
+    fn a_free_hand_stays_under_the_pointer() {
+        let (mut drag, projection) = drag(Handle::Free);
+        for at in [Vec2::new(0.1, 0.2), Vec2::new(-0.9, 0.8), Vec2::new(0.99, -0.99)] {
+            drag.set_input(input(projection.ray(at)));
+            let seen = projection.project(ROOT + drag.hand()).expect("in the picture");
+            assert!(seen.distance(at) < 1e-4, "{seen} is not under {at}");
+        }
+    }
+
+    #[test]
+    fn an_arrow_moves_one_coordinate_and_keeps_the_others_bit_for_bit() {
+        for axis in 0..3 {
+            let (mut drag, projection) = drag(Handle::Axis(axis));
+            drag.set_input(input(projection.ray(Vec2::new(0.31, 0.47))));
+            let hand = drag.hand();
+            for other in 0..3 {
+                assert_eq!(hand[other] == START[other], other != axis);
+            }
+        }
+    }
+
+    #[test]
+    fn a_square_keeps_one_coordinate_bit_for_bit() {
+        for axis in 0..3 {
+            let (mut drag, projection) = drag(Handle::Plane(axis));
+            drag.set_input(input(projection.ray(Vec2::new(0.31, 0.17))));
+            let hand = drag.hand();
+            for other in 0..3 {
+                assert_eq!(hand[other] == START[other], other == axis);
+            }
+        }
+    }
+
+    #[test]
+    fn a_hand_that_comes_back_to_where_it_was_pressed_is_where_it_was() {
+        for handle in [Handle::Free, Handle::Axis(1), Handle::Plane(2)] {
+            let (mut drag, projection) = drag(handle);
+            let pressed = drag.pressed;
+            for step in 0..50 {
+                drag.set_input(input(projection.ray(Vec2::new(step as f32 * 0.01, 0.3))));
+                drag.hand();
+            }
+            drag.set_input(input(pressed));
+            assert_eq!(drag.hand(), START);
+        }
+    }
+
+    #[test]
+    fn precision_goes_a_tenth_of_the_way_from_where_it_began() {
+        let (mut drag, projection) = drag(Handle::Axis(0));
+        let at = projection.project(ROOT + START).expect("in the picture");
+        let ray = |x: f32| projection.ray(at + Vec2::new(x, 0.0));
+        drag.set_input(input(ray(0.2)));
+        let coarse = drag.hand().x;
+        drag.set_input(DragInput { precise: true, ..input(ray(0.2)) });
+        assert!((drag.hand().x - coarse).abs() < 1e-3, "turning precision on moves nothing");
+        drag.set_input(DragInput { precise: true, ..input(ray(0.4)) });
+        let fine = drag.hand().x - coarse;
+        drag.set_input(input(ray(0.4)));
+        drag.set_input(input(ray(0.2)));
+        let back = drag.hand().x - (coarse + fine);
+        assert!((fine * 10.0 + back).abs() < 0.05, "{fine} is not a tenth of {back}");
+    }
+
+    #[test]
+    fn snapping_lands_on_whole_steps_of_the_coordinates_that_move() {
+        let (mut drag, projection) = drag(Handle::Plane(1));
+        let ray = projection.ray(Vec2::new(0.3, 0.1));
+        drag.set_input(DragInput { snap: true, ..input(ray) });
+        let hand = drag.hand();
+        assert_eq!((hand.x % 10.0, hand.y, hand.z % 10.0), (0.0, START.y, 0.0));
+        drag.set_input(DragInput { snap: true, precise: true, ..input(ray) });
+        let hand = drag.hand();
+        assert_eq!((hand.x % 1.0, hand.z % 1.0), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_locked_axis_takes_a_free_drag_along_it() {
+        let (mut drag, projection) = drag(Handle::Free);
+        drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
+        drag.set_constraint(Some(Constraint::Axis(2)));
+        let hand = drag.hand();
+        assert_eq!((hand.x, hand.y), (START.x, START.y));
+        assert_ne!(hand.z, START.z);
+        drag.set_constraint(None);
+        assert_ne!(drag.hand().x, START.x);
+    }
+
+    #[test]
+    fn typed_numbers_are_the_offset_of_what_the_drag_moves() {
+        let typed = |handle, text: &str| {
+            let (mut drag, projection) = drag(handle);
+            drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
+            drag.set_typed(text.to_owned());
+            drag.hand() - START
+        };
+        assert_eq!(typed(Handle::Axis(1), "12.5"), Vec3::new(0.0, 12.5, 0.0));
+        assert_eq!(typed(Handle::Plane(1), "-3,4"), Vec3::new(-3.0, 0.0, 4.0));
+        assert_eq!(typed(Handle::Free, "1,2,3"), Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!(typed(Handle::Free, "1,"), Vec3::new(1.0, 0.0, 0.0));
+        assert_eq!(typed(Handle::Free, "-"), Vec3::ZERO);
+        assert_eq!(typed(Handle::Free, "1e99"), Vec3::ZERO);
+    }
+
+    #[test]
+    fn a_pointer_that_looks_away_from_the_plane_leaves_the_hand() {
+        let (mut drag, _) = drag(Handle::Plane(1));
+        let up = Ray { origin: Vec3::new(0.0, 500.0, 0.0), direction: Vec3::Y };
+        drag.set_input(input(up));
+        assert_eq!(drag.hand(), START);
+    }
+}

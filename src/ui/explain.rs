@@ -1,0 +1,201 @@
+//! The right panel: the paper's figures and formulas with the numbers of this very pose.
+
+use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Sense, Ui, vec2};
+
+use super::{row, status, style, symbol, triangle};
+use crate::session::Session;
+
+const FORMULA_SIZE: f32 = 13.5;
+
+/// A quantity of the paper: its symbol, how it is computed, its value, what it means.
+struct Quantity {
+    symbol: &'static str,
+    formula: &'static str,
+    value: String,
+    meaning: &'static str,
+    colour: Option<Color32>,
+}
+
+pub(super) fn ui(ui: &mut Ui, session: &Session) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(6.0);
+        row::section(ui, "Triangle", |ui| {
+            triangle::ui(ui, session.arm(), session.pose());
+            sentence(ui, session);
+        });
+        row::section(ui, "Reach", |ui| meter(ui, session));
+        row::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
+        row::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
+    });
+}
+
+fn sentence(ui: &mut Ui, session: &Session) {
+    // Two lines, whatever it says, so that nothing below moves.
+    let height = 2.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
+    ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
+        ui.set_min_height(height);
+        ui.label(status::sentence(session.arm(), session.pose()));
+    });
+}
+
+fn pointer(session: &Session) -> [Quantity; 4] {
+    let (arm, pose) = (session.arm(), session.pose());
+    let cursor = arm.cursor;
+    [
+        Quantity {
+            symbol: "θ_z",
+            formula: "atan2(z_c, x_c)",
+            value: degrees(pose.yaw()),
+            meaning: "How far the Pointer is turned about the vertical, from x towards z",
+            colour: None,
+        },
+        Quantity {
+            symbol: "h_c",
+            formula: "hypot(x_c, z_c)",
+            value: length(cursor.x.hypot(cursor.z)),
+            meaning: "How far the cursor is from the vertical through the root",
+            colour: None,
+        },
+        Quantity {
+            symbol: "θ_y",
+            formula: "atan2(y_c, h_c)",
+            value: degrees(pose.pitch()),
+            meaning: "How far the Pointer rises above the xz-plane",
+            colour: None,
+        },
+        Quantity {
+            symbol: "D",
+            formula: "|c| within limits",
+            value: length(pose.distance),
+            meaning: "From shoulder to hand: the cursor's distance, held between the two limits",
+            colour: None,
+        },
+    ]
+}
+
+fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
+    let (bones, pose) = (session.arm().bones, session.pose());
+    let palette = style::palette(ui);
+    [
+        Quantity {
+            symbol: "d_1",
+            formula: "",
+            value: length(bones.upper()),
+            meaning: "Length of the Upper Limb",
+            colour: Some(style::colour(palette.upper)),
+        },
+        Quantity {
+            symbol: "d_2",
+            formula: "",
+            value: length(bones.lower()),
+            meaning: "Length of the Lower Limb",
+            colour: Some(style::colour(palette.lower)),
+        },
+        Quantity {
+            symbol: "h_e",
+            formula: "(D + δ L / D) / 2",
+            value: length(pose.along),
+            meaning: "How far along the Pointer the elbow is. L is the sum of the lengths, δ their \
+                      difference",
+            colour: None,
+        },
+        Quantity {
+            symbol: "o_e",
+            formula: "Heron's formula",
+            value: length(pose.out),
+            meaning: "How far out from the Pointer the elbow is: twice the triangle's area over D",
+            colour: None,
+        },
+        Quantity {
+            symbol: "θ_e",
+            formula: "atan2(o_e, h_e)",
+            value: degrees(pose.shoulder_angle()),
+            meaning: "At the shoulder, between Pointer and Upper Limb",
+            colour: None,
+        },
+        Quantity {
+            symbol: "φ",
+            formula: "at the elbow",
+            value: degrees(pose.elbow_angle()),
+            meaning: "The inner angle at the elbow: 180° straight, 0° folded",
+            colour: None,
+        },
+    ]
+}
+
+fn table(ui: &mut Ui, id: &str, quantities: &[Quantity]) {
+    let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+    Grid::new(id).num_columns(3).min_col_width(24.0).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+        for quantity in quantities {
+            let colour = quantity.colour.unwrap_or(text);
+            symbol::label(ui, quantity.symbol, FORMULA_SIZE, colour)
+                .on_hover_text(quantity.meaning);
+            if quantity.formula.is_empty() {
+                ui.label("");
+            } else {
+                symbol::label(ui, quantity.formula, FORMULA_SIZE, weak)
+                    .on_hover_text(quantity.meaning);
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(&quantity.value).monospace());
+            });
+            ui.end_row();
+        }
+    });
+}
+
+fn degrees(radians: f32) -> String {
+    format!("{:.1}°", tidy(radians.to_degrees()))
+}
+
+fn length(length: f32) -> String {
+    format!("{:.1}", tidy(length))
+}
+
+/// Without a sign on what is shown as nothing.
+fn tidy(value: f32) -> f32 {
+    if value.abs() < 0.05 { 0.0 } else { value }
+}
+
+/// From the shoulder outwards: what the hand cannot reach, what it can, and the cursor.
+fn meter(ui: &mut Ui, session: &Session) {
+    const HEIGHT: f32 = 44.0;
+    const BAR: f32 = 8.0;
+    const BEYOND: f32 = 1.25;
+    let bones = session.arm().bones;
+    let (inner, outer) = (bones.inner_limit(), bones.outer_limit());
+    let asked = session.arm().cursor.length();
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let bar = egui::Rect::from_min_size(
+        rect.left_top() + vec2(6.0, 10.0),
+        vec2(rect.width() - 12.0, BAR),
+    );
+    let place =
+        |distance: f32| bar.left() + bar.width() * (distance / (outer * BEYOND)).clamp(0.0, 1.0);
+    let visuals = ui.visuals();
+    let accent = visuals.selection.stroke.color;
+    let painter = ui.painter();
+    painter.rect_filled(bar, 4.0, visuals.widgets.inactive.bg_fill);
+    let within = egui::Rect::from_x_y_ranges(place(inner)..=place(outer), bar.top()..=bar.bottom());
+    painter.rect_filled(within, 2.0, accent.gamma_multiply(0.55));
+    let cursor = place(asked);
+    painter.circle_filled(egui::pos2(cursor, bar.center().y), 6.0, visuals.strong_text_color());
+    painter.circle_filled(egui::pos2(cursor, bar.center().y), 3.0, visuals.panel_fill);
+    let font = egui::FontId::proportional(12.0);
+    let written = |at: f32, anchor, text: String| {
+        let at = egui::pos2(at, bar.bottom() + 6.0);
+        painter.text(at, anchor, text, font.clone(), visuals.weak_text_color());
+    };
+    // The limits' figures would run into each other on a short bar.
+    let apart = place(outer) - place(inner) > 60.0;
+    if apart && inner > 0.0 {
+        written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.0}"));
+    }
+    written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.0}"));
+    let summary = format!("Cursor at {asked:.1}; the hand reaches from {inner:.1} to {outer:.1}");
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))
+    });
+    response.on_hover_text(summary);
+}

@@ -1,0 +1,111 @@
+//! What the keys do when no widget has them.
+
+use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
+
+use super::menu;
+use crate::document::AxisView;
+use crate::session::{Action, Constraint, Dialog, Session};
+
+/// Keys that act wherever the keyboard is.
+pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let pressed = |modifiers, key| {
+        ui.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
+    };
+    if pressed(Modifiers::COMMAND, Key::Q) {
+        actions.push(Action::Quit);
+    }
+    if pressed(Modifiers::COMMAND, Key::P) {
+        actions.push(menu::save_picture());
+    }
+    if pressed(Modifiers::NONE, Key::F1) {
+        actions.push(Action::OpenDialog(Dialog::Shortcuts));
+    }
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        if session.is_editing() {
+            actions.push(Action::CancelEdit);
+        } else if session.view_drag().is_some() {
+            actions.push(Action::CancelView);
+        } else if session.dialog().is_some() {
+            actions.push(Action::CloseDialog);
+        }
+    }
+    let copied = ui.input(|input| input.events.contains(&Event::Copy));
+    if copied && !ui.text_edit_focused() {
+        actions.push(Action::CopyPose);
+    }
+}
+
+/// Single keys, while no widget or the viewport has the keyboard.
+pub(super) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.hand_drag().is_some() {
+        drag(ui, session, actions);
+    } else {
+        view(ui, session, actions);
+    }
+}
+
+fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let camera = session.settled_camera();
+    let along = |view| Action::GlideTo(camera.along(view));
+    ui.input(|input| {
+        let other_side = input.modifiers.command;
+        if !(input.modifiers.is_none() || input.modifiers.command_only()) {
+            return;
+        }
+        for (key, view, opposite) in [
+            (Key::Num1, AxisView::Front, AxisView::Back),
+            (Key::Num3, AxisView::Right, AxisView::Left),
+            (Key::Num7, AxisView::Top, AxisView::Bottom),
+        ] {
+            if input.key_pressed(key) {
+                actions.push(along(if other_side { opposite } else { view }));
+            }
+        }
+        if other_side {
+            return;
+        }
+        if input.key_pressed(Key::Num5) {
+            actions.push(Action::SetCamera(menu::with_other_projection(camera)));
+        }
+        if input.key_pressed(Key::F) {
+            actions.push(menu::frame_arm(session));
+        }
+        if input.key_pressed(Key::Home) {
+            actions.push(menu::frame_all(session));
+        }
+    });
+}
+
+fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(drag) = session.hand_drag() else {
+        return;
+    };
+    let mut typed = drag.typed().to_owned();
+    ui.input(|input| {
+        for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
+            if input.key_pressed(key) {
+                let asked = if input.modifiers.shift {
+                    Constraint::Plane(axis)
+                } else {
+                    Constraint::Axis(axis)
+                };
+                let released = drag.constraint() == Some(asked);
+                actions.push(Action::ConstrainDrag((!released).then_some(asked)));
+            }
+        }
+        for event in &input.events {
+            if let Event::Text(text) = event {
+                typed.extend(text.chars().filter(|c| c.is_ascii_digit() || "-.,".contains(*c)));
+            }
+        }
+        if input.key_pressed(Key::Backspace) {
+            typed.pop();
+        }
+        if input.key_pressed(Key::Enter) {
+            actions.push(Action::CommitEdit);
+        }
+    });
+    if typed != drag.typed() {
+        actions.push(Action::TypeOffset(typed));
+    }
+}

@@ -1,0 +1,119 @@
+//! The menu bar.
+
+use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
+
+use crate::document::{AxisView, Camera, Theme};
+use crate::session::{Action, Dialog, Navigation, Session};
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file(ui, actions));
+        ui.menu_button("Edit", |ui| edit(ui, session, actions));
+        ui.menu_button("View", |ui| view(ui, session, actions));
+        ui.menu_button("Help", |ui| help(ui, actions));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add(Label::new(RichText::new("Arm · IK").weak()).selectable(false));
+        });
+    });
+}
+
+fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
+    ui.add(Button::new(name).shortcut_text(keys)).clicked()
+}
+
+fn file(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if item(ui, "Save picture…", "Ctrl+P") {
+        actions.push(save_picture());
+    }
+    ui.separator();
+    if item(ui, "Quit", "Ctrl+Q") {
+        actions.push(Action::Quit);
+    }
+}
+
+pub(super) fn save_picture() -> Action {
+    Action::OpenDialog(Dialog::SavePicture { path: "ik-arm.png".to_owned() })
+}
+
+fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    if item(ui, "Copy pose as JSON line", "Ctrl+C") {
+        actions.push(Action::CopyPose);
+    }
+    ui.separator();
+    ui.menu_button("Navigation", |ui| {
+        for navigation in Navigation::ALL {
+            let chosen = session.preferences().navigation == navigation;
+            let [turn, pan, zoom] = navigation.help();
+            let tooltip = format!("Turn: {turn}\nMove: {pan}\nZoom: {zoom}");
+            if ui.radio(chosen, navigation.name()).on_hover_text(tooltip).clicked() {
+                actions.push(Action::SetNavigation(navigation));
+            }
+        }
+    });
+}
+
+fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for (axis_view, name, keys) in AXIS_VIEWS {
+        if item(ui, name, keys) {
+            actions.push(Action::GlideTo(session.settled_camera().along(axis_view)));
+        }
+    }
+    ui.separator();
+    if item(ui, "Perspective / orthographic", "5") {
+        actions.push(Action::SetCamera(with_other_projection(session.settled_camera())));
+    }
+    if item(ui, "Frame arm", "F") {
+        actions.push(frame_arm(session));
+    }
+    if item(ui, "Frame all", "Home") {
+        actions.push(frame_all(session));
+    }
+    ui.separator();
+    for (theme, name) in [(Theme::Light, "Light theme"), (Theme::Dark, "Dark theme")] {
+        if ui.radio(session.preferences().theme == theme, name).clicked() {
+            actions.push(Action::SetTheme(theme));
+        }
+    }
+    ui.separator();
+    let mut explain = session.preferences().explain;
+    if ui.checkbox(&mut explain, "Explain panel").changed() {
+        actions.push(Action::ShowExplain(explain));
+    }
+}
+
+pub(super) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [
+    (AxisView::Front, "Front", "1"),
+    (AxisView::Right, "Right", "3"),
+    (AxisView::Top, "Top", "7"),
+    (AxisView::Back, "Back", "Ctrl+1"),
+    (AxisView::Left, "Left", "Ctrl+3"),
+    (AxisView::Bottom, "Bottom", "Ctrl+7"),
+];
+
+pub(super) fn with_other_projection(camera: Camera) -> Camera {
+    Camera { orthographic: !camera.orthographic, ..camera }
+}
+
+/// Panels leave the viewport about as high as it is wide; the margin covers the rest.
+const ASPECT: f32 = 1.0;
+
+pub(super) fn frame_arm(session: &Session) -> Action {
+    let (centre, radius) = session.arm().bounds(session.pose());
+    Action::GlideTo(session.settled_camera().framing(centre, radius, ASPECT))
+}
+
+/// All that the hand can reach.
+pub(super) fn frame_all(session: &Session) -> Action {
+    let arm = session.arm();
+    let camera = session.settled_camera();
+    Action::GlideTo(camera.framing(arm.root, arm.bones.outer_limit(), ASPECT))
+}
+
+fn help(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if item(ui, "Shortcuts", "F1") {
+        actions.push(Action::OpenDialog(Dialog::Shortcuts));
+    }
+    if item(ui, "About", "") {
+        actions.push(Action::OpenDialog(Dialog::About));
+    }
+}

@@ -1,0 +1,59 @@
+//! The panels: functions that read a session and push actions. They know no window and no GPU.
+
+mod compass;
+mod controls;
+mod dialogs;
+mod explain;
+mod handles;
+mod keyboard;
+mod menu;
+mod row;
+mod slider;
+mod status;
+pub mod style;
+mod symbol;
+mod triangle;
+mod viewport;
+
+use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
+
+use crate::session::{Action, Session};
+
+/// What the panels show of the machine they run on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Machine {
+    /// The graphics adapter.
+    pub adapter: String,
+    /// How long the last drawn frame took, in milliseconds.
+    pub frame_ms: Option<f32>,
+}
+
+/// Shows everything. Returns where the scene is to be drawn, in points; `picture` is the scene as
+/// last drawn there.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    machine: &Machine,
+    picture: Option<TextureId>,
+    actions: &mut Vec<Action>,
+) -> Rect {
+    keyboard::global(ui, session, actions);
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, session, actions));
+    Panel::bottom("status").show(ui, |ui| status::ui(ui, session, machine));
+    Panel::left("controls")
+        .resizable(true)
+        .default_size(272.0)
+        .size_range(232.0..=420.0)
+        .show(ui, |ui| controls::ui(ui, session, actions));
+    if session.preferences().explain {
+        Panel::right("explain")
+            .resizable(true)
+            .default_size(272.0)
+            .size_range(232.0..=460.0)
+            .show(ui, |ui| explain::ui(ui, session));
+    }
+    let viewport =
+        CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    dialogs::ui(ui, session, machine, actions);
+    viewport
+}

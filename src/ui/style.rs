@@ -1,0 +1,180 @@
+//! Colours, spacing and type of the panels, from the scene's own palette.
+
+use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2};
+
+use crate::document::Theme;
+use crate::scene::{Colour, Palette};
+
+/// The colours of the panels that are not the scene's.
+#[derive(Clone, Copy, Debug)]
+struct Tones {
+    panel: Color32,
+    field: Color32,
+    button: Color32,
+    hovered: Color32,
+    line: Color32,
+    text: Color32,
+    weak: Color32,
+    strong: Color32,
+}
+
+impl Tones {
+    fn new(theme: Theme) -> Self {
+        let grey = Color32::from_rgb;
+        match theme {
+            Theme::Dark => Self {
+                panel: grey(0x20, 0x24, 0x2b),
+                field: grey(0x15, 0x18, 0x1d),
+                button: grey(0x31, 0x37, 0x41),
+                hovered: grey(0x40, 0x48, 0x55),
+                line: grey(0x36, 0x3c, 0x46),
+                text: grey(0xd8, 0xdd, 0xe4),
+                weak: grey(0x9d, 0xa6, 0xb3),
+                strong: grey(0xf5, 0xf7, 0xfa),
+            },
+            Theme::Light => Self {
+                panel: grey(0xf5, 0xf7, 0xf9),
+                field: grey(0xff, 0xff, 0xff),
+                button: grey(0xe1, 0xe6, 0xec),
+                hovered: grey(0xd0, 0xd7, 0xe0),
+                line: grey(0xd3, 0xd9, 0xe1),
+                text: grey(0x2a, 0x2f, 0x37),
+                weak: grey(0x59, 0x62, 0x70),
+                strong: grey(0x10, 0x13, 0x18),
+            },
+        }
+    }
+}
+
+/// Sets both themes' styles; once, at the start.
+pub fn install(ctx: &Context) {
+    for theme in [Theme::Dark, Theme::Light] {
+        ctx.style_mut_of(egui_theme(theme), |style| {
+            style.visuals = visuals(theme);
+            let spacing = &mut style.spacing;
+            spacing.item_spacing = vec2(8.0, 6.0);
+            spacing.button_padding = vec2(8.0, 4.0);
+            spacing.interact_size = vec2(32.0, 22.0);
+            spacing.icon_width = 16.0;
+            spacing.menu_margin = egui::Margin::same(6);
+            spacing.tooltip_width = 320.0;
+            let size = |size| FontId::new(size, FontFamily::Proportional);
+            style.text_styles = [
+                (TextStyle::Small, size(11.0)),
+                (TextStyle::Body, size(13.5)),
+                (TextStyle::Button, size(13.5)),
+                (TextStyle::Heading, size(16.0)),
+                (TextStyle::Monospace, FontId::new(12.5, FontFamily::Monospace)),
+            ]
+            .into();
+        });
+    }
+}
+
+/// Shows the panels in a theme.
+pub fn apply(ctx: &Context, theme: Theme) {
+    ctx.set_theme(egui_theme(theme));
+}
+
+/// The scene's palette for the theme that the panels are in.
+pub(super) fn palette(ui: &egui::Ui) -> Palette {
+    Palette::new(if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light })
+}
+
+pub(super) fn colour(colour: Colour) -> Color32 {
+    let [r, g, b, a] = colour.0;
+    Color32::from_rgba_unmultiplied(r, g, b, a)
+}
+
+fn egui_theme(theme: Theme) -> egui::Theme {
+    match theme {
+        Theme::Dark => egui::Theme::Dark,
+        Theme::Light => egui::Theme::Light,
+    }
+}
+
+fn visuals(theme: Theme) -> Visuals {
+    let tones = Tones::new(theme);
+    let accent = colour(Palette::new(theme).accent);
+    let mut visuals = match theme {
+        Theme::Dark => Visuals::dark(),
+        Theme::Light => Visuals::light(),
+    };
+    visuals.panel_fill = tones.panel;
+    visuals.window_fill = tones.panel;
+    visuals.extreme_bg_color = tones.field;
+    visuals.faint_bg_color = tones.button;
+    visuals.weak_text_color = Some(tones.weak);
+    visuals.hyperlink_color = accent;
+    visuals.window_stroke = Stroke::new(1.0, tones.line);
+    visuals.window_corner_radius = CornerRadius::same(8);
+    visuals.menu_corner_radius = CornerRadius::same(6);
+    visuals.selection.bg_fill = accent.gamma_multiply(0.45);
+    visuals.selection.stroke = Stroke::new(1.0, accent);
+    let widgets = &mut visuals.widgets;
+    for (widget, fill, text) in [
+        (&mut widgets.noninteractive, tones.panel, tones.text),
+        (&mut widgets.inactive, tones.button, tones.text),
+        (&mut widgets.hovered, tones.hovered, tones.strong),
+        (&mut widgets.active, tones.hovered, tones.strong),
+        (&mut widgets.open, tones.button, tones.strong),
+    ] {
+        widget.bg_fill = fill;
+        widget.weak_bg_fill = fill;
+        widget.fg_stroke.color = text;
+        widget.corner_radius = CornerRadius::same(4);
+        widget.expansion = 0.0;
+        widget.bg_stroke = Stroke::NONE;
+    }
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, tones.line);
+    widgets.hovered.bg_stroke = Stroke::new(1.0, tones.weak);
+    widgets.active.bg_stroke = Stroke::new(1.0, accent);
+    visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance and contrast of WCAG 2.1.
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let luminance = |c: Color32| {
+            let [r, g, b] = [c.r(), c.g(), c.b()].map(|channel| {
+                let v = f32::from(channel) / 255.0;
+                if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+            });
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn every_text_stands_out_from_what_it_is_on() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let (tones, palette) = (Tones::new(theme), Palette::new(theme));
+            let on_panel = [
+                tones.text,
+                tones.weak,
+                tones.strong,
+                colour(palette.upper),
+                colour(palette.lower),
+                colour(palette.accent),
+            ];
+            for text in on_panel {
+                let contrast = contrast(text, tones.panel);
+                assert!(contrast >= 4.5, "{theme:?}: {text:?} on the panel has {contrast}");
+            }
+            for (text, ground) in [
+                (tones.text, tones.button),
+                (tones.text, tones.field),
+                (tones.strong, tones.hovered),
+                (colour(palette.text), colour(palette.sky_top)),
+                (colour(palette.text), colour(palette.sky_bottom)),
+            ] {
+                let contrast = contrast(text, ground);
+                assert!(contrast >= 4.5, "{theme:?}: {text:?} on {ground:?} has {contrast}");
+            }
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The view of the scene: what the pointer does in it.
+
+use egui::{
+    CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId,
+    Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+use glam::Vec3;
+
+use super::handles::Handles;
+use super::{compass, keyboard, menu, status};
+use crate::document::{Camera, Projection, Ray};
+use crate::session::{Action, DragInput, Handle, Motion, Navigation, Session};
+
+/// How much nearer a step of the wheel comes.
+const WHEEL: f32 = 1.15;
+const POINTS_PER_STEP: f32 = 50.0;
+
+/// The picture on screen: takes points of the world to points of the screen and back.
+pub(super) struct Picture {
+    rect: Rect,
+    projection: Projection,
+}
+
+impl Picture {
+    pub fn new(rect: Rect, camera: &Camera) -> Self {
+        Self { rect, projection: camera.projection(rect.aspect_ratio()) }
+    }
+
+    pub fn place(&self, point: Vec3) -> Option<Pos2> {
+        let at = self.projection.project(point)?;
+        Some(self.rect.center() + vec2(at.x, -at.y) * self.rect.size() / 2.0)
+    }
+
+    pub fn ray(&self, at: Pos2) -> Ray {
+        self.projection.ray(self.normalised(at))
+    }
+
+    /// −1 to 1 across and up.
+    pub fn normalised(&self, at: Pos2) -> glam::Vec2 {
+        let from_centre = (at - self.rect.center()) / (self.rect.size() / 2.0);
+        glam::Vec2::new(from_centre.x, -from_centre.y)
+    }
+
+    pub fn units_per_point(&self, at: Vec3) -> f32 {
+        self.projection.half_height_at(at) / (self.rect.height() / 2.0)
+    }
+
+    /// A short vector of the world at a point, as it lies on screen.
+    pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
+        let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
+        vec2(vector.dot(right), -vector.dot(up)) / self.units_per_point(at)
+    }
+}
+
+pub(super) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    picture: Option<TextureId>,
+    actions: &mut Vec<Action>,
+) -> Rect {
+    let rect = whole_pixels(ui, ui.available_rect_before_wrap());
+    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    response.widget_info(|| {
+        let text = format!("Viewport. {}", status::sentence(session.arm(), session.pose()));
+        WidgetInfo::labeled(Role::Image, true, text)
+    });
+    if let Some(texture) = picture {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
+    }
+    if session.is_gliding() {
+        actions.push(Action::Advance(ui.input(|input| input.time)));
+        ui.request_repaint();
+    }
+
+    let picture = Picture::new(rect, session.camera());
+    let arm = session.arm();
+    let handles = Handles::new(&picture, arm.cursor_world(), arm.root + session.pose().hand);
+    let pointer = ui.input(|input| input.pointer.latest_pos());
+    let held = session.hand_drag().map(|drag| drag.handle());
+
+    let on_compass = pointer.is_some_and(|at| compass::covers(rect, at));
+    let over = response.contains_pointer() && !on_compass;
+    let pointed = pointer.filter(|_| over).and_then(|at| handles.as_ref().and_then(|h| h.at(at)));
+    if let Some(handles) = &handles {
+        let painter = ui.painter().with_clip_rect(rect);
+        handles.paint(&painter, ui, pointed, held);
+    }
+    compass::ui(ui, rect, session, actions);
+
+    let Some(pointer) = pointer else {
+        keys(ui, &response, session, actions);
+        return rect;
+    };
+    if response.contains_pointer() {
+        press(ui, &response, session, &picture, pointed, on_compass, actions);
+        wheel(ui, session, &picture, pointer, actions);
+    }
+    follow(ui, session, &picture, pointer, actions);
+    if response.double_clicked() && !on_compass {
+        actions.push(match pointed {
+            Some(_) => menu::frame_arm(session),
+            None => Action::GlideTo(Camera::default()),
+        });
+    }
+    show_cursor(ui, session, pointed.or(held));
+    keys(ui, &response, session, actions);
+    rect
+}
+
+/// On whole pixels, so that the picture is shown pixel for pixel.
+fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
+    let scale = ui.pixels_per_point();
+    let round = |at: Pos2| pos2((at.x * scale).round() / scale, (at.y * scale).round() / scale);
+    Rect::from_min_max(round(rect.min), round(rect.max))
+}
+
+/// What a press of a button begins.
+fn press(
+    ui: &Ui,
+    response: &Response,
+    session: &Session,
+    picture: &Picture,
+    pointed: Option<Handle>,
+    on_compass: bool,
+    actions: &mut Vec<Action>,
+) {
+    let events = ui.input(|input| input.events.clone());
+    for event in events {
+        let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
+            continue;
+        };
+        response.request_focus();
+        if button == PointerButton::Secondary && session.is_editing() {
+            actions.push(Action::CancelEdit);
+            continue;
+        }
+        if session.is_editing() || session.view_drag().is_some() {
+            continue;
+        }
+        let handle = pointed.filter(|_| button == PointerButton::Primary && !modifiers.alt);
+        if let Some(handle) = handle {
+            actions.push(Action::GrabHand {
+                handle,
+                ray: picture.ray(pos),
+                forward: picture.projection.forward,
+            });
+        } else if on_compass && button == PointerButton::Primary {
+            actions.push(Action::GrabView(Motion::Orbit, picture.normalised(pos)));
+        } else if let Some(motion) = motion(session.preferences().navigation, button, modifiers) {
+            actions.push(Action::GrabView(motion, picture.normalised(pos)));
+        }
+    }
+}
+
+fn motion(
+    navigation: Navigation,
+    button: PointerButton,
+    modifiers: egui::Modifiers,
+) -> Option<Motion> {
+    use PointerButton::{Middle, Primary, Secondary};
+    if modifiers.alt {
+        // Works everywhere, also over handles.
+        return match button {
+            Primary => Some(Motion::Orbit),
+            Middle => Some(Motion::Pan),
+            Secondary => Some(Motion::Zoom),
+            _ => None,
+        };
+    }
+    match (navigation, button) {
+        (Navigation::Maya, _) => None,
+        (_, Middle) if modifiers.shift => Some(Motion::Pan),
+        (_, Middle) if modifiers.command => Some(Motion::Zoom),
+        (_, Middle) => Some(Motion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Primary) => Some(Motion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Secondary) => Some(Motion::Pan),
+        _ => None,
+    }
+}
+
+/// What is held follows the pointer, and is dropped where the button is let go.
+fn follow(ui: &Ui, session: &Session, picture: &Picture, pointer: Pos2, actions: &mut Vec<Action>) {
+    let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
+    let released = !down || ui.input(|input| input.pointer.any_released());
+    if session.hand_drag().is_some() {
+        let ray = picture.ray(pointer);
+        let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
+        actions.push(Action::DragHand(input));
+        if released {
+            actions.push(Action::CommitEdit);
+        }
+    }
+    if session.view_drag().is_some() {
+        let to = picture.normalised(pointer);
+        actions.push(Action::DragView { to, aspect: picture.rect.aspect_ratio() });
+        if released {
+            actions.push(Action::DropView);
+        }
+    }
+}
+
+fn wheel(ui: &Ui, session: &Session, picture: &Picture, pointer: Pos2, actions: &mut Vec<Action>) {
+    let mut camera = session.settled_camera();
+    let (at, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
+    let trackpad = session.preferences().navigation == Navigation::Trackpad;
+    ui.input(|input| {
+        for event in &input.events {
+            match event {
+                Event::Zoom(factor) => camera = camera.zoomed(1.0 / factor, at, aspect),
+                Event::MouseWheel { unit, delta, modifiers, .. } => {
+                    let steps = match unit {
+                        MouseWheelUnit::Point => *delta / POINTS_PER_STEP,
+                        MouseWheelUnit::Line => *delta,
+                        MouseWheelUnit::Page => *delta * 10.0,
+                    };
+                    camera = if trackpad && !modifiers.command {
+                        scrolled(camera, steps, modifiers.shift, aspect)
+                    } else {
+                        let steps = if steps.y == 0.0 { steps.x } else { steps.y };
+                        camera.zoomed(WHEEL.powf(-steps), at, aspect)
+                    };
+                }
+                _ => {}
+            }
+        }
+    });
+    if camera != session.settled_camera() {
+        actions.push(Action::SetCamera(camera));
+    }
+}
+
+/// Two fingers on a trackpad turn the view, with Shift they move it.
+fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
+    const TURN: f32 = 0.15;
+    const PAN: f32 = 0.1;
+    if shift {
+        camera.panned(glam::Vec2::ZERO, glam::Vec2::new(steps.x / aspect, -steps.y) * PAN, aspect)
+    } else {
+        camera.orbited(-steps.x * TURN, -steps.y * TURN)
+    }
+}
+
+fn show_cursor(ui: &Ui, session: &Session, handle: Option<Handle>) {
+    let icon = match (session.hand_drag(), session.view_drag(), handle) {
+        (Some(_), _, _) => CursorIcon::Grabbing,
+        (_, Some(drag), _) => match drag.motion {
+            Motion::Orbit => CursorIcon::Grabbing,
+            Motion::Pan => CursorIcon::Move,
+            Motion::Zoom => CursorIcon::ZoomIn,
+        },
+        (_, _, Some(_)) => CursorIcon::Grab,
+        _ => return,
+    };
+    ui.set_cursor_icon(icon);
+}
+
+/// Single keys act while no widget or the viewport itself has the keyboard.
+fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
+    let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
+    if free || session.hand_drag().is_some() {
+        keyboard::viewport(ui, session, actions);
+    }
+}
