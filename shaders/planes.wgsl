@@ -34,40 +34,13 @@ fn grid(at: vec2f, pixel: vec2f, axis_u: vec3f, axis_v: vec3f) -> vec4f {
     return mix(lined, vec4f(axis_u, 1.0), axes.y);
 }
 
-// How much of the key light reaches a point past one capsule: the nearest approach of the ray to
-// the light and the capsule's axis, softened by how far from the point it is.
-fn light_past(point: vec3f, capsule: Capsule) -> f32 {
-    let axis = capsule.tip - capsule.base;
-    let from_base = point - capsule.base;
-    let slant = dot(axis, KEY_DIRECTION);
-    let across = max(dot(axis, axis) - slant * slant, 1e-6);
-    let part = saturate((dot(axis, from_base) - slant * dot(from_base, KEY_DIRECTION)) / across);
-    let away = axis * part - from_base;
-    let radius = mix(capsule.base_radius, capsule.tip_radius, part);
-    let height = dot(away, KEY_DIRECTION);
-    let miss = length(away - KEY_DIRECTION * height) - radius;
-    let softness = radius * 0.35 + max(height, 0.0) * 0.16;
-    let light = smoothstep(-softness, softness, miss);
-    return mix(light, 1.0, saturate(height / (view.stage_radius * 1.6)));
-}
-
-fn shadow(point: vec3f) -> f32 {
-    var light = 1.0;
-    for (var i = 0u; i < view.shadow_count; i++) {
-        light *= light_past(point, view.shadows[i]);
-    }
-    return 1.0 - light;
-}
-
 fn over(front: vec4f, back: vec4f) -> vec4f {
     return front + back * (1.0 - front.a);
 }
 
-// 1 where the plane is met before `limit` on the stage, fading to 0 at `radius` stage radii.
-fn presence(point: vec3f, along: f32, limit: f32, radius: f32) -> f32 {
-    let out = (point - view.stage_centre) / (view.stage_radius * radius);
-    let near = 1.0 - saturate(dot(out, out));
-    return select(0.0, near * near, along > nearest_along() && along < limit);
+// Whether a plane is met before `limit`.
+fn met(along: f32, limit: f32) -> f32 {
+    return select(0.0, 1.0, along > nearest_along() && along < limit);
 }
 
 fn pixel_in_cells(at: vec2f) -> vec2f {
@@ -89,12 +62,11 @@ fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
     let xy = grid(at_xy, pixel_in_cells(at_xy), view.axes[0].rgb, view.axes[1].rgb);
 
     let ground = vec4f(view.ground.rgb, 1.0) * (view.ground.a * view.shown.w);
-    let shade = vec4f(0.0, 0.0, 0.0, shadow(on_xz) * view.shadow_strength);
-    let floor = over(xz * view.shown.y, over(shade, ground));
+    let floor = over(xz * view.shown.y, ground);
 
-    var near = Layer(along.z, xy * view.shown.z * presence(on_xy, along.z, limit, 1.0));
-    var middle = Layer(along.y, floor * presence(on_xz, along.y, limit, 2.2));
-    var far = Layer(along.x, yz * view.shown.x * presence(on_yz, along.x, limit, 1.0));
+    var near = Layer(along.z, xy * view.shown.z * presence(on_xy, WALL_RADIUS) * met(along.z, limit));
+    var middle = Layer(along.y, floor * presence(on_xz, FLOOR_RADIUS) * met(along.y, limit));
+    var far = Layer(along.x, yz * view.shown.x * presence(on_yz, WALL_RADIUS) * met(along.x, limit));
     if near.along > middle.along { let swap = near; near = middle; middle = swap; }
     if middle.along > far.along { let swap = middle; middle = far; far = swap; }
     if near.along > middle.along { let swap = near; near = middle; middle = swap; }

@@ -15,9 +15,10 @@ fn opacity(shell: Shell, ray: Ray, limit: f32) -> f32 {
     let half_along = half_chord * inverseSqrt(squared);
 
     // Half the chord over the radius is the cosine between the normal and the ray, on both sides.
-    let turned = 1.0 - half_chord / shell.radius;
+    let turned = 1.0 - half_chord / max(shell.radius, 1e-6);
     let turned_squared = turned * turned;
-    let edge = saturate(0.5 + (shell.radius - miss) / pixel_size(middle));
+    let size = pixel_size(middle);
+    let edge = saturate(0.5 + (shell.radius - miss) / size) * saturate(shell.radius / size);
     let side = (FILL_OPACITY + RIM_OPACITY * turned_squared * turned_squared * turned) * edge;
 
     let sides = middle + vec2f(-half_along, half_along);
@@ -26,12 +27,9 @@ fn opacity(shell: Shell, ray: Ray, limit: f32) -> f32 {
     return 1.0 - passing.x * passing.y;
 }
 
-// A colour at `limit` along the ray, with every shell laid over it.
+// A colour at `limit` along the ray, with every shell laid over it. By constant index: software
+// rasterisers fetch from an array in a loop pixel by pixel.
 fn behind_shells(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
-    var colour = behind;
-    for (var i = 0u; i < view.shell_count; i++) {
-        let shell = view.shells[i];
-        colour = mix(colour, shell.colour.rgb, opacity(shell, ray, limit));
-    }
-    return colour;
+    let inner = mix(behind, view.shells[0].colour.rgb, opacity(view.shells[0], ray, limit));
+    return mix(inner, view.shells[1].colour.rgb, opacity(view.shells[1], ray, limit));
 }

@@ -1,13 +1,6 @@
 // What every shader of the scene sees: camera, lights, colours, and the planes' settings. Colours
 // are as a screen has them (sRGB); light is added up in linear space and then encoded.
 
-struct Capsule {
-    base: vec3f,
-    base_radius: f32,
-    tip: vec3f,
-    tip_radius: f32,
-}
-
 struct Shell {
     centre: vec3f,
     radius: f32,
@@ -27,16 +20,14 @@ struct View {
     stage_centre: vec3f,
     stage_radius: f32,
     size: vec2f,
-    shadow_count: u32,
-    shell_count: u32,
+    padding: vec2f,
     shown: vec4f, // 1 or 0: the grids in which x, y, z is 0; the ground
     sky_top: vec4f,
     sky_bottom: vec4f,
     ground: vec4f,
     grid: vec4f,
     axes: array<vec4f, 3>,
-    shadows: array<Capsule, 32>,
-    shells: array<Shell, 4>,
+    shells: array<Shell, 2>, // of radius 0 where there are fewer
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -96,6 +87,17 @@ fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     let key = KEY * max(dot(normal, KEY_DIRECTION), 0.0);
     let fill = FILL * max(dot(normal, FILL_DIRECTION), 0.0);
     return encoded(decoded(colour) * (ambient + key + fill));
+}
+
+// How far the planes reach, in stage radii.
+const FLOOR_RADIUS = 2.2;
+const WALL_RADIUS = 1.0;
+
+// 1 in the middle of the stage, fading to 0 at `radius` stage radii.
+fn presence(point: vec3f, radius: f32) -> f32 {
+    let out = (point - view.stage_centre) / (view.stage_radius * radius);
+    let near = 1.0 - saturate(dot(out, out));
+    return near * near;
 }
 
 // Far things fade into the sky behind them.

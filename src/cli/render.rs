@@ -155,12 +155,19 @@ fn render(args: &Args) -> Result<(), RenderError> {
         return Err(RenderError::TooLarge { width, height, longest });
     }
 
-    let out_of_memory = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let faults = [
+        wgpu::ErrorFilter::Internal,
+        wgpu::ErrorFilter::Validation,
+        wgpu::ErrorFilter::OutOfMemory,
+    ]
+    .map(|kind| gpu.device.push_error_scope(kind));
     let mut picture = Picture::new(&gpu, width, height, args.size.scale());
     let scene = || Scene::new(&document, &document.arm.pose(), theme);
     let image = args.output.is_some().then(|| picture.draw(&scene())).transpose();
-    if let Some(error) = pollster::block_on(out_of_memory.pop()) {
-        return Err(RenderError::Device(error.to_string()));
+    for fault in faults.into_iter().rev() {
+        if let Some(error) = pollster::block_on(fault.pop()) {
+            return Err(RenderError::Device(error.to_string()));
+        }
     }
     if let (Some(image), Some(path)) = (image?, &args.output) {
         render::save(&image, path)?;

@@ -178,7 +178,7 @@ impl TwoBone {
         let (sum, difference) = (upper + lower, upper - lower);
 
         let facing = Facing::towards(cursor, last);
-        let asked = length_in(cursor, unit);
+        let asked = (cursor * scale).length();
         let distance = asked.clamp(difference.abs(), sum);
         let (along, out) = elbow_in_socket(upper, lower, distance);
 
@@ -207,7 +207,7 @@ impl TwoBone {
 }
 
 impl Pose {
-    /// θ_z, the Pointer's angle about −y from +x: `atan2(z, x)`, in (−π, π].
+    /// θ_z, the Pointer's angle about −y from +x: `atan2(z, x)`, in [−π, π].
     pub fn yaw(&self) -> f32 {
         self.facing.heading.y.atan2(self.facing.heading.x)
     }
@@ -273,19 +273,14 @@ fn heading(v: Vec3) -> Option<Vec2> {
         .then(|| (flat * power_of_two_near(flat.abs().max_element()).recip()).normalize())
 }
 
-/// |v| in units of `unit`, a power of two; infinite where that overflows.
-fn length_in(v: Vec3, unit: f32) -> f32 {
-    let own_unit = power_of_two_near(v.abs().max_element());
-    (v * own_unit.recip()).length() * (own_unit / unit)
-}
-
 /// (h_e, o_e) for lengths near 1.
 fn elbow_in_socket(upper: f32, lower: f32, distance: f32) -> (f32, f32) {
     let (sum, difference) = (upper + lower, upper - lower);
     if distance == 0.0 {
         return (0.0, upper);
     }
-    let along = 0.5 * (distance + difference * (sum / distance));
+    // L·(δ/D) rather than δ·(L/D): D is never less than |δ|, but it may be tiny beside L.
+    let along = 0.5 * (distance + sum * (difference / distance));
     let squared = (sum + distance)
         * (sum - distance)
         * ((distance + difference) / distance)

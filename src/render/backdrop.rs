@@ -7,7 +7,7 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/backdrop.wgsl"),
 );
 
-/// Draws the sky, the ground and the grids behind everything else.
+/// Draws the sky, the ground and the grids, before everything else.
 #[derive(Debug)]
 pub(super) struct Backdrop {
     pipeline: wgpu::RenderPipeline,
@@ -25,7 +25,7 @@ impl Backdrop {
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
-                depth: wgpu::CompareFunction::Equal,
+                depth: wgpu::CompareFunction::Always,
                 opaque: true,
             },
         );

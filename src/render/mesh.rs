@@ -48,27 +48,36 @@ pub(super) fn circle(segments: u16) -> impl Iterator<Item = Vec2> + Clone {
 /// A unit sphere: points (which are its normals too) and triangles.
 pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
     let rings = segments / 2;
-    let points = (0..=rings)
+    let points: Vec<_> = (0..=rings)
         .flat_map(|ring| {
             let level = Vec2::from_angle(PI * f32::from(ring) / f32::from(rings));
             circle(segments)
                 .map(move |around| Vec3::new(level.y * around.x, level.x, -level.y * around.y))
         })
         .collect();
-    (points, grid(rings, segments))
+    let triangles = grid(rings, segments, |index| points[usize::from(index)]);
+    (points, triangles)
 }
 
 /// Triangles over rows of points, each row closed by its first point again. Rows run downwards,
-/// points in a row to the right, as seen from outside.
-pub(super) fn grid(rows: u16, columns: u16) -> Vec<u16> {
+/// points in a row to the right, as seen from outside. Triangles without an area are left out:
+/// where a row is one point, or lies on the next.
+pub(super) fn grid(rows: u16, columns: u16, place: impl Fn(u16) -> Vec3) -> Vec<u16> {
+    const SAME: f32 = 1e-6;
+    let has_area = |[a, b, c]: &[u16; 3]| {
+        let [a, b, c] = [*a, *b, *c].map(&place);
+        a.distance(b) > SAME && b.distance(c) > SAME && c.distance(a) > SAME
+    };
     let point = |row: u16, column: u16| row * (columns + 1) + column;
     (0..rows)
         .flat_map(|row| (0..columns).map(move |column| (row, column)))
         .flat_map(|(row, column)| {
             let (left, right) = (point(row, column), point(row, column + 1));
             let (below_left, below_right) = (point(row + 1, column), point(row + 1, column + 1));
-            [left, below_left, right, right, below_left, below_right]
+            [[left, below_left, right], [right, below_left, below_right]]
         })
+        .filter(has_area)
+        .flatten()
         .collect()
 }
 
@@ -79,6 +88,7 @@ mod tests {
     #[test]
     fn a_sphere_is_round_and_faces_outwards() {
         let (points, indices) = sphere(32);
+        assert_eq!(indices.len() / 3, 2 * 32 * 15, "the poles are fans");
         assert!(points.iter().all(|point| (point.length() - 1.0).abs() < 1e-6));
         for triangle in indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|corner| points[usize::from(triangle[corner])]);

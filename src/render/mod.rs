@@ -15,6 +15,7 @@ mod mesh;
 mod picture;
 mod pipeline;
 mod renderer;
+mod shadow;
 mod solid;
 mod view;
 
@@ -24,11 +25,12 @@ pub use picture::{Picture, SaveError, Timings, save};
 pub use renderer::Renderer;
 
 /// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 4] {
+pub fn shaders() -> [(&'static str, &'static str); 5] {
     [
         ("backdrop", backdrop::SHADER),
         ("dash", dash::SHADER),
         ("label", label::SHADER),
+        ("shadow", shadow::SHADER),
         ("solid", solid::SHADER),
     ]
 }

@@ -43,7 +43,7 @@ pub(super) fn build(gpu: &Gpu, kind: &Kind<'_>) -> wgpu::RenderPipeline {
         },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: Canvas::DEPTH,
-            depth_write_enabled: Some(kind.opaque),
+            depth_write_enabled: Some(kind.opaque && kind.depth != wgpu::CompareFunction::Always),
             depth_compare: Some(kind.depth),
             stencil: Default::default(),
             bias: Default::default(),

@@ -1,6 +1,7 @@
 use super::backdrop::Backdrop;
 use super::dash::Dashes;
 use super::label::Labels;
+use super::shadow::Shadows;
 use super::solid::Solids;
 use super::view::View;
 use super::{Canvas, Gpu};
@@ -12,6 +13,7 @@ pub struct Renderer {
     view: View,
     solids: Solids,
     backdrop: Backdrop,
+    shadows: Shadows,
     dashes: Dashes,
     labels: Labels,
 }
@@ -22,6 +24,7 @@ impl Renderer {
         Self {
             solids: Solids::new(gpu, &view.layout),
             backdrop: Backdrop::new(gpu, &view.layout),
+            shadows: Shadows::new(gpu, &view.layout),
             dashes: Dashes::new(gpu, &view.layout),
             labels: Labels::new(gpu, &view.layout),
             view,
@@ -32,7 +35,8 @@ impl Renderer {
     /// letters are so many times as large.
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         self.view.upload(gpu, scene, canvas.size(), scale);
-        self.solids.upload(gpu, scene);
+        self.solids.upload(gpu, scene, canvas.size());
+        self.shadows.upload(gpu, scene);
         self.dashes.upload(gpu, scene);
         self.labels.upload(gpu, scene, canvas.size(), scale);
 
@@ -61,8 +65,9 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.view.group, &[]);
-        self.solids.draw(&mut pass);
         self.backdrop.draw(&mut pass);
+        self.solids.draw(&mut pass);
+        self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
         self.dashes.draw(&mut pass);
         self.labels.draw(&mut pass);

@@ -13,7 +13,20 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/solid.wgsl"),
 );
 
-const SEGMENTS: u16 = 48;
+/// How finely solids are divided, from the thinnest on screen to the thickest.
+const LEVELS: [Level; 4] = [
+    Level { segments: 12, radius: 6.0 },
+    Level { segments: 28, radius: 36.0 },
+    Level { segments: 56, radius: 140.0 },
+    Level { segments: 112, radius: f32::INFINITY },
+];
+
+/// A division around, and the radius in pixels up to which no corner shows with it: it stands out
+/// r·(1 − cos(π/n)), about a quarter of a pixel.
+struct Level {
+    segments: u16,
+    radius: f32,
+}
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -44,6 +57,12 @@ const _: () = assert!(size_of::<Instance>() == 76);
 pub(super) struct Solids {
     visible: wgpu::RenderPipeline,
     hidden: wgpu::RenderPipeline,
+    levels: [Meshes; LEVELS.len()],
+}
+
+/// What is drawn at one level: the meshes and what is in their shape.
+#[derive(Debug)]
+struct Meshes {
     cone: Mesh,
     ball: Mesh,
     cones: Instances<Instance>,
@@ -94,8 +113,57 @@ impl Solids {
                 wgpu::CompareFunction::Less,
                 false,
             ),
-            cone: cone(gpu),
-            ball: ball(gpu),
+            levels: LEVELS.map(|level| Meshes::new(gpu, level.segments)),
+        }
+    }
+
+    /// `size` is the picture's, in pixels.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) {
+        let (width, height) = (size.0 as f32, size.1 as f32);
+        let projection = scene.camera.projection(width / height);
+        let level_of = |instance: &Instance| {
+            let pixels = height / 2.0 / projection.half_height_at(instance.origin);
+            let radius = instance.base_radius.max(instance.tip_radius) * pixels;
+            // What is beside or behind the eye has no size there; it may come near.
+            let radius = if radius > 0.0 { radius } else { f32::INFINITY };
+            LEVELS.iter().position(|level| radius <= level.radius)
+        };
+        for (index, level) in self.levels.iter_mut().enumerate() {
+            let here = |instance: &Instance| level_of(instance) == Some(index);
+            let cones = scene.solids.iter().map(Instance::of_solid).filter(here);
+            let balls = scene.balls.iter().map(Instance::of_ball).filter(here);
+            let guide_cones = scene.guide_solids.iter().map(Instance::of_solid).filter(here);
+            let guide_balls = scene.guide_balls.iter().map(Instance::of_ball).filter(here);
+            level.cones.upload(gpu, cones);
+            level.balls.upload(gpu, balls);
+            level.guide_cones.upload(gpu, guide_cones);
+            level.guide_balls.upload(gpu, guide_balls);
+        }
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.visible);
+        for level in &self.levels {
+            draw(pass, &level.cone, &level.cones);
+            draw(pass, &level.ball, &level.balls);
+            level.draw_guides(pass);
+        }
+    }
+
+    /// After everything opaque: the guides, where they are behind it.
+    pub fn draw_hidden(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.hidden);
+        for level in &self.levels {
+            level.draw_guides(pass);
+        }
+    }
+}
+
+impl Meshes {
+    fn new(gpu: &Gpu, segments: u16) -> Self {
+        Self {
+            cone: cone(gpu, segments),
+            ball: ball(gpu, segments),
             cones: Instances::new("cones"),
             balls: Instances::new("balls"),
             guide_cones: Instances::new("guide cones"),
@@ -103,24 +171,7 @@ impl Solids {
         }
     }
 
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
-        self.cones.upload(gpu, scene.solids.iter().map(Instance::of_solid));
-        self.balls.upload(gpu, scene.balls.iter().map(Instance::of_ball));
-        self.guide_cones.upload(gpu, scene.guide_solids.iter().map(Instance::of_solid));
-        self.guide_balls.upload(gpu, scene.guide_balls.iter().map(Instance::of_ball));
-    }
-
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.visible);
-        draw(pass, &self.cone, &self.cones);
-        draw(pass, &self.ball, &self.balls);
-        draw(pass, &self.cone, &self.guide_cones);
-        draw(pass, &self.ball, &self.guide_balls);
-    }
-
-    /// After everything opaque: the guides, where they are behind it.
-    pub fn draw_hidden(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.hidden);
+    fn draw_guides(&self, pass: &mut wgpu::RenderPass<'_>) {
         draw(pass, &self.cone, &self.guide_cones);
         draw(pass, &self.ball, &self.guide_balls);
     }
@@ -163,12 +214,12 @@ impl Instance {
 
 /// Side and two caps. Rows run from the base's middle over its rim and the tip's rim to its middle,
 /// rims twice for the edges.
-fn cone(gpu: &Gpu) -> Mesh {
-    let (vertices, indices) = cone_triangles();
+fn cone(gpu: &Gpu, segments: u16) -> Mesh {
+    let (vertices, indices) = cone_triangles(segments);
     Mesh::new(gpu, "cone", &vertices, &indices)
 }
 
-fn cone_triangles() -> (Vec<Vertex>, Vec<u16>) {
+fn cone_triangles(segments: u16) -> (Vec<Vertex>, Vec<u16>) {
     let rows: [(f32, f32, Option<f32>); 6] = [
         (0.0, 0.0, Some(-1.0)),
         (0.0, 1.0, Some(-1.0)),
@@ -177,21 +228,28 @@ fn cone_triangles() -> (Vec<Vertex>, Vec<u16>) {
         (1.0, 1.0, Some(1.0)),
         (1.0, 0.0, Some(1.0)),
     ];
-    let vertices = rows
+    let vertices: Vec<_> = rows
         .into_iter()
         .flat_map(|(along, radius, cap)| {
-            mesh::circle(SEGMENTS).map(move |around| {
+            mesh::circle(segments).map(move |around| {
                 let side = Vec3::new(0.0, around.x, -around.y);
                 let normal = cap.map_or(side, |x| Vec3::X * x);
                 Vertex { along, rim: side * radius, normal }
             })
         })
         .collect();
-    (vertices, mesh::grid(rows.len() as u16 - 1, SEGMENTS))
+    let place = |index| corner(&vertices[usize::from(index)]);
+    let triangles = mesh::grid(rows.len() as u16 - 1, segments, place);
+    (vertices, triangles)
 }
 
-fn ball(gpu: &Gpu) -> Mesh {
-    let (points, indices) = mesh::sphere(SEGMENTS);
+/// Where a vertex of a solid of length and radius 1 is.
+fn corner(vertex: &Vertex) -> Vec3 {
+    Vec3::new(vertex.along, 0.0, 0.0) + vertex.rim
+}
+
+fn ball(gpu: &Gpu, segments: u16) -> Mesh {
+    let (points, indices) = mesh::sphere(segments);
     let vertices: Vec<_> =
         points.into_iter().map(|point| Vertex { along: 0.0, rim: point, normal: point }).collect();
     Mesh::new(gpu, "ball", &vertices, &indices)
@@ -203,14 +261,14 @@ mod tests {
 
     #[test]
     fn a_cone_is_closed_and_faces_outwards() {
-        let (vertices, indices) = cone_triangles();
-        let corners = |vertex: &Vertex| Vec3::new(vertex.along, 0.0, 0.0) + vertex.rim;
+        let (vertices, indices) = cone_triangles(64);
+        assert_eq!(indices.len() / 3, 4 * 64, "two fans and a side");
         let mut volume = 0.0;
         for triangle in indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|corner| vertices[usize::from(triangle[corner])]);
-            let normal = (corners(&b) - corners(&a)).cross(corners(&c) - corners(&a));
+            let normal = (corner(&b) - corner(&a)).cross(corner(&c) - corner(&a));
             assert!(normal.dot(a.normal) >= -1e-6, "{triangle:?} faces inwards");
-            volume += corners(&a).dot(normal) / 6.0;
+            volume += corner(&a).dot(normal) / 6.0;
         }
         let cylinder = core::f32::consts::PI;
         assert!((volume - cylinder).abs() < 0.01 * cylinder, "volume {volume}");

@@ -4,11 +4,8 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use super::Gpu;
 use crate::scene::{Colour, Scene};
 
-/// The most limbs that cast shadows at once.
-const SHADOWS: usize = 32;
-
-/// The most see-through spheres at once.
-const SHELLS: usize = 4;
+/// The see-through spheres: the arm has two limits.
+const SHELLS: usize = 2;
 
 /// What every shader of the scene sees, as `view.wgsl` has it.
 #[repr(C)]
@@ -26,25 +23,14 @@ struct Uniform {
     stage_centre: Vec3,
     stage_radius: f32,
     size: Vec2,
-    shadow_count: u32,
-    shell_count: u32,
+    padding: Vec2,
     shown: Vec4,
     sky_top: Vec4,
     sky_bottom: Vec4,
     ground: Vec4,
     grid: Vec4,
     axes: [Vec4; 3],
-    shadows: [Capsule; SHADOWS],
     shells: [Sphere; SHELLS],
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
-struct Capsule {
-    base: Vec3,
-    base_radius: f32,
-    tip: Vec3,
-    tip_radius: f32,
 }
 
 #[repr(C)]
@@ -55,9 +41,8 @@ struct Sphere {
     colour: Vec4,
 }
 
-const _: () = assert!(size_of::<Capsule>() == 32);
 const _: () = assert!(size_of::<Sphere>() == 32);
-const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + (SHADOWS + SHELLS) * 32);
+const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + SHELLS * 32);
 
 /// The uniform on the device.
 #[derive(Debug)]
@@ -112,15 +97,6 @@ impl Uniform {
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
         let shown = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
-        let mut shadows = [Capsule::zeroed(); SHADOWS];
-        for (capsule, shadow) in shadows.iter_mut().zip(&scene.shadows) {
-            *capsule = Capsule {
-                base: shadow.base,
-                base_radius: shadow.base_radius,
-                tip: shadow.tip,
-                tip_radius: shadow.tip_radius,
-            };
-        }
         let mut shells = [Sphere::zeroed(); SHELLS];
         for (sphere, shell) in shells.iter_mut().zip(&scene.shells) {
             let colour = screen(shell.colour);
@@ -139,15 +115,13 @@ impl Uniform {
             stage_centre: stage.centre,
             stage_radius: stage.radius,
             size: Vec2::new(width as f32, height as f32),
-            shadow_count: scene.shadows.len().min(SHADOWS) as u32,
-            shell_count: scene.shells.len().min(SHELLS) as u32,
+            padding: Vec2::ZERO,
             shown: Vec4::from_array(shown.map(|shown| if shown { 1.0 } else { 0.0 })),
             sky_top: screen(palette.sky_top),
             sky_bottom: screen(palette.sky_bottom),
             ground: screen(palette.ground.with_opacity(Self::GROUND_OPACITY)),
             grid: screen(palette.grid),
             axes: palette.axes.map(screen),
-            shadows,
             shells,
         }
     }

@@ -18,7 +18,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
-    ui.add(Button::new(name).shortcut_text(keys)).clicked()
+    let button = Button::new(name);
+    ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked()
 }
 
 fn file(ui: &mut Ui, actions: &mut Vec<Action>) {

@@ -56,7 +56,7 @@ impl Slider<'_> {
     }
 
     fn label(&self, ui: &mut Ui) -> Response {
-        let (rect, response) = ui.allocate_exact_size(vec2(LABEL_WIDTH, HEIGHT), Sense::click());
+        let (rect, response) = ui.allocate_exact_size(vec2(LABEL_WIDTH, HEIGHT), Sense::CLICK);
         let colour = self.colour.unwrap_or(ui.visuals().text_color());
         let size = TextStyle::Body.resolve(ui.style()).size;
         let text = ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(self.label, size, colour)));
@@ -139,15 +139,20 @@ impl Slider<'_> {
                 10.0_f32.powf(((self.range.1 - self.range.0) / track.width()).log10().floor());
             (value / grain).round() * grain
         });
-        if rail.drag_started() || (rail.clicked() && !rail.double_clicked()) {
+        // From the press on, not only once egui calls it a drag; and a click that the keyboard
+        // makes has no place on the rail.
+        let pressed = rail.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
+        if pressed {
             rail.request_focus();
             actions.push(Action::BeginEdit);
         }
-        let held = rail.drag_started() || rail.clicked() || (rail.dragged() && is_editing);
-        if let (true, Some(value)) = (held && !rail.double_clicked(), pointed) {
+        let let_go = (rail.clicked() && !rail.double_clicked()) || rail.drag_stopped();
+        let taken_back = ui.input(|input| input.key_pressed(Key::Escape));
+        let held = (rail.is_pointer_button_down_on() || let_go) && is_editing && !taken_back;
+        if let (true, Some(value)) = (pressed || held, pointed) {
             actions.push(set(value));
         }
-        if rail.drag_stopped() || rail.clicked() {
+        if rail.clicked() || rail.drag_stopped() {
             actions.push(Action::CommitEdit);
         }
         let asked = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
@@ -213,6 +218,7 @@ impl Slider<'_> {
             .max_decimals(1)
             .min_decimals(1)
             .suffix(self.unit)
+            .custom_parser(|text| self.parse(text))
             .update_while_editing(false);
         let response = ui.add_sized(vec2(VALUE_WIDTH, HEIGHT - 2.0), number);
         let name = format!("{} value", self.name);
@@ -228,6 +234,16 @@ impl Slider<'_> {
             actions.push(Action::CommitEdit);
         }
         response.on_hover_text("Drag, or click to type");
+    }
+
+    /// What is typed, with or without the unit. The text that stands for the value as it is keeps
+    /// the value's unseen digits.
+    fn parse(&self, text: &str) -> Option<f64> {
+        let text = text.trim().trim_end_matches(self.unit).trim_end().replace('\u{2212}', "-");
+        if text == format!("{:.1}", self.value) {
+            return Some(f64::from(self.value));
+        }
+        text.parse().ok()
     }
 }
 

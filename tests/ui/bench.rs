@@ -1,0 +1,317 @@
+//! A window without a window: runs the panels as `src/app/window.rs` does, on a clock of its own.
+
+use egui::accesskit::Role;
+use egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, TouchPhase,
+    Vec2, ViewportId, vec2,
+};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::{Harness, Node};
+use glam::Vec3;
+use ik_arm::session::{Action, Effect, Session};
+use ik_arm::ui::{self, Machine, style};
+
+pub const LARGE: Vec2 = vec2(1280.0, 800.0);
+pub const SMALL: Vec2 = vec2(960.0, 600.0);
+pub const SECONDS_PER_FRAME: f64 = 1.0 / 60.0;
+
+/// What the window keeps.
+pub struct App {
+    pub session: Session,
+    machine: Machine,
+    viewport: Rect,
+    actions: Vec<Action>,
+    effects: Vec<Effect>,
+}
+
+pub struct Bench {
+    pub harness: Harness<'static, App>,
+    now: f64,
+    modifiers: Modifiers,
+    pointer: Pos2,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        Self::of_size(LARGE)
+    }
+
+    pub fn of_size(size: Vec2) -> Self {
+        let app = App {
+            session: Session::default(),
+            machine: Machine { adapter: "Test adapter".to_owned(), frame_ms: Some(12.0) },
+            viewport: Rect::ZERO,
+            actions: Vec::new(),
+            effects: Vec::new(),
+        };
+        let harness = Harness::builder()
+            .with_size(size)
+            .with_render_cursor(false)
+            .with_context_setup(style::install)
+            .build_ui_state(
+                |ui, app: &mut App| {
+                    let App { session, machine, viewport, actions, .. } = app;
+                    *viewport = ui::show(ui, session, machine, None, actions);
+                },
+                app,
+            );
+        assert_eq!(harness.state().actions, [], "nothing happens by itself");
+        let mut bench =
+            Self { harness, now: 10.0, modifiers: Modifiers::NONE, pointer: Pos2::ZERO };
+        bench.settle();
+        bench
+    }
+
+    /// With a session that some actions have changed.
+    pub fn after(actions: impl IntoIterator<Item = Action>) -> Self {
+        let mut bench = Self::new();
+        bench.apply(actions);
+        bench
+    }
+
+    pub fn apply(&mut self, actions: impl IntoIterator<Item = Action>) {
+        for action in actions {
+            self.harness.state_mut().session.apply(action);
+        }
+        self.settle();
+    }
+
+    pub fn session(&self) -> &Session {
+        &self.harness.state().session
+    }
+
+    pub fn hand(&self) -> Vec3 {
+        self.session().arm().cursor
+    }
+
+    /// One frame of the window: the input, what it asks for, and if that is anything, once more.
+    pub fn frame(&mut self, events: impl IntoIterator<Item = Event>) {
+        self.now += SECONDS_PER_FRAME;
+        self.pass(events.into_iter().collect());
+        let app = self.harness.state_mut();
+        if app.actions.is_empty() {
+            return;
+        }
+        for action in std::mem::take(&mut app.actions) {
+            app.effects.extend(app.session.apply(action));
+        }
+        self.pass(Vec::new());
+        self.harness.state_mut().actions.clear();
+    }
+
+    fn pass(&mut self, events: Vec<Event>) {
+        style::apply(&self.harness.ctx, self.session().preferences().theme);
+        let input = self.harness.input_mut();
+        input.time = Some(self.now);
+        input.predicted_dt = SECONDS_PER_FRAME as f32;
+        input.events = events;
+        self.harness.step();
+    }
+
+    /// Lets time pass, a frame at a time.
+    pub fn wait(&mut self, seconds: f64) {
+        let end = self.now + seconds;
+        while self.now < end - 1e-9 {
+            self.frame([]);
+        }
+    }
+
+    /// Runs until the window would sleep.
+    pub fn settle(&mut self) {
+        for _ in 0..60 {
+            self.frame([]);
+            if !self.asks_for_a_frame() {
+                return;
+            }
+        }
+        panic!("still moving: {:?}", self.harness.ctx.repaint_causes());
+    }
+
+    pub fn asks_for_a_frame(&self) -> bool {
+        self.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.is_zero()
+    }
+
+    /// What the window has been asked to do since the last time.
+    pub fn effects(&mut self) -> Vec<Effect> {
+        std::mem::take(&mut self.harness.state_mut().effects)
+    }
+}
+
+/// Looking.
+impl Bench {
+    pub fn node<'a>(&'a self, role: Role, name: &'a str) -> Node<'a> {
+        self.harness.get_by_role_and_label(role, name)
+    }
+
+    pub fn shows(&self, role: Role, name: &str) -> bool {
+        self.harness.query_all_by_role_and_label(role, name).next().is_some()
+    }
+
+    pub fn says(&self, text: &str) -> bool {
+        self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+
+    pub fn rect(&self, role: Role, name: &str) -> Rect {
+        self.node(role, name).rect()
+    }
+
+    /// Role and name of what has the keyboard.
+    pub fn focused(&self) -> Option<(Role, String)> {
+        let focused = self.harness.root().children_recursive().find(Node::is_focused)?;
+        let node = focused.accesskit_node();
+        Some((node.role(), node.label().or(node.value()).unwrap_or_default()))
+    }
+
+    pub fn viewport(&self) -> Rect {
+        self.harness.state().viewport
+    }
+
+    /// Where a point of the world is on screen.
+    pub fn place(&self, point: Vec3) -> Pos2 {
+        let rect = self.viewport();
+        let projection = self.session().camera().projection(rect.aspect_ratio());
+        let at = projection.project(point).expect("before the eye");
+        rect.center() + vec2(at.x, -at.y) * rect.size() / 2.0
+    }
+
+    pub fn cursor_place(&self) -> Pos2 {
+        self.place(self.session().arm().cursor_world())
+    }
+
+    /// A point of the viewport with nothing to take hold of.
+    pub fn empty_place(&self) -> Pos2 {
+        self.viewport().left_top() + vec2(40.0, 40.0)
+    }
+}
+
+/// Acting. Each is one frame, as input comes from a hand.
+impl Bench {
+    pub fn move_to(&mut self, at: Pos2) {
+        self.pointer = at;
+        self.frame([Event::PointerMoved(at)]);
+    }
+
+    pub fn press(&mut self, button: PointerButton) {
+        self.frame([self.button(button, true)]);
+    }
+
+    pub fn release(&mut self, button: PointerButton) {
+        self.frame([self.button(button, false)]);
+    }
+
+    pub fn button(&self, button: PointerButton, pressed: bool) -> Event {
+        Event::PointerButton { pos: self.pointer, button, pressed, modifiers: self.modifiers }
+    }
+
+    pub fn hold(&mut self, modifiers: Modifiers) {
+        self.modifiers = modifiers;
+        self.frame([Event::ModifiersChanged(modifiers)]);
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.frame([self.key_event(key, true)]);
+        self.frame([self.key_event(key, false)]);
+    }
+
+    pub fn key_with(&mut self, modifiers: Modifiers, key: Key) {
+        let before = self.modifiers;
+        self.hold(modifiers);
+        self.key(key);
+        self.hold(before);
+    }
+
+    fn key_event(&self, key: Key, pressed: bool) -> Event {
+        let modifiers = self.modifiers;
+        Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
+    }
+
+    /// Types as a keyboard does: each key is pressed and gives its letter.
+    pub fn type_text(&mut self, text: &str) {
+        for letter in text.chars() {
+            let letter = letter.to_string();
+            let pressed = Key::from_name(&letter).map(|key| self.key_event(key, true));
+            self.frame(pressed.into_iter().chain([Event::Text(letter)]));
+        }
+    }
+
+    pub fn wheel(&mut self, lines: f32) {
+        self.scroll(vec2(0.0, lines));
+    }
+
+    pub fn scroll(&mut self, delta: Vec2) {
+        self.frame([Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta,
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Unknown,
+            modifiers: self.modifiers,
+        }]);
+    }
+
+    pub fn click_at(&mut self, at: Pos2) {
+        self.move_to(at);
+        self.press(PointerButton::Primary);
+        self.release(PointerButton::Primary);
+    }
+
+    pub fn double_click_at(&mut self, at: Pos2) {
+        self.click_at(at);
+        self.click_at(at);
+        self.settle();
+    }
+
+    /// Press at one place, go to the other in steps, and hold.
+    pub fn drag(&mut self, button: PointerButton, from: Pos2, to: Pos2) {
+        self.move_to(from);
+        self.press(button);
+        for step in 1..=8 {
+            self.move_to(from + (to - from) * (step as f32 / 8.0));
+        }
+    }
+
+    pub fn drag_and_drop(&mut self, button: PointerButton, from: Pos2, to: Pos2) {
+        self.drag(button, from, to);
+        self.release(button);
+    }
+
+    pub fn click(&mut self, role: Role, name: &str) {
+        self.click_at(self.rect(role, name).center());
+        self.settle();
+    }
+
+    /// Opens menus and chooses the last.
+    pub fn choose(&mut self, path: &[&str]) {
+        for name in path {
+            let item = self.harness.query_all_by_label_contains(name).find(|node| {
+                // The label of an item ends with its keys.
+                let node = node.accesskit_node();
+                let label = node.label().unwrap_or_default();
+                let rest = label.strip_prefix(name).unwrap_or("none of it");
+                matches!(node.role(), Role::Button | Role::CheckBox | Role::RadioButton)
+                    && (rest.is_empty() || rest.starts_with(' '))
+            });
+            let item = item.unwrap_or_else(|| panic!("{name} is in the menu")).rect();
+            self.click_at(item.center());
+            self.settle();
+        }
+    }
+
+    pub fn focus(&mut self, role: Role, name: &str) {
+        self.node(role, name).focus();
+        self.settle();
+    }
+
+    /// Clicks the number beside a rail, types another and enters it.
+    pub fn enter(&mut self, slider: &str, text: &str) {
+        self.click(Role::SpinButton, &format!("{slider} value"));
+        self.key_with(Modifiers::COMMAND, Key::A);
+        self.frame([Event::Text(text.to_owned())]);
+        self.key(Key::Enter);
+        self.settle();
+    }
+}
+
+/// As the arm in which every coordinate is compared bit for bit.
+pub fn bits(point: Vec3) -> [u32; 3] {
+    point.to_array().map(f32::to_bits)
+}

@@ -1,0 +1,13 @@
+//! The panels and the viewport as a person uses them: widgets are pressed by their names, the
+//! hand is dragged where it is seen, and the session is asked what became of it.
+#![cfg(feature = "app")]
+
+mod accessibility;
+mod bench;
+mod dialogs;
+mod hand;
+mod looks;
+mod panel;
+mod sliders;
+mod view;
+mod zz;

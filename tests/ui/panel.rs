@@ -1,0 +1,237 @@
+//! The left panel, the menu bar and the Explain panel.
+
+use egui::Key;
+use egui::accesskit::Role;
+use glam::Vec3;
+use ik_arm::document::{Arm, Camera, Display, Layer, Theme};
+use ik_arm::kinematics::two_bone::Reach;
+use ik_arm::session::{Action, Dialog, Effect, Navigation};
+
+use crate::bench::{Bench, SMALL};
+
+pub const SLIDERS: [&str; 9] = [
+    "Hand x",
+    "Hand y",
+    "Hand z",
+    "Elbow spin",
+    "Root x",
+    "Root y",
+    "Root z",
+    "Upper length",
+    "Lower length",
+];
+
+pub const CHECKBOXES: [(&str, Layer); 11] = [
+    ("Cursor", Layer::Cursor),
+    ("Pointer", Layer::Pointer),
+    ("Inner limit", Layer::InnerLimit),
+    ("Outer limit", Layer::OuterLimit),
+    ("XY grid", Layer::GridXy),
+    ("XZ grid", Layer::GridXz),
+    ("YZ grid", Layer::GridYz),
+    ("Ground", Layer::Ground),
+    ("Axes", Layer::Axes),
+    ("Labels", Layer::Labels),
+    ("Shadow", Layer::Shadow),
+];
+
+pub const MENUS: [(&str, &[&str]); 4] = [
+    ("File", &["Save picture…", "Quit"]),
+    ("Edit", &["Copy pose as JSON line", "Navigation"]),
+    (
+        "View",
+        &[
+            "Front",
+            "Right",
+            "Top",
+            "Back",
+            "Left",
+            "Bottom",
+            "Perspective / orthographic",
+            "Frame arm",
+            "Frame all",
+            "Light theme",
+            "Dark theme",
+            "Explain panel",
+        ],
+    ),
+    ("Help", &["Shortcuts", "About"]),
+];
+
+#[test]
+fn every_control_of_the_left_panel_is_there_by_name() {
+    for mut bench in [Bench::new(), Bench::of_size(SMALL)] {
+        for name in SLIDERS {
+            assert!(bench.shows(Role::Slider, name), "no slider {name}");
+            assert!(bench.shows(Role::SpinButton, &format!("{name} value")), "no number {name}");
+        }
+        for (name, _) in CHECKBOXES {
+            assert!(bench.shows(Role::CheckBox, name), "no checkbox {name}");
+        }
+        for name in ["Reset pose", "Reset all", "File", "Edit", "View", "Help"] {
+            assert!(bench.shows(Role::Button, name), "no button {name}");
+        }
+        bench.settle();
+    }
+}
+
+#[test]
+fn the_whole_left_panel_is_in_sight_at_1280_by_800() {
+    let bench = Bench::new();
+    let last = bench.rect(Role::Button, "Reset all");
+    assert!(last.bottom() < 770.0 && last.right() < bench.viewport().left(), "{last:?}");
+}
+
+#[test]
+fn the_menus_hold_what_they_should() {
+    for (menu, items) in MENUS {
+        let mut bench = Bench::new();
+        assert!(!items.iter().any(|item| bench.says(item) && *item != "Cursor"), "{menu} is open");
+        bench.choose(&[menu]);
+        for item in items {
+            assert!(bench.says(item), "{item} is not in {menu}");
+        }
+        bench.key(Key::Escape);
+        bench.settle();
+        assert!(!bench.says(items[0]), "Esc leaves {menu} open");
+    }
+}
+
+#[test]
+fn each_checkbox_flips_its_layer_and_no_other() {
+    let mut bench = Bench::new();
+    for (name, layer) in CHECKBOXES {
+        for _ in 0..2 {
+            let before = bench.session().document().display;
+            bench.click(Role::CheckBox, name);
+            let expected = before.with(layer, !before.shows(layer));
+            assert_eq!(bench.session().document().display, expected, "{name}");
+        }
+    }
+    assert_eq!(bench.session().document().display, Display::default());
+    assert_eq!(bench.session().arm(), &Arm::default());
+}
+
+#[test]
+fn a_checkbox_answers_to_the_keyboard() {
+    let mut bench = Bench::new();
+    bench.focus(Role::CheckBox, "Outer limit");
+    bench.key(Key::Space);
+    assert!(bench.session().document().display.shows(Layer::OuterLimit));
+}
+
+#[test]
+fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
+    let camera = Camera { yaw: 1.0, ..Camera::default() };
+    let actions = [
+        Action::SetHand(Vec3::new(1.0, 2.0, 3.0)),
+        Action::SetRoot(Vec3::splat(9.0)),
+        Action::SetElbowSpin(2.0),
+        Action::SetUpper(77.0),
+        Action::Show(Layer::OuterLimit, true),
+        Action::SetCamera(camera),
+    ];
+    let mut bench = Bench::after(actions);
+    bench.click(Role::Button, "Reset pose");
+    assert_eq!(bench.session().arm(), &Arm::default());
+    assert!(bench.session().document().display.shows(Layer::OuterLimit));
+    assert_eq!(bench.session().camera(), &camera);
+}
+
+#[test]
+fn reset_all_resets_everything_but_what_the_user_likes() {
+    let actions = [
+        Action::SetLower(77.0),
+        Action::Show(Layer::Axes, false),
+        Action::SetCamera(Camera { yaw: 1.0, ..Camera::default() }),
+        Action::SetTheme(Theme::Light),
+    ];
+    let mut bench = Bench::after(actions);
+    bench.click(Role::Button, "Reset all");
+    assert_eq!(bench.session().document(), &Default::default());
+    assert_eq!(bench.session().preferences().theme, Theme::Light);
+}
+
+#[test]
+fn the_menus_do_what_they_say() {
+    let mut bench = Bench::new();
+    bench.choose(&["View", "Light theme"]);
+    assert_eq!(bench.session().preferences().theme, Theme::Light);
+    assert!(!bench.harness.ctx.global_style().visuals.dark_mode);
+    bench.choose(&["View", "Dark theme"]);
+    assert_eq!(bench.session().preferences().theme, Theme::Dark);
+    for navigation in Navigation::ALL {
+        bench.choose(&["Edit", "Navigation", navigation.name()]);
+        assert_eq!(bench.session().preferences().navigation, navigation);
+        bench.key(Key::Escape);
+        bench.settle();
+    }
+    bench.choose(&["Help", "About"]);
+    assert_eq!(bench.session().dialog(), Some(&Dialog::About));
+    bench.key(Key::Escape);
+    bench.choose(&["Help", "Shortcuts"]);
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    bench.key(Key::Escape);
+    bench.choose(&["File", "Quit"]);
+    assert_eq!(bench.effects(), [Effect::Quit]);
+}
+
+#[test]
+fn the_explain_panel_closes_and_opens_from_the_view_menu() {
+    let mut bench = Bench::new();
+    let narrow = bench.viewport();
+    assert!(bench.says("Elbow triangle"));
+    bench.choose(&["View", "Explain panel"]);
+    assert!(!bench.session().preferences().explain);
+    assert!(!bench.says("Elbow triangle"));
+    assert!(bench.viewport().right() > narrow.right() + 200.0, "the viewport takes the room");
+    bench.key(Key::Escape);
+    bench.choose(&["View", "Explain panel"]);
+    assert!(bench.session().preferences().explain);
+    assert_eq!(bench.viewport(), narrow);
+}
+
+#[test]
+fn the_explain_panel_says_in_a_sentence_how_the_arm_stands() {
+    for (hand, reach, sentence) in [
+        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "Reached: the hand is at the cursor."),
+        (
+            Vec3::new(537.2, 0.0, 0.0),
+            Reach::TooFar,
+            "Too far: the arm is straight and points at the cursor, 37.2 short.",
+        ),
+        (
+            Vec3::new(60.0, 0.0, 0.0),
+            Reach::TooClose,
+            "Too close: the arm is folded and points past the cursor, by 40.0.",
+        ),
+    ] {
+        let bench = Bench::after([Action::SetHand(hand)]);
+        assert_eq!(bench.session().pose().reach, reach);
+        assert!(bench.shows(Role::Label, sentence), "{sentence}");
+        assert!(bench.shows(Role::Image, &format!("Viewport. {sentence}")), "{sentence}");
+    }
+}
+
+#[test]
+fn the_explain_panel_names_the_quantities_and_shows_their_values() {
+    let bench = Bench::after([Action::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
+    for name in ["theta z", "h c", "theta y", "D", "d 1", "d 2", "h e", "o e", "theta e", "phi"] {
+        assert!(bench.shows(Role::Label, name), "{name}");
+    }
+    for value in ["53.1°", "0.0°", "500.0", "180.0°"] {
+        assert!(bench.shows(Role::Label, value), "{value}");
+    }
+    assert!(bench.says("Triangle: d 1 200.0, d 2 300.0, D 500.0, theta e 0.0 degrees"));
+    assert!(bench.says("Reach: Cursor at 500.0; the hand reaches from 100.0 to 500.0"));
+}
+
+#[test]
+fn a_panel_can_be_made_wider() {
+    let mut bench = Bench::new();
+    let edge = bench.viewport().left_center() - egui::vec2(3.0, 0.0);
+    bench.drag_and_drop(egui::PointerButton::Primary, edge, edge + egui::vec2(60.0, 0.0));
+    bench.settle();
+    assert!((bench.viewport().left() - edge.x - 63.0).abs() < 12.0, "{:?}", bench.viewport());
+    assert_eq!(bench.session().document(), &Default::default());
+}

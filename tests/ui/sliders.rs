@@ -1,0 +1,321 @@
+//! The nine sliders, by mouse and keyboard.
+
+use core::f32::consts::TAU;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton, Pos2, pos2};
+use glam::Vec3;
+use ik_arm::document::Arm;
+use ik_arm::session::Action;
+
+use crate::bench::{Bench, bits};
+use crate::panel::SLIDERS;
+
+/// A point of a slider's rail, from 0 at its left to 1 at its right.
+fn on_rail(bench: &Bench, name: &str, part: f32) -> Pos2 {
+    let rail = bench.rect(Role::Slider, name);
+    pos2(rail.left() + rail.width() * part, rail.center().y)
+}
+
+fn value(arm: &Arm, slider: &str) -> f32 {
+    match slider {
+        "Hand x" => arm.cursor.x,
+        "Hand y" => arm.cursor.y,
+        "Hand z" => arm.cursor.z,
+        "Elbow spin" => arm.elbow_spin.to_degrees(),
+        "Root x" => arm.root.x,
+        "Root y" => arm.root.y,
+        "Root z" => arm.root.z,
+        "Upper length" => arm.bones.upper(),
+        _ => arm.bones.lower(),
+    }
+}
+
+fn values(arm: &Arm) -> [f32; 9] {
+    SLIDERS.map(|slider| value(arm, slider))
+}
+
+/// What `arm` holds, apart from where it last faced, which follows from the rest.
+fn is_same_but(slider: &str, a: &Arm, b: &Arm) -> bool {
+    SLIDERS
+        .into_iter()
+        .filter(|other| *other != slider)
+        .all(|other| value(a, other).to_bits() == value(b, other).to_bits())
+}
+
+/// A pose of awkward numbers, some beyond every thumb's range.
+fn odd() -> [Action; 5] {
+    [
+        Action::SetHand(Vec3::new(123.456_79, -987.654_3, 0.1)),
+        Action::SetRoot(Vec3::new(-1234.567_9, 0.333_333_34, 1e-7)),
+        Action::SetElbowSpin(1.234_567_9),
+        Action::SetUpper(1234.567_9),
+        Action::SetLower(3.141_592_7),
+    ]
+}
+
+#[test]
+fn dragging_a_rail_moves_the_hand_in_the_same_frame() {
+    let mut bench = Bench::new();
+    bench.move_to(on_rail(&bench, "Hand y", 0.7));
+    bench.press(PointerButton::Primary);
+    let mut last = bench.hand().y;
+    assert!((last - 210.0).abs() < 40.0, "the thumb comes to the press: {last}");
+    for step in 1..=10 {
+        bench.move_to(on_rail(&bench, "Hand y", 0.7 + 0.02 * step as f32));
+        assert!(bench.hand().y > last, "{} after {last}", bench.hand().y);
+        last = bench.hand().y;
+        let pose = bench.session().pose();
+        assert!((pose.hand.y - last).abs() < 1e-3 || last > 400.0, "the arm follows: {pose:?}");
+        assert!(bench.session().is_editing());
+        let shown = bench.node(Role::SpinButton, "Hand y value").value();
+        assert_eq!(shown, Some(format!("{last:.1}")), "the number is of this frame");
+    }
+    bench.release(PointerButton::Primary);
+    assert!(!bench.session().is_editing());
+    assert_eq!(bench.hand().y, last);
+}
+
+#[test]
+fn each_slider_changes_its_own_number_and_no_other_bit() {
+    for slider in SLIDERS {
+        let mut bench = Bench::after([
+            Action::SetHand(Vec3::new(123.456_79, -87.654_32, 0.1)),
+            Action::SetRoot(Vec3::new(-12.345_679, 0.333_333_34, 1e-7)),
+            Action::SetElbowSpin(1.234_567_9),
+        ]);
+        let before = *bench.session().arm();
+        let (from, to) = (on_rail(&bench, slider, 0.5), on_rail(&bench, slider, 0.8));
+        bench.drag_and_drop(PointerButton::Primary, from, to);
+        let after = bench.session().arm();
+        assert_ne!(value(after, slider), value(&before, slider), "{slider}");
+        assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
+    }
+}
+
+#[test]
+fn a_click_on_a_rail_goes_there() {
+    let mut bench = Bench::new();
+    bench.click_at(on_rail(&bench, "Root x", 0.5));
+    assert_eq!(bench.session().arm().root, Vec3::ZERO);
+    bench.wait(1.0);
+    bench.click_at(on_rail(&bench, "Root x", 1.0));
+    assert_eq!(bench.session().arm().root, Vec3::new(500.0, 0.0, 0.0));
+    assert!(!bench.session().is_editing());
+}
+
+#[test]
+fn esc_takes_a_rails_drag_back_and_moving_on_changes_nothing() {
+    let mut bench = Bench::after(odd());
+    let before = *bench.session().arm();
+    let (from, to) = (on_rail(&bench, "Hand x", 0.4), on_rail(&bench, "Hand x", 0.7));
+    bench.drag(PointerButton::Primary, from, to);
+    assert_ne!(bench.session().arm(), &before);
+    bench.key(Key::Escape);
+    assert_eq!(bench.session().arm(), &before);
+    assert!(!bench.session().is_editing());
+    bench.move_to(on_rail(&bench, "Hand x", 0.2));
+    bench.move_to(on_rail(&bench, "Hand x", 0.9));
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    assert_eq!(bench.session().arm(), &before);
+}
+
+#[test]
+fn esc_takes_a_press_on_a_rail_back() {
+    let mut bench = Bench::new();
+    bench.move_to(on_rail(&bench, "Hand x", 0.2));
+    bench.press(PointerButton::Primary);
+    assert_ne!(bench.session().arm(), &Arm::default());
+    bench.key(Key::Escape);
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    assert_eq!(bench.session().arm(), &Arm::default());
+}
+
+#[test]
+fn a_press_and_its_release_in_one_frame_are_a_click_on_the_rail() {
+    let mut bench = Bench::new();
+    bench.move_to(on_rail(&bench, "Root x", 1.0));
+    let events = [true, false].map(|down| bench.button(PointerButton::Primary, down));
+    bench.frame(events);
+    bench.move_to(on_rail(&bench, "Root x", 0.3));
+    assert_eq!(bench.session().arm().root.x, 500.0);
+    assert!(!bench.session().is_editing());
+}
+
+#[test]
+fn space_and_enter_on_a_rail_change_nothing() {
+    let mut bench = Bench::new();
+    bench.move_to(on_rail(&bench, "Hand x", 0.2));
+    bench.focus(Role::Slider, "Hand x");
+    bench.key(Key::Space);
+    bench.key(Key::Enter);
+    assert_eq!(bench.session().arm(), &Arm::default());
+}
+
+#[test]
+fn esc_takes_the_drag_of_a_number_back_too() {
+    let mut bench = Bench::new();
+    let at = bench.rect(Role::SpinButton, "Hand z value").center();
+    bench.drag(PointerButton::Primary, at, at + egui::vec2(40.0, 0.0));
+    assert_ne!(bench.hand().z, 60.0);
+    bench.key(Key::Escape);
+    bench.move_to(at - egui::vec2(40.0, 0.0));
+    bench.release(PointerButton::Primary);
+    assert_eq!(bench.session().arm(), &Arm::default());
+}
+
+#[test]
+fn a_double_click_on_rail_or_label_resets() {
+    for slider in SLIDERS {
+        for on_label in [false, true] {
+            let mut bench = Bench::after(odd());
+            let before = *bench.session().arm();
+            let rail = bench.rect(Role::Slider, slider);
+            let label = pos2(rail.left() - 30.0, rail.center().y);
+            bench.double_click_at(if on_label { label } else { on_rail(&bench, slider, 0.3) });
+            let after = bench.session().arm();
+            assert_eq!(value(after, slider), value(&Arm::default(), slider), "{slider}");
+            assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
+            assert!(!bench.session().is_editing());
+        }
+    }
+}
+
+#[test]
+fn arrows_step_by_one_with_shift_by_a_tenth_and_page_keys_by_ten() {
+    for slider in SLIDERS {
+        let mut bench = Bench::after([Action::SetElbowSpin(TAU / 4.0)]);
+        bench.focus(Role::Slider, slider);
+        for (modifiers, key, step) in [
+            (Modifiers::NONE, Key::ArrowRight, 1.0),
+            (Modifiers::NONE, Key::ArrowUp, 1.0),
+            (Modifiers::NONE, Key::ArrowLeft, -1.0),
+            (Modifiers::NONE, Key::ArrowDown, -1.0),
+            (Modifiers::SHIFT, Key::ArrowRight, 0.1),
+            (Modifiers::SHIFT, Key::ArrowUp, 0.1),
+            (Modifiers::SHIFT, Key::ArrowLeft, -0.1),
+            (Modifiers::SHIFT, Key::ArrowDown, -0.1),
+            (Modifiers::NONE, Key::PageUp, 10.0),
+            (Modifiers::NONE, Key::PageDown, -10.0),
+        ] {
+            let before = value(bench.session().arm(), slider);
+            bench.key_with(modifiers, key);
+            let stepped = value(bench.session().arm(), slider) - before;
+            assert!((stepped - step).abs() < 1e-4, "{slider}: {key:?} steps by {stepped}");
+        }
+        assert_eq!(bench.focused(), Some((Role::Slider, slider.to_owned())));
+    }
+}
+
+#[test]
+fn home_and_end_go_to_the_ends_of_the_range() {
+    for (slider, low, high) in [
+        ("Hand x", -500.0, 500.0),
+        ("Root y", -500.0, 500.0),
+        ("Upper length", 10.0, 1000.0),
+        ("Lower length", 10.0, 1000.0),
+    ] {
+        let mut bench = Bench::new();
+        bench.focus(Role::Slider, slider);
+        bench.key(Key::Home);
+        assert_eq!(value(bench.session().arm(), slider), low, "{slider}");
+        bench.key(Key::End);
+        assert_eq!(value(bench.session().arm(), slider), high, "{slider}");
+    }
+}
+
+#[test]
+fn typed_values_may_go_beyond_the_thumbs_range() {
+    for (slider, typed) in [
+        ("Hand x", 4321.5),
+        ("Hand y", -1000.25),
+        ("Hand z", 0.125),
+        ("Root z", -98765.0),
+        ("Upper length", 2500.0),
+        ("Lower length", 0.5),
+    ] {
+        let mut bench = Bench::new();
+        let before = *bench.session().arm();
+        bench.enter(slider, &typed.to_string());
+        let after = bench.session().arm();
+        assert_eq!(value(after, slider), typed, "{slider}");
+        assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
+    }
+}
+
+#[test]
+fn what_is_not_a_number_is_not_taken() {
+    let mut bench = Bench::new();
+    for typed in ["", "12x", "nan", "inf", "1e99", "--3"] {
+        bench.enter("Hand x", typed);
+        assert_eq!(bench.session().arm(), &Arm::default(), "{typed}");
+    }
+}
+
+#[test]
+fn showing_a_value_does_not_change_it_nor_does_going_through_its_field() {
+    let mut bench = Bench::after(odd());
+    let before = *bench.session().arm();
+    bench.wait(0.5);
+    assert_eq!(values(bench.session().arm()).map(f32::to_bits), values(&before).map(f32::to_bits));
+    for slider in SLIDERS {
+        bench.focus(Role::SpinButton, &format!("{slider} value"));
+        bench.key(Key::Tab);
+        bench.settle();
+        bench.click(Role::SpinButton, &format!("{slider} value"));
+        bench.key(Key::Enter);
+        bench.settle();
+        assert_eq!(bench.session().arm(), &before, "{slider}");
+    }
+}
+
+#[test]
+fn the_elbow_spin_wraps() {
+    let mut bench = Bench::new();
+    for (typed, shown) in
+        [("370", 10.0), ("-10", 350.0), ("725", 5.0), ("360", 0.0), ("90°", 90.0), ("-360", 0.0)]
+    {
+        bench.enter("Elbow spin", typed);
+        let spin = value(bench.session().arm(), "Elbow spin");
+        assert!((spin - shown).abs() < 1e-3, "{typed} gives {spin}");
+        assert!((0.0..TAU).contains(&bench.session().arm().elbow_spin));
+    }
+    bench.focus(Role::Slider, "Elbow spin");
+    bench.key(Key::ArrowLeft);
+    assert!((value(bench.session().arm(), "Elbow spin") - 359.0).abs() < 1e-3);
+    bench.key(Key::PageUp);
+    assert!((value(bench.session().arm(), "Elbow spin") - 9.0).abs() < 1e-3);
+    assert_eq!(bits(bench.hand()), bits(Arm::default().cursor));
+}
+
+#[test]
+fn a_length_that_no_bone_can_have_is_refused_with_a_word() {
+    for (slider, bone) in [("Upper length", "upper"), ("Lower length", "lower")] {
+        for typed in ["0", "-5"] {
+            let mut bench = Bench::new();
+            bench.enter(slider, typed);
+            assert_eq!(bench.session().arm(), &Arm::default(), "{slider} {typed}");
+            let message =
+                format!("The {bone} length is {typed}; it must be a finite number above 0");
+            assert_eq!(bench.session().message(), Some(message.as_str()));
+            assert!(bench.shows(Role::Label, &message), "the status line says it");
+            assert_eq!(
+                bench.node(Role::SpinButton, &format!("{slider} value")).value(),
+                Some(format!("{:.1}", value(&Arm::default(), slider)))
+            );
+        }
+    }
+}
+
+#[test]
+fn the_hands_ranges_follow_the_lengths() {
+    let mut bench = Bench::new();
+    bench.enter("Upper length", "900");
+    for (slider, end) in [("Hand x", 1.0), ("Hand z", 0.0)] {
+        bench.click_at(on_rail(&bench, slider, end));
+        let reached = value(bench.session().arm(), slider);
+        assert_eq!(reached, if end > 0.5 { 1200.0 } else { -1200.0 });
+    }
+}

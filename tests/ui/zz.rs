@@ -1,0 +1,7 @@
+use crate::bench::Bench;
+#[test]
+fn dump() {
+    let mut bench = Bench::new();
+    bench.choose(&["Help"]);
+    println!("{:?}", bench.harness);
+}
