@@ -128,7 +128,7 @@ impl Scene {
     /// Three arrows from the world's origin, half as long as the arm.
     fn add_axes(&mut self, arm_length: f32) {
         let length = 0.5 * arm_length;
-        let (shaft, head, head_length) = (length * 0.007, length * 0.024, length * 0.09);
+        let (shaft, head, head_length) = (length * 0.009, length * 0.034, length * 0.12);
         for (axis, colour) in Vec3::AXES.into_iter().zip(self.palette.axes) {
             let neck = axis * (length - head_length);
             self.add_solid(Vec3::ZERO, neck, shaft, shaft, colour);

@@ -196,12 +196,14 @@ impl Session {
         }
     }
 
-    /// The hand is taken where it is seen; if its cursor is out of reach, it comes to the hand,
-    /// which leaves the pose as it is.
+    /// The hand is taken where it is seen, or its cursor if that is out of reach and nearer to the
+    /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
     fn grab_hand(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
         self.glide = None;
-        let arm = *self.arm();
-        let start = if handle == Handle::Free { self.pose.hand } else { arm.cursor };
+        let (arm, hand) = (*self.arm(), self.pose.hand);
+        let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
+        let is_at_hand = handle == Handle::Free && aside(hand) < aside(arm.cursor);
+        let start = if is_at_hand { hand } else { arm.cursor };
         self.begin_edit(Some(HandDrag::new(handle, start, arm.root, forward, ray)));
     }
 

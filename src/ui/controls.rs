@@ -28,6 +28,11 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
 }
 
+/// Whether the change under way is a slider's, not that of a hand in the viewport.
+fn is_sliding(session: &Session) -> bool {
+    session.is_editing() && session.hand_drag().is_none()
+}
+
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let reach = session.arm().bones.outer_limit();
     point(
@@ -84,7 +89,7 @@ fn point(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>, point: &Poin
             default: point.default[axis],
             unit: "",
         };
-        slider.show(ui, session.is_editing(), actions, |coordinate| {
+        slider.show(ui, is_sliding(session), actions, |coordinate| {
             let mut moved = point.value;
             moved[axis] = coordinate;
             (point.set)(moved)
@@ -104,7 +109,7 @@ fn elbow(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         default: 0.0,
         unit: "°",
     };
-    slider.show(ui, session.is_editing(), actions, |degrees| {
+    slider.show(ui, is_sliding(session), actions, |degrees| {
         Action::SetElbowSpin((degrees % 360.0).to_radians())
     });
 }
@@ -122,7 +127,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         default: seed.upper(),
         unit: "",
     };
-    upper.show(ui, session.is_editing(), actions, Action::SetUpper);
+    upper.show(ui, is_sliding(session), actions, Action::SetUpper);
     let lower = Slider {
         name: "Lower length",
         label: "Lower d_2",
@@ -133,7 +138,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         default: seed.lower(),
         unit: "",
     };
-    lower.show(ui, session.is_editing(), actions, Action::SetLower);
+    lower.show(ui, is_sliding(session), actions, Action::SetLower);
 }
 
 fn layers(ui: &mut Ui, session: &Session, layers: &[Layer], actions: &mut Vec<Action>) {

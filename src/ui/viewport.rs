@@ -68,23 +68,20 @@ pub(super) fn ui(
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
     }
-    if session.is_gliding() {
-        actions.push(Action::Advance(ui.input(|input| input.time)));
-        ui.request_repaint();
-    }
+    glide(ui, &response, session, actions);
 
     let picture = Picture::new(rect, session.camera());
     let arm = session.arm();
     let handles = Handles::new(&picture, arm.cursor_world(), arm.root + session.pose().hand);
     let pointer = ui.input(|input| input.pointer.latest_pos());
-    let held = session.hand_drag().map(|drag| drag.handle());
+    let held_handle = session.hand_drag().map(|drag| drag.handle());
 
     let on_compass = pointer.is_some_and(|at| compass::covers(rect, at));
     let over = response.contains_pointer() && !on_compass;
     let pointed = pointer.filter(|_| over).and_then(|at| handles.as_ref().and_then(|h| h.at(at)));
     if let Some(handles) = &handles {
         let painter = ui.painter().with_clip_rect(rect);
-        handles.paint(&painter, ui, pointed, held);
+        handles.paint(&painter, ui, pointed, held_handle);
     }
     compass::ui(ui, rect, session, actions);
 
@@ -92,18 +89,18 @@ pub(super) fn ui(
         keys(ui, &response, session, actions);
         return rect;
     };
+    let held = press(ui, &response, session, &picture, handles.as_ref(), actions);
+    follow(ui, held, &picture, pointer, actions);
     if response.contains_pointer() {
-        press(ui, &response, session, &picture, pointed, on_compass, actions);
         wheel(ui, session, &picture, pointer, actions);
     }
-    follow(ui, session, &picture, pointer, actions);
     if response.double_clicked() && !on_compass {
         actions.push(match pointed {
             Some(_) => menu::frame_arm(session),
             None => Action::GlideTo(Camera::default()),
         });
     }
-    show_cursor(ui, session, pointed.or(held));
+    show_cursor(ui, session, pointed.or(held_handle));
     keys(ui, &response, session, actions);
     rect
 }
@@ -115,42 +112,80 @@ fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
     Rect::from_min_max(round(rect.min), round(rect.max))
 }
 
-/// What a press of a button begins.
+/// Moves the view on. Any input ends that: a press in the viewport takes hold of the view as it is
+/// by then, all else brings it to where it was going.
+fn glide(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
+    if !session.is_gliding() {
+        return;
+    }
+    let is_input = |event: &Event| match event {
+        Event::PointerButton { pressed, .. } => *pressed && !response.contains_pointer(),
+        Event::Key { pressed, .. } => *pressed,
+        Event::MouseWheel { .. } | Event::Zoom(_) => true,
+        _ => false,
+    };
+    if ui.input(|input| input.events.iter().any(is_input)) {
+        actions.push(Action::SetCamera(session.settled_camera()));
+    } else {
+        actions.push(Action::Advance(ui.input(|input| input.time)));
+        ui.request_repaint();
+    }
+}
+
+/// What the pointer holds.
+#[derive(Clone, Copy)]
+enum Held {
+    Nothing,
+    Hand,
+    View,
+}
+
+/// What is held, be it since before or by a press in this very frame.
 fn press(
     ui: &Ui,
     response: &Response,
     session: &Session,
     picture: &Picture,
-    pointed: Option<Handle>,
-    on_compass: bool,
+    handles: Option<&Handles>,
     actions: &mut Vec<Action>,
-) {
-    let events = ui.input(|input| input.events.clone());
-    for event in events {
+) -> Held {
+    let mut held = match (session.hand_drag(), session.view_drag()) {
+        (Some(_), _) => Held::Hand,
+        (None, Some(_)) => Held::View,
+        (None, None) => Held::Nothing,
+    };
+    for event in ui.input(|input| input.events.clone()) {
         let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
             continue;
         };
-        response.request_focus();
         if button == PointerButton::Secondary && session.is_editing() {
+            // Wherever the pointer is by then.
             actions.push(Action::CancelEdit);
+        }
+        if !response.contains_pointer() {
             continue;
         }
-        if session.is_editing() || session.view_drag().is_some() {
+        response.request_focus();
+        if session.is_editing() || !matches!(held, Held::Nothing) {
             continue;
         }
-        let handle = pointed.filter(|_| button == PointerButton::Primary && !modifiers.alt);
+        let on_compass = compass::covers(picture.rect, pos);
+        let can_take = button == PointerButton::Primary && !modifiers.alt && !on_compass;
+        let handle = handles.filter(|_| can_take).and_then(|handles| handles.at(pos));
+        let motion = match motion(session.preferences().navigation, button, modifiers) {
+            None if on_compass && button == PointerButton::Primary => Some(Motion::Orbit),
+            motion => motion,
+        };
         if let Some(handle) = handle {
-            actions.push(Action::GrabHand {
-                handle,
-                ray: picture.ray(pos),
-                forward: picture.projection.forward,
-            });
-        } else if on_compass && button == PointerButton::Primary {
-            actions.push(Action::GrabView(Motion::Orbit, picture.normalised(pos)));
-        } else if let Some(motion) = motion(session.preferences().navigation, button, modifiers) {
+            let (ray, forward) = (picture.ray(pos), picture.projection.forward);
+            actions.push(Action::GrabHand { handle, ray, forward });
+            held = Held::Hand;
+        } else if let Some(motion) = motion {
             actions.push(Action::GrabView(motion, picture.normalised(pos)));
+            held = Held::View;
         }
     }
+    held
 }
 
 fn motion(
@@ -180,23 +215,24 @@ fn motion(
 }
 
 /// What is held follows the pointer, and is dropped where the button is let go.
-fn follow(ui: &Ui, session: &Session, picture: &Picture, pointer: Pos2, actions: &mut Vec<Action>) {
+fn follow(ui: &Ui, held: Held, picture: &Picture, pointer: Pos2, actions: &mut Vec<Action>) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
     let released = !down || ui.input(|input| input.pointer.any_released());
-    if session.hand_drag().is_some() {
-        let ray = picture.ray(pointer);
-        let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
-        actions.push(Action::DragHand(input));
-        if released {
-            actions.push(Action::CommitEdit);
+    let (moved, dropped) = match held {
+        Held::Nothing => return,
+        Held::Hand => {
+            let ray = picture.ray(pointer);
+            let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
+            (Action::DragHand(input), Action::CommitEdit)
         }
-    }
-    if session.view_drag().is_some() {
-        let to = picture.normalised(pointer);
-        actions.push(Action::DragView { to, aspect: picture.rect.aspect_ratio() });
-        if released {
-            actions.push(Action::DropView);
+        Held::View => {
+            let (to, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
+            (Action::DragView { to, aspect }, Action::DropView)
         }
+    };
+    actions.push(moved);
+    if released {
+        actions.push(dropped);
     }
 }
 

@@ -1,1 +1,157 @@
+//! Dialogs, and what leaves the window: a picture, a pose.
 
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::NodeT as _;
+use glam::Vec3;
+use ik_arm::session::{Action, Dialog, Effect};
+use serde_json::json;
+
+use crate::bench::Bench;
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+
+#[test]
+fn about_tells_version_graphics_and_licence() {
+    let mut bench = Bench::new();
+    bench.choose(&["Help", "About"]);
+    for text in [concat!("ik-arm ", env!("CARGO_PKG_VERSION")), "Test adapter", "MIT or Apache"] {
+        assert!(bench.says(text), "{text}");
+    }
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+    assert!(!bench.says("MIT or Apache"));
+}
+
+#[test]
+fn f1_lists_the_keys_and_esc_closes_the_list() {
+    let mut bench = Bench::new();
+    bench.key(Key::F1);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    for text in
+        ["Front, right, top", "arrows, Shift+arrows, Page keys", "Along an axis, in a plane"]
+    {
+        assert!(bench.says(text), "{text}");
+    }
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+}
+
+#[test]
+fn f1_works_while_a_slider_has_the_keyboard() {
+    let mut bench = Bench::new();
+    bench.focus(Role::Slider, "Hand x");
+    bench.key(Key::F1);
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+}
+
+#[test]
+fn a_picture_is_saved_where_the_typed_path_says() {
+    for by_enter in [true, false] {
+        let mut bench = Bench::new();
+        bench.choose(&["File", "Save picture…"]);
+        assert!(bench.node(Role::TextInput, "Save the viewport as PNG to").is_focused());
+        bench.key_with(CTRL, Key::A);
+        bench.type_text("out/a b.png");
+        let path = "out/a b.png".to_owned();
+        assert_eq!(bench.session().dialog(), Some(&Dialog::SavePicture { path: path.clone() }));
+        if by_enter {
+            bench.key(Key::Enter);
+        } else {
+            bench.click(Role::Button, "Save");
+        }
+        bench.settle();
+        assert_eq!(bench.effects(), [Effect::SavePicture(path)]);
+        assert_eq!(bench.session().dialog(), None);
+        assert!(bench.says("Saving out/a b.png"));
+    }
+}
+
+#[test]
+fn without_a_path_nothing_can_be_saved() {
+    for typed in ["", "   "] {
+        let mut bench = Bench::new();
+        bench.key_with(CTRL, Key::P);
+        bench.settle();
+        bench.key_with(CTRL, Key::A);
+        bench.key(Key::Delete);
+        bench.type_text(typed);
+        bench.settle();
+        assert!(bench.node(Role::Button, "Save").accesskit_node().is_disabled());
+        bench.click(Role::Button, "Save");
+        bench.wait(1.0);
+        assert!(bench.says("There is no path yet"), "the tooltip says why");
+        bench.focus(Role::TextInput, "Save the viewport as PNG to");
+        bench.key(Key::Enter);
+        bench.settle();
+        assert_eq!(bench.effects(), []);
+        assert!(bench.session().dialog().is_some());
+    }
+}
+
+#[test]
+fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
+    let mut bench = Bench::new();
+    bench.key_with(CTRL, Key::P);
+    bench.settle();
+    bench.click(Role::Button, "Browse…");
+    assert_eq!(bench.effects(), [Effect::ChoosePicturePath("ik-arm.png".to_owned())]);
+    bench.click(Role::Button, "Cancel");
+    assert_eq!(bench.session().dialog(), None);
+    bench.key_with(CTRL, Key::P);
+    bench.settle();
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.effects(), []);
+}
+
+#[test]
+fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
+    for by_key in [true, false] {
+        let mut bench = Bench::after([
+            Action::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
+            Action::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
+            Action::SetUpper(123.5),
+            Action::SetElbowSpin(1.0),
+        ]);
+        if by_key {
+            bench.frame([Event::Copy]);
+        } else {
+            bench.choose(&["Edit", "Copy pose as JSON line"]);
+        }
+        let effects = bench.effects();
+        let [Effect::CopyText(line)] = effects.as_slice() else {
+            panic!("{effects:?}");
+        };
+        assert!(!line.contains('\n'));
+        let pose: serde_json::Value = serde_json::from_str(line).expect("JSON");
+        let expected = json!({
+            "hand": [0.1_f32, -200.25_f32, 1e-7_f32],
+            "root": [1.0, 2.0, 3.0],
+            "upper": 123.5,
+            "lower": 300.0,
+            "elbow_spin_deg": 1.0_f32.to_degrees(),
+        });
+        assert_eq!(pose, expected);
+        assert!(bench.says("Pose copied"));
+    }
+}
+
+#[test]
+fn copying_in_a_field_copies_the_fields_text_alone() {
+    let mut bench = Bench::new();
+    bench.click(Role::SpinButton, "Hand x value");
+    bench.frame([Event::Copy]);
+    assert_eq!(bench.effects(), []);
+}
+
+#[test]
+fn ctrl_q_quits() {
+    let mut bench = Bench::new();
+    bench.key_with(CTRL, Key::Q);
+    assert_eq!(bench.effects(), [Effect::Quit]);
+}

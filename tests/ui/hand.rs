@@ -51,7 +51,8 @@ fn the_hand_is_under_the_pointer_from_the_first_pixel_to_the_last_also_past_the_
         let mut reaches = Vec::new();
         let path = [vec2(1.0, 0.0), vec2(2.0, 1.0), vec2(3.0, -2.0)].into_iter();
         let path = path.chain((1..30).map(|step| vec2(9.0, -6.0) * step as f32));
-        let path = path.chain((1..30).map(|step| vec2(240.0, -160.0) + vec2(-20.0, 12.0) * step as f32));
+        let path =
+            path.chain((1..30).map(|step| vec2(240.0, -160.0) + vec2(-20.0, 12.0) * step as f32));
         for offset in path {
             let pointer = start + offset;
             bench.move_to(pointer);
@@ -132,10 +133,10 @@ fn a_press_with_a_move_in_one_frame_takes_what_was_pressed_and_follows_at_once()
 fn a_hand_out_of_reach_is_taken_where_it_is_and_so_is_its_cursor() {
     let far = Vec3::new(500.0, 220.0, 300.0);
     for take_cursor in [true, false] {
-        let mut bench = Bench::after([Action::SetHand(far), Action::GlideTo(Camera {
-            distance: 1800.0,
-            ..Camera::default()
-        })]);
+        let mut bench = Bench::after([
+            Action::SetHand(far),
+            Action::GlideTo(Camera { distance: 1800.0, ..Camera::default() }),
+        ]);
         let hand = bench.place(bench.session().pose().hand);
         let start = if take_cursor { bench.cursor_place() } else { hand };
         grab(&mut bench, start);

@@ -1,1 +1,138 @@
+//! That everything can be drawn: the harness stops at a letter that no font has.
 
+use egui::accesskit::Role;
+use egui::{Key, Order, PointerButton, vec2};
+use egui_kittest::SnapshotOptions;
+use glam::Vec3;
+use ik_arm::document::{Layer, Theme};
+use ik_arm::session::{Action, Navigation};
+
+use crate::bench::{Bench, SMALL};
+use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
+
+const THEMES: [Theme; 2] = [Theme::Dark, Theme::Light];
+
+fn in_theme(theme: Theme) -> Bench {
+    Bench::after([Action::SetTheme(theme)])
+}
+
+/// Rests the pointer on a widget until its tooltip shows.
+fn has_tooltip(bench: &mut Bench, role: Role, name: &str) -> bool {
+    bench.move_to(bench.viewport().left_bottom() + vec2(30.0, -30.0));
+    bench.wait(0.05);
+    bench.move_to(bench.rect(role, name).center());
+    bench.frame([]);
+    bench.wait(0.7);
+    let layers = bench.harness.ctx.memory(|memory| memory.areas().visible_layer_ids());
+    layers.iter().any(|layer| layer.order == Order::Tooltip)
+}
+
+#[test]
+fn every_control_has_a_tooltip_that_can_be_read() {
+    for theme in THEMES {
+        let mut bench = in_theme(theme);
+        for name in SLIDERS {
+            assert!(has_tooltip(&mut bench, Role::Slider, name), "{name}");
+        }
+        for (name, _) in CHECKBOXES {
+            assert!(has_tooltip(&mut bench, Role::CheckBox, name), "{name}");
+        }
+        for name in ["Reset pose", "Reset all", "View from the left"] {
+            assert!(has_tooltip(&mut bench, Role::Button, name), "{name}");
+        }
+        assert!(has_tooltip(&mut bench, Role::SpinButton, "Hand x value"));
+        for name in ["theta z", "h c", "theta y", "D", "d 1", "d 2", "h e", "o e", "theta e", "phi"]
+        {
+            assert!(has_tooltip(&mut bench, Role::Label, name), "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_menu_and_dialog_can_be_read_in_both_themes() {
+    for theme in THEMES {
+        let mut bench = in_theme(theme);
+        for (menu, _) in MENUS {
+            bench.choose(&[menu]);
+            bench.key(Key::Escape);
+            bench.settle();
+        }
+        bench.choose(&["Edit", "Navigation"]);
+        for navigation in Navigation::ALL {
+            assert!(has_tooltip(&mut bench, Role::RadioButton, navigation.name()));
+        }
+        for navigation in Navigation::ALL {
+            let mut bench = in_theme(theme);
+            bench.apply([Action::SetNavigation(navigation)]);
+            bench.choose(&["Help", "Shortcuts"]);
+            bench.wait(0.5);
+            assert!(bench.says(navigation.help()[0]));
+        }
+        for path in [["Help", "About"], ["File", "Save picture…"]] {
+            let mut bench = in_theme(theme);
+            bench.choose(&path);
+            bench.wait(0.5);
+        }
+    }
+}
+
+#[test]
+fn every_sentence_of_the_status_line_can_be_read() {
+    let mut bench = Bench::new();
+    for hand in [Vec3::ZERO, Vec3::splat(900.0), Vec3::new(-1e30, 1e-30, 0.0)] {
+        bench.apply([Action::SetHand(hand)]);
+    }
+    bench.apply([Action::SetUpper(-1.0)]);
+    bench.apply([Action::ResetPose]);
+    for key in [Key::X, Key::Y, Key::Z] {
+        let at = bench.cursor_place();
+        bench.drag(PointerButton::Primary, at, at + vec2(20.0, 5.0));
+        bench.key(key);
+        bench.type_text("1");
+        bench.key(Key::Escape);
+        bench.release(PointerButton::Primary);
+    }
+}
+
+#[test]
+fn nothing_moves_when_a_number_changes_its_width() {
+    let mut bench = Bench::new();
+    let places = |bench: &Bench| {
+        let controls = SLIDERS.map(|name| bench.rect(Role::Slider, name));
+        (controls, bench.viewport(), bench.rect(Role::CheckBox, "Shadow"))
+    };
+    let before = places(&bench);
+    for hand in [Vec3::ZERO, Vec3::splat(-123_456.8), Vec3::new(1.0, 480.0, 3.0)] {
+        bench.apply([Action::SetHand(hand), Action::SetRoot(hand)]);
+        assert_eq!(places(&bench), before, "{hand}");
+        let labels = ["theta z", "d 1", "phi"].map(|name| bench.rect(Role::Label, name).top());
+        let fresh = Bench::new();
+        let expected = ["theta z", "d 1", "phi"].map(|name| fresh.rect(Role::Label, name).top());
+        assert_eq!(labels, expected, "{hand}");
+    }
+}
+
+#[test]
+fn the_panels_leave_the_viewport_room_at_960_by_600() {
+    let bench = Bench::of_size(SMALL);
+    let viewport = bench.viewport();
+    assert!(viewport.width() > 350.0 && viewport.height() > 450.0, "{viewport:?}");
+    for name in SLIDERS {
+        let rail = bench.rect(Role::Slider, name);
+        assert!(rail.right() < viewport.left() && rail.width() > 60.0, "{name}: {rail:?}");
+    }
+}
+
+#[test]
+fn the_panels_look_as_they_did() {
+    for theme in THEMES {
+        let mut bench = in_theme(theme);
+        bench.apply([Action::Show(Layer::InnerLimit, true)]);
+        let options = SnapshotOptions::new()
+            .threshold(2.0)
+            .max_failed_pixels(600)
+            .output_path("tests/ui/snapshots");
+        let name = format!("panels_{}", format!("{theme:?}").to_lowercase());
+        bench.harness.snapshot_options(name, &options);
+    }
+}

@@ -10,4 +10,3 @@ mod looks;
 mod panel;
 mod sliders;
 mod view;
-mod zz;

@@ -1,1 +1,360 @@
+//! The view: turned, moved and zoomed by mouse, key and name.
 
+use core::f32::consts::{FRAC_PI_2, PI};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Vec2, pos2, vec2};
+use glam::Vec3;
+use ik_arm::document::{AxisView, Camera};
+use ik_arm::session::{Action, Motion, Navigation};
+
+use crate::bench::{Bench, SECONDS_PER_FRAME};
+
+use PointerButton::{Middle, Primary, Secondary};
+
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const ALT: Modifiers = Modifiers::ALT;
+const NONE: Modifiers = Modifiers::NONE;
+
+/// What dragging with a button does to the view.
+fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Option<Motion> {
+    let before = *bench.session().camera();
+    let arm = *bench.session().arm();
+    let at = bench.empty_place();
+    bench.hold(modifiers);
+    bench.drag(button, at, at + vec2(60.0, 45.0));
+    let motion = bench.session().view_drag().map(|drag| drag.motion);
+    let after = *bench.session().camera();
+    match motion {
+        Some(Motion::Orbit) => {
+            assert!(after.yaw != before.yaw && after.pitch != before.pitch);
+            assert_eq!((after.target, after.distance), (before.target, before.distance));
+        }
+        Some(Motion::Pan) => {
+            assert_ne!(after.target, before.target);
+            assert_eq!(Camera { target: before.target, ..after }, before);
+        }
+        Some(Motion::Zoom) => {
+            assert_ne!(after.distance, before.distance);
+            assert_eq!((after.yaw, after.pitch), (before.yaw, before.pitch));
+        }
+        None => assert_eq!(after, before),
+    }
+    bench.release(button);
+    bench.hold(NONE);
+    assert!(bench.session().view_drag().is_none());
+    assert_eq!(bench.session().arm(), &arm);
+    bench.apply([Action::SetCamera(Camera::default())]);
+    motion
+}
+
+#[test]
+fn each_navigation_preset_turns_moves_and_zooms_with_its_own_buttons() {
+    use Motion::{Orbit, Pan, Zoom};
+    use Navigation::{Blender, Default, Maya, Trackpad};
+    let table: [(Navigation, [Option<Motion>; 5]); 4] = [
+        (Default, [Some(Orbit), Some(Pan), Some(Orbit), Some(Pan), Some(Zoom)]),
+        (Blender, [None, None, Some(Orbit), Some(Pan), Some(Zoom)]),
+        (Maya, [None, None, None, None, None]),
+        (Trackpad, [Some(Orbit), Some(Pan), Some(Orbit), Some(Pan), Some(Zoom)]),
+    ];
+    for (navigation, expected) in table {
+        let mut bench = Bench::after([Action::SetNavigation(navigation)]);
+        let presses =
+            [(NONE, Primary), (NONE, Secondary), (NONE, Middle), (SHIFT, Middle), (CTRL, Middle)];
+        for ((modifiers, button), expected) in presses.into_iter().zip(expected) {
+            let found = motion(&mut bench, modifiers, button);
+            assert_eq!(found, expected, "{navigation:?}: {modifiers:?} {button:?}");
+        }
+        for (button, expected) in [(Primary, Orbit), (Middle, Pan), (Secondary, Zoom)] {
+            assert_eq!(motion(&mut bench, ALT, button), Some(expected), "{navigation:?}: Alt");
+        }
+    }
+}
+
+#[test]
+fn alt_turns_the_view_even_over_a_handle() {
+    let mut bench = Bench::new();
+    let hand = bench.cursor_place();
+    bench.hold(ALT);
+    bench.drag_and_drop(Primary, hand, hand + vec2(80.0, 10.0));
+    assert_ne!(bench.session().camera().yaw, Camera::default().yaw);
+    assert_eq!(bench.hand(), Vec3::new(250.0, 120.0, 60.0));
+}
+
+#[test]
+fn turning_moves_with_the_pointer_keeps_the_horizon_and_returns_to_perspective() {
+    let mut bench = Bench::after([Action::SetCamera(Camera::default().along(AxisView::Front))]);
+    let at = bench.empty_place();
+    bench.drag(Primary, at, at + vec2(0.0, 4000.0));
+    let camera = bench.session().camera();
+    assert!(!camera.orthographic);
+    assert!((camera.pitch - FRAC_PI_2).abs() < 1e-6, "not over the top: {}", camera.pitch);
+    bench.move_to(at + vec2(10.0, 0.0));
+    assert!(bench.session().camera().yaw > PI, "what is seen goes with the pointer");
+    bench.move_to(at);
+    assert_eq!(bench.session().camera(), &Camera::default().along(AxisView::Front));
+}
+
+#[test]
+fn panning_keeps_what_is_taken_under_the_pointer() {
+    let mut bench = Bench::new();
+    let target = bench.session().camera().target;
+    let at = bench.place(target);
+    let offset = vec2(-120.0, 75.0);
+    // Off the handles, and the target follows by the same step.
+    let beside = at - vec2(250.0, 150.0);
+    bench.drag(Secondary, beside, beside + offset);
+    assert!(bench.place(target).distance(at + offset) < 0.05);
+}
+
+#[test]
+fn the_wheel_zooms_to_the_pointer() {
+    let mut bench = Bench::new();
+    let (_, right, up) = bench.session().camera().basis();
+    let point = bench.session().camera().target + right * 180.0 - up * 90.0;
+    let at = bench.place(point);
+    bench.move_to(at);
+    for lines in [1.0, 3.0, -2.0] {
+        let before = bench.session().camera().distance;
+        bench.wheel(lines);
+        let factor = bench.session().camera().distance / before;
+        assert_eq!(factor < 1.0, lines > 0.0);
+        assert!(bench.place(point).distance(at) < 0.05, "{}", bench.place(point));
+    }
+    let before = bench.session().camera().distance;
+    bench.frame([Event::Zoom(2.0)]);
+    assert!((bench.session().camera().distance - before / 2.0).abs() < 0.1);
+    assert!(bench.place(point).distance(at) < 0.1);
+}
+
+#[test]
+fn the_wheel_over_a_panel_leaves_the_view() {
+    let mut bench = Bench::new();
+    let over = bench.rect(Role::Slider, "Hand x").center();
+    bench.move_to(over);
+    bench.wheel(2.0);
+    assert_eq!(bench.session().document(), &Default::default());
+}
+
+#[test]
+fn on_a_trackpad_scrolling_turns_with_shift_moves_and_with_ctrl_zooms() {
+    let mut bench = Bench::after([Action::SetNavigation(Navigation::Trackpad)]);
+    let before = Camera::default();
+    bench.move_to(bench.empty_place());
+    bench.scroll(vec2(2.0, 1.0));
+    let turned = *bench.session().camera();
+    assert!(turned.yaw != before.yaw && turned.pitch != before.pitch);
+    assert_eq!(turned.target, before.target);
+    bench.hold(SHIFT);
+    bench.scroll(vec2(2.0, 1.0));
+    let moved = *bench.session().camera();
+    assert_ne!(moved.target, turned.target);
+    assert_eq!((moved.yaw, moved.distance), (turned.yaw, turned.distance));
+    bench.hold(CTRL);
+    bench.scroll(vec2(0.0, 1.0));
+    assert!(bench.session().camera().distance < moved.distance);
+}
+
+#[test]
+fn esc_takes_a_turn_of_the_view_back() {
+    for button in [Primary, Secondary] {
+        let mut bench = Bench::new();
+        let at = bench.empty_place();
+        bench.drag(button, at, at + vec2(150.0, 90.0));
+        assert_ne!(bench.session().camera(), &Camera::default());
+        bench.key(Key::Escape);
+        assert_eq!(bench.session().camera(), &Camera::default());
+        bench.move_to(at + vec2(10.0, 200.0));
+        bench.release(button);
+        assert_eq!(bench.session().camera(), &Camera::default());
+    }
+}
+
+#[test]
+fn view_keys_look_along_the_axes() {
+    for (modifiers, key, view) in [
+        (NONE, Key::Num1, AxisView::Front),
+        (NONE, Key::Num3, AxisView::Right),
+        (NONE, Key::Num7, AxisView::Top),
+        (CTRL, Key::Num1, AxisView::Back),
+        (CTRL, Key::Num3, AxisView::Left),
+        (CTRL, Key::Num7, AxisView::Bottom),
+    ] {
+        let mut bench = Bench::new();
+        bench.key_with(modifiers, key);
+        bench.settle();
+        assert_eq!(bench.session().camera(), &Camera::default().along(view), "{view:?}");
+    }
+}
+
+#[test]
+fn five_toggles_f_frames_the_arm_home_frames_all() {
+    let mut bench = Bench::new();
+    for orthographic in [true, false] {
+        bench.key(Key::Num5);
+        assert_eq!(bench.session().camera(), &Camera { orthographic, ..Camera::default() });
+    }
+    for key in [Key::F, Key::Home] {
+        bench.key(key);
+        bench.settle();
+        let (arm, pose) = (bench.session().arm(), bench.session().pose());
+        let (centre, radius) = match key {
+            Key::F => arm.bounds(pose),
+            _ => (arm.root, arm.bones.outer_limit()),
+        };
+        assert_eq!(bench.session().camera().target, centre, "{key:?}");
+        let (_, right, up) = bench.session().camera().basis();
+        for side in [right, -right, up, -up] {
+            assert!(bench.viewport().contains(bench.place(centre + side * radius)), "{key:?}");
+        }
+    }
+}
+
+#[test]
+fn a_double_click_on_the_background_resets_the_view_and_on_the_hand_frames_the_arm() {
+    let elsewhere = Camera { yaw: 2.0, distance: 1500.0, ..Camera::default() };
+    let mut bench = Bench::after([Action::SetCamera(elsewhere)]);
+    bench.double_click_at(bench.empty_place());
+    assert_eq!(bench.session().camera(), &Camera::default());
+    let arm = *bench.session().arm();
+    bench.wait(1.0);
+    bench.double_click_at(bench.cursor_place());
+    assert_eq!(bench.session().camera().target, arm.bounds(bench.session().pose()).0);
+    assert_eq!(bench.session().arm(), &arm);
+}
+
+#[test]
+fn view_keys_do_nothing_while_a_field_or_a_slider_has_the_keyboard() {
+    for (role, name) in [(Role::SpinButton, "Hand x value"), (Role::Slider, "Elbow spin")] {
+        let mut bench = Bench::new();
+        bench.focus(role, name);
+        bench.type_text("1375");
+        bench.key(Key::F);
+        assert!(!bench.session().is_gliding());
+        assert_eq!(bench.session().camera(), &Camera::default(), "{name}");
+    }
+    let mut bench = Bench::new();
+    bench.choose(&["File", "Save picture…"]);
+    bench.type_text("f137");
+    bench.key(Key::Home);
+    assert_eq!(bench.session().camera(), &Camera::default());
+    assert!(!bench.session().is_gliding());
+}
+
+#[test]
+fn a_click_into_the_viewport_gives_it_the_keyboard() {
+    let mut bench = Bench::new();
+    bench.focus(Role::Slider, "Hand x");
+    bench.click_at(bench.empty_place());
+    bench.key(Key::Num7);
+    bench.settle();
+    assert_eq!(bench.session().camera(), &Camera::default().along(AxisView::Top));
+    assert_eq!(bench.focused().map(|(role, _)| role), Some(Role::Image));
+}
+
+#[test]
+fn a_glide_takes_two_tenths_of_a_second_and_then_the_window_sleeps() {
+    let mut bench = Bench::new();
+    let end = Camera::default().along(AxisView::Right);
+    bench.key(Key::Num3);
+    let mut frames = 0;
+    let mut last = bench.session().camera().yaw;
+    while bench.session().is_gliding() {
+        assert!(bench.asks_for_a_frame());
+        bench.frame([]);
+        let yaw = bench.session().camera().yaw;
+        assert!(yaw >= last, "{yaw} after {last}");
+        last = yaw;
+        frames += 1;
+        assert!(frames < 30);
+    }
+    let seconds = f64::from(frames) * SECONDS_PER_FRAME;
+    assert!((0.17..=0.25).contains(&seconds), "{seconds}");
+    assert_eq!(bench.session().camera(), &end);
+    bench.frame([]);
+    assert!(!bench.asks_for_a_frame(), "{:?}", bench.harness.ctx.repaint_causes());
+}
+
+#[test]
+fn any_input_ends_a_glide() {
+    let end = Camera::default().along(AxisView::Top);
+    let gliding = || {
+        let mut bench = Bench::new();
+        bench.move_to(bench.empty_place());
+        bench.key(Key::Num7);
+        bench.wait(0.05);
+        assert!(bench.session().is_gliding());
+        bench
+    };
+    let mut bench = gliding();
+    bench.key(Key::K);
+    assert!(!bench.session().is_gliding());
+    assert_eq!(bench.session().camera(), &end, "a key brings it to its end");
+
+    let mut bench = gliding();
+    bench.wheel(1.0);
+    assert!(!bench.session().is_gliding());
+    assert!(bench.session().camera().distance < end.distance);
+    assert_eq!(bench.session().camera().pitch, end.pitch);
+
+    let mut bench = gliding();
+    bench.click_at(pos2(200.0, 780.0));
+    assert_eq!(bench.session().camera(), &end);
+
+    let mut bench = gliding();
+    let here = *bench.session().camera();
+    bench.press(Primary);
+    assert!(!bench.session().is_gliding());
+    let taken = *bench.session().camera();
+    assert!(taken.pitch < end.pitch && taken.pitch >= here.pitch, "a press stops it");
+    bench.frame([]);
+    assert_eq!(bench.session().camera(), &taken);
+}
+
+#[test]
+fn the_corner_axes_look_along_their_axis_when_their_ends_are_clicked() {
+    for (name, view) in [
+        ("View from the right", AxisView::Right),
+        ("View from the top", AxisView::Top),
+        ("View from the front", AxisView::Front),
+        ("View from the left", AxisView::Left),
+        ("View from the bottom", AxisView::Bottom),
+        ("View from the back", AxisView::Back),
+    ] {
+        let mut bench = Bench::new();
+        bench.click(Role::Button, name);
+        assert_eq!(bench.session().camera(), &Camera::default().along(view), "{name}");
+        let mut bench = Bench::new();
+        bench.node(Role::Button, name).click_accesskit();
+        bench.settle();
+        assert_eq!(bench.session().camera(), &Camera::default().along(view), "{name}");
+    }
+}
+
+#[test]
+fn dragging_the_corner_axes_turns_the_view() {
+    let mut bench = Bench::after([Action::SetNavigation(Navigation::Blender)]);
+    let at = bench.rect(Role::Button, "View from the top").center();
+    bench.drag_and_drop(Primary, at, at + Vec2::new(70.0, -10.0));
+    bench.settle();
+    assert_ne!(bench.session().camera().yaw, Camera::default().yaw);
+    assert!(!bench.session().camera().orthographic);
+}
+
+#[test]
+fn the_view_menu_does_what_the_keys_do() {
+    for (name, view) in [("Front", AxisView::Front), ("Bottom", AxisView::Bottom)] {
+        let mut bench = Bench::new();
+        bench.choose(&["View", name]);
+        assert_eq!(bench.session().camera(), &Camera::default().along(view));
+    }
+    let mut bench = Bench::new();
+    bench.choose(&["View", "Perspective / orthographic"]);
+    assert!(bench.session().camera().orthographic);
+    bench.choose(&["View", "Frame all"]);
+    assert_eq!(bench.session().camera().target, Vec3::ZERO);
+    bench.choose(&["View", "Frame arm"]);
+    assert_ne!(bench.session().camera().target, Vec3::ZERO);
+}

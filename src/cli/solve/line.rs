@@ -110,7 +110,7 @@ impl<'de> Deserialize<'de> for Object {
         impl<'de> Visitor<'de> for ObjectVisitor {
             type Value = Object;
 
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str(r#"an object like {"hand":[250,120,60]}"#)
             }
 
@@ -134,7 +134,7 @@ impl<'de> Deserialize<'de> for Number {
         impl Visitor<'_> for NumberVisitor {
             type Value = Number;
 
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number")
             }
 
@@ -167,7 +167,7 @@ impl<'de> Deserialize<'de> for Point {
         impl<'de> Visitor<'de> for PointVisitor {
             type Value = Point;
 
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("three numbers: [x, y, z]")
             }
 

@@ -1,0 +1,63 @@
+//! How long one solve takes, the spin's sine and cosine included.
+//!
+//! Beside it, in the same run, the textbook solution by angles: what the ratio is taken to.
+
+use core::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::{Mat3, Vec3};
+use ik_arm::kinematics::two_bone::TwoBone;
+
+/// Cursors that differ, so that no branch is learnt by heart.
+fn cursors() -> Vec<(Vec3, f32)> {
+    (0..1024)
+        .map(|i| {
+            let turn = i as f32 * 2.399_963;
+            let height = 1.0 - (i as f32 + 0.5) / 512.0;
+            let around = (1.0 - height * height).sqrt();
+            let radius = 60.0 + 500.0 * ((i * 37) % 1024) as f32 / 1024.0;
+            let direction = Vec3::new(around * turn.cos(), height, around * turn.sin());
+            (direction * radius, turn % core::f32::consts::TAU)
+        })
+        .collect()
+}
+
+/// The paper's way: arc tangents and an arc cosine, then rotation matrices from the angles.
+fn by_angles(upper: f32, lower: f32, cursor: Vec3, spin: f32) -> Vec3 {
+    let yaw = cursor.z.atan2(cursor.x);
+    let flat = cursor.x.hypot(cursor.z);
+    let pitch = cursor.y.atan2(flat);
+    let distance = cursor.length().clamp((upper - lower).abs(), upper + lower);
+    let cos = (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);
+    let shoulder = cos.clamp(-1.0, 1.0).acos();
+    Mat3::from_rotation_y(-yaw)
+        * Mat3::from_rotation_z(pitch)
+        * Mat3::from_rotation_x(spin)
+        * Vec3::new(upper * shoulder.cos(), upper * shoulder.sin(), 0.0)
+}
+
+fn two_bone(criterion: &mut Criterion) {
+    let cursors = cursors();
+    let arm = TwoBone::new(200.0, 300.0).expect("lengths");
+    let mut group = criterion.benchmark_group("two_bone");
+    group.throughput(criterion::Throughput::Elements(cursors.len() as u64));
+    group.bench_function("solve", |bencher| {
+        bencher.iter(|| {
+            for (cursor, spin) in &cursors {
+                black_box(black_box(arm).solve(black_box(*cursor), black_box(*spin)));
+            }
+        });
+    });
+    group.bench_function("by angles", |bencher| {
+        bencher.iter(|| {
+            for (cursor, spin) in &cursors {
+                let (cursor, spin) = black_box((*cursor, *spin));
+                black_box(by_angles(black_box(200.0), black_box(300.0), cursor, spin));
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, two_bone);
+criterion_main!(benches);

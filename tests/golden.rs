@@ -1,0 +1,211 @@
+//! Pictures of the scene, compared with the ones kept in `tests/golden`.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test golden` keeps the new ones; look at them before committing.
+#![cfg(feature = "render")]
+
+use std::path::PathBuf;
+use std::sync::{LazyLock, Mutex};
+
+use glam::Vec3;
+use ik_arm::document::{Arm, AxisView, Camera, Document, Layer, Theme};
+use ik_arm::render::{Gpu, Picture};
+use ik_arm::scene::{Colour, Scene};
+use image::RgbaImage;
+
+const SIZE: (u32, u32) = (480, 300);
+
+/// At most so many of the pixels differ by more than a little, and the mean of all by so much.
+const NOTICED: u8 = 16;
+const MOST_NOTICED: f64 = 0.002;
+const MOST_MEAN: f64 = 1.0;
+
+static GPU: LazyLock<Mutex<Gpu>> =
+    LazyLock::new(|| Mutex::new(Gpu::headless().expect("a graphics adapter")));
+
+fn draw(scene: &Scene) -> RgbaImage {
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    Picture::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene).expect("drawn")
+}
+
+fn scene(document: &Document, theme: Theme) -> Scene {
+    Scene::new(document, &document.arm.pose(), theme)
+}
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
+}
+
+fn kept(name: &str) -> RgbaImage {
+    let path = path(&format!("{name}.png"));
+    image::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).into_rgba8()
+}
+
+/// How two pictures differ, if that is too much.
+fn compare(a: &RgbaImage, b: &RgbaImage) -> Result<(), String> {
+    if a.dimensions() != b.dimensions() {
+        return Err(format!("{:?} is not {:?}", a.dimensions(), b.dimensions()));
+    }
+    let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| {
+        let [r, g, b, _] = [0, 1, 2, 3].map(|channel| a.0[channel].abs_diff(b.0[channel]));
+        [r, g, b]
+    };
+    let (mut noticed, mut sum) = (0_u32, 0_u64);
+    for (a, b) in a.pixels().zip(b.pixels()) {
+        let apart = apart(a, b);
+        noticed += u32::from(apart.iter().any(|channel| *channel > NOTICED));
+        sum += apart.iter().map(|channel| u64::from(*channel)).sum::<u64>();
+    }
+    let pixels = f64::from(a.width() * a.height());
+    let (noticed, mean) = (f64::from(noticed) / pixels, sum as f64 / (3.0 * pixels));
+    if noticed > MOST_NOTICED || mean > MOST_MEAN {
+        return Err(format!(
+            "{:.3} % of the pixels differ, the mean by {mean:.3}",
+            noticed * 100.0
+        ));
+    }
+    Ok(())
+}
+
+fn check(name: &str, document: &Document, theme: Theme) {
+    let drawn = draw(&scene(document, theme));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        drawn.save(path(&format!("{name}.png"))).expect("saved");
+    }
+    if let Err(difference) = compare(&drawn, &kept(name)) {
+        let new = path(&format!("{name}.new.png"));
+        drawn.save(&new).expect("saved");
+        panic!("{name}: {difference}; see {}", new.display());
+    }
+}
+
+fn posed(cursor: Vec3) -> Document {
+    Document { arm: Arm { cursor, ..Arm::default() }, ..Document::default() }
+}
+
+fn showing(mut document: Document, layers: &[Layer]) -> Document {
+    for layer in layers {
+        document.display = document.display.with(*layer, true);
+    }
+    document
+}
+
+fn from(mut document: Document, target: Vec3, distance: f32) -> Document {
+    document.camera = Camera { target, distance, ..document.camera };
+    document
+}
+
+fn all_guides() -> Document {
+    from(showing(Document::default(), &Layer::GUIDES), Vec3::ZERO, 1650.0)
+}
+
+/// Close to the hand, whose Cursor is out of its reach.
+fn too_far() -> Document {
+    let document = posed(Vec3::new(420.0, 330.0, 120.0));
+    from(document, Vec3::new(395.0, 310.0, 110.0), 420.0)
+}
+
+fn folded() -> Document {
+    let document = showing(posed(Vec3::new(30.0, 40.0, 20.0)), &[Layer::InnerLimit]);
+    from(document, Vec3::new(-40.0, 20.0, -20.0), 640.0)
+}
+
+fn inside_the_outer_limit() -> Document {
+    let document = showing(posed(Vec3::new(150.0, 180.0, -120.0)), &Layer::GUIDES);
+    from(document, Vec3::new(60.0, 120.0, -40.0), 380.0)
+}
+
+fn top_view() -> Document {
+    let mut document = posed(Vec3::new(220.0, 150.0, 160.0));
+    document.camera = document.camera.along(AxisView::Top);
+    document
+}
+
+#[test]
+fn the_arm_as_it_is_first_seen() {
+    check("default", &Document::default(), Theme::Dark);
+}
+
+#[test]
+fn the_arm_in_the_light_theme() {
+    check("light", &Document::default(), Theme::Light);
+}
+
+#[test]
+fn the_arm_with_all_its_guides() {
+    check("all_guides", &all_guides(), Theme::Dark);
+}
+
+#[test]
+fn the_arm_seen_from_inside_its_outer_limit() {
+    let document = inside_the_outer_limit();
+    let eye = document.camera.projection(1.0).eye;
+    assert!(eye.distance(document.arm.root) < document.arm.bones.outer_limit());
+    check("inside", &document, Theme::Light);
+}
+
+#[test]
+fn a_cursor_too_far_with_the_gap_to_it() {
+    check("too_far", &too_far(), Theme::Light);
+}
+
+#[test]
+fn a_folded_arm_with_its_inner_limit() {
+    check("folded", &folded(), Theme::Dark);
+}
+
+#[test]
+fn the_arm_from_above() {
+    check("top", &top_view(), Theme::Light);
+}
+
+#[test]
+fn a_guide_that_is_missing_is_noticed() {
+    let cases = [
+        (Layer::Cursor, "too_far", too_far(), Theme::Light),
+        (Layer::Pointer, "default", Document::default(), Theme::Dark),
+        (Layer::InnerLimit, "folded", folded(), Theme::Dark),
+        (Layer::OuterLimit, "all_guides", all_guides(), Theme::Dark),
+        (Layer::Shadow, "default", Document::default(), Theme::Dark),
+        (Layer::Axes, "folded", folded(), Theme::Dark),
+        (Layer::Ground, "light", Document::default(), Theme::Light),
+        (Layer::GridXy, "default", Document::default(), Theme::Dark),
+        (Layer::GridXz, "default", Document::default(), Theme::Dark),
+        (Layer::GridYz, "default", Document::default(), Theme::Dark),
+        (Layer::Labels, "default", Document::default(), Theme::Dark),
+    ];
+    for (layer, name, document, theme) in cases {
+        assert!(document.display.shows(layer), "{layer:?} is not in {name}");
+        let hidden = Document { display: document.display.with(layer, false), ..document };
+        let without = draw(&scene(&hidden, theme));
+        assert!(compare(&without, &kept(name)).is_err(), "{layer:?} is not missed in {name}");
+    }
+}
+
+#[test]
+fn a_limb_of_another_colour_is_noticed() {
+    let limbs = |scene: &Scene| [scene.palette.upper, scene.palette.lower];
+    for limb in 0..2 {
+        let mut recoloured = scene(&Document::default(), Theme::Dark);
+        let colour = limbs(&recoloured)[limb];
+        let solids = recoloured.solids.iter_mut().filter(|solid| solid.colour == colour);
+        assert_eq!(solids.map(|solid| solid.colour = Colour([90, 160, 90, 255])).count(), 1);
+        assert!(compare(&draw(&recoloured), &kept("default")).is_err(), "limb {limb}");
+    }
+}
+
+#[test]
+fn a_large_picture_is_the_same_picture() {
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let scene = scene(&Document::default(), Theme::Dark);
+    let large = Picture::new(&gpu, SIZE.0 * 2, SIZE.1 * 2, 2.0).draw(&scene).expect("drawn");
+    let shrunk =
+        image::imageops::resize(&large, SIZE.0, SIZE.1, image::imageops::FilterType::Triangle);
+    let small = kept("default");
+    let sum: u64 = shrunk
+        .pixels()
+        .zip(small.pixels())
+        .map(|(a, b)| (0..3).map(|c| u64::from(a.0[c].abs_diff(b.0[c]))).sum::<u64>())
+        .sum();
+    let mean = sum as f64 / f64::from(SIZE.0 * SIZE.1 * 3);
+    assert!(mean < 2.5, "the mean differs by {mean}");
+}

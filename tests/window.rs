@@ -1,0 +1,192 @@
+//! The real program in a real window: a mouse drags a slider and the hand, and the screen follows.
+//!
+//! Needs a display without a window manager, `xdotool` and ImageMagick's `import`; the script that
+//! runs all tests makes one: `scripts/test.sh`. By hand, within such a display:
+//! `cargo test --test window -- --ignored`.
+#![cfg(all(feature = "app", target_os = "linux"))]
+
+use std::path::Path;
+use std::process::{Child, Command};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use ik_arm::session::Session;
+use ik_arm::ui::{self, Machine};
+use image::RgbImage;
+
+const SIZE: (f32, f32) = (1280.0, 800.0);
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Where things are in the window, in points: the same panels laid out without one.
+struct Places {
+    thumb: egui::Pos2,
+    rail_end: egui::Pos2,
+    hand: egui::Pos2,
+    elbow: egui::Pos2,
+}
+
+impl Places {
+    fn new() -> Self {
+        let session = Session::default();
+        let harness = Harness::builder()
+            .with_size(egui::vec2(SIZE.0, SIZE.1))
+            .with_context_setup(ui::style::install)
+            .build_ui(|ui| {
+                ui::show(ui, &Session::default(), &Machine::default(), None, &mut Vec::new());
+            });
+        let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
+        let viewport = harness
+            .get_by(|node| {
+                node.role() == egui::accesskit::Role::Image
+                    && node.label().is_some_and(|label| label.starts_with("Viewport"))
+            })
+            .rect();
+        let projection = session.camera().projection(viewport.aspect_ratio());
+        let place = |point| {
+            let at = projection.project(point).expect("in the picture");
+            viewport.center() + egui::vec2(at.x, -at.y) * viewport.size() / 2.0
+        };
+        let track = rail.x_range().shrink(8.5);
+        let part = (session.arm().cursor.x / session.arm().bones.outer_limit() + 1.0) / 2.0;
+        Self {
+            thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
+            rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
+            hand: place(session.arm().root + session.pose().hand),
+            elbow: place(session.arm().root + session.pose().elbow),
+        }
+    }
+}
+
+/// The program, ended with the test.
+struct Program(Child);
+
+impl Program {
+    fn start(settings: &Path) -> Self {
+        let child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+            .env("XDG_CONFIG_HOME", settings)
+            .env_remove("WAYLAND_DISPLAY")
+            .spawn()
+            .expect("started");
+        Self(child)
+    }
+
+    fn end(&mut self) -> Option<i32> {
+        let given_up = Instant::now() + PATIENCE;
+        while Instant::now() < given_up {
+            if let Some(status) = self.0.try_wait().expect("waited for") {
+                return status.code();
+            }
+            sleep(Duration::from_millis(100));
+        }
+        None
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // It has ended already, unless the test failed.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn xdotool(arguments: &[&str]) -> String {
+    let output = Command::new("xdotool").args(arguments).output().expect("xdotool runs");
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
+}
+
+fn mouse_to(at: egui::Pos2) {
+    xdotool(&["mousemove", &at.x.round().to_string(), &at.y.round().to_string()]);
+    sleep(Duration::from_millis(60));
+}
+
+fn drag(from: egui::Pos2, to: egui::Pos2) {
+    const STEPS: u8 = 12;
+    mouse_to(from);
+    sleep(Duration::from_millis(300));
+    xdotool(&["mousedown", "1"]);
+    for step in 1..=STEPS {
+        mouse_to(from + (to - from) * f32::from(step) / f32::from(STEPS));
+    }
+    sleep(Duration::from_millis(300));
+    xdotool(&["mouseup", "1"]);
+}
+
+fn screenshot(folder: &Path) -> RgbImage {
+    let path = folder.join("screen.png");
+    let taken = Command::new("import").args(["-window", "root"]).arg(&path).status();
+    assert!(taken.expect("import runs").success());
+    image::open(path).expect("a picture").into_rgb8()
+}
+
+/// The screen once something is on it that does not change any more.
+fn settled(folder: &Path) -> RgbImage {
+    let given_up = Instant::now() + PATIENCE;
+    let mut last = screenshot(folder);
+    while Instant::now() < given_up {
+        sleep(Duration::from_millis(400));
+        let now = screenshot(folder);
+        if now == last && now.pixels().any(|pixel| pixel != now.get_pixel(0, 0)) {
+            return now;
+        }
+        last = now;
+    }
+    panic!("the screen does not come to rest");
+}
+
+/// How many pixels differ within `radius` of a place.
+fn changed(a: &RgbImage, b: &RgbImage, at: egui::Pos2, radius: f32) -> usize {
+    let near = |x: u32, y: u32| egui::pos2(x as f32, y as f32).distance(at) <= radius;
+    let differs = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| {
+        (0..3).any(|channel| a.0[channel].abs_diff(b.0[channel]) > 24)
+    };
+    let pixels = a.enumerate_pixels().zip(b.pixels());
+    pixels.filter(|((x, y, a), b)| near(*x, *y) && differs(a, b)).count()
+}
+
+fn await_window() -> String {
+    let given_up = Instant::now() + PATIENCE;
+    while Instant::now() < given_up {
+        let found = xdotool(&["search", "--onlyvisible", "--name", "^ik-arm"]);
+        if let Some(window) = found.lines().next() {
+            return window.to_owned();
+        }
+        sleep(Duration::from_millis(200));
+    }
+    panic!("no window appears");
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let places = Places::new();
+    let mut program = Program::start(folder.path());
+    let window = await_window();
+    xdotool(&["windowmove", &window, "0", "0"]);
+    xdotool(&["windowfocus", &window]);
+    let first = settled(folder.path());
+
+    drag(places.thumb, places.rail_end);
+    let slid = settled(folder.path());
+    assert!(changed(&first, &slid, places.thumb, 6.0) > 40, "the thumb has not moved");
+    assert!(changed(&first, &slid, places.hand, 30.0) > 300, "the hand has not moved");
+    assert!(changed(&first, &slid, places.elbow, 40.0) > 300, "the elbow has not followed");
+
+    // Double-click on the rail resets it: the hand is back where it was.
+    mouse_to(places.rail_end);
+    xdotool(&["click", "--repeat", "2", "--delay", "80", "1"]);
+    let reset = settled(folder.path());
+    assert!(changed(&first, &reset, places.elbow, 40.0) < 40, "the hand has not been reset");
+
+    let to = places.hand + egui::vec2(90.0, -140.0);
+    drag(places.hand, to);
+    let dragged = settled(folder.path());
+    assert!(changed(&reset, &dragged, to, 30.0) > 300, "the hand is not where it was dragged");
+    assert!(changed(&reset, &dragged, places.elbow, 40.0) > 300, "the elbow has not followed");
+
+    xdotool(&["key", "ctrl+q"]);
+    assert_eq!(program.end(), Some(0), "the program ends cleanly");
+}
