@@ -17,6 +17,8 @@ use ik_arm::ui::{self, Machine};
 use image::RgbImage;
 
 const SIZE: (f32, f32) = (1280.0, 800.0);
+/// What the harness leaves free around the panels, and the window does not.
+const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Where things are in the window, in points: the same panels laid out without one.
@@ -31,18 +33,20 @@ impl Places {
     fn new() -> Self {
         let session = Session::default();
         let harness = Harness::builder()
-            .with_size(egui::vec2(SIZE.0, SIZE.1))
+            .with_size(egui::vec2(SIZE.0, SIZE.1) + 2.0 * HARNESS_MARGIN)
             .with_context_setup(ui::style::install)
             .build_ui(|ui| {
                 ui::show(ui, &Session::default(), &Machine::default(), None, &mut Vec::new());
             });
         let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
+        let rail = rail.translate(-HARNESS_MARGIN);
         let viewport = harness
             .get_by(|node| {
                 node.role() == egui::accesskit::Role::Image
                     && node.label().is_some_and(|label| label.starts_with("Viewport"))
             })
-            .rect();
+            .rect()
+            .translate(-HARNESS_MARGIN);
         let projection = session.camera().projection(viewport.aspect_ratio());
         let place = |point| {
             let at = projection.project(point).expect("in the picture");

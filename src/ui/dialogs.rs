@@ -106,13 +106,13 @@ fn save_picture(ui: &mut Ui, path: &str, actions: &mut Vec<Action>) {
     let name = ui.label("Save the viewport as PNG to");
     let edit = ui.add(TextEdit::singleline(&mut typed).desired_width(f32::INFINITY));
     let edit = edit.labelled_by(name.id);
+    let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {
         edit.request_focus();
     }
     if edit.changed() {
         actions.push(Action::OpenDialog(Dialog::SavePicture { path: typed.clone() }));
     }
-    let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     ui.horizontal(|ui| {
         let can_save = !typed.trim().is_empty();
         let save = ui

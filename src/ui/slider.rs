@@ -1,6 +1,6 @@
 use egui::{
     Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
-    Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
+    TextWrapMode, Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
 };
 
 use super::symbol;
@@ -215,11 +215,13 @@ impl Slider<'_> {
         let speed = (self.range.1 - self.range.0) / 1000.0;
         let number = egui::DragValue::new(&mut value)
             .speed(speed)
-            .max_decimals(1)
-            .min_decimals(1)
             .suffix(self.unit)
+            .custom_formatter(|value, _| format(value))
             .custom_parser(|text| self.parse(text))
+            .clip_text(true)
             .update_while_editing(false);
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        ui.spacing_mut().button_padding.x = 4.0;
         let response = ui.add_sized(vec2(VALUE_WIDTH, HEIGHT - 2.0), number);
         let name = format!("{} value", self.name);
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
@@ -240,10 +242,19 @@ impl Slider<'_> {
     /// the value's unseen digits.
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit).trim_end().replace('\u{2212}', "-");
-        if text == format!("{:.1}", self.value) {
+        if text == format(f64::from(self.value)) {
             return Some(f64::from(self.value));
         }
         text.parse().ok()
+    }
+}
+
+/// In seven letters at most, which is what there is room for.
+fn format(value: f64) -> String {
+    match value.abs() {
+        ..9_999.95 => format!("{value:.1}"),
+        ..999_999.5 => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
     }
 }
 

@@ -82,6 +82,10 @@ fn without_a_path_nothing_can_be_saved() {
         bench.settle();
         assert!(bench.node(Role::Button, "Save").accesskit_node().is_disabled());
         bench.click(Role::Button, "Save");
+        let save = bench.rect(Role::Button, "Save").center();
+        bench.move_to(save + egui::vec2(0.0, 200.0));
+        bench.wait(0.5);
+        bench.move_to(save);
         bench.wait(1.0);
         assert!(bench.says("There is no path yet"), "the tooltip says why");
         bench.focus(Role::TextInput, "Save the viewport as PNG to");

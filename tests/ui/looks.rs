@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Order, PointerButton, vec2};
-use egui_kittest::SnapshotOptions;
+use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Layer, Theme};
 use ik_arm::session::{Action, Navigation};
@@ -105,6 +105,10 @@ fn nothing_moves_when_a_number_changes_its_width() {
     for hand in [Vec3::ZERO, Vec3::splat(-123_456.8), Vec3::new(1.0, 480.0, 3.0)] {
         bench.apply([Action::SetHand(hand), Action::SetRoot(hand)]);
         assert_eq!(places(&bench), before, "{hand}");
+        bench.click(Role::SpinButton, "Hand x value");
+        bench.type_text("12345678901234567890");
+        assert_eq!(places(&bench), before, "while typing");
+        bench.key(Key::Escape);
         let labels = ["theta z", "d 1", "phi"].map(|name| bench.rect(Role::Label, name).top());
         let fresh = Bench::new();
         let expected = ["theta z", "d 1", "phi"].map(|name| fresh.rect(Role::Label, name).top());
@@ -125,6 +129,7 @@ fn the_panels_leave_the_viewport_room_at_960_by_600() {
 
 #[test]
 fn the_panels_look_as_they_did() {
+    let mut results = SnapshotResults::new();
     for theme in THEMES {
         let mut bench = in_theme(theme);
         bench.apply([Action::Show(Layer::InnerLimit, true)]);
@@ -134,5 +139,6 @@ fn the_panels_look_as_they_did() {
             .output_path("tests/ui/snapshots");
         let name = format!("panels_{}", format!("{theme:?}").to_lowercase());
         bench.harness.snapshot_options(name, &options);
+        results.extend_harness(&mut bench.harness);
     }
 }

@@ -246,6 +246,25 @@ fn typed_values_may_go_beyond_the_thumbs_range() {
 }
 
 #[test]
+fn large_numbers_are_shown_short_and_kept_whole() {
+    for (number, shown) in [
+        (-9_999.9, "-9999.9"),
+        (9_999.96, "10000"),
+        (-123_456.79, "-123457"),
+        (-1.25e30, "-1.2e30"),
+        (1e-20, "0.0"),
+    ] {
+        let mut bench = Bench::after([Action::SetHand(Vec3::new(number, 0.0, 0.0))]);
+        bench.click(Role::SpinButton, "Hand x value");
+        bench.key(Key::Enter);
+        bench.settle();
+        assert_eq!(bits(bench.hand()), bits(Vec3::new(number, 0.0, 0.0)));
+        let value = bench.node(Role::SpinButton, "Hand x value").value();
+        assert_eq!(value.as_deref(), Some(shown));
+    }
+}
+
+#[test]
 fn what_is_not_a_number_is_not_taken() {
     let mut bench = Bench::new();
     for typed in ["", "12x", "nan", "inf", "1e99", "--3"] {
