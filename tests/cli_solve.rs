@@ -591,7 +591,7 @@ fn a_file_that_cannot_be_read_is_named_with_the_reason() {
         assert_eq!(output.status.code(), Some(1), "{message}");
         assert_eq!(output.stdout.len(), 0);
         assert_eq!(message.lines().count(), 1, "{message}");
-        assert!(message.starts_with("ik-arm solve: cannot "), "{message}");
+        assert!(message.starts_with("ik-arm: cannot "), "{message}");
         assert!(message.contains(&format!("{}: ", path.display())), "{message}");
     }
     let missing = stderr(&solve_file(&missing));
@@ -663,7 +663,7 @@ fn a_full_disk_is_a_failure_with_a_message() {
     let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
     let output = feed(command().stdout(full()), POSE.as_bytes());
     assert_eq!(output.status.code(), Some(1));
-    assert!(stderr(&output).starts_with("ik-arm solve: cannot write to standard output: "));
+    assert!(stderr(&output).starts_with("ik-arm: cannot write to standard output: "));
 
     let nowhere_to_complain = feed(command().stdout(full()).stderr(full()), POSE.as_bytes());
     assert_eq!(nowhere_to_complain.status.code(), Some(1), "and not 101, a panic");

@@ -24,10 +24,11 @@ use window::{AppWindow, Repaint};
 #[derive(Debug, Error)]
 pub enum AppError {
     #[error(
-        "no window can be opened: {0}\n\
-         Without a display, `ik-arm render -o arm.png` draws a picture instead"
+        "no window can be opened: {}\n\
+         Without a display, `ik-arm render -o arm.png` draws a picture instead",
+        why_no_display()
     )]
-    NoDisplay(EventLoopError),
+    NoDisplay(#[source] EventLoopError),
     #[error("the window was closed by its system: {0}")]
     EventLoop(EventLoopError),
     #[error("the system does not open a window: {0}")]
@@ -38,6 +39,18 @@ pub enum AppError {
     Unsupported(String),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+}
+
+fn why_no_display() -> String {
+    let named = ["WAYLAND_DISPLAY", "DISPLAY"]
+        .into_iter()
+        .filter_map(|name| Some(format!("{name}={}", std::env::var(name).ok()?)))
+        .collect::<Vec<_>>();
+    if named.is_empty() {
+        "there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned()
+    } else {
+        format!("the display does not answer ({})", named.join(", "))
+    }
 }
 
 /// What comes from elsewhere than the window.

@@ -3,6 +3,7 @@
 mod render;
 mod solve;
 
+use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -42,9 +43,12 @@ pub fn run() -> ExitCode {
 fn gui() -> ExitCode {
     match app::run() {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("ik-arm: {error}");
-            ExitCode::FAILURE
-        }
+        Err(error) => fail(&error),
     }
+}
+
+fn fail(error: &dyn std::error::Error) -> ExitCode {
+    // Not eprintln!, which panics where stderr cannot be written.
+    let _ = writeln!(io::stderr(), "ik-arm: {error}");
+    ExitCode::FAILURE
 }

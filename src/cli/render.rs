@@ -138,10 +138,7 @@ pub fn run(args: &Args) -> ExitCode {
         Err(RenderError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(error) => {
-            eprintln!("ik-arm: {error}");
-            ExitCode::FAILURE
-        }
+        Err(error) => super::fail(&error),
     }
 }
 

@@ -10,3 +10,4 @@ mod looks;
 mod panel;
 mod sliders;
 mod view;
+mod zz;

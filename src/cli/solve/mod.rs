@@ -38,11 +38,7 @@ pub fn run(args: &Args) -> ExitCode {
         Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(failure) => {
-            // Not eprintln!, which panics where stderr cannot be written.
-            let _ = writeln!(io::stderr(), "ik-arm solve: {failure}");
-            ExitCode::FAILURE
-        }
+        Err(failure) => super::fail(&failure),
     }
 }
 
