@@ -1,22 +1,17 @@
 #!/usr/bin/env bash
 # Builds ik-arm and opens its demo: scripts/demo.sh [-- ARGUMENTS FOR THE PROGRAM]
-# Without a screen, poses the arm in a virtual one, by mouse and keyboard, and takes a picture.
+# Without a screen, poses the arm in a virtual one, by mouse, and takes a picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
 source scripts/setup.sh
-# shellcheck source=scripts/display.sh
-source scripts/display.sh
+# shellcheck source=scripts/window.sh
+source scripts/window.sh
 
 # Where the mouse drags the hand, in screen pixels: from each point to the next.
-hand_path=("760 330" "860 260" "820 430" "700 300")
-# The keys pressed after that.
-hand_keys=(Right Right Up Up)
+hand_path=("740 392" "860 250" "700 190" "620 330" "800 300")
 
-target=${CARGO_TARGET_DIR:-target}
 picture=$target/demo.png
-program_pid=
-settings=
 
 main() {
     if [[ ${1-} == -- ]]; then
@@ -44,45 +39,6 @@ build() {
     cargo build --release --locked
 }
 
-clean_up() {
-    if [[ -n $program_pid ]]; then
-        kill "$program_pid" 2>/dev/null || true
-        wait "$program_pid" 2>/dev/null || true
-    fi
-    stop_virtual_display
-    if [[ -n $settings ]]; then
-        rm -rf "$settings"
-    fi
-}
-
-open_window() {
-    local window
-    start_virtual_display
-    export DISPLAY=$virtual_display
-    # Remembered settings could move the arm or the panels away from hand_path.
-    settings=$(mktemp -d)
-    XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
-        "$target/release/ik-arm" &
-    program_pid=$!
-    window=$(wait_for_window)
-    # No window manager gives it the keyboard.
-    xdotool windowfocus "$window"
-    # Without graphics hardware, the first frames take their time.
-    sleep 3
-}
-
-wait_for_window() {
-    local window deadline=$((SECONDS + 60))
-    until window=$(xdotool search --onlyvisible --name '^ik-arm' 2>/dev/null); do
-        if ! kill -0 "$program_pid" 2>/dev/null || ((SECONDS > deadline)); then
-            printf 'The window of ik-arm does not appear.\n' >&2
-            return 1
-        fi
-        sleep 0.5
-    done
-    head -n 1 <<<"$window"
-}
-
 pose_hand() {
     local point x y from_x from_y
     read -r from_x from_y <<<"${hand_path[0]}"
@@ -91,36 +47,11 @@ pose_hand() {
         drag "$from_x" "$from_y" "$x" "$y"
         from_x=$x from_y=$y
     done
-    xdotool key --delay 200 "${hand_keys[@]}"
-}
-
-drag() {
-    local x1=$1 y1=$2 x2=$3 y2=$4 step steps=12
-    xdotool mousemove "$x1" "$y1" sleep 0.3 mousedown 1 sleep 0.1
-    for ((step = 1; step <= steps; step++)); do
-        xdotool mousemove \
-            $((x1 + (x2 - x1) * step / steps)) $((y1 + (y2 - y1) * step / steps)) sleep 0.05
-    done
-    xdotool mouseup 1 sleep 0.3
 }
 
 take_picture() {
     sleep 1
     import -window root "$picture"
-}
-
-close_window() {
-    local deadline=$((SECONDS + 15))
-    xdotool key ctrl+q
-    while kill -0 "$program_pid" 2>/dev/null; do
-        if ((SECONDS > deadline)); then
-            printf 'ik-arm does not close on Ctrl+Q.\n' >&2
-            return 1
-        fi
-        sleep 0.2
-    done
-    wait "$program_pid"
-    program_pid=
 }
 
 main "$@"

@@ -18,7 +18,8 @@ struct Instance {
 struct Surface {
     @builtin(position) position: vec4f,
     @location(0) world: vec3f,
-    @location(1) normal: vec3f,
+    // Within the solid, also where its edge is in the pixel.
+    @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(flat) colour: vec4f,
 }
 

@@ -38,7 +38,7 @@ const KEY = vec3f(0.76, 0.74, 0.70);
 const FILL_DIRECTION = vec3f(-0.842152, 0.421076, -0.336861);
 const FILL = vec3f(0.22, 0.24, 0.28);
 const SKY_AMBIENT = vec3f(0.34, 0.36, 0.40);
-const GROUND_AMBIENT = vec3f(0.13, 0.12, 0.11);
+const GROUND_AMBIENT = vec3f(0.23, 0.22, 0.21);
 
 struct Ray {
     origin: vec3f,

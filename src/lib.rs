@@ -1,4 +1,49 @@
-//! x
+//! A 3D inverse-kinematics arm to pose, look into and understand.
+//!
+//! The crate is the program `ik-arm` and, without its default features, a solver that takes nothing
+//! but `glam`:
+//!
+//! ```
+//! use glam::Vec3;
+//! use ik_arm::kinematics::two_bone::TwoBone;
+//!
+//! let arm = TwoBone::new(200.0, 300.0)?;
+//! let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 30_f32.to_radians());
+//! println!("elbow at {}, hand {:?}", pose.elbow, pose.reach);
+//! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
+//! ```
+//!
+//! # The house
+//!
+//! A module uses only what stands above it.
+//!
+//! | module | what it is | feature |
+//! | --- | --- | --- |
+//! | [`kinematics`] | pure numbers: the two-bone solver | |
+//! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
+//! | `document` | what is saved: arm, camera, what is shown | `document` |
+//! | `session` | the document and what is not saved; `Action` and `apply` | `document` |
+//! | `scene` | what to draw: plain lists | `document` |
+//! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |
+//! | `ui` | egui panels: read a session, push actions | `app` |
+//! | `app` | winit: window, surface, frame loop | `app` |
+//! | `cli` | solve, render, gui | `app` |
+//!
+//! # One frame
+//!
+//! The panels and the viewport read the [session](session::Session) and push
+//! [actions](session::Action); [`apply`](session::Session::apply) checks each, edits the document
+//! and solves the arm again; if there was any, the panels run once more, so that none shows the
+//! state before; the [scene](scene::Scene) is made from the document and drawn if it is not the one
+//! on screen already; then the panels. Nothing is drawn while nothing changes.
+//!
+//! # Conventions
+//!
+//! Right-handed, +x right, +y up, +z towards the viewer. Angles are radians in code, degrees on
+//! screen and on the command line. A point's name carries its space where two spaces meet. A cursor
+//! out of reach is a value, not an error; errors name the file, field or value and what would be
+//! right. All state that shapes the pose is in the document: pose = f(document).
+
 #[cfg(feature = "app")]
 pub mod app;
 #[cfg(feature = "app")]

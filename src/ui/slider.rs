@@ -228,8 +228,16 @@ impl Slider<'_> {
         if response.drag_started() {
             actions.push(Action::BeginEdit);
         }
+        // egui enters what was typed in the pass after the one in which Esc left it.
+        let was_left = ui.data_mut(|data| data.remove_temp::<Left>(response.id)).is_some();
+        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            ui.data_mut(|data| data.insert_temp(response.id, Left));
+            ui.request_repaint();
+        }
         let dropped = response.dragged() && !response.drag_started() && !is_editing;
-        if response.changed() && !dropped {
+        if response.changed() && was_left {
+            ui.request_repaint();
+        } else if response.changed() && !dropped {
             actions.push(set(value));
         }
         if response.drag_stopped() {
@@ -248,6 +256,10 @@ impl Slider<'_> {
         text.parse().ok()
     }
 }
+
+/// Marks a number that Esc has just left.
+#[derive(Clone, Copy, Default)]
+struct Left;
 
 /// In seven letters at most, which is what there is room for.
 fn format(value: f64) -> String {

@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::handles::Handles;
 use super::{compass, keyboard, menu, status};
 use crate::document::{Camera, Projection, Ray};
-use crate::session::{Action, DragInput, Handle, Motion, Navigation, Session};
+use crate::session::{Action, DragInput, HandDrag, Handle, Motion, Navigation, Session};
 
 /// How much nearer a step of the wheel comes.
 const WHEEL: f32 = 1.15;
@@ -74,7 +74,7 @@ pub(super) fn ui(
     let arm = session.arm();
     let handles = Handles::new(&picture, arm.cursor_world(), arm.root + session.pose().hand);
     let pointer = ui.input(|input| input.pointer.latest_pos());
-    let held_handle = session.hand_drag().map(|drag| drag.handle());
+    let held_handle = session.hand_drag().map(HandDrag::handle);
 
     let on_compass = pointer.is_some_and(|at| compass::covers(rect, at));
     let over = response.contains_pointer() && !on_compass;

@@ -118,13 +118,11 @@ impl Bench {
 
     /// Runs until the window would sleep.
     pub fn settle(&mut self) {
-        for _ in 0..60 {
+        let moves = (0..60).all(|_| {
             self.frame([]);
-            if !self.asks_for_a_frame() {
-                return;
-            }
-        }
-        panic!("still moving: {:?}", self.harness.ctx.repaint_causes());
+            self.asks_for_a_frame()
+        });
+        assert!(!moves, "still moving: {:?}", self.harness.ctx.repaint_causes());
     }
 
     pub fn asks_for_a_frame(&self) -> bool {
@@ -290,7 +288,7 @@ impl Bench {
                 matches!(node.role(), Role::Button | Role::CheckBox | Role::RadioButton)
                     && (rest.is_empty() || rest.starts_with(' '))
             });
-            let item = item.unwrap_or_else(|| panic!("{name} is in the menu")).rect();
+            let item = item.expect("in the menu").rect();
             self.click_at(item.center());
             self.settle();
         }
@@ -311,7 +309,7 @@ impl Bench {
     }
 }
 
-/// As the arm in which every coordinate is compared bit for bit.
+/// A point that is to be the same bit for bit.
 pub fn bits(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
 }

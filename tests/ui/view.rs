@@ -1,14 +1,14 @@
-//! The view: turned, moved and zoomed by mouse, key and name.
+//! The view: turned, moved and zoomed by mouse and by the corner axes.
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Vec2, pos2, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::session::{Action, Motion, Navigation};
 
-use crate::bench::{Bench, SECONDS_PER_FRAME};
+use crate::bench::Bench;
 
 use PointerButton::{Middle, Primary, Secondary};
 
@@ -173,46 +173,6 @@ fn esc_takes_a_turn_of_the_view_back() {
 }
 
 #[test]
-fn view_keys_look_along_the_axes() {
-    for (modifiers, key, view) in [
-        (NONE, Key::Num1, AxisView::Front),
-        (NONE, Key::Num3, AxisView::Right),
-        (NONE, Key::Num7, AxisView::Top),
-        (CTRL, Key::Num1, AxisView::Back),
-        (CTRL, Key::Num3, AxisView::Left),
-        (CTRL, Key::Num7, AxisView::Bottom),
-    ] {
-        let mut bench = Bench::new();
-        bench.key_with(modifiers, key);
-        bench.settle();
-        assert_eq!(bench.session().camera(), &Camera::default().along(view), "{view:?}");
-    }
-}
-
-#[test]
-fn five_toggles_f_frames_the_arm_home_frames_all() {
-    let mut bench = Bench::new();
-    for orthographic in [true, false] {
-        bench.key(Key::Num5);
-        assert_eq!(bench.session().camera(), &Camera { orthographic, ..Camera::default() });
-    }
-    for key in [Key::F, Key::Home] {
-        bench.key(key);
-        bench.settle();
-        let (arm, pose) = (bench.session().arm(), bench.session().pose());
-        let (centre, radius) = match key {
-            Key::F => arm.bounds(pose),
-            _ => (arm.root, arm.bones.outer_limit()),
-        };
-        assert_eq!(bench.session().camera().target, centre, "{key:?}");
-        let (_, right, up) = bench.session().camera().basis();
-        for side in [right, -right, up, -up] {
-            assert!(bench.viewport().contains(bench.place(centre + side * radius)), "{key:?}");
-        }
-    }
-}
-
-#[test]
 fn a_double_click_on_the_background_resets_the_view_and_on_the_hand_frames_the_arm() {
     let elsewhere = Camera { yaw: 2.0, distance: 1500.0, ..Camera::default() };
     let mut bench = Bench::after([Action::SetCamera(elsewhere)]);
@@ -223,94 +183,6 @@ fn a_double_click_on_the_background_resets_the_view_and_on_the_hand_frames_the_a
     bench.double_click_at(bench.cursor_place());
     assert_eq!(bench.session().camera().target, arm.bounds(bench.session().pose()).0);
     assert_eq!(bench.session().arm(), &arm);
-}
-
-#[test]
-fn view_keys_do_nothing_while_a_field_or_a_slider_has_the_keyboard() {
-    for (role, name) in [(Role::SpinButton, "Hand x value"), (Role::Slider, "Elbow spin")] {
-        let mut bench = Bench::new();
-        bench.focus(role, name);
-        bench.type_text("1375");
-        bench.key(Key::F);
-        assert!(!bench.session().is_gliding());
-        assert_eq!(bench.session().camera(), &Camera::default(), "{name}");
-    }
-    let mut bench = Bench::new();
-    bench.choose(&["File", "Save picture…"]);
-    bench.type_text("f137");
-    bench.key(Key::Home);
-    assert_eq!(bench.session().camera(), &Camera::default());
-    assert!(!bench.session().is_gliding());
-}
-
-#[test]
-fn a_click_into_the_viewport_gives_it_the_keyboard() {
-    let mut bench = Bench::new();
-    bench.focus(Role::Slider, "Hand x");
-    bench.click_at(bench.empty_place());
-    bench.key(Key::Num7);
-    bench.settle();
-    assert_eq!(bench.session().camera(), &Camera::default().along(AxisView::Top));
-    assert_eq!(bench.focused().map(|(role, _)| role), Some(Role::Image));
-}
-
-#[test]
-fn a_glide_takes_two_tenths_of_a_second_and_then_the_window_sleeps() {
-    let mut bench = Bench::new();
-    let end = Camera::default().along(AxisView::Right);
-    bench.key(Key::Num3);
-    let mut frames = 0;
-    let mut last = bench.session().camera().yaw;
-    while bench.session().is_gliding() {
-        assert!(bench.asks_for_a_frame());
-        bench.frame([]);
-        let yaw = bench.session().camera().yaw;
-        assert!(yaw >= last, "{yaw} after {last}");
-        last = yaw;
-        frames += 1;
-        assert!(frames < 30);
-    }
-    let seconds = f64::from(frames) * SECONDS_PER_FRAME;
-    assert!((0.17..=0.25).contains(&seconds), "{seconds}");
-    assert_eq!(bench.session().camera(), &end);
-    bench.frame([]);
-    assert!(!bench.asks_for_a_frame(), "{:?}", bench.harness.ctx.repaint_causes());
-}
-
-#[test]
-fn any_input_ends_a_glide() {
-    let end = Camera::default().along(AxisView::Top);
-    let gliding = || {
-        let mut bench = Bench::new();
-        bench.move_to(bench.empty_place());
-        bench.key(Key::Num7);
-        bench.wait(0.05);
-        assert!(bench.session().is_gliding());
-        bench
-    };
-    let mut bench = gliding();
-    bench.key(Key::K);
-    assert!(!bench.session().is_gliding());
-    assert_eq!(bench.session().camera(), &end, "a key brings it to its end");
-
-    let mut bench = gliding();
-    bench.wheel(1.0);
-    assert!(!bench.session().is_gliding());
-    assert!(bench.session().camera().distance < end.distance);
-    assert_eq!(bench.session().camera().pitch, end.pitch);
-
-    let mut bench = gliding();
-    bench.click_at(pos2(200.0, 780.0));
-    assert_eq!(bench.session().camera(), &end);
-
-    let mut bench = gliding();
-    let here = *bench.session().camera();
-    bench.press(Primary);
-    assert!(!bench.session().is_gliding());
-    let taken = *bench.session().camera();
-    assert!(taken.pitch < end.pitch && taken.pitch >= here.pitch, "a press stops it");
-    bench.frame([]);
-    assert_eq!(bench.session().camera(), &taken);
 }
 
 #[test]
@@ -341,20 +213,4 @@ fn dragging_the_corner_axes_turns_the_view() {
     bench.settle();
     assert_ne!(bench.session().camera().yaw, Camera::default().yaw);
     assert!(!bench.session().camera().orthographic);
-}
-
-#[test]
-fn the_view_menu_does_what_the_keys_do() {
-    for (name, view) in [("Front", AxisView::Front), ("Bottom", AxisView::Bottom)] {
-        let mut bench = Bench::new();
-        bench.choose(&["View", name]);
-        assert_eq!(bench.session().camera(), &Camera::default().along(view));
-    }
-    let mut bench = Bench::new();
-    bench.choose(&["View", "Perspective / orthographic"]);
-    assert!(bench.session().camera().orthographic);
-    bench.choose(&["View", "Frame all"]);
-    assert_eq!(bench.session().camera().target, Vec3::ZERO);
-    bench.choose(&["View", "Frame arm"]);
-    assert_ne!(bench.session().camera().target, Vec3::ZERO);
 }

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# Films the hand being dragged in the real window, for README.md: assets/demo.gif. Needs ffmpeg.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=scripts/setup.sh
+source scripts/setup.sh
+# shellcheck source=scripts/window.sh
+source scripts/window.sh
+
+# A closed curve of the hand on screen: middle and radii, in pixels.
+middle=(740 392)
+across=110
+up=95
+steps=72
+
+frames=$target/record
+film=assets/demo.gif
+
+main() {
+    set_up virtual-display
+    cargo build --release --locked
+    trap clean_up EXIT
+    open_window
+    rm -rf "$frames"
+    mkdir -p "$frames"
+    drag_around
+    close_window
+    join_frames
+    printf 'The film is %s\n' "$film"
+}
+
+# One picture a step, taken when the window has followed: the film is smooth however slow the
+# machine is.
+drag_around() {
+    local step place
+    xdotool mousemove "${middle[@]}" sleep 0.5 mousedown 1
+    for ((step = 0; step <= steps; step++)); do
+        place=$(awk -v t="$step" -v n="$steps" -v x="${middle[0]}" -v y="${middle[1]}" \
+            -v a="$across" -v b="$up" 'BEGIN {
+                turn = 6.2831853 * t / n
+                printf "%d %d", x + a * sin(turn), y - b * (1 - cos(turn)) + 0.4 * b * sin(2 * turn)
+            }')
+        # shellcheck disable=SC2086 # two numbers
+        xdotool mousemove $place
+        sleep 0.35
+        import -window root "$frames/$(printf %03d "$step").png"
+    done
+    xdotool mouseup 1
+}
+
+join_frames() {
+    local scale="fps=24,scale=960:-1:flags=lanczos"
+    ffmpeg -loglevel error -y -framerate 24 -i "$frames/%03d.png" -filter_complex \
+        "$scale,split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=bayer:bayer_scale=4" \
+        -loop 0 "$film"
+}
+
+main "$@"
