@@ -1,5 +1,4 @@
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use egui::{FullOutput, TextureId};
@@ -78,11 +77,7 @@ impl AppWindow {
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
 
-        let frame_time = Arc::clone(&self.frame_time);
-        self.gpu.queue.on_submitted_work_done(move || {
-            let microseconds = u32::try_from(started.elapsed().as_micros()).unwrap_or(u32::MAX);
-            frame_time.store(microseconds, Ordering::Relaxed);
-        });
+        self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
         self.frames += 1;
     }
 

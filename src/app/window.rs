@@ -1,6 +1,5 @@
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Instant;
 
 use egui::{FullOutput, RawInput, Rect, TextureId, ViewportId};
@@ -43,9 +42,7 @@ pub(super) struct AppWindow {
     pub(super) egui_renderer: egui_wgpu::Renderer,
     renderer: Renderer,
     pub(super) picture: Shown,
-    machine: Machine,
-    /// Microseconds that the last frame took until the device was done.
-    pub(super) frame_time: Arc<AtomicU32>,
+    pub(super) machine: Machine,
     pub(super) frames: u64,
 }
 
@@ -104,7 +101,6 @@ impl AppWindow {
             egui,
             stale: false,
             picture: Shown { canvas, texture, scene: None },
-            frame_time: Arc::default(),
             frames: 0,
         })
     }
@@ -182,8 +178,6 @@ impl AppWindow {
     fn run(&mut self, input: RawInput, session: &mut Session) -> (FullOutput, Rect, Vec<Effect>) {
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
         let picture = Some(self.picture.texture);
-        let frame_time = self.frame_time.load(Ordering::Relaxed);
-        self.machine.frame_ms = (frame_time > 0).then_some(frame_time as f32 / 1000.0);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
         let mut viewport = Rect::ZERO;
         let mut actions = Vec::new();

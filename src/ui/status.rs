@@ -74,8 +74,9 @@ fn describe_drag(drag: &HandDrag) -> String {
 }
 
 fn describe_machine(machine: &Machine) -> String {
+    let adapter = machine.adapter.split(" (").next().unwrap_or_default();
     match machine.frame_ms {
-        Some(frame_ms) => format!("{} · {frame_ms:.0} ms", machine.adapter),
-        None => machine.adapter.clone(),
+        Some(frame_ms) => format!("{adapter} · {frame_ms:.0} ms"),
+        None => adapter.to_owned(),
     }
 }

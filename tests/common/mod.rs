@@ -80,7 +80,7 @@ pub fn arms() -> impl Strategy<Value = TwoBone> {
         let longer = 10_f64.powf(exponent);
         let shorter = (longer / ratio).max(1e-2);
         let (upper, lower) = if upper_is_longer { (longer, shorter) } else { (shorter, longer) };
-        TwoBone::new(upper as f32, lower as f32).unwrap()
+        TwoBone::new(upper as f32, lower as f32).expect("lengths")
     })
 }
 
