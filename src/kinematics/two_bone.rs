@@ -172,8 +172,7 @@ impl TwoBone {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
         debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
 
-        let unit = power_of_two_near(self.upper.max(self.lower));
-        let scale = unit.recip();
+        let (unit, scale) = power_of_two_near(self.upper.max(self.lower));
         let (upper, lower) = (self.upper * scale, self.lower * scale);
         let (sum, difference) = (upper + lower, upper - lower);
 
@@ -247,7 +246,7 @@ impl Facing {
             return last;
         }
         Self {
-            direction: (cursor * power_of_two_near(cursor.abs().max_element()).recip()).normalize(),
+            direction: (cursor * power_of_two_near(cursor.abs().max_element()).1).normalize(),
             heading: heading(cursor).unwrap_or(last.heading),
         }
     }
@@ -269,8 +268,7 @@ impl Facing {
 /// The vector seen from above, scaled before it is squared: it may be tiny beside the height.
 fn heading(v: Vec3) -> Option<Vec2> {
     let flat = Vec2::new(v.x, v.z);
-    (flat != Vec2::ZERO)
-        .then(|| (flat * power_of_two_near(flat.abs().max_element()).recip()).normalize())
+    (flat != Vec2::ZERO).then(|| (flat * power_of_two_near(flat.abs().max_element()).1).normalize())
 }
 
 /// (h_e, o_e) for lengths near 1.
@@ -288,10 +286,14 @@ fn elbow_in_socket(upper: f32, lower: f32, distance: f32) -> (f32, f32) {
     (along.clamp(-upper, upper), 0.5 * squared.max(0.0).sqrt())
 }
 
-/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too.
-fn power_of_two_near(value: f32) -> f32 {
-    const EXPONENT: u32 = 0x7f80_0000;
-    f32::from_bits(value.to_bits() & EXPONENT).clamp(f32::MIN_POSITIVE, 2.0_f32.powi(126))
+/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that
+/// reciprocal. To scale by them is exact.
+fn power_of_two_near(value: f32) -> (f32, f32) {
+    const EXPONENT: u32 = 0xff << 23;
+    const LEAST: u32 = 1 << 23;
+    const MOST: u32 = 253 << 23;
+    let power = (value.to_bits() & EXPONENT).clamp(LEAST, MOST);
+    (f32::from_bits(power), f32::from_bits(LEAST + MOST - power))
 }
 
 /// Back to the caller's unit; a result that rounds past the largest number is that number.

@@ -6,9 +6,9 @@ use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::{ArmRig, Part};
 
 /// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
-const SHOULDER_BALL: f32 = 31.0;
-const ELBOW_BALL: f32 = 31.0;
-const HAND_BALL: f32 = 21.0;
+const SHOULDER_BALL: f32 = 33.0;
+const ELBOW_BALL: f32 = 33.0;
+const HAND_BALL: f32 = 22.0;
 const CURSOR_BALL: f32 = 11.0;
 
 /// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.

@@ -208,11 +208,11 @@ impl Session {
     }
 
     fn drag(&mut self, change: impl FnOnce(&mut HandDrag)) {
-        let Some(drag) = self.edit.as_mut().and_then(|edit| edit.hand.as_mut()) else {
+        let Some(Edit { before, hand: Some(drag) }) = &mut self.edit else {
             return;
         };
         change(drag);
-        let hand = drag.hand();
+        let hand = if drag.has_moved() { drag.hand() } else { before.cursor };
         self.apply(Action::SetHand(hand));
     }
 

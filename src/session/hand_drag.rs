@@ -98,6 +98,11 @@ impl HandDrag {
         &self.typed
     }
 
+    /// Whether the pointer is elsewhere than at the press, or an offset is typed.
+    pub(super) fn has_moved(&self) -> bool {
+        !self.typed.is_empty() || self.now.ray != self.pressed
+    }
+
     /// How far the hand has been moved.
     pub fn moved(&self) -> Vec3 {
         self.last - self.start

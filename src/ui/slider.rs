@@ -1,6 +1,6 @@
 use egui::{
-    Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
-    TextWrapMode, Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
+    Align, Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Layout, Rect, Response,
+    Sense, TextStyle, TextWrapMode, Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
 };
 
 use super::symbol;
@@ -221,8 +221,10 @@ impl Slider<'_> {
             .clip_text(true)
             .update_while_editing(false);
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        ui.spacing_mut().button_padding.x = 4.0;
-        let response = ui.add_sized(vec2(VALUE_WIDTH, HEIGHT - 2.0), number);
+        ui.spacing_mut().button_padding = vec2(6.0, 1.0);
+        let size = vec2(VALUE_WIDTH, HEIGHT);
+        let right = Layout::right_to_left(Align::Center).with_main_justify(true);
+        let response = ui.allocate_ui_with_layout(size, right, |ui| ui.add(number)).inner;
         let name = format!("{} value", self.name);
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
         if response.drag_started() {
