@@ -16,13 +16,13 @@ pub(super) const SHADER: &str = concat!(
 /// How finely solids are divided, from the thinnest on screen to the thickest.
 const LEVELS: [Level; 4] = [
     Level { segments: 14, radius: 6.0 },
-    Level { segments: 40, radius: 60.0 },
-    Level { segments: 72, radius: 200.0 },
+    Level { segments: 32, radius: 48.0 },
+    Level { segments: 64, radius: 190.0 },
     Level { segments: 128, radius: f32::INFINITY },
 ];
 
 /// A division around, and the radius in pixels up to which no corner shows with it: it stands out
-/// r·(1 − cos(π/n)), about a sixth of a pixel.
+/// r·(1 − cos(π/n)), about a quarter of a pixel.
 struct Level {
     segments: u16,
     radius: f32,
