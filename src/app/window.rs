@@ -59,7 +59,7 @@ impl AppWindow {
         settings: Settings,
         proxy: EventLoopProxy<UserEvent>,
     ) -> Result<Self, AppError> {
-        let window = Arc::new(event_loop.create_window(attributes())?);
+        let window = Arc::new(event_loop.create_window(attributes(event_loop, settings.window))?);
         let display = event_loop.owned_display_handle();
         let descriptor =
             wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
@@ -239,10 +239,28 @@ impl AppWindow {
     }
 }
 
-fn attributes() -> WindowAttributes {
+/// As large as it was last, as far as the screen goes.
+fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSize<f64> {
+    let Some(mut last) = last else {
+        return SIZE;
+    };
+    let screens = event_loop.available_monitors().map(|screen| {
+        let size = screen.size().to_logical::<f32>(screen.scale_factor());
+        egui::vec2(size.width, size.height)
+    });
+    let largest = screens.filter(|size| size.min_elem() > 0.0).reduce(egui::Vec2::max);
+    last.clamp_size_to_sane_values(largest.unwrap_or(egui::Vec2::INFINITY));
+    let points = last.inner_size_points();
+    LogicalSize::new(
+        f64::from(points.x).max(SMALLEST.width),
+        f64::from(points.y).max(SMALLEST.height),
+    )
+}
+
+fn attributes(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> WindowAttributes {
     let attributes = Window::default_attributes()
         .with_title(TITLE)
-        .with_inner_size(SIZE)
+        .with_inner_size(size(event_loop, last))
         .with_min_inner_size(SMALLEST)
         .with_window_icon(icon())
         // Shown once a screen reader can read it.

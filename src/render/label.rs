@@ -2,9 +2,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 use wgpu::util::DeviceExt as _;
 
+use super::Gpu;
 use super::font::{Font, Rectangle};
-use super::instances::Instances;
-use super::{Gpu, pipeline};
+use super::quads::{self, Quads};
 use crate::scene::{Label, Scene, Side};
 
 pub(super) const SHADER: &str =
@@ -44,10 +44,9 @@ const _: () = assert!(size_of::<Instance>() == 48);
 /// Draws words over everything.
 #[derive(Debug)]
 pub(super) struct Labels {
-    pipeline: wgpu::RenderPipeline,
+    letters: Quads<Instance>,
     atlas_layout: wgpu::BindGroupLayout,
     atlas: Option<Atlas>,
-    letters: Instances<Instance>,
 }
 
 /// The letters at one scale.
@@ -61,26 +60,19 @@ struct Atlas {
 impl Labels {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let atlas_layout = atlas_layout(gpu);
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
-        let pipeline = pipeline::build(
+        let letters = Quads::new(
             gpu,
-            &pipeline::Kind {
+            &quads::Kind {
                 label: "label",
                 shader: SHADER,
-                fragment: "fragment",
                 layouts: &[view, &atlas_layout],
-                buffers: &[wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Instance>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &attributes,
-                }],
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                cull: None,
+                attributes: &wgpu::vertex_attr_array![
+                    0 => Float32x4, 1 => Float32x4, 2 => Float32x4
+                ],
                 depth: wgpu::CompareFunction::Always,
-                opaque: false,
             },
         );
-        Self { pipeline, atlas_layout, atlas: None, letters: Instances::new("letters") }
+        Self { letters, atlas_layout, atlas: None }
     }
 
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
@@ -96,11 +88,9 @@ impl Labels {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if let (Some(atlas), Some((buffer, count))) = (&self.atlas, self.letters.get()) {
-            pass.set_pipeline(&self.pipeline);
+        if let Some(atlas) = &self.atlas {
             pass.set_bind_group(1, &atlas.group, &[]);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..4, 0..count);
+            self.letters.draw(pass);
         }
     }
 }

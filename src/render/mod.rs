@@ -14,6 +14,7 @@ mod label;
 mod mesh;
 mod picture;
 mod pipeline;
+mod quads;
 mod renderer;
 mod shadow;
 mod solid;

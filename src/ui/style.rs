@@ -57,6 +57,7 @@ pub fn install(ctx: &Context) {
             spacing.interact_size = vec2(32.0, 22.0);
             spacing.icon_width = 16.0;
             spacing.menu_margin = egui::Margin::same(6);
+            spacing.window_margin = egui::Margin::same(12);
             spacing.tooltip_width = 320.0;
             let size = |size| FontId::new(size, FontFamily::Proportional);
             style.text_styles = [
