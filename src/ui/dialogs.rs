@@ -64,6 +64,7 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
                 ("Back, left, bottom", "Ctrl+1, 3, 7"),
                 ("Perspective or orthographic", "5"),
                 ("Frame the arm, all", "F, Home"),
+                ("Turn, move, zoom the focused view", "arrows, Shift+arrows, + -"),
                 ("First view", "double-click on the background"),
             ],
         ),

@@ -1,6 +1,7 @@
 //! What the keys do when no widget has them.
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
+use glam::Vec2;
 
 use super::menu;
 use crate::document::AxisView;
@@ -74,6 +75,34 @@ fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             actions.push(menu::frame_all(session));
         }
     });
+}
+
+/// Arrow keys, while the viewport has the keyboard: they turn the view, with Shift they move it;
+/// plus and minus zoom.
+pub(super) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Vec<Action>) {
+    const TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
+    const PAN: f32 = 0.1;
+    const ZOOM: f32 = 1.15;
+    let camera = session.settled_camera();
+    let asked = ui.input(|input| {
+        if input.modifiers.command {
+            return camera;
+        }
+        let presses = |key| input.num_presses(key) as f32;
+        let across = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
+        let up = presses(Key::ArrowUp) - presses(Key::ArrowDown);
+        let nearer = presses(Key::Plus) + presses(Key::Equals) - presses(Key::Minus);
+        let moved = Vec2::new(across / aspect, up) * PAN;
+        let view = match (across, up) {
+            (0.0, 0.0) => camera,
+            _ if input.modifiers.shift => camera.panned(moved, Vec2::ZERO, aspect),
+            _ => camera.orbited(across * TURN, up * TURN),
+        };
+        if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
+    });
+    if asked != camera && session.hand_drag().is_none() {
+        actions.push(Action::SetCamera(asked));
+    }
 }
 
 fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -1,8 +1,8 @@
 //! The view of the scene: what the pointer does in it.
 
 use egui::{
-    CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId,
-    Ui, Vec2, WidgetInfo, pos2, vec2,
+    CursorIcon, Event, EventFilter, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Role,
+    Sense, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::Vec3;
 
@@ -296,5 +296,11 @@ fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Actio
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.hand_drag().is_some() {
         keyboard::viewport(ui, session, actions);
+    }
+    if response.has_focus() {
+        let arrows =
+            EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        keyboard::turn(ui, session, response.rect.aspect_ratio(), actions);
     }
 }

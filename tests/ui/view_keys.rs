@@ -153,3 +153,27 @@ fn the_view_menu_does_what_the_keys_do() {
     bench.choose(&["View", "Frame arm"]);
     assert_ne!(bench.session().camera().target, Vec3::ZERO);
 }
+
+#[test]
+fn arrow_keys_turn_and_move_the_view_that_has_the_keyboard_and_plus_and_minus_zoom() {
+    let mut bench = Bench::new();
+    bench.key(Key::ArrowRight);
+    assert_eq!(bench.session().camera(), &Camera::default(), "without the keyboard it stays");
+
+    let mut bench = Bench::new();
+    bench.click_at(bench.empty_place());
+    let before = *bench.session().camera();
+    bench.key(Key::ArrowRight);
+    let turned = *bench.session().camera();
+    assert!((turned.yaw - before.yaw - 5_f32.to_radians()).abs() < 1e-6);
+    bench.key(Key::ArrowUp);
+    assert!((bench.session().camera().pitch - before.pitch - 5_f32.to_radians()).abs() < 1e-6);
+    bench.key_with(Modifiers::SHIFT, Key::ArrowRight);
+    let moved = *bench.session().camera();
+    assert!((moved.target - before.target).dot(moved.basis().1) > 0.0);
+    for (key, nearer) in [(Key::Plus, true), (Key::Minus, false)] {
+        let before = bench.session().camera().distance;
+        bench.key(key);
+        assert_eq!(bench.session().camera().distance < before, nearer);
+    }
+}
