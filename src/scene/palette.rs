@@ -51,7 +51,7 @@ impl Palette {
         match theme {
             Theme::Dark => Self {
                 theme,
-                upper: Colour::rgb(0xd26e46),
+                upper: Colour::rgb(0xd8744b),
                 lower: Colour::rgb(0x6492c6),
                 joint: Colour::rgb(0xc4c8ce),
                 guide: Colour::rgb(0xeef0f4),
