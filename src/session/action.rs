@@ -212,7 +212,8 @@ impl Session {
             return;
         };
         change(drag);
-        let hand = if drag.has_moved() { drag.hand() } else { before.cursor };
+        let held = drag.hand();
+        let hand = if drag.has_moved() { held } else { before.cursor };
         self.apply(Action::SetHand(hand));
     }
 

@@ -98,9 +98,9 @@ impl HandDrag {
         &self.typed
     }
 
-    /// Whether the pointer is elsewhere than at the press, or an offset is typed.
+    /// Whether the pointer is elsewhere than at the press, or the offset is no longer its alone.
     pub(super) fn has_moved(&self) -> bool {
-        !self.typed.is_empty() || self.now.ray != self.pressed
+        !self.typed.is_empty() || self.slow.is_some() || self.now.ray != self.pressed
     }
 
     /// How far the hand has been moved.
