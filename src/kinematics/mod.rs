@@ -1,3 +1,9 @@
 //! Pure numbers: solvers that know nothing of files, windows or GPUs.
 
+mod arc;
+pub mod follow;
+pub mod skeleton;
+pub mod solve;
 pub mod two_bone;
+
+pub(crate) use arc::arc;

@@ -1,0 +1,192 @@
+//! Trees of joints, turned by Euler angles: forward kinematics.
+//!
+//! A skeleton is a forest, parents before children in memory. A joint is a ball joint with one bone:
+//!
+//! ```text
+//!   parent's base        base                     tip
+//!        o──── offset ────o════════ axis ══════════o      all in the joint's own space, which is
+//!                                                         its parent's, moved by the offset and
+//!                                                         turned by the joint's rotation R
+//! R          = A · R_z(r_z) · R_y(r_y) · R_x(r_x) · Aᵀ     x is applied first
+//! X(joint)   = X(parent) · T(offset) · R                   full transform
+//! base       = X · (0, 0, 0)          tip = X · axis
+//! ```
+//!
+//! A is a fixed orthonormal frame in which the angles are measured. The skeleton's own transform,
+//! which may mirror and scale, stands in front of all. The bind pose is the one without rotations.
+//!
+//! Angles are radians. Offsets, axes and radii share any one unit: the skeleton's; what is in the
+//! world says so.
+//!
+//! # Source
+//!
+//! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2a.
+
+mod build;
+mod error;
+mod euler;
+mod joint;
+mod pose;
+
+use glam::{Affine3A, Mat3A, Vec3};
+
+pub use build::Moved;
+pub use error::SkeletonError;
+pub use joint::{Joint, Limit};
+pub use pose::Pose;
+
+pub(crate) use euler::{EulerAngles, angle_triples, nearest_angles};
+pub(crate) use joint::within;
+
+/// A forest of joints, and where it stands in the world.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+///
+/// let mut skeleton = Skeleton::with_root("hip");
+/// let thigh = skeleton.add(Joint::new("thigh", Some(0), Vec3::Y))?;
+/// let shin = skeleton.add(Joint { offset: Vec3::Y, ..Joint::new("shin", Some(thigh), Vec3::Y) })?;
+///
+/// skeleton.set_rotation(thigh, Vec3::new(0.0, 0.0, std::f32::consts::FRAC_PI_2))?;
+/// assert!(skeleton.tip(shin).distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6);
+/// # Ok::<(), ik_arm::kinematics::skeleton::SkeletonError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    joints: Vec<Joint>,
+    transform: Affine3A,
+}
+
+impl Default for Skeleton {
+    /// Without joints.
+    fn default() -> Self {
+        Self { joints: Vec::new(), transform: Affine3A::IDENTITY }
+    }
+}
+
+impl Skeleton {
+    pub const MOST_JOINTS: usize = 10_000;
+
+    /// One locked joint that is a point: what the skeletons of this program begin with.
+    pub fn with_root(name: &str) -> Self {
+        let root = Joint { locked: true, ..Joint::new(name, None, Vec3::ZERO) };
+        Self { joints: vec![root], ..Self::default() }
+    }
+
+    /// # Errors
+    ///
+    /// Refuses what no skeleton can have: see [`SkeletonError`]. Parents must stand before their
+    /// children. Rotations beyond limits are brought within.
+    pub fn from_joints(joints: Vec<Joint>) -> Result<Self, SkeletonError> {
+        let mut skeleton = Self::default();
+        if joints.len() > Self::MOST_JOINTS {
+            return Err(SkeletonError::TooMany);
+        }
+        let mut names = std::collections::HashSet::new();
+        for (index, joint) in joints.iter().enumerate() {
+            joint.check(index)?;
+            if !names.insert(joint.name.as_str()) {
+                return Err(SkeletonError::Name(joint.name.clone()));
+            }
+        }
+        skeleton.joints = joints;
+        skeleton.joints.iter_mut().for_each(Joint::clamp);
+        Ok(skeleton)
+    }
+
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    pub fn joint(&self, joint: usize) -> Option<&Joint> {
+        self.joints.get(joint)
+    }
+
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        let is_child = move |(_, child): &(usize, &Joint)| child.parent == Some(joint);
+        self.joints.iter().enumerate().filter(is_child).map(|(index, _)| index)
+    }
+
+    /// The joint, its parent, and so on up to its root.
+    pub fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(joint), |joint| self.joints.get(*joint)?.parent)
+    }
+
+    /// Whether `joint` is `ancestor` or hangs from it.
+    pub fn hangs_from(&self, joint: usize, ancestor: usize) -> bool {
+        self.ancestors(joint).any(|above| above == ancestor)
+    }
+
+    /// What stands in front of all joints: from the skeleton's space to the world.
+    pub fn transform(&self) -> Affine3A {
+        self.transform
+    }
+
+    /// # Errors
+    ///
+    /// Refuses numbers that are not finite. What flattens (a scale of 0) is allowed here; solvers
+    /// refuse it.
+    pub fn set_transform(&mut self, transform: Affine3A) -> Result<(), SkeletonError> {
+        if !transform.is_finite() {
+            return Err(SkeletonError::Transform);
+        }
+        self.transform = transform;
+        Ok(())
+    }
+}
+
+/// Forward kinematics. For more than one joint, [`Skeleton::pose`] computes each once.
+impl Skeleton {
+    /// Where a joint's rotation begins: its full transform without its own R, in the world.
+    ///
+    /// # Panics
+    ///
+    /// As all of these, if there is no such joint.
+    pub fn transform_to_base(&self, joint: usize) -> Affine3A {
+        let Joint { parent, offset, .. } = &self.joints[joint];
+        let above = parent.map_or(self.transform, |parent| self.full_transform(parent));
+        above * Affine3A::from_translation(*offset)
+    }
+
+    /// X with the skeleton's transform in front: from the joint's own space to the world.
+    pub fn full_transform(&self, joint: usize) -> Affine3A {
+        let mut path: Vec<_> = self.ancestors(joint).collect();
+        path.reverse();
+        path.into_iter().fold(self.transform, |above, joint| above * self.joints[joint].local())
+    }
+
+    /// Where a joint's bone begins, in the world.
+    pub fn base(&self, joint: usize) -> Vec3 {
+        self.full_transform(joint).translation.into()
+    }
+
+    /// Where a joint's bone ends, in the world.
+    pub fn tip(&self, joint: usize) -> Vec3 {
+        self.full_transform(joint).transform_point3(self.joints[joint].axis)
+    }
+
+    /// Every joint as it is turned now, in the world.
+    pub fn pose(&self) -> Pose {
+        Pose::new(&self.joints, self.transform, Joint::local_rotation)
+    }
+
+    /// Every joint as it is without rotations, in the world.
+    pub fn bind_pose(&self) -> Pose {
+        Pose::new(&self.joints, self.transform, |_| Mat3A::IDENTITY)
+    }
+
+    /// Every joint as it is turned now, in the skeleton's own space.
+    pub fn pose_in_skeleton(&self) -> Pose {
+        Pose::new(&self.joints, Affine3A::IDENTITY, Joint::local_rotation)
+    }
+
+    /// Every joint without rotations, in the skeleton's own space.
+    pub fn bind_pose_in_skeleton(&self) -> Pose {
+        Pose::new(&self.joints, Affine3A::IDENTITY, |_| Mat3A::IDENTITY)
+    }
+}

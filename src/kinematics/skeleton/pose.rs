@@ -1,0 +1,64 @@
+use glam::{Affine3A, Mat3A, Vec3};
+
+use super::Joint;
+
+/// Where every joint of a skeleton is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    joints: Vec<Posed>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Posed {
+    full: Affine3A,
+    tip: Vec3,
+}
+
+impl Pose {
+    pub(super) fn new(
+        joints: &[Joint],
+        transform: Affine3A,
+        rotation: impl Fn(&Joint) -> Mat3A,
+    ) -> Self {
+        let mut posed: Vec<Posed> = Vec::with_capacity(joints.len());
+        for joint in joints {
+            let above = joint.parent.map_or(transform, |parent| posed[parent].full);
+            let local = Affine3A { matrix3: rotation(joint), translation: joint.offset.into() };
+            let full = above * local;
+            posed.push(Posed { full, tip: full.transform_point3(joint.axis) });
+        }
+        Self { joints: posed }
+    }
+
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+    }
+
+    /// From the joint's own space.
+    ///
+    /// # Panics
+    ///
+    /// As all of these, if there is no such joint.
+    pub fn full(&self, joint: usize) -> Affine3A {
+        self.joints[joint].full
+    }
+
+    /// Where its bone begins.
+    pub fn base(&self, joint: usize) -> Vec3 {
+        self.full(joint).translation.into()
+    }
+
+    /// Where its bone ends.
+    pub fn tip(&self, joint: usize) -> Vec3 {
+        self.joints[joint].tip
+    }
+
+    /// Every base and tip.
+    pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        self.joints.iter().flat_map(|posed| [posed.full.translation.into(), posed.tip])
+    }
+}
