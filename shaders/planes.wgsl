@@ -2,7 +2,6 @@
 // met analytically in one go and laid over each other far to near, so that they cross each other
 // and the arm rightly and cost one pass. Straight-line code: software rasterisers do not skip.
 
-const CELL = 100.0;
 const LINE_WIDTH = 1.1; // pixels, at most
 const WIDEST_LINE = 0.012; // cells
 const FINE = 0.4;
@@ -54,9 +53,9 @@ fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
     let on_xz = ray.origin + ray.direction * along.y;
     let on_xy = ray.origin + ray.direction * along.z;
 
-    let at_yz = on_yz.zy / CELL;
-    let at_xz = on_xz.xz / CELL;
-    let at_xy = on_xy.xy / CELL;
+    let at_yz = on_yz.zy / view.cell;
+    let at_xz = on_xz.xz / view.cell;
+    let at_xy = on_xy.xy / view.cell;
     let yz = grid(at_yz, pixel_in_cells(at_yz), view.axes[2].rgb, view.axes[1].rgb);
     let xz = grid(at_xz, pixel_in_cells(at_xz), view.axes[0].rgb, view.axes[2].rgb);
     let xy = grid(at_xy, pixel_in_cells(at_xy), view.axes[0].rgb, view.axes[1].rgb);

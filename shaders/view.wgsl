@@ -20,7 +20,8 @@ struct View {
     stage_centre: vec3f,
     stage_radius: f32,
     size: vec2f,
-    padding: vec2f,
+    cell: f32, // of the grids
+    padding: f32,
     shown: vec4f, // 1 or 0: the grids in which x, y, z is 0; the ground
     sky_top: vec4f,
     sky_bottom: vec4f,

@@ -1,7 +1,7 @@
 //! A 3D inverse-kinematics arm to pose, look into and understand.
 //!
-//! The crate is the program `ik-arm` and, without its default features, a solver that takes nothing
-//! but `glam`:
+//! The crate is the program `ik-arm` and, without its default features, solvers that take nothing
+//! but `glam` and `nalgebra`:
 //!
 //! ```
 //! use glam::Vec3;
@@ -13,21 +13,24 @@
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!
+//! Trees of joints have [solvers](kinematics::solve) that bring any number of tips to their targets.
+//!
 //! # The house
 //!
 //! A module uses only what stands above it.
 //!
 //! | module | what it is | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | pure numbers: the two-bone solver | |
+//! | [`kinematics`] | pure numbers: two bones, skeletons, solvers, following a path | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
-//! | `document` | what is saved: arm, camera, what is shown | `document` |
+//! | `document` | what is saved: arm, skeleton with targets, camera, what is shown | `document` |
+//! | `io` | files: documents and Scotty3D's skeletons in, documents out | `document` |
 //! | `session` | the document and what is not saved; `Action` and `apply` | `document` |
 //! | `scene` | what to draw: plain lists | `document` |
 //! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |
 //! | `ui` | egui panels: read a session, push actions | `app` |
 //! | `app` | winit: window, surface, frame loop | `app` |
-//! | `cli` | solve, render, gui | `app` |
+//! | `cli` | solve, pose, render, examples, gui | `app` |
 //!
 //! # One frame
 //!
@@ -42,7 +45,8 @@
 //! Right-handed, +x right, +y up, +z towards the viewer. Angles are radians in code, degrees on
 //! screen and on the command line. A point's name carries its space where two spaces meet. A cursor
 //! out of reach is a value, not an error; errors name the file, field or value and what would be
-//! right. All state that shapes the pose is in the document: pose = f(document).
+//! right. All state that shapes the pose is in the document: pose = f(document, time). A solver's
+//! iteration is an action that edits angles, like any other.
 
 #[cfg(feature = "app")]
 pub mod app;
@@ -50,6 +54,8 @@ pub mod app;
 pub mod cli;
 #[cfg(feature = "document")]
 pub mod document;
+#[cfg(feature = "document")]
+pub mod io;
 pub mod kinematics;
 #[cfg(feature = "render")]
 pub mod render;

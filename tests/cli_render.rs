@@ -176,3 +176,92 @@ fn without_a_display_it_points_to_render() {
         assert!(!complaint(&output).contains(".cargo"), "{}", complaint(&output));
     }
 }
+
+// Files
+
+const BONE: &str = r#"{"scene":{"skinned_meshes":{
+    "thin":{"skeleton":{"bones":[{"extent":[0,1,0]}]}},
+    "bent":{"skeleton":{"bones":[{"extent":[0,1,0],"pose":[0,0,50]}]}}}}}"#;
+
+fn file(folder: &tempfile::TempDir, name: &str, text: &str) -> String {
+    let path = folder.path().join(name);
+    fs::write(&path, text).expect("written");
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
+#[test]
+fn every_example_is_drawn_and_looks_like_no_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pictures = ik_arm::io::Example::ALL.map(|example| {
+        let path = file(&folder, example.name, example.text);
+        (example.name, picture(&[&path]))
+    });
+    for (index, (name, image)) in pictures.iter().enumerate() {
+        for (other, same) in &pictures[..index] {
+            assert_ne!(image, same, "{name} looks like {other}");
+        }
+    }
+}
+
+#[test]
+fn a_document_of_the_arm_is_drawn_from_its_own_camera() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let json = |yaw: f32| {
+        let mut document = ik_arm::document::Document::default();
+        document.camera.yaw = yaw;
+        ik_arm::io::to_json(&document).expect("written")
+    };
+    let (near, far) = (file(&folder, "a.json", &json(0.1)), file(&folder, "b.json", &json(1.0)));
+    assert_ne!(picture(&[&near]), picture(&[&far]));
+    assert_eq!(picture(&[&near, "--view", "top"]), picture(&["--view", "top"]));
+}
+
+#[test]
+fn a_view_guides_a_theme_and_a_skeleton_change_the_picture_of_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = file(&folder, "scene.js3d", BONE);
+    let plain = picture(&[&scene]);
+    for arguments in [["--view", "front"], ["--theme", "light"], ["--skeleton", "bent"]] {
+        assert_ne!(picture(&[&[scene.as_str()], &arguments[..]].concat()), plain, "{arguments:?}");
+    }
+    assert_eq!(picture(&[&scene, "--skeleton", "thin"]), plain);
+    let arm = file(&folder, "arm.json", ik_arm::io::Example::ALL[0].text);
+    assert_ne!(picture(&[&arm]), picture(&[&arm, "--guides", "none"]));
+    assert_ne!(picture(&[&arm]), picture(&[&arm, "--guides", "outer"]));
+}
+
+#[test]
+fn a_file_that_cannot_be_drawn_is_an_error_with_its_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = file(&folder, "scene.js3d", BONE);
+    let broken = file(&folder, "broken.js3d", "{\"scene\":\n5}");
+    for (arguments, said) in [
+        ([broken.as_str(), "--theme", "dark"], "broken.js3d, line 2, column 1: scene: "),
+        ([&scene, "--skeleton", "fat"], "no skeleton called \"fat\"; it has \"thin\", \"bent\""),
+        (["missing.json", "--theme", "dark"], "missing.json cannot be read: "),
+    ] {
+        let out = folder.path().join("out.png");
+        let output = render(&out, &arguments);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(complaint(&output).contains(said), "{}", complaint(&output));
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = file(&folder, "scene.js3d", BONE);
+    for arguments in [
+        [scene.as_str(), "--hand", "1,2,3"],
+        [&scene, "--upper", "200"],
+        [&scene, "--lower", "300"],
+        [&scene, "--root", "0,0,0"],
+        [&scene, "--elbow-spin", "0"],
+    ] {
+        let output = render(&folder.path().join("out.png"), &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+    let output = render(&folder.path().join("out.png"), &["--skeleton", "thin"]);
+    assert_eq!(output.status.code(), Some(2), "a skeleton of no file");
+}

@@ -8,8 +8,11 @@ use std::sync::{LazyLock, Mutex};
 
 use glam::Vec3;
 use ik_arm::document::{Arm, AxisView, Camera, Document, Layer, Theme};
+use ik_arm::io::Example;
+use ik_arm::kinematics::solve::{self, Method};
 use ik_arm::render::{Gpu, Picture};
 use ik_arm::scene::{Colour, Scene};
+use ik_arm::session::{Ghost, Staging};
 use image::RgbaImage;
 
 const SIZE: (u32, u32) = (480, 300);
@@ -28,7 +31,7 @@ fn draw(scene: &Scene) -> RgbaImage {
 }
 
 fn scene(document: &Document, theme: Theme) -> Scene {
-    Scene::new(document, &document.arm.pose(), theme)
+    Scene::new(document, &Staging::default(), theme)
 }
 
 fn path(name: &str) -> PathBuf {
@@ -179,6 +182,53 @@ fn a_guide_that_is_missing_is_noticed() {
         let without = draw(&scene(&hidden, theme));
         assert!(compare(&without, &kept(name)).is_err(), "{layer:?} is not missed in {name}");
     }
+}
+
+/// A scene that comes with the program, solved where it has targets.
+fn example(name: &str) -> Document {
+    let example = Example::find(name).expect("an example");
+    let mut document = example.open().expect("it opens").document;
+    let goals = document.skeleton.goals(0.0);
+    let options = document.skeleton.solver;
+    solve::solve(&mut document.skeleton.skeleton, &goals, &options).expect("it can be solved");
+    document.camera.distance *= 0.9;
+    document
+}
+
+#[test]
+fn the_human_with_hands_and_feet_at_their_targets() {
+    check("human", &example("human"), Theme::Dark);
+    check("human-light", &example("human"), Theme::Light);
+}
+
+#[test]
+fn the_snake_on_its_way() {
+    check("snake", &example("snake"), Theme::Dark);
+}
+
+#[test]
+fn the_snake_some_seconds_later_is_another_picture() {
+    let document = example("snake");
+    let later = Staging { time: 1.5, ..Staging::default() };
+    let drawn = draw(&Scene::new(&document, &later, Theme::Dark));
+    assert!(compare(&drawn, &kept("snake")).is_err());
+}
+
+#[test]
+fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
+    let document = example("human");
+    let selected = Staging { selection: vec![6], ..Staging::default() };
+    let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
+    assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
+    let bind = document.skeleton.skeleton.bind_pose();
+    let ghosts = vec![Ghost { method: Method::Ccd, pose: bind }];
+    let drawn =
+        draw(&Scene::new(&document, &Staging { ghosts, ..Staging::default() }, Theme::Dark));
+    assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");
+    let unsolved = Example::find("human").expect("it is there").open().expect("it opens").document;
+    let unsolved = Document { camera: document.camera, ..unsolved };
+    let drawn = draw(&scene(&unsolved, Theme::Dark));
+    assert!(compare(&drawn, &kept("human")).is_err(), "targets that are not reached");
 }
 
 #[test]

@@ -7,13 +7,15 @@ use winit::event_loop::EventLoopProxy;
 
 use super::UserEvent;
 use crate::document::{Document, Theme};
+use crate::io::{self, OpenError, Opened};
 use crate::render::{self, Gpu, Picture};
 use crate::scene::Scene;
-use crate::session::{Action, Dialog};
+use crate::session::{Action, Dialog, Staging};
 
 /// What a picture shows and how large it is, in pixels and pixels a point.
 pub(super) struct Shot {
     pub document: Document,
+    pub staging: Staging,
     pub theme: Theme,
     pub size: (u32, u32),
     pub scale: f32,
@@ -32,32 +34,86 @@ pub(super) fn save_picture(shot: Shot, path: PathBuf, proxy: EventLoopProxy<User
 
 fn draw(shot: &Shot, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless()?;
-    let scene = Scene::new(&shot.document, &shot.document.arm.pose(), shot.theme);
+    let scene = Scene::new(&shot.document, &shot.staging, shot.theme);
     let (width, height) = shot.size;
     let image = Picture::new(&gpu, width, height, shot.scale).draw(&scene)?;
     Ok(render::save(&image, path)?)
 }
 
-/// Opens the system's own dialog.
-pub(super) fn choose_picture_path(path: &Path, proxy: EventLoopProxy<UserEvent>) {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut dialog = rfd::AsyncFileDialog::new().add_filter("PNG", &["png"]).set_file_name(name);
-    if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
-        dialog = dialog.set_directory(folder);
-    }
-    let chosen = dialog.save_file();
+/// Reads a file: a large one takes a while.
+pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProxy<UserEvent>) {
     thread::spawn(move || {
-        let path = pollster::block_on(chosen).map(|file| file.path().to_owned());
-        report(&proxy, UserEvent::PicturePath(path));
+        let read = Box::new(io::open(&path, skeleton.as_deref()));
+        report(&proxy, UserEvent::Opened { path, chosen: skeleton.is_some(), read });
+    });
+}
+
+/// What becomes of a file that was read: one that is no document leaves the open one as it is; one
+/// with several skeletons asks which.
+pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError>) -> Vec<Action> {
+    let Opened { document, warnings, skeletons, .. } = match read {
+        Ok(opened) => opened,
+        Err(error) => return vec![Action::Report(format!("Not opened: {error}"))],
+    };
+    let said = match &warnings[..] {
+        [] => format!("Opened {}", path.display()),
+        [one] => format!("Opened {}; {one}", path.display()),
+        [first, rest @ ..] => {
+            format!("Opened {}; {first}, and {} more remarks", path.display(), rest.len())
+        }
+    };
+    // A scene of another program is opened, not saved over.
+    let file = skeletons.is_empty().then(|| path.clone());
+    let mut actions =
+        vec![Action::Opened { document: Box::new(document), file }, Action::Report(said)];
+    if skeletons.len() > 1 && !chosen {
+        actions.push(Action::OpenDialog(Dialog::ChooseSkeleton { path, names: skeletons }));
+    }
+    actions
+}
+
+/// Opens the system's own dialog for the path that one of ours asks for.
+pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
+    let (path, name, extensions): (_, _, &[&str]) = match &dialog {
+        Dialog::SavePicture { path } => (path, "PNG", &["png"]),
+        Dialog::Open { path } => (path, "Scene", &["json", "js3d"]),
+        Dialog::SaveAs { path } => (path, "Scene", &["json"]),
+        _ => return,
+    };
+    let path = Path::new(path);
+    let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
+    if let Some(name) = path.file_name() {
+        system = system.set_file_name(name.to_string_lossy());
+    }
+    if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
+        system = system.set_directory(folder);
+    }
+    let is_open = matches!(dialog, Dialog::Open { .. });
+    let (open, save) = match is_open {
+        true => (Some(system.pick_file()), None),
+        false => (None, Some(system.save_file())),
+    };
+    thread::spawn(move || {
+        let file = match (open, save) {
+            (Some(open), _) => pollster::block_on(open),
+            (None, Some(save)) => pollster::block_on(save),
+            (None, None) => None,
+        };
+        report(&proxy, UserEvent::Chosen(dialog, file.map(|file| file.path().to_owned())));
     });
 }
 
 /// A dialog that was cancelled and a system that has none answer alike.
-pub(super) fn chosen(path: Option<PathBuf>) -> Action {
-    match path {
-        Some(path) => Action::OpenDialog(Dialog::SavePicture { path: path.display().to_string() }),
-        None => Action::Report("No file was chosen; a path can be typed instead".to_owned()),
-    }
+pub(super) fn chosen(dialog: Dialog, path: Option<PathBuf>) -> Action {
+    let Some(path) = path else {
+        return Action::Report("No file was chosen; a path can be typed instead".to_owned());
+    };
+    let path = path.display().to_string();
+    Action::OpenDialog(match dialog {
+        Dialog::Open { .. } => Dialog::Open { path },
+        Dialog::SaveAs { .. } => Dialog::SaveAs { path },
+        _ => Dialog::SavePicture { path },
+    })
 }
 
 fn report(proxy: &EventLoopProxy<UserEvent>, event: UserEvent) {

@@ -15,8 +15,10 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
+use crate::document::Document;
+use crate::io::{OpenError, Opened};
 use crate::render::GpuError;
-use crate::session::{Action, Session};
+use crate::session::{Action, Dialog, Session};
 use settings::Settings;
 use window::{AppWindow, Repaint};
 
@@ -59,7 +61,14 @@ enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Something that ran beside the window says how it ended.
     Report(String),
-    PicturePath(Option<PathBuf>),
+    /// The path that a dialog asked the system for, if there is one.
+    Chosen(Dialog, Option<PathBuf>),
+    /// A file was read, with one of its skeletons chosen or not.
+    Opened {
+        path: PathBuf,
+        chosen: bool,
+        read: Box<Result<Opened, OpenError>>,
+    },
 }
 
 impl From<egui_winit::accesskit_winit::Event> for UserEvent {
@@ -68,20 +77,24 @@ impl From<egui_winit::accesskit_winit::Event> for UserEvent {
     }
 }
 
-/// Opens the window and returns when it is closed.
+/// Opens the window, with a document from a file if there is one, and returns when it is closed.
 ///
 /// # Errors
 ///
 /// If there is no display or nothing to draw with.
-pub fn run() -> Result<(), AppError> {
+pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError> {
     let started = Instant::now();
     let event_loop =
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
     let settings = Settings::load();
+    let mut session = Session::new(settings.preferences);
+    if let Some((document, file)) = document {
+        session.apply(Action::Opened { document: Box::new(document), file });
+    }
     let mut app = App {
         started,
         proxy: event_loop.create_proxy(),
-        session: Session::new(settings.preferences),
+        session,
         settings,
         state: State::Suspended,
     };
@@ -180,8 +193,13 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Report(message) => {
                 self.session.apply(Action::Report(message));
             }
-            UserEvent::PicturePath(path) => {
-                self.session.apply(jobs::chosen(path));
+            UserEvent::Opened { path, chosen, read } => {
+                for action in jobs::opened(path, chosen, *read) {
+                    self.session.apply(action);
+                }
+            }
+            UserEvent::Chosen(dialog, path) => {
+                self.session.apply(jobs::chosen(dialog, path));
             }
         }
         window.request_redraw();

@@ -4,6 +4,7 @@ use egui::util::IdTypeMap;
 use egui_winit::WindowSettings;
 use serde::{Deserialize, Serialize};
 
+use crate::io;
 use crate::session::Preferences;
 
 /// What is kept from one start to the next: preferences, the window's place, the panels' layout.
@@ -42,10 +43,7 @@ impl Settings {
         };
         let folder = path.parent().ok_or("it has no folder")?;
         std::fs::create_dir_all(folder)?;
-        let file = tempfile::NamedTempFile::new_in(folder)?;
-        std::fs::write(file.path(), ron::to_string(self)?)?;
-        file.persist(&path)?;
-        Ok(())
+        Ok(io::write(&path, ron::to_string(self)?.as_bytes())?)
     }
 }
 

@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,9 +12,10 @@ use winit::window::{Icon, Window, WindowAttributes};
 use super::jobs::{self, Shot};
 use super::settings::Settings;
 use super::{AppError, UserEvent};
+use crate::io;
 use crate::render::{Canvas, Gpu, Renderer};
 use crate::scene::Scene;
-use crate::session::{Effect, Preferences, Session};
+use crate::session::{Action, Effect, Preferences, Session};
 use crate::ui::{self, Machine, style};
 
 const TITLE: &str = "ik-arm";
@@ -44,6 +45,7 @@ pub(super) struct AppWindow {
     pub(super) picture: Shown,
     pub(super) machine: Machine,
     pub(super) frames: u64,
+    title: String,
 }
 
 /// The scene as it was last drawn, for the panels to show.
@@ -102,6 +104,7 @@ impl AppWindow {
             stale: false,
             picture: Shown { canvas, texture, scene: None },
             frames: 0,
+            title: TITLE.to_owned(),
         })
     }
 
@@ -160,6 +163,7 @@ impl AppWindow {
                 return Repaint::Quit;
             }
         }
+        self.entitle(session);
         let platform = std::mem::take(&mut output.platform_output);
         self.egui.handle_platform_output(&self.window, platform);
         self.update_textures(&mut output);
@@ -195,11 +199,21 @@ impl AppWindow {
         (output, viewport, effects)
     }
 
+    /// Says what is open.
+    fn entitle(&mut self, session: &Session) {
+        let name = session.file().and_then(Path::file_name);
+        let title = name.map_or(TITLE.to_owned(), |name| format!("{} – {TITLE}", name.display()));
+        if title != self.title {
+            self.window.set_title(&title);
+            self.title = title;
+        }
+    }
+
     /// Whether the program is to end.
     fn carry_out(
         &self,
         effect: Effect,
-        session: &Session,
+        session: &mut Session,
         viewport: Rect,
         proxy: &EventLoopProxy<UserEvent>,
     ) -> bool {
@@ -208,15 +222,21 @@ impl AppWindow {
             Effect::SavePicture(path) => {
                 let scale = self.egui.egui_ctx().pixels_per_point();
                 let shot = Shot {
-                    document: *session.document(),
+                    document: session.document().clone(),
+                    staging: session.staging(),
                     theme: session.preferences().theme,
                     size: pixels(viewport, scale),
                     scale,
                 };
                 jobs::save_picture(shot, PathBuf::from(path), proxy.clone());
             }
-            Effect::ChoosePicturePath(path) => {
-                jobs::choose_picture_path(&PathBuf::from(path), proxy.clone());
+            Effect::ChoosePath(dialog) => jobs::choose_path(dialog, proxy.clone()),
+            Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
+            Effect::Save(path) => {
+                session.apply(match io::save(session.document(), &path) {
+                    Ok(()) => Action::Saved(path),
+                    Err(error) => Action::Report(format!("Not saved: {error}")),
+                });
             }
             Effect::Quit => return true,
         }
@@ -226,7 +246,7 @@ impl AppWindow {
     /// Draws the scene for the panels to show, if it is not what they show already.
     fn draw_scene(&mut self, session: &Session, viewport: Rect, scale: f32) {
         let (width, height) = pixels(viewport, scale);
-        let scene = Scene::new(session.document(), session.pose(), session.preferences().theme);
+        let scene = Scene::new(session.document(), &session.staging(), session.preferences().theme);
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.scene = None;

@@ -1,9 +1,13 @@
-//! The command line: solve, render, gui.
+//! The command line: solve, pose, render, examples, gui.
 
+mod examples;
+mod open;
+mod pose;
 mod render;
 mod solve;
 
 use std::io::{self, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -24,10 +28,14 @@ struct Cli {
 enum Command {
     /// Solve poses, one JSON object per line in, one per line out
     Solve(solve::Args),
-    /// Open the window (also without a command)
-    Gui,
-    /// Draw the arm to a picture, without a window
+    /// Pose a file's skeleton, solved or as it stands, and print it as JSON
+    Pose(pose::Args),
+    /// Draw the arm or a file to a picture, without a window
     Render(render::Args),
+    /// List the scenes that come with the program, or print one
+    Examples(examples::Args),
+    /// Open the window (also without a command)
+    Gui(GuiArgs),
 }
 
 /// Runs the program with the process's own arguments.
@@ -35,13 +43,37 @@ pub fn run() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
     match Cli::parse().command {
         Some(Command::Solve(args)) => solve::run(&args),
+        Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Gui) | None => gui(),
+        Some(Command::Examples(args)) => examples::run(&args),
+        Some(Command::Gui(args)) => gui(&args),
+        None => gui(&GuiArgs::default()),
     }
 }
 
-fn gui() -> ExitCode {
-    match app::run() {
+#[derive(clap::Args, Default)]
+struct GuiArgs {
+    /// Document, or .js3d scene of Scotty3D, to open in it
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Which of a scene's skeletons
+    #[arg(long, value_name = "NAME", requires = "file")]
+    skeleton: Option<String>,
+}
+
+fn gui(args: &GuiArgs) -> ExitCode {
+    let mut document = None;
+    if let Some(path) = &args.file {
+        match open::open(path, args.skeleton.as_deref()) {
+            // A scene of another program is opened, not saved over.
+            Ok(opened) => {
+                let file = opened.skeletons.is_empty().then(|| path.clone());
+                document = Some((opened.document, file));
+            }
+            Err(error) => return fail(&error),
+        }
+    }
+    match app::run(document) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),
     }

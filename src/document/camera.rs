@@ -58,10 +58,10 @@ impl Camera {
     pub const FIELD_OF_VIEW: f32 = 40.0 * PI / 180.0;
     /// What a point must be beyond to be seen, as a part of the distance to the target.
     const NEAR: f32 = 0.01;
-    /// How near and far the eye can go, from the smallest arm to the largest.
-    const DISTANCES: (f32, f32) = (1.0, 100_000.0);
-    /// How much depth an orthographic picture has, before and behind the target.
-    const ORTHOGRAPHIC_DEPTH: f32 = 200_000.0;
+    /// How near and far the eye can go, from the smallest rig to the largest.
+    const DISTANCES: (f32, f32) = (1e-3, 1e6);
+    /// How much depth an orthographic picture has, before and behind the target, in distances.
+    const ORTHOGRAPHIC_DEPTH: f32 = 200.0;
     /// Room around what is framed.
     const MARGIN: f32 = 1.2;
 
@@ -78,7 +78,7 @@ impl Camera {
         let x = row(right, 1.0 / (span * aspect));
         let y = row(up, 1.0 / span);
         let (z, w) = if self.orthographic {
-            let per_unit = 0.5 / Self::ORTHOGRAPHIC_DEPTH;
+            let per_unit = 0.5 / (Self::ORTHOGRAPHIC_DEPTH * self.distance);
             let z = row(back, per_unit) + Vec4::W * (0.5 + self.distance * per_unit);
             (z, Vec4::W)
         } else {

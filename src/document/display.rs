@@ -10,7 +10,8 @@ pub enum Theme {
 }
 
 /// One thing in the picture that can be switched on and off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Layer {
     Cursor,
     Pointer,
@@ -61,16 +62,25 @@ impl Display {
         }
         self
     }
+
+    /// What is shown.
+    pub fn layers(self) -> impl Iterator<Item = Layer> {
+        let all = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS);
+        all.filter(move |layer| self.shows(*layer))
+    }
+}
+
+/// Shows these and nothing else.
+impl FromIterator<Layer> for Display {
+    fn from_iter<T: IntoIterator<Item = Layer>>(layers: T) -> Self {
+        layers.into_iter().fold(Self { shown: 0 }, |display, layer| display.with(layer, true))
+    }
 }
 
 impl Default for Display {
     /// The whole scene, with Cursor and Pointer; the limits would veil the arm.
     fn default() -> Self {
-        let nothing = Self { shown: 0 };
-        Layer::SURROUNDINGS
-            .into_iter()
-            .chain([Layer::Cursor, Layer::Pointer])
-            .fold(nothing, |display, layer| display.with(layer, true))
+        Layer::SURROUNDINGS.into_iter().chain([Layer::Cursor, Layer::Pointer]).collect()
     }
 }
 

@@ -1,20 +1,49 @@
-//! What is saved: the arm, where it is looked at from, and what is shown.
+//! What is saved: the arm, the skeleton, where they are looked at from, and what is shown.
 //!
-//! The pose is a function of the document alone, so whatever a stateful choice needs (the last
-//! direction and yaw of the Pointer) is in it too.
+//! The pose is a function of the document and the time alone, so whatever a stateful choice needs
+//! (the last direction and yaw of the Pointer, the joints' angles) is in it too.
 
 mod arm;
 mod camera;
 mod display;
+mod skeleton;
+mod slither;
 
 pub use arm::Arm;
 pub use camera::{AxisView, Camera, Projection, Ray};
 pub use display::{Display, Layer, Theme};
+pub use skeleton::{Motion, Path, SkeletonRig, Target};
+pub use slither::Slither;
 
 /// Everything that a file holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
+    /// Which rig is shown and edited; the other is kept as it is.
+    pub rig: RigKind,
     pub arm: Arm,
+    pub skeleton: SkeletonRig,
     pub camera: Camera,
     pub display: Display,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RigKind {
+    #[default]
+    Arm,
+    Skeleton,
+}
+
+impl Document {
+    /// How wide the grid's cells are: those of the seed around the arm; around a skeleton the power
+    /// of ten that goes 2 to 20 times into its reach.
+    pub fn cell(&self) -> f32 {
+        const SEED: f32 = 100.0;
+        match self.rig {
+            RigKind::Arm => SEED,
+            RigKind::Skeleton => {
+                let cell = 10_f32.powf((self.skeleton.reach() * 0.5).log10().floor());
+                if cell.is_normal() { cell } else { 1.0 }
+            }
+        }
+    }
 }

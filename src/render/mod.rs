@@ -6,11 +6,11 @@
 
 mod backdrop;
 mod canvas;
-mod dash;
 mod font;
 mod gpu;
 mod instances;
 mod label;
+mod line;
 mod mesh;
 mod picture;
 mod pipeline;
@@ -29,7 +29,7 @@ pub use renderer::Renderer;
 pub fn shaders() -> [(&'static str, &'static str); 5] {
     [
         ("backdrop", backdrop::SHADER),
-        ("dash", dash::SHADER),
+        ("line", line::SHADER),
         ("label", label::SHADER),
         ("shadow", shadow::SHADER),
         ("solid", solid::SHADER),

@@ -1,6 +1,6 @@
 use super::backdrop::Backdrop;
-use super::dash::Dashes;
 use super::label::Labels;
+use super::line::Lines;
 use super::shadow::Shadows;
 use super::solid::Solids;
 use super::view::View;
@@ -14,7 +14,7 @@ pub struct Renderer {
     solids: Solids,
     backdrop: Backdrop,
     shadows: Shadows,
-    dashes: Dashes,
+    lines: Lines,
     labels: Labels,
 }
 
@@ -25,7 +25,7 @@ impl Renderer {
             solids: Solids::new(gpu, &view.layout),
             backdrop: Backdrop::new(gpu, &view.layout),
             shadows: Shadows::new(gpu, &view.layout),
-            dashes: Dashes::new(gpu, &view.layout),
+            lines: Lines::new(gpu, &view.layout),
             labels: Labels::new(gpu, &view.layout),
             view,
         }
@@ -37,7 +37,7 @@ impl Renderer {
         self.view.upload(gpu, scene, canvas.size(), scale);
         self.solids.upload(gpu, scene, canvas.size());
         self.shadows.upload(gpu, scene);
-        self.dashes.upload(gpu, scene);
+        self.lines.upload(gpu, scene);
         self.labels.upload(gpu, scene, canvas.size(), scale);
 
         let mut encoder = gpu
@@ -69,7 +69,7 @@ impl Renderer {
         self.solids.draw(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
-        self.dashes.draw(&mut pass);
+        self.lines.draw(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);

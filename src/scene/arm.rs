@@ -1,6 +1,5 @@
-use glam::Vec3;
-
-use super::{Ball, Dash, Label, Scene, Shadow, Shell, Side, Solid};
+use super::shadow::above_ground;
+use super::{Ball, Label, Line, Scene, Shadow, Shell, Side, Solid};
 use crate::document::{Arm, Display, Layer};
 use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::{ArmRig, Part};
@@ -72,7 +71,7 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, thickness: f32, display: Display)
 fn add_gap(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     let (hand, cursor) = (rig.origin(Part::Hand), rig.origin(Part::Cursor));
     let colour = scene.palette.accent;
-    scene.dashes.push(Dash { from: hand, to: cursor, colour });
+    scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     scene.labels.push(Label {
         at: cursor,
         clearance: CURSOR_BALL * thickness,
@@ -112,23 +111,4 @@ fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
             tip_radius: tip_radius * thickness,
         })
     }));
-}
-
-/// The part of a limb above y = 0: what is below casts no shadow on it.
-fn above_ground(limb: Shadow) -> Option<Shadow> {
-    let at = |part: f32| {
-        let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * part;
-        (limb.base.lerp(limb.tip, part), radius)
-    };
-    let (base_y, tip_y) = (limb.base.y, limb.tip.y);
-    let crossing = base_y / (base_y - tip_y);
-    let (from, to) = match (base_y >= 0.0, tip_y >= 0.0) {
-        (true, true) => return Some(limb),
-        (true, false) => (0.0, crossing),
-        (false, true) => (crossing, 1.0),
-        (false, false) => return None,
-    };
-    let ((base, base_radius), (tip, tip_radius)) = (at(from), at(to));
-    let flat = |v: Vec3| Vec3 { y: v.y.max(0.0), ..v };
-    Some(Shadow { base: flat(base), base_radius, tip: flat(tip), tip_radius })
 }

@@ -1,17 +1,19 @@
-//! What to draw: plain lists of solids, balls, shells, dashes and labels, made from a document.
+//! What to draw: plain lists of solids, balls, shells, lines and labels, made from a document.
 //!
 //! Nothing here knows how things are drawn; nothing in [`crate::render`] knows what they mean.
 
 mod arm;
 mod palette;
+mod shadow;
+mod skeleton;
 
 use glam::{Affine3A, Vec3};
 
 pub use palette::{Colour, Palette};
 
-use crate::document::{Camera, Display, Document, Layer, Theme};
-use crate::kinematics::two_bone::Pose;
+use crate::document::{Camera, Display, Document, Layer, RigKind, Theme};
 use crate::rig::Cone;
+use crate::session::Staging;
 
 /// A picture to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +29,7 @@ pub struct Scene {
     pub guide_solids: Vec<Solid>,
     pub guide_balls: Vec<Ball>,
     pub shells: Vec<Shell>,
-    pub dashes: Vec<Dash>,
+    pub lines: Vec<Line>,
     pub labels: Vec<Label>,
 }
 
@@ -40,6 +42,8 @@ pub struct Stage {
     pub ground: bool,
     pub centre: Vec3,
     pub radius: f32,
+    /// How wide the grids' cells are.
+    pub cell: f32,
 }
 
 /// A cone at a rigid place.
@@ -65,12 +69,13 @@ pub struct Shell {
     pub colour: Colour,
 }
 
-/// A dashed line, as wide on screen wherever it is.
+/// A line, as wide on screen wherever it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dash {
+pub struct Line {
     pub from: Vec3,
     pub to: Vec3,
     pub colour: Colour,
+    pub dashed: bool,
 }
 
 /// Words beside a point.
@@ -101,33 +106,39 @@ pub struct Shadow {
 }
 
 impl Scene {
-    /// The document as it stands. `pose` is the document's arm solved.
-    pub fn new(document: &Document, pose: &Pose, theme: Theme) -> Self {
-        let Document { arm, camera, display } = document;
-        let palette = Palette::new(theme);
+    /// The document as it stands, with what goes on around it.
+    pub fn new(document: &Document, staging: &Staging, theme: Theme) -> Self {
+        let display = document.display;
+        let (centre, reach) = match document.rig {
+            RigKind::Arm => (document.arm.root, document.arm.bones.outer_limit()),
+            RigKind::Skeleton => skeleton::stage(&document.skeleton),
+        };
         let mut scene = Self {
-            camera: *camera,
-            palette,
-            stage: Stage::around(arm.root, arm.bones.outer_limit(), *display),
+            camera: document.camera,
+            palette: Palette::new(theme),
+            stage: Stage::around(centre, reach, document.cell(), display),
             shadows: Vec::new(),
             solids: Vec::new(),
             balls: Vec::new(),
             guide_solids: Vec::new(),
             guide_balls: Vec::new(),
             shells: Vec::new(),
-            dashes: Vec::new(),
+            lines: Vec::new(),
             labels: Vec::new(),
         };
         if display.shows(Layer::Axes) {
-            scene.add_axes(arm.bones.outer_limit());
+            scene.add_axes(reach);
         }
-        arm::add(&mut scene, arm, pose, *display);
+        match document.rig {
+            RigKind::Arm => arm::add(&mut scene, &document.arm, &document.arm.pose(), display),
+            RigKind::Skeleton => skeleton::add(&mut scene, &document.skeleton, staging, display),
+        }
         scene
     }
 
-    /// Three arrows from the world's origin, half as long as the arm.
-    fn add_axes(&mut self, arm_length: f32) {
-        let length = 0.5 * arm_length;
+    /// Three arrows from the world's origin, half as long as the rig reaches.
+    fn add_axes(&mut self, reach: f32) {
+        let length = 0.5 * reach;
         let (shaft, head, head_length) = (length * 0.009, length * 0.034, length * 0.12);
         for (axis, colour) in Vec3::AXES.into_iter().zip(self.palette.axes) {
             let neck = axis * (length - head_length);
@@ -150,17 +161,18 @@ impl Scene {
 }
 
 impl Stage {
-    /// The planes reach well past the arm, so that it has ground to stand on wherever it points.
+    /// The planes reach well past the rig, so that it has ground to stand on wherever it points.
     const RADIUS: f32 = 1.7;
 
-    fn around(centre: Vec3, arm_length: f32, display: Display) -> Self {
+    fn around(centre: Vec3, reach: f32, cell: f32, display: Display) -> Self {
         Self {
             grid_xy: display.shows(Layer::GridXy),
             grid_xz: display.shows(Layer::GridXz),
             grid_yz: display.shows(Layer::GridYz),
             ground: display.shows(Layer::Ground),
             centre,
-            radius: Self::RADIUS * arm_length,
+            radius: Self::RADIUS * reach,
+            cell,
         }
     }
 }

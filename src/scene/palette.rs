@@ -1,4 +1,5 @@
 use crate::document::Theme;
+use crate::kinematics::solve::Method;
 
 /// A colour as a screen has it: sRGB, with opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +16,14 @@ impl Colour {
     pub fn with_opacity(self, opacity: f32) -> Self {
         let [r, g, b, _] = self.0;
         Self([r, g, b, (opacity * 255.0).round() as u8])
+    }
+
+    /// Part of the way to another colour, as a screen mixes them.
+    #[must_use]
+    pub fn mixed(self, other: Self, part: f32) -> Self {
+        let mix =
+            |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * part).round() as u8;
+        Self(std::array::from_fn(|channel| mix(self.0[channel], other.0[channel])))
     }
 
     /// Red, green, blue and opacity from 0 to 1, still sRGB.
@@ -80,5 +89,18 @@ impl Palette {
                 shadow: 0.42,
             },
         }
+    }
+
+    /// The colour that a solver has wherever solvers are beside each other.
+    pub fn method(&self, method: Method) -> Colour {
+        let [dark, light] = match method {
+            Method::TransposeFixed => [0xc9a227, 0x7d6300],
+            Method::Transpose => [0xf2d06b, 0x9a7b1c],
+            Method::DampedLeastSquares => [0x3fb8a5, 0x0b7466],
+            Method::Ccd => [0x8fd460, 0x3f7a15],
+            Method::Fabrik => [0xb397f5, 0x6a42c4],
+            Method::TwoBone => [0xf08fb4, 0xb02a63],
+        };
+        Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 }

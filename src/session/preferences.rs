@@ -8,8 +8,10 @@ use crate::document::Theme;
 pub struct Preferences {
     pub theme: Theme,
     pub navigation: Navigation,
-    /// Whether the Explain panel is open.
+    /// Whether the panel on the right is open.
     pub explain: bool,
+    /// Whether a skeleton follows its target while that is dragged.
+    pub follow: bool,
 }
 
 /// Which mouse buttons turn the view, as other programs have it.
@@ -25,7 +27,12 @@ pub enum Navigation {
 
 impl Default for Preferences {
     fn default() -> Self {
-        Self { theme: Theme::default(), navigation: Navigation::default(), explain: true }
+        Self {
+            theme: Theme::default(),
+            navigation: Navigation::default(),
+            explain: true,
+            follow: true,
+        }
     }
 }
 

@@ -1,6 +1,8 @@
-//! Windows over the others: about, shortcuts, where to save a picture.
+//! Windows over the others: about, shortcuts, and what asks for a path or a name.
 
-use egui::{Align2, Grid, Key, TextEdit, Ui, Window, vec2};
+use std::path::Path;
+
+use egui::{Align2, Grid, Key, ScrollArea, TextEdit, Ui, Window, vec2};
 
 use super::Machine;
 use crate::session::{Action, Dialog, Session};
@@ -12,7 +14,23 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
             window(ui, "Shortcuts", actions, |ui, _| shortcuts(ui, session));
         }
         Some(Dialog::SavePicture { path }) => {
-            window(ui, "Save picture", actions, |ui, actions| save_picture(ui, path, actions));
+            window(ui, "Save picture", actions, |ui, actions| {
+                ask_path(ui, &SAVE_PICTURE, path, actions);
+            });
+        }
+        Some(Dialog::Open { path }) => {
+            window(ui, "Open", actions, |ui, actions| ask_path(ui, &OPEN, path, actions));
+        }
+        Some(Dialog::SaveAs { path }) => {
+            window(ui, "Save as", actions, |ui, actions| ask_path(ui, &SAVE_AS, path, actions));
+        }
+        Some(Dialog::ChooseSkeleton { path, names }) => {
+            window(ui, "Choose a skeleton", actions, |ui, actions| {
+                choose_skeleton(ui, path, names, actions);
+            });
+        }
+        Some(Dialog::Rename { joint, name }) => {
+            window(ui, "Rename", actions, |ui, actions| rename(ui, *joint, name, actions));
         }
         None => {}
     }
@@ -55,7 +73,7 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
     let navigation = session.preferences().navigation;
     let [turn, pan, zoom] = navigation.help();
     let view = format!("View ({})", navigation.name());
-    let groups: [(&str, &[(&str, &str)]); 4] = [
+    let groups: [(&str, &[(&str, &str)]); 5] = [
         (&view, &[("Turn", turn), ("Move", pan), ("Zoom", zoom), ("Over handles too", "Alt+drag")]),
         (
             "Look",
@@ -69,7 +87,18 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
             ],
         ),
         (
-            "While the hand is dragged",
+            "Skeleton",
+            &[
+                ("Select, add to the selection", "click, Shift+click"),
+                ("Add a child, at the pointer", "A, Ctrl+click"),
+                ("Add or remove a target, rename, delete", "T, F2, Delete"),
+                ("Run the solver, one iteration", "R, S"),
+                ("Let the time go on or stand", "Space"),
+                ("Select all, none", "Ctrl+A, Esc"),
+            ],
+        ),
+        (
+            "While something is dragged",
             &[
                 ("A tenth, whole steps", "Shift, Ctrl"),
                 ("Along an axis, in a plane", "X Y Z, Shift+X Y Z"),
@@ -86,45 +115,131 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
             ],
         ),
     ];
-    ui.set_width(430.0);
-    for (title, rows) in groups {
-        ui.strong(title);
-        Grid::new(title).num_columns(2).min_col_width(190.0).show(ui, |ui| {
-            for (what, keys) in rows {
-                ui.label(*what);
-                ui.weak(*keys);
-                ui.end_row();
+    // Beside each other, so that all is seen at once; where the window is smaller still, it scrolls.
+    let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
+    let size = vec2(900.0, 396.0).min(room);
+    ui.set_min_size(size);
+    ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = 24.0;
+            for column in [&[1, 2][..], &[0, 3, 4]] {
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing.x = 8.0;
+                    column.iter().for_each(|group| group_of_keys(ui, groups[*group]));
+                });
             }
         });
-        ui.add_space(8.0);
-    }
+    });
 }
 
+fn group_of_keys(ui: &mut Ui, (title, rows): (&str, &[(&str, &str)])) {
+    ui.strong(title);
+    Grid::new(title).num_columns(2).min_col_width(190.0).show(ui, |ui| {
+        for (what, keys) in rows {
+            ui.label(*what);
+            ui.weak(*keys);
+            ui.end_row();
+        }
+    });
+    ui.add_space(8.0);
+}
+
+/// What a path box asks for.
+struct Question {
+    prompt: &'static str,
+    accept: &'static str,
+    dialog: fn(String) -> Dialog,
+    action: fn(String) -> Action,
+}
+
+const SAVE_PICTURE: Question = Question {
+    prompt: "Save the viewport as PNG to",
+    accept: "Save",
+    dialog: |path| Dialog::SavePicture { path },
+    action: Action::SavePicture,
+};
+
+const OPEN: Question = Question {
+    prompt: "Open a document, or a .js3d scene of Scotty3D",
+    accept: "Open",
+    dialog: |path| Dialog::Open { path },
+    action: |path| Action::Open { path: path.into(), skeleton: None },
+};
+
+const SAVE_AS: Question = Question {
+    prompt: "Save the document to",
+    accept: "Save",
+    dialog: |path| Dialog::SaveAs { path },
+    action: |path| Action::SaveAs(path.into()),
+};
+
 /// A path box that works on every system, with the system's own dialog behind a button.
-fn save_picture(ui: &mut Ui, path: &str, actions: &mut Vec<Action>) {
+fn ask_path(ui: &mut Ui, question: &Question, path: &str, actions: &mut Vec<Action>) {
     ui.set_width(440.0);
-    let mut typed = path.to_owned();
-    let name = ui.label("Save the viewport as PNG to");
+    let (typed, entered) = ask(ui, question.prompt, path);
+    if typed != path {
+        actions.push(Action::OpenDialog((question.dialog)(typed.clone())));
+    }
+    ui.horizontal(|ui| {
+        let can_go = !typed.trim().is_empty();
+        let accept = ui
+            .add_enabled(can_go, egui::Button::new(question.accept))
+            .on_disabled_hover_text("There is no path yet");
+        if (accept.clicked() || entered) && can_go {
+            actions.push((question.action)(typed.trim().to_owned()));
+        }
+        if ui.button("Browse…").on_hover_text("The system's own dialog, where it has one").clicked()
+        {
+            actions.push(Action::ChoosePath);
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+/// A line of text that has the keyboard: what is in it, and whether it was entered.
+fn ask(ui: &mut Ui, prompt: &str, text: &str) -> (String, bool) {
+    let mut typed = text.to_owned();
+    let name = ui.label(prompt);
     let edit = ui.add(TextEdit::singleline(&mut typed).desired_width(f32::INFINITY));
     let edit = edit.labelled_by(name.id);
     let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {
         edit.request_focus();
     }
-    if edit.changed() {
-        actions.push(Action::OpenDialog(Dialog::SavePicture { path: typed.clone() }));
+    (typed, entered)
+}
+
+fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Vec<Action>) {
+    ui.set_width(360.0);
+    ui.label("The file has several skeletons. The first one is open; another can be chosen:");
+    ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+        for name in names {
+            if ui.add(egui::Button::new(name).truncate()).clicked() {
+                let (path, skeleton) = (path.to_owned(), Some(name.clone()));
+                actions.push(Action::Open { path, skeleton });
+            }
+        }
+    });
+    if ui.button("Keep the first").clicked() {
+        actions.push(Action::CloseDialog);
+    }
+}
+
+fn rename(ui: &mut Ui, joint: usize, name: &str, actions: &mut Vec<Action>) {
+    ui.set_width(300.0);
+    let (typed, entered) = ask(ui, "The joint's name", name);
+    if typed != name {
+        actions.push(Action::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
     }
     ui.horizontal(|ui| {
-        let can_save = !typed.trim().is_empty();
-        let save = ui
-            .add_enabled(can_save, egui::Button::new("Save"))
-            .on_disabled_hover_text("There is no path yet");
-        if (save.clicked() || entered) && can_save {
-            actions.push(Action::SavePicture(typed.trim().to_owned()));
-        }
-        if ui.button("Browse…").on_hover_text("The system's own dialog, where it has one").clicked()
-        {
-            actions.push(Action::ChoosePicturePath(typed.clone()));
+        let can_go = !typed.trim().is_empty();
+        let accept = ui
+            .add_enabled(can_go, egui::Button::new("Rename"))
+            .on_disabled_hover_text("A joint needs a name");
+        if (accept.clicked() || entered) && can_go {
+            actions.push(Action::Rename { joint, name: typed.trim().to_owned() });
         }
         if ui.button("Cancel").clicked() {
             actions.push(Action::CloseDialog);

@@ -174,7 +174,7 @@ fn meter(ui: &mut Ui, session: &Session) {
     let place =
         |distance: f32| bar.left() + bar.width() * (distance / (outer * BEYOND)).clamp(0.0, 1.0);
     let visuals = ui.visuals();
-    let accent = visuals.selection.stroke.color;
+    let accent = style::accent(ui);
     let painter = ui.painter();
     painter.rect_filled(bar, 4.0, visuals.widgets.inactive.bg_fill);
     let within = egui::Rect::from_x_y_ranges(place(inner)..=place(outer), bar.top()..=bar.bottom());

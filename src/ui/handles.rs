@@ -1,4 +1,4 @@
-//! The hand's handles: three arrows, three squares and the hand itself, as large on screen
+//! A point's handles: three arrows, three squares and the point itself, as large on screen
 //! wherever they are.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
@@ -31,8 +31,9 @@ pub(super) struct Handles {
 }
 
 impl Handles {
-    /// Around the Cursor at `cursor`; nothing if it is behind the eye.
-    pub fn new(picture: &Picture, cursor: Vec3, hand: Vec3) -> Option<Self> {
+    /// Around the point at `cursor`, with a second place to take it by; nothing if it is behind the
+    /// eye.
+    pub fn new(picture: &Picture, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
         let centre = picture.place(cursor)?;
         let unit = LENGTH * picture.units_per_point(cursor);
         let mut arrows = [Vec2::ZERO; 3];
@@ -40,7 +41,7 @@ impl Handles {
             // Their own perspective would make arrows towards the eye endless.
             *arrow = picture.direction(axis * unit, cursor);
         }
-        Some(Self { centre, hand: picture.place(hand), arrows })
+        Some(Self { centre, hand: hand.and_then(|hand| picture.place(hand)), arrows })
     }
 
     /// What is under a point of the screen.
@@ -150,7 +151,7 @@ impl Handles {
     }
 }
 
-fn bright(colour: Color32) -> Color32 {
+pub(super) fn bright(colour: Color32) -> Color32 {
     colour.lerp_to_gamma(Color32::WHITE, 0.35)
 }
 

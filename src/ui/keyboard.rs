@@ -3,9 +3,9 @@
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 use glam::Vec2;
 
-use super::menu;
-use crate::document::AxisView;
-use crate::session::{Action, Constraint, Dialog, Session};
+use super::{joints, menu};
+use crate::document::{AxisView, RigKind};
+use crate::session::{Action, Constraint, Dialog, PointDrag, Session};
 
 /// Keys that act wherever the keyboard is.
 pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -14,6 +14,19 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     };
     if pressed(Modifiers::COMMAND, Key::Q) {
         actions.push(Action::Quit);
+    }
+    if pressed(Modifiers::COMMAND, Key::O) {
+        actions.push(menu::open());
+    }
+    if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S) {
+        actions.push(menu::save_as());
+    }
+    if pressed(Modifiers::COMMAND, Key::S) {
+        actions.push(Action::Save);
+    }
+    let dropped = ui.input(|input| input.raw.dropped_files.first().map(|it| it.path().to_owned()));
+    if let Some(path) = dropped {
+        actions.push(Action::Open { path, skeleton: None });
     }
     if pressed(Modifiers::COMMAND, Key::P) {
         actions.push(menu::save_picture());
@@ -28,6 +41,14 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             actions.push(Action::CancelView);
         } else if session.dialog().is_some() {
             actions.push(Action::CloseDialog);
+        } else if was_typing(ui) || egui::Popup::is_any_open(ui.ctx()) {
+            // It leaves the text, or closes the list.
+        } else if session.is_running() {
+            actions.push(Action::CancelRun);
+        } else if session.race().is_some() {
+            actions.push(Action::Race(false));
+        } else if !session.selection().is_empty() {
+            actions.push(Action::Select(Vec::new()));
         }
     }
     let copied = ui.input(|input| input.events.contains(&Event::Copy));
@@ -36,12 +57,59 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     }
 }
 
-/// Single keys, while no widget or the viewport has the keyboard.
+/// Marks whether a text has the keyboard.
+#[derive(Clone, Copy, Default)]
+struct Typing(bool);
+
+/// Notes at the end of a frame whether a text has the keyboard: Esc takes it away before the next
+/// one begins.
+pub(super) fn remember(ui: &Ui) {
+    let typing = Typing(ui.text_edit_focused());
+    ui.data_mut(|data| data.insert_temp(egui::Id::NULL, typing));
+}
+
+fn was_typing(ui: &Ui) -> bool {
+    ui.data(|data| data.get_temp::<Typing>(egui::Id::NULL)).is_some_and(|typing| typing.0)
+}
+
+/// Single keys, while no widget or the viewport or the tree of joints has the keyboard.
 pub(super) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    if session.hand_drag().is_some() {
+    if session.drag().is_some() {
         drag(ui, session, actions);
     } else {
         view(ui, session, actions);
+        if session.rig() == RigKind::Skeleton {
+            skeleton(ui, session, actions);
+        }
+    }
+}
+
+fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let selected = session.selected();
+    if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
+        actions.push(Action::Select((0..session.skeleton_pose().len()).collect()));
+    }
+    if let Some(parent) = selected.filter(|_| pressed(Key::A)) {
+        actions.push(Action::AddChild { parent, tip: None });
+    }
+    if pressed(Key::T) {
+        actions.extend(joints::toggle_target(session));
+    }
+    if let Some(joint) = selected.filter(|_| pressed(Key::F2)) {
+        actions.push(joints::rename(session, joint));
+    }
+    if selected.is_some() && (pressed(Key::Delete) || pressed(Key::Backspace)) {
+        actions.push(Action::Delete(session.selection().to_vec()));
+    }
+    if pressed(Key::R) {
+        actions.push(Action::Run(!session.is_running()));
+    }
+    if pressed(Key::S) {
+        actions.push(Action::Step);
+    }
+    if pressed(Key::Space) && (session.is_playing() || session.skeleton().is_moving()) {
+        actions.push(Action::Play(!session.is_playing()));
     }
 }
 
@@ -69,7 +137,7 @@ fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             actions.push(Action::SetCamera(menu::with_other_projection(camera)));
         }
         if input.key_pressed(Key::F) {
-            actions.push(menu::frame_arm(session));
+            actions.push(menu::frame_selection(session));
         }
         if input.key_pressed(Key::Home) {
             actions.push(menu::frame_all(session));
@@ -100,13 +168,13 @@ pub(super) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Vec<Ac
         };
         if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
     });
-    if asked != camera && session.hand_drag().is_none() {
+    if asked != camera && session.drag().is_none() {
         actions.push(Action::SetCamera(asked));
     }
 }
 
 fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(drag) = session.hand_drag() else {
+    let Some(drag) = session.drag() else {
         return;
     };
     let mut typed = drag.typed().to_owned();
@@ -118,7 +186,7 @@ fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
                 } else {
                     Constraint::Axis(axis)
                 };
-                let released = drag.constraint() == Some(asked);
+                let released = drag.point().and_then(PointDrag::constraint) == Some(asked);
                 actions.push(Action::ConstrainDrag((!released).then_some(asked)));
             }
         }

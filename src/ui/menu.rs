@@ -2,7 +2,9 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use crate::document::{AxisView, Camera, Theme};
+use super::status;
+use crate::document::{AxisView, Camera, RigKind, Theme};
+use crate::io::Example;
 use crate::session::{Action, Dialog, Navigation, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -10,9 +12,16 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.menu_button("File", |ui| file(ui, actions));
         ui.menu_button("Edit", |ui| edit(ui, session, actions));
         ui.menu_button("View", |ui| view(ui, session, actions));
+        ui.menu_button("Examples", |ui| examples(ui, actions));
         ui.menu_button("Help", |ui| help(ui, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add(Label::new(RichText::new("Arm · IK").weak()).selectable(false));
+            let rig = match session.rig() {
+                RigKind::Arm => "Arm · IK".to_owned(),
+                RigKind::Skeleton => {
+                    format!("Skeleton · {}", status::method_name(session.skeleton().solver.method))
+                }
+            };
+            ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
         });
     });
 }
@@ -23,6 +32,20 @@ fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
 }
 
 fn file(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if item(ui, "New skeleton", "") {
+        actions.push(Action::NewSkeleton);
+    }
+    if item(ui, "Open…", "Ctrl+O") {
+        actions.push(open());
+    }
+    ui.separator();
+    if item(ui, "Save", "Ctrl+S") {
+        actions.push(Action::Save);
+    }
+    if item(ui, "Save as…", "Ctrl+Shift+S") {
+        actions.push(save_as());
+    }
+    ui.separator();
     if item(ui, "Save picture…", "Ctrl+P") {
         actions.push(save_picture());
     }
@@ -30,6 +53,14 @@ fn file(ui: &mut Ui, actions: &mut Vec<Action>) {
     if item(ui, "Quit", "Ctrl+Q") {
         actions.push(Action::Quit);
     }
+}
+
+pub(super) fn open() -> Action {
+    Action::OpenDialog(Dialog::Open { path: String::new() })
+}
+
+pub(super) fn save_as() -> Action {
+    Action::OpenDialog(Dialog::SaveAs { path: "ik-arm.json".to_owned() })
 }
 
 pub(super) fn save_picture() -> Action {
@@ -63,8 +94,8 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     if item(ui, "Perspective / orthographic", "5") {
         actions.push(Action::SetCamera(with_other_projection(session.settled_camera())));
     }
-    if item(ui, "Frame arm", "F") {
-        actions.push(frame_arm(session));
+    if item(ui, "Frame selection", "F") {
+        actions.push(frame_selection(session));
     }
     if item(ui, "Frame all", "Home") {
         actions.push(frame_all(session));
@@ -77,7 +108,11 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     ui.separator();
     let mut explain = session.preferences().explain;
-    if ui.checkbox(&mut explain, "Explain panel").changed() {
+    let name = match session.rig() {
+        RigKind::Arm => "Explain panel",
+        RigKind::Skeleton => "Solver panel",
+    };
+    if ui.checkbox(&mut explain, name).changed() {
         actions.push(Action::ShowExplain(explain));
     }
 }
@@ -95,19 +130,20 @@ pub(super) fn with_other_projection(camera: Camera) -> Camera {
     Camera { orthographic: !camera.orthographic, ..camera }
 }
 
-/// Panels leave the viewport about as high as it is wide; the margin covers the rest.
-const ASPECT: f32 = 1.0;
-
-pub(super) fn frame_arm(session: &Session) -> Action {
-    let (centre, radius) = session.arm().bounds(session.pose());
-    Action::GlideTo(session.settled_camera().framing(centre, radius, ASPECT))
+pub(super) fn frame_selection(session: &Session) -> Action {
+    Action::GlideTo(session.framing_selection())
 }
 
-/// All that the hand can reach.
 pub(super) fn frame_all(session: &Session) -> Action {
-    let arm = session.arm();
-    let camera = session.settled_camera();
-    Action::GlideTo(camera.framing(arm.root, arm.bones.outer_limit(), ASPECT))
+    Action::GlideTo(session.framing_all())
+}
+
+fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
+    for example in Example::ALL {
+        if ui.button(example.title).on_hover_text(example.sentence).clicked() {
+            actions.push(Action::OpenExample(example));
+        }
+    }
 }
 
 fn help(ui: &mut Ui, actions: &mut Vec<Action>) {

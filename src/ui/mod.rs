@@ -1,22 +1,34 @@
 //! The panels: functions that read a session and push actions. They know no window and no GPU.
 
+mod arm;
 mod compass;
 mod controls;
+mod convergence;
 mod dialogs;
 mod explain;
+mod figure;
+mod grips;
 mod handles;
+mod joint;
+mod joints;
 mod keyboard;
 mod menu;
+mod motion;
+mod number;
+mod race;
 mod row;
 mod slider;
+mod solver;
 mod status;
 pub mod style;
 mod symbol;
+mod targets;
 mod triangle;
 mod viewport;
 
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
+use crate::document::RigKind;
 use crate::session::{Action, Session};
 
 /// What the panels show of the machine they run on.
@@ -46,14 +58,22 @@ pub fn show(
         .size_range(232.0..=420.0)
         .show(ui, |ui| controls::ui(ui, session, actions));
     if session.preferences().explain {
-        Panel::right("explain")
-            .resizable(true)
-            .default_size(272.0)
-            .size_range(232.0..=460.0)
-            .show(ui, |ui| explain::ui(ui, session));
+        Panel::right("explain").resizable(true).default_size(272.0).size_range(232.0..=460.0).show(
+            ui,
+            |ui| match session.rig() {
+                RigKind::Arm => explain::ui(ui, session),
+                RigKind::Skeleton => solver::ui(ui, session, actions),
+            },
+        );
     }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
     dialogs::ui(ui, session, machine, actions);
+    keyboard::remember(ui);
     viewport
+}
+
+/// Whether the change under way is a slider's, not that of something held in the viewport.
+fn is_sliding(session: &Session) -> bool {
+    session.is_editing() && session.drag().is_none()
 }

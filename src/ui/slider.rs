@@ -1,9 +1,10 @@
 use egui::{
-    Align, Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Layout, Rect, Response,
-    Sense, TextStyle, TextWrapMode, Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
+    Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
+    Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
 };
 
-use super::symbol;
+use super::number::Number;
+use super::{style, symbol};
 use crate::session::Action;
 
 /// A number that is shown and set: a name, a rail with a thumb, and the value, which can be typed.
@@ -20,6 +21,11 @@ pub(super) struct Slider<'a> {
     pub range: (f32, f32),
     pub default: f32,
     pub unit: &'a str,
+    /// What an arrow key adds; with Shift a tenth of it, by page keys ten times. The value is shown
+    /// to a tenth of it.
+    pub step: f32,
+    /// Why it cannot be set now, if it cannot.
+    pub disabled: Option<&'a str>,
 }
 
 const LABEL_WIDTH: f32 = 60.0;
@@ -28,9 +34,8 @@ const HEIGHT: f32 = 22.0;
 const THUMB: f32 = 6.5;
 const RAIL: f32 = 4.0;
 
-/// Arrow keys, with Shift, and page keys.
-const STEP: f32 = 1.0;
-const FINE_STEP: f32 = 0.1;
+/// What Shift makes of a step, and page keys.
+const FINE: f32 = 0.1;
 const PAGE: f32 = 10.0;
 
 impl Slider<'_> {
@@ -38,6 +43,21 @@ impl Slider<'_> {
     /// and goes on only while there is one, so that it can be taken back.
     pub fn show(
         self,
+        ui: &mut Ui,
+        is_editing: bool,
+        actions: &mut Vec<Action>,
+        set: impl Fn(f32) -> Action,
+    ) {
+        let row = ui.add_enabled_ui(self.disabled.is_none(), |ui| {
+            self.row(ui, is_editing, actions, set);
+        });
+        if let Some(why) = self.disabled {
+            row.response.on_disabled_hover_text(why);
+        }
+    }
+
+    fn row(
+        &self,
         ui: &mut Ui,
         is_editing: bool,
         actions: &mut Vec<Action>,
@@ -76,7 +96,7 @@ impl Slider<'_> {
         ui.ctx().accesskit_node_builder(response.id, |node| {
             node.set_min_numeric_value(f64::from(self.range.0));
             node.set_max_numeric_value(f64::from(self.range.1));
-            node.set_numeric_value_step(f64::from(STEP));
+            node.set_numeric_value_step(f64::from(self.step));
             node.add_action(accesskit::Action::SetValue);
             node.add_action(accesskit::Action::Increment);
             node.add_action(accesskit::Action::Decrement);
@@ -88,7 +108,7 @@ impl Slider<'_> {
 
     fn paint(&self, ui: &Ui, rect: Rect, response: &Response) {
         let visuals = ui.style().interact(response);
-        let accent = self.colour.unwrap_or(ui.visuals().selection.stroke.color);
+        let accent = self.colour.unwrap_or(style::accent(ui));
         let track = Self::track(rect);
         let bar = |from: f32, to: f32| {
             Rect::from_center_size(
@@ -177,11 +197,11 @@ impl Slider<'_> {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(rail.id, arrows));
         ui.input(|input| {
             let pressed = |key: Key| input.num_presses(key) as f32;
-            let step = if input.modifiers.shift { FINE_STEP } else { STEP };
+            let step = self.step * if input.modifiers.shift { FINE } else { 1.0 };
             let arrows = pressed(Key::ArrowRight) + pressed(Key::ArrowUp)
                 - pressed(Key::ArrowLeft)
                 - pressed(Key::ArrowDown);
-            arrows * step + (pressed(Key::PageUp) - pressed(Key::PageDown)) * PAGE
+            arrows * step + (pressed(Key::PageUp) - pressed(Key::PageDown)) * PAGE * self.step
         })
     }
 
@@ -200,7 +220,7 @@ impl Slider<'_> {
     fn spoken_steps(&self, ui: &Ui, rail: &Response) -> f32 {
         ui.input(|input| {
             let asked = |action| input.num_accesskit_action_requests(rail.id, action) as f32;
-            (asked(accesskit::Action::Increment) - asked(accesskit::Action::Decrement)) * STEP
+            (asked(accesskit::Action::Increment) - asked(accesskit::Action::Decrement)) * self.step
         })
     }
 
@@ -211,62 +231,35 @@ impl Slider<'_> {
         actions: &mut Vec<Action>,
         set: &impl Fn(f32) -> Action,
     ) {
-        let mut value = self.value;
-        let speed = (self.range.1 - self.range.0) / 1000.0;
-        let number = egui::DragValue::new(&mut value)
-            .speed(speed)
-            .suffix(self.unit)
-            .custom_formatter(|value, _| format(value))
-            .custom_parser(|text| self.parse(text))
-            .clip_text(true)
-            .update_while_editing(false);
-        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        ui.spacing_mut().button_padding = vec2(6.0, 1.0);
-        let size = vec2(VALUE_WIDTH, HEIGHT);
-        let right = Layout::right_to_left(Align::Center).with_main_justify(true);
-        let response = ui.allocate_ui_with_layout(size, right, |ui| ui.add(number)).inner;
-        let name = format!("{} value", self.name);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
-        if response.drag_started() {
-            actions.push(Action::BeginEdit);
-        }
-        // egui enters what was typed in the pass after the one in which Esc left it.
-        let was_left = ui.data_mut(|data| data.remove_temp::<Left>(response.id)).is_some();
-        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-            ui.data_mut(|data| data.insert_temp(response.id, Left));
-            ui.request_repaint();
-        }
-        let dropped = response.dragged() && !response.drag_started() && !is_editing;
-        if response.changed() && was_left {
-            ui.request_repaint();
-        } else if response.changed() && !dropped {
-            actions.push(set(value));
-        }
-        if response.drag_stopped() {
-            actions.push(Action::CommitEdit);
-        }
+        let number = Number {
+            name: &format!("{} value", self.name),
+            value: self.value,
+            unit: self.unit,
+            speed: (self.range.1 - self.range.0) / 1000.0,
+            width: VALUE_WIDTH,
+            format: &|value| format(value, self.decimals()),
+        };
+        let response = number.show(ui, is_editing, actions, set);
         response.on_hover_text("Drag, or click to type");
     }
 
-    /// What is typed, with or without the unit. The text that stands for the value as it is keeps
-    /// the value's unseen digits.
-    fn parse(&self, text: &str) -> Option<f64> {
-        let text = text.trim().trim_end_matches(self.unit).trim_end().replace('\u{2212}', "-");
-        if text == format(f64::from(self.value)) {
-            return Some(f64::from(self.value));
-        }
-        text.parse().ok()
+    fn decimals(&self) -> usize {
+        decimals(self.step)
     }
 }
 
-/// Marks a number that Esc has just left.
-#[derive(Clone, Copy, Default)]
-struct Left;
+/// How many digits behind the point show a tenth of a step.
+pub(super) fn decimals(step: f32) -> usize {
+    (1.0 - step.log10().floor()).clamp(0.0, 4.0) as usize
+}
 
 /// In seven letters at most, which is what there is room for.
-fn format(value: f64) -> String {
+pub(super) fn format(value: f64, decimals: usize) -> String {
+    // Nothing has no sign.
+    let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
     match value.abs() {
-        ..9_999.95 => format!("{value:.1}"),
+        ..99.995 => format!("{value:.decimals$}"),
+        ..9_999.95 => format!("{value:.0$}", decimals.min(1)),
         ..999_999.5 => format!("{value:.0}"),
         _ => format!("{value:.1e}"),
     }

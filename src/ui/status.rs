@@ -3,9 +3,10 @@
 use egui::{Align, Label, Layout, RichText, Ui};
 
 use super::Machine;
-use crate::document::Arm;
+use crate::document::{Arm, RigKind};
+use crate::kinematics::solve::Method;
 use crate::kinematics::two_bone::{Pose, Reach};
-use crate::session::{HandDrag, Session};
+use crate::session::{Drag, Grip, PointDrag, Session, Solving, TurnDrag};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine) {
     ui.horizontal(|ui| {
@@ -34,10 +35,53 @@ pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
 }
 
 fn line(session: &Session) -> String {
-    if let Some(drag) = session.hand_drag() {
-        return describe_drag(drag);
+    if let Some(drag) = session.drag() {
+        return describe_drag(session, drag);
     }
-    session.message().map_or_else(|| describe_pose(session), ToOwned::to_owned)
+    session.message().map_or_else(|| describe(session), ToOwned::to_owned)
+}
+
+/// How the rig stands, for those who do not see it.
+pub(super) fn summary(session: &Session) -> String {
+    match session.rig() {
+        RigKind::Arm => sentence(session.arm(), session.pose()),
+        RigKind::Skeleton => describe_skeleton(session),
+    }
+}
+
+fn describe(session: &Session) -> String {
+    match session.rig() {
+        RigKind::Arm => describe_pose(session),
+        RigKind::Skeleton => describe_skeleton(session),
+    }
+}
+
+fn describe_skeleton(session: &Session) -> String {
+    let rig = session.skeleton();
+    let joints = rig.skeleton.joints();
+    let count = |count: usize, one: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {one}s"),
+    };
+    let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
+    let reports = session.solving().map(Solving::report);
+    if let Some(report) = reports.filter(|report| report.iterations > 0 || report.converged) {
+        let how = match (report.converged, report.resting) {
+            (true, _) => "reached",
+            (false, true) => "at rest out of reach",
+            (false, false) => "not there yet",
+        };
+        let name = method_name(report.method);
+        line.push(format!(
+            "{name}: {how} after {}",
+            count(report.iterations as usize, "iteration")
+        ));
+    }
+    match session.selected().and_then(|joint| joints.get(joint)) {
+        Some(joint) => line.insert(0, joint.name.clone()),
+        None => line.push("click a joint to select it, drag its tip to pose it".to_owned()),
+    }
+    line.join(" · ")
 }
 
 fn describe_pose(session: &Session) -> String {
@@ -59,18 +103,71 @@ fn describe_pose(session: &Session) -> String {
     )
 }
 
-fn describe_drag(drag: &HandDrag) -> String {
+fn describe_drag(session: &Session, drag: &Drag) -> String {
+    match (drag.point(), drag.turn()) {
+        (Some(point), _) => describe_move(session, drag.grip(), point),
+        (_, Some(turn)) => describe_turn(drag.grip(), turn),
+        (None, None) => String::new(),
+    }
+}
+
+fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     let moved = drag.moved();
     let how = drag.constraint().map_or("freely".to_owned(), |constraint| constraint.to_string());
-    let typed = match drag.typed() {
-        "" => String::new(),
-        typed => format!(" · typed {typed}"),
+    let verb = match grip {
+        Grip::Tip(..) => "Pose",
+        Grip::Target(..) => "Target",
+        Grip::Hand(_) | Grip::Ring(..) => "Move",
+    };
+    let digits = match session.rig() {
+        RigKind::Arm => 1,
+        RigKind::Skeleton => decimals(session.document().cell()),
     };
     format!(
-        "Move {how}: {:+.1}, {:+.1}, {:+.1}{typed}     Shift fine · Ctrl snap · X Y Z lock · \
-         digits type · Enter accept · Esc take back",
-        moved.x, moved.y, moved.z,
+        "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift fine · Ctrl snap · X Y Z \
+         lock · digits type · Enter accept · Esc take back",
+        moved.x,
+        moved.y,
+        moved.z,
+        typed(drag.typed()),
     )
+}
+
+fn describe_turn(grip: Grip, drag: &TurnDrag) -> String {
+    let axis = match grip {
+        Grip::Ring(_, axis) => ["x", "y", "z"][axis],
+        Grip::Hand(_) | Grip::Target(..) | Grip::Tip(..) => "",
+    };
+    format!(
+        "Turn about {axis}: {:+.1}°{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
+         take back",
+        drag.turned().to_degrees(),
+        typed(drag.typed()),
+    )
+}
+
+fn typed(typed: &str) -> String {
+    match typed {
+        "" => String::new(),
+        typed => format!(" · typed {typed}"),
+    }
+}
+
+/// How many digits behind the point tell a hundredth of a grid's cell.
+pub(super) fn decimals(cell: f32) -> usize {
+    (2.0 - cell.log10().round()).clamp(0.0, 6.0) as usize
+}
+
+/// As panels and pictures call a solver.
+pub(super) fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::TransposeFixed => "Jacobian transpose, fixed step",
+        Method::Transpose => "Jacobian transpose",
+        Method::DampedLeastSquares => "Damped least squares",
+        Method::Ccd => "Cyclic coordinate descent",
+        Method::Fabrik => "FABRIK",
+        Method::TwoBone => "Two-bone",
+    }
 }
 
 fn describe_machine(machine: &Machine) -> String {

@@ -82,6 +82,11 @@ pub(super) fn palette(ui: &egui::Ui) -> Palette {
     Palette::new(if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light })
 }
 
+/// The one colour that is not grey and means no axis and no limb.
+pub(super) fn accent(ui: &egui::Ui) -> Color32 {
+    colour(palette(ui).accent)
+}
+
 pub(super) fn colour(colour: Colour) -> Color32 {
     let [r, g, b, a] = colour.0;
     Color32::from_rgba_unmultiplied(r, g, b, a)
@@ -111,7 +116,7 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);
     visuals.selection.bg_fill = accent.gamma_multiply(0.45);
-    visuals.selection.stroke = Stroke::new(1.0, accent);
+    visuals.selection.stroke = Stroke::new(1.0, tones.strong);
     let widgets = &mut visuals.widgets;
     for (widget, fill, text) in [
         (&mut widgets.noninteractive, tones.panel, tones.text),

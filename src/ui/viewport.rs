@@ -6,10 +6,10 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::handles::Handles;
+use super::grips::Grips;
 use super::{compass, keyboard, menu, status};
-use crate::document::{Camera, Projection, Ray};
-use crate::session::{Action, DragInput, HandDrag, Handle, Motion, Navigation, Session};
+use crate::document::{Camera, Projection, Ray, RigKind};
+use crate::session::{Action, Drag, DragInput, Grip, Motion, Navigation, Session};
 
 /// How much nearer a step of the wheel comes.
 const WHEEL: f32 = 1.15;
@@ -45,6 +45,11 @@ impl Picture {
         self.projection.half_height_at(at) / (self.rect.height() / 2.0)
     }
 
+    /// How far from the eye, along the view.
+    pub fn depth(&self, point: Vec3) -> f32 {
+        (point - self.projection.eye).dot(self.projection.forward)
+    }
+
     /// A short vector of the world at a point, as it lies on screen.
     pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
         let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
@@ -61,48 +66,98 @@ pub(super) fn ui(
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     response.widget_info(|| {
-        let text = format!("Viewport. {}", status::sentence(session.arm(), session.pose()));
+        let text = format!("Viewport. {}", status::summary(session));
         WidgetInfo::labeled(Role::Image, true, text)
     });
     if let Some(texture) = picture {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
     }
-    glide(ui, &response, session, actions);
+    advance(ui, &response, session, actions);
 
     let picture = Picture::new(rect, session.camera());
-    let arm = session.arm();
-    let handles = Handles::new(&picture, arm.cursor_world(), arm.root + session.pose().hand);
+    let grips = Grips::new(&picture, session);
     let pointer = ui.input(|input| input.pointer.latest_pos());
-    let held_handle = session.hand_drag().map(HandDrag::handle);
+    let held_grip = session.drag().map(Drag::grip);
 
     let on_compass = pointer.is_some_and(|at| compass::covers(rect, at));
     let over = response.contains_pointer() && !on_compass;
-    let pointed = pointer.filter(|_| over).and_then(|at| handles.as_ref().and_then(|h| h.at(at)));
-    if let Some(handles) = &handles {
-        let painter = ui.painter().with_clip_rect(rect);
-        handles.paint(&painter, ui, pointed, held_handle);
-    }
+    let pointed = pointer.filter(|_| over).and_then(|at| grips.at(at));
+    grips.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     compass::ui(ui, rect, session, actions);
 
     let Some(pointer) = pointer else {
         keys(ui, &response, session, actions);
         return rect;
     };
-    let held = press(ui, &response, session, &picture, handles.as_ref(), actions);
+    let held = press(ui, &response, session, &picture, &grips, actions);
     follow(ui, held, &picture, pointer, actions);
     if response.contains_pointer() {
         wheel(ui, session, &picture, pointer, actions);
     }
+    if over && matches!(held, Held::Nothing) {
+        point(session, grips.joint_at(pointer), actions);
+    }
+    if session.rig() == RigKind::Skeleton && response.clicked() && !on_compass {
+        select(ui, session, &picture, &grips, pointer, actions);
+    }
     if response.double_clicked() && !on_compass {
         actions.push(match pointed {
-            Some(_) => menu::frame_arm(session),
-            None => Action::GlideTo(Camera::default()),
+            Some(_) => menu::frame_selection(session),
+            None if grips.joint_at(pointer).is_some() => menu::frame_selection(session),
+            None => Action::GlideTo(match session.rig() {
+                RigKind::Arm => Camera::default(),
+                RigKind::Skeleton => session.framing_all(),
+            }),
         });
     }
-    show_cursor(ui, session, pointed.or(held_handle));
+    show_cursor(ui, session, pointed.or(held_grip));
     keys(ui, &response, session, actions);
     rect
+}
+
+/// Says which joint the pointer is on.
+fn point(session: &Session, joint: Option<usize>, actions: &mut Vec<Action>) {
+    if session.pointed() != joint {
+        actions.push(Action::Point(joint));
+    }
+}
+
+/// A click selects the joint under the pointer, Shift adds it or takes it away; a click beside all
+/// selects none. Ctrl adds a bone from the selected joint's tip to the pointer.
+fn select(
+    ui: &Ui,
+    session: &Session,
+    picture: &Picture,
+    grips: &Grips,
+    pointer: Pos2,
+    actions: &mut Vec<Action>,
+) {
+    let modifiers = ui.input(|input| input.modifiers);
+    let joint = match grips.at(pointer) {
+        Some(Grip::Target(joint, _) | Grip::Tip(joint, _)) => Some(joint),
+        Some(Grip::Ring(..)) => return,
+        Some(Grip::Hand(_)) | None => grips.joint_at(pointer),
+    };
+    if modifiers.command {
+        if let Some(parent) = session.selected() {
+            let tip = session.skeleton_pose().tip(parent);
+            let at = picture.ray(pointer).meets_plane(tip, picture.projection.forward);
+            actions.extend(at.map(|tip| Action::AddChild { parent, tip: Some(tip) }));
+        }
+        return;
+    }
+    let mut selection = if modifiers.shift { session.selection().to_vec() } else { Vec::new() };
+    if let Some(joint) = joint {
+        let was_selected = selection.contains(&joint);
+        selection.retain(|other| *other != joint);
+        if !was_selected {
+            selection.push(joint);
+        }
+    }
+    if selection != session.selection() {
+        actions.push(Action::Select(selection));
+    }
 }
 
 /// On whole pixels, so that the picture is shown pixel for pixel.
@@ -112,10 +167,10 @@ fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
     Rect::from_min_max(round(rect.min), round(rect.max))
 }
 
-/// Moves the view on. Any input ends that: a press in the viewport takes hold of the view as it is
-/// by then, all else brings it to where it was going.
-fn glide(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
-    if !session.is_gliding() {
+/// Lets all that moves by itself go on. Any input ends a glide of the view: a press in the viewport
+/// takes hold of the view as it is by then, all else brings it to where it was going.
+fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
+    if !session.is_moving() {
         return;
     }
     let is_input = |event: &Event| match event {
@@ -124,19 +179,18 @@ fn glide(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Acti
         Event::MouseWheel { .. } | Event::Zoom(_) => true,
         _ => false,
     };
-    if ui.input(|input| input.events.iter().any(is_input)) {
+    if session.is_gliding() && ui.input(|input| input.events.iter().any(is_input)) {
         actions.push(Action::SetCamera(session.settled_camera()));
-    } else {
-        actions.push(Action::Advance(ui.input(|input| input.time)));
-        ui.request_repaint();
     }
+    actions.push(Action::Advance(ui.input(|input| input.time)));
+    ui.request_repaint();
 }
 
 /// What the pointer holds.
 #[derive(Clone, Copy)]
 enum Held {
     Nothing,
-    Hand,
+    Grip,
     View,
 }
 
@@ -146,11 +200,11 @@ fn press(
     response: &Response,
     session: &Session,
     picture: &Picture,
-    handles: Option<&Handles>,
+    grips: &Grips,
     actions: &mut Vec<Action>,
 ) -> Held {
-    let mut held = match (session.hand_drag(), session.view_drag()) {
-        (Some(_), _) => Held::Hand,
+    let mut held = match (session.drag(), session.view_drag()) {
+        (Some(_), _) => Held::Grip,
         (None, Some(_)) => Held::View,
         (None, None) => Held::Nothing,
     };
@@ -171,15 +225,17 @@ fn press(
         }
         let on_compass = compass::covers(picture.rect, pos);
         let can_take = button == PointerButton::Primary && !modifiers.alt && !on_compass;
-        let handle = handles.filter(|_| can_take).and_then(|handles| handles.at(pos));
+        // Ctrl and Shift make a click on a skeleton say something else.
+        let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);
+        let grip = grips.at(pos).filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
             None if on_compass && button == PointerButton::Primary => Some(Motion::Orbit),
             motion => motion,
         };
-        if let Some(handle) = handle {
+        if let Some(grip) = grip {
             let (ray, forward) = (picture.ray(pos), picture.projection.forward);
-            actions.push(Action::GrabHand { handle, ray, forward });
-            held = Held::Hand;
+            actions.push(Action::Grab { grip, ray, forward });
+            held = Held::Grip;
         } else if let Some(motion) = motion {
             actions.push(Action::GrabView(motion, picture.normalised(pos)));
             held = Held::View;
@@ -220,10 +276,10 @@ fn follow(ui: &Ui, held: Held, picture: &Picture, pointer: Pos2, actions: &mut V
     let released = !down || ui.input(|input| input.pointer.any_released());
     let (moved, dropped) = match held {
         Held::Nothing => return,
-        Held::Hand => {
+        Held::Grip => {
             let ray = picture.ray(pointer);
             let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
-            (Action::DragHand(input), Action::CommitEdit)
+            (Action::Drag(input), Action::CommitEdit)
         }
         Held::View => {
             let (to, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
@@ -277,8 +333,8 @@ fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
     }
 }
 
-fn show_cursor(ui: &Ui, session: &Session, handle: Option<Handle>) {
-    let icon = match (session.hand_drag(), session.view_drag(), handle) {
+fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
+    let icon = match (session.drag(), session.view_drag(), grip) {
         (Some(_), _, _) => CursorIcon::Grabbing,
         (_, Some(drag), _) => match drag.motion {
             Motion::Orbit => CursorIcon::Grabbing,
@@ -294,7 +350,7 @@ fn show_cursor(ui: &Ui, session: &Session, handle: Option<Handle>) {
 /// Single keys act while no widget or the viewport itself has the keyboard.
 fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
-    if free || session.hand_drag().is_some() {
+    if free || session.drag().is_some() {
         keyboard::viewport(ui, session, actions);
     }
     if response.has_focus() {

@@ -76,6 +76,14 @@ impl Bench {
         self.settle();
     }
 
+    /// As [`Self::apply`], for what then moves by itself.
+    pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = Action>) {
+        for action in actions {
+            self.harness.state_mut().session.apply(action);
+        }
+        self.frame([]);
+    }
+
     pub fn session(&self) -> &Session {
         &self.harness.state().session
     }

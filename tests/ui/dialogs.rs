@@ -102,7 +102,10 @@ fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
     bench.key_with(CTRL, Key::P);
     bench.settle();
     bench.click(Role::Button, "Browse…");
-    assert_eq!(bench.effects(), [Effect::ChoosePicturePath("ik-arm.png".to_owned())]);
+    assert_eq!(
+        bench.effects(),
+        [Effect::ChoosePath(Dialog::SavePicture { path: "ik-arm.png".to_owned() })]
+    );
     bench.click(Role::Button, "Cancel");
     assert_eq!(bench.session().dialog(), None);
     bench.key_with(CTRL, Key::P);

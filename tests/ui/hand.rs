@@ -4,7 +4,7 @@ use egui::{CursorIcon, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, HandDrag, Handle};
+use ik_arm::session::{Action, Handle, PointDrag};
 
 use crate::bench::{Bench, SMALL, bits};
 
@@ -125,7 +125,7 @@ fn a_press_with_a_move_in_one_frame_takes_what_was_pressed_and_follows_at_once()
     bench.move_to(place);
     let to = place + vec2(90.0, -100.0);
     bench.frame([bench.button(LEFT, true), egui::Event::PointerMoved(to)]);
-    assert!(bench.session().hand_drag().is_some());
+    assert!(bench.session().point_drag().is_some());
     assert!(bench.cursor_place().distance(to) < 0.05);
 }
 
@@ -196,7 +196,7 @@ fn an_arrow_moves_its_coordinate_and_no_other_bit() {
         bench.move_to(grabbed);
         assert_eq!(bench.harness.output().platform_output.cursor_icon, CursorIcon::Grab);
         bench.press(LEFT);
-        assert_eq!(bench.session().hand_drag().map(HandDrag::handle), Some(Handle::Axis(axis)));
+        assert_eq!(bench.session().point_drag().map(PointDrag::handle), Some(Handle::Axis(axis)));
         let step = along(&bench, axis);
         for part in [3.0, 20.0, 45.0, -30.0, 60.0] {
             bench.move_to(grabbed + step * part);
@@ -219,7 +219,7 @@ fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
         let grabbed = on_square(&bench, axis);
         let start = bench.cursor_place();
         grab(&mut bench, grabbed);
-        assert_eq!(bench.session().hand_drag().map(HandDrag::handle), Some(Handle::Plane(axis)));
+        assert_eq!(bench.session().point_drag().map(PointDrag::handle), Some(Handle::Plane(axis)));
         for offset in [vec2(2.0, 1.0), vec2(25.0, -10.0), vec2(-20.0, 15.0)] {
             bench.move_to(grabbed + offset);
             for other in 0..3 {
@@ -239,7 +239,7 @@ fn an_arrow_along_the_view_cannot_be_taken() {
     let place = bench.cursor_place();
     bench.move_to(place + vec2(17.0, 12.0));
     bench.press(LEFT);
-    assert!(bench.session().hand_drag().is_none_or(|d| d.handle() != Handle::Axis(2)));
+    assert!(bench.session().point_drag().is_none_or(|d| d.handle() != Handle::Axis(2)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers, PointerButton, vec2};
 use glam::Vec3;
 use ik_arm::document::Camera;
-use ik_arm::session::{Constraint, HandDrag};
+use ik_arm::session::{Constraint, PointDrag};
 
 use crate::bench::{Bench, bits};
 use crate::hand::{grab, odd, on_arrow};
@@ -21,7 +21,10 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
             let modifiers = if plane { Modifiers::SHIFT } else { Modifiers::NONE };
             bench.key_with(modifiers, key);
             let expected = if plane { Constraint::Plane(axis) } else { Constraint::Axis(axis) };
-            assert_eq!(bench.session().hand_drag().and_then(HandDrag::constraint), Some(expected));
+            assert_eq!(
+                bench.session().point_drag().and_then(PointDrag::constraint),
+                Some(expected)
+            );
             bench.move_to(start + vec2(60.0, 35.0));
             for other in 0..3 {
                 let kept = bits(bench.hand())[other] == bits(before)[other];
@@ -30,7 +33,7 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
             let name = ["x", "y", "z"][axis];
             assert!(plane || bench.says(&format!("Move along {name}")), "the status line says so");
             bench.key_with(modifiers, key);
-            assert_eq!(bench.session().hand_drag().and_then(HandDrag::constraint), None);
+            assert_eq!(bench.session().point_drag().and_then(PointDrag::constraint), None);
             bench.move_to(start + vec2(61.0, 35.0));
             assert!(bench.cursor_place().distance(start + vec2(61.0, 35.0)) < 0.05);
         }
@@ -83,7 +86,7 @@ fn a_typed_offset_leads_until_it_is_accepted_or_taken_back() {
         bench.key(Key::Y);
         bench.type_text("-12.58");
         bench.key(Key::Backspace);
-        assert_eq!(bench.session().hand_drag().map(HandDrag::typed), Some("-12.5"));
+        assert_eq!(bench.session().point_drag().map(PointDrag::typed), Some("-12.5"));
         assert_eq!(bits(bench.hand()), bits(before + Vec3::new(0.0, -12.5, 0.0)));
         assert!(bench.says("typed -12.5"));
         bench.move_to(start + vec2(200.0, 0.0));
@@ -115,7 +118,7 @@ fn the_status_line_shows_the_keys_and_the_change_while_the_hand_is_dragged() {
     let mut bench = Bench::new();
     let start = bench.cursor_place();
     bench.drag(LEFT, start, start + vec2(30.0, 0.0));
-    let moved = bench.session().hand_drag().expect("held").moved();
+    let moved = bench.session().point_drag().expect("held").moved();
     let change = format!("Move freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);
     assert!(bench.says(&change), "{change}");
     for keys in ["Shift", "Ctrl", "X Y Z", "Enter", "Esc"] {

@@ -5,6 +5,7 @@ use egui::{Key, Order, PointerButton, vec2};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Layer, Theme};
+use ik_arm::io::Example;
 use ik_arm::session::{Action, Navigation};
 
 use crate::bench::{Bench, SMALL};
@@ -130,15 +131,23 @@ fn the_panels_leave_the_viewport_room_at_960_by_600() {
 #[test]
 fn the_panels_look_as_they_did() {
     let mut results = SnapshotResults::new();
+    let human = Example::find("human").expect("an example");
+    let skeleton = [Action::OpenExample(human), Action::Select(vec![8]), Action::Step];
     for theme in THEMES {
-        let mut bench = in_theme(theme);
-        bench.apply([Action::Show(Layer::InnerLimit, true)]);
-        let options = SnapshotOptions::new()
-            .threshold(2.0)
-            .max_failed_pixels(600)
-            .output_path("tests/ui/snapshots");
-        let name = format!("panels_{}", format!("{theme:?}").to_lowercase());
-        bench.harness.snapshot_options(name, &options);
-        results.extend_harness(&mut bench.harness);
+        let rigs = [
+            ("panels", vec![Action::Show(Layer::InnerLimit, true)]),
+            ("skeleton", skeleton.to_vec()),
+        ];
+        for (name, actions) in rigs {
+            let mut bench = in_theme(theme);
+            bench.apply(actions);
+            let options = SnapshotOptions::new()
+                .threshold(2.0)
+                .max_failed_pixels(600)
+                .output_path("tests/ui/snapshots");
+            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
+            bench.harness.snapshot_options(name, &options);
+            results.extend_harness(&mut bench.harness);
+        }
     }
 }

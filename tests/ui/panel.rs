@@ -48,7 +48,7 @@ pub const MENUS: [(&str, &[&str]); 4] = [
             "Left",
             "Bottom",
             "Perspective / orthographic",
-            "Frame arm",
+            "Frame selection",
             "Frame all",
             "Light theme",
             "Dark theme",

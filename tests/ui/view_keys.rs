@@ -150,7 +150,7 @@ fn the_view_menu_does_what_the_keys_do() {
     assert!(bench.session().camera().orthographic);
     bench.choose(&["View", "Frame all"]);
     assert_eq!(bench.session().camera().target, Vec3::ZERO);
-    bench.choose(&["View", "Frame arm"]);
+    bench.choose(&["View", "Frame selection"]);
     assert_ne!(bench.session().camera().target, Vec3::ZERO);
 }
 

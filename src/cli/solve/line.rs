@@ -5,11 +5,13 @@ use std::str::{self, Utf8Error};
 
 use glam::Vec3;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_path_to_error::{Path, Segment};
 use thiserror::Error;
 
+use crate::io::error::shortened;
+use crate::io::value::{Number, Point};
 use crate::kinematics::two_bone::{LengthError, Pose, Reach, TwoBone};
 
 /// Solves one line, given without its end.
@@ -123,76 +125,6 @@ impl<'de> Deserialize<'de> for Object {
     }
 }
 
-/// A finite f32; the parser refuses what rounds past the largest one.
-#[derive(Clone, Copy, Default)]
-struct Number(f32);
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumberVisitor;
-
-        impl Visitor<'_> for NumberVisitor {
-            type Value = Number;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number")
-            }
-
-            fn visit_f64<E>(self, value: f64) -> Result<Number, E> {
-                Ok(Number(value as f32))
-            }
-
-            fn visit_u64<E>(self, value: u64) -> Result<Number, E> {
-                Ok(Number(value as f32))
-            }
-
-            fn visit_i64<E>(self, value: i64) -> Result<Number, E> {
-                Ok(Number(value as f32))
-            }
-        }
-
-        // As f32, so that decimals are rounded once, not to f64 first.
-        deserializer.deserialize_f32(NumberVisitor)
-    }
-}
-
-/// Three numbers.
-#[derive(Clone, Copy, Default)]
-struct Point(Vec3);
-
-impl<'de> Deserialize<'de> for Point {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct PointVisitor;
-
-        impl<'de> Visitor<'de> for PointVisitor {
-            type Value = Point;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("three numbers: [x, y, z]")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut numbers: A) -> Result<Point, A::Error> {
-                let mut point = [0.0; 3];
-                let mut found = 0;
-                while let Some(Number(number)) = numbers.next_element()? {
-                    if let Some(place) = point.get_mut(found) {
-                        *place = number;
-                    }
-                    found += 1;
-                }
-                if found != point.len() {
-                    let s = if found == 1 { "" } else { "s" };
-                    let error = format!("found {found} number{s}, expected three: [x, y, z]");
-                    return Err(serde::de::Error::custom(error));
-                }
-                Ok(Point(Vec3::from_array(point)))
-            }
-        }
-
-        deserializer.deserialize_seq(PointVisitor)
-    }
-}
-
 /// Why a line has no pose. `place` is empty or ends in a colon and a space.
 #[derive(Debug, Error)]
 pub enum LineError {
@@ -268,17 +200,4 @@ fn word_around(line: &str, read: usize) -> &str {
     let start = before.trim_end_matches(in_word).len();
     let end = line.len() - after.trim_start_matches(in_word).len();
     &line[start..end]
-}
-
-/// A message that quotes something long keeps its start and its end.
-fn shortened(message: String) -> String {
-    const START: usize = 200;
-    const END: usize = 120;
-    let count = message.chars().count();
-    if count <= START + END {
-        return message;
-    }
-    let start = message.chars().take(START);
-    let end = message.chars().skip(count - END);
-    start.chain("…".chars()).chain(end).collect()
 }

@@ -1,4 +1,4 @@
-// Dashed lines, some pixels wide wherever they are.
+// Lines, dashed or whole, some pixels wide wherever they are.
 
 const WIDTH = 2.0;
 const PERIOD = 9.0;
@@ -8,6 +8,7 @@ struct Instance {
     @location(0) from_world: vec3f,
     @location(1) to_world: vec3f,
     @location(2) colour: vec4f,
+    @location(3) dashed: f32, // 1 or 0
 }
 
 struct Stroke {
@@ -15,6 +16,7 @@ struct Stroke {
     @location(0) @interpolate(linear) along: f32, // pixels
     @location(1) @interpolate(linear) across: f32, // pixels
     @location(2) @interpolate(flat) colour: vec4f,
+    @location(3) @interpolate(flat) dashed: f32,
 }
 
 // The end `a` of a segment, moved to in front of the eye where it is behind it.
@@ -40,7 +42,7 @@ fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Stroke {
     if at_end { clip = to_clip; }
     let aside = vec2f(-direction.y, direction.x) * side * half_width / half_size;
     let position = vec4f(clip.xy + aside * clip.w, clip.zw);
-    return Stroke(position, select(0.0, long, at_end), side * half_width, i.colour);
+    return Stroke(position, select(0.0, long, at_end), side * half_width, i.colour, i.dashed);
 }
 
 @fragment
@@ -48,6 +50,6 @@ fn fragment(s: Stroke) -> @location(0) vec4f {
     let period = PERIOD * view.pixel_scale;
     let in_dash = 0.3 * period - abs(fract(s.along / period) - 0.35) * period;
     let in_width = WIDTH * 0.5 * view.pixel_scale - abs(s.across);
-    let cover = saturate(in_width + 0.5) * saturate(in_dash + 0.5);
+    let cover = saturate(in_width + 0.5) * mix(1.0, saturate(in_dash + 0.5), s.dashed);
     return vec4f(s.colour.rgb, s.colour.a * cover);
 }

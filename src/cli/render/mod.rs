@@ -1,20 +1,40 @@
+//! `ik-arm render`: the arm or a file as a picture.
+
+mod argument;
+
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::str::FromStr;
 
 use clap::ValueEnum;
 use glam::Vec3;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, Theme};
+use super::open;
+use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, RigKind, Theme};
+use crate::io::OpenError;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
 use crate::scene::Scene;
+use crate::session::Staging;
+use argument::{Guides, Length, Number, Point, Size};
 
 #[derive(clap::Args)]
+#[command(after_help = "Without FILE the arm is drawn as --hand and the like have it:
+  ik-arm render -o arm.png --hand 250,120,60
+With FILE what it shows, from where it is looked at there, unless --view says otherwise:
+  ik-arm render human.json -o human.png --view front")]
 pub struct Args {
+    /// Document of ik-arm or scene of Scotty3D (.js3d), or - for standard input
+    #[arg(
+        value_name = "FILE",
+        conflicts_with_all = ["hand", "elbow_spin", "root", "upper", "lower"]
+    )]
+    file: Option<PathBuf>,
+    /// Which skeleton of a scene; the first if nothing is said
+    #[arg(long, value_name = "NAME", requires = "file")]
+    skeleton: Option<String>,
     /// Where the picture goes, as PNG
     #[arg(short, long, value_name = "OUT.png", required_unless_present = "timings")]
     output: Option<PathBuf>,
@@ -36,12 +56,13 @@ pub struct Args {
     /// Length of the lower limb
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "300")]
     lower: Length,
-    /// Which guides are shown
-    #[arg(long, value_name = "LIST", default_value = "cursor,pointer")]
-    guides: Guides,
-    /// Where the arm is looked at from
-    #[arg(long, value_enum, default_value_t = View::Perspective)]
-    view: View,
+    /// Which guides are shown: cursor, pointer, inner, outer, or none [default: the file's, else
+    /// cursor,pointer]
+    #[arg(long, value_name = "LIST")]
+    guides: Option<Guides>,
+    /// Where it is looked at from [default: the file's, else perspective]
+    #[arg(long, value_enum)]
+    view: Option<View>,
     #[arg(long, value_enum, default_value_t = ThemeName::Dark)]
     theme: ThemeName,
     /// How many frames to time
@@ -72,44 +93,13 @@ enum ThemeName {
     Light,
 }
 
-/// Why an argument is not what it stands for.
-#[derive(Debug, Error, PartialEq)]
-enum ArgumentError {
-    #[error("{0:?} is not a size; it must be like 1280x800, each side 1 to {max}", max = Size::MAX)]
-    Size(String),
-    #[error("{0:?} is not a point; it must be three numbers like 250,120,60")]
-    Point(String),
-    #[error("{0:?} is not a number that a 32-bit float can hold")]
-    Number(String),
-    #[error(transparent)]
-    Length(#[from] LengthError),
-    #[error("{0:?} is not a guide; they are cursor, pointer, inner, outer, or none alone")]
-    Guide(String),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Size {
-    width: u32,
-    height: u32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Number(f32);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Length(f32);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Point(Vec3);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Guides(Display);
-
 /// Why there is no picture.
 #[derive(Debug, Error)]
 enum RenderError {
     #[error(transparent)]
     Length(#[from] LengthError),
+    #[error(transparent)]
+    Open(#[from] OpenError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error("a picture of {width}x{height} is larger than this device draws: {longest} at most")]
@@ -159,7 +149,7 @@ fn render(args: &Args) -> Result<(), RenderError> {
     ]
     .map(|kind| gpu.device.push_error_scope(kind));
     let mut picture = Picture::new(&gpu, width, height, args.size.scale());
-    let scene = || Scene::new(&document, &document.arm.pose(), theme);
+    let scene = || Scene::new(&document, &Staging::default(), theme);
     let image = args.output.is_some().then(|| picture.draw(&scene())).transpose();
     for fault in faults.into_iter().rev() {
         if let Some(error) = pollster::block_on(fault.pop()) {
@@ -187,21 +177,45 @@ fn print(timings: Timings, adapter: &str) -> Result<(), io::Error> {
 }
 
 impl Args {
-    fn document(&self) -> Result<Document, LengthError> {
+    fn document(&self) -> Result<Document, RenderError> {
+        let mut document = match &self.file {
+            Some(file) => open::open(file, self.skeleton.as_deref())?.document,
+            None => Document { arm: self.arm()?, ..Document::default() },
+        };
+        if let Some(guides) = &self.guides {
+            document.display = guides.shown_in(document.display);
+        }
+        let view = self.view.or(self.file.is_none().then_some(View::Perspective));
+        if let Some(view) = view {
+            let (centre, radius) = bounds(&document);
+            let aspect = self.size.width as f32 / self.size.height as f32;
+            document.camera = view.camera().framing(centre, radius, aspect);
+        }
+        Ok(document)
+    }
+
+    fn arm(&self) -> Result<Arm, LengthError> {
         let mut arm = Arm::default();
         arm.bones = TwoBone::new(self.upper.0, self.lower.0)?;
         arm.cursor = self.hand.map_or(arm.cursor, |hand| hand.0);
         arm.elbow_spin = (self.elbow_spin.0 % 360.0).to_radians();
         arm.root = self.root.0;
-        let display = self.guides.0;
-        let (centre, radius) = framed(&arm, display);
-        let aspect = self.size.width as f32 / self.size.height as f32;
-        let camera = self.view.camera().framing(centre, radius, aspect);
-        Ok(Document { arm, camera, display })
+        Ok(arm)
     }
 }
 
-/// A sphere around all that is to be seen: the arm, its Cursor, its Outer Limit.
+/// A sphere around all that is to be seen.
+fn bounds(document: &Document) -> (Vec3, f32) {
+    match document.rig {
+        RigKind::Arm => framed(&document.arm, document.display),
+        RigKind::Skeleton => {
+            let rig = &document.skeleton;
+            rig.bounds(&rig.at(0.0).pose(), 0.0)
+        }
+    }
+}
+
+/// A sphere around the arm, its Cursor, its Outer Limit.
 fn framed(arm: &Arm, display: Display) -> (Vec3, f32) {
     let (centre, radius) = arm.bounds(&arm.pose());
     if display.shows(Layer::OuterLimit) {
@@ -235,85 +249,5 @@ impl From<ThemeName> for Theme {
             ThemeName::Dark => Self::Dark,
             ThemeName::Light => Self::Light,
         }
-    }
-}
-
-impl Size {
-    const MAX: u32 = 8192;
-
-    /// Lines and letters are as large as in a window of 1280×800, in larger pictures larger.
-    fn scale(self) -> f32 {
-        (self.width.min(self.height) as f32 / 800.0).max(1.0)
-    }
-}
-
-impl FromStr for Size {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let side = |text: &str| {
-            text.parse()
-                .ok()
-                .filter(|side| (1..=Self::MAX).contains(side) && !text.starts_with('+'))
-        };
-        text.split_once('x')
-            .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))
-            .ok_or_else(|| ArgumentError::Size(text.to_owned()))
-    }
-}
-
-impl FromStr for Number {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let number = text.trim().parse().ok().filter(|number: &f32| number.is_finite());
-        number.map(Self).ok_or_else(|| ArgumentError::Number(text.to_owned()))
-    }
-}
-
-impl FromStr for Length {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let Number(length) = text.parse()?;
-        TwoBone::new(length, length)
-            .map(|bones| Self(bones.upper()))
-            .map_err(|_| ArgumentError::Length(LengthError { bone: "limb", value: length }))
-    }
-}
-
-impl FromStr for Point {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let numbers: Result<Vec<Number>, _> = text.split(',').map(str::parse).collect();
-        match numbers.as_deref() {
-            Ok([x, y, z]) => Ok(Self(Vec3::new(x.0, y.0, z.0))),
-            _ => Err(ArgumentError::Point(text.to_owned())),
-        }
-    }
-}
-
-impl FromStr for Guides {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let hidden = Layer::GUIDES
-            .into_iter()
-            .fold(Display::default(), |display, guide| display.with(guide, false));
-        if text == "none" {
-            return Ok(Self(hidden));
-        }
-        let shown = text.split(',').try_fold(hidden, |display, name| {
-            let guide = match name.trim() {
-                "cursor" => Layer::Cursor,
-                "pointer" => Layer::Pointer,
-                "inner" => Layer::InnerLimit,
-                "outer" => Layer::OuterLimit,
-                _ => return Err(ArgumentError::Guide(name.to_owned())),
-            };
-            Ok(display.with(guide, true))
-        });
-        shown.map(Self)
     }
 }

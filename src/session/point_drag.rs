@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use crate::document::Ray;
 
-/// Which part of the hand's handles is held.
+/// Which part of a point's handles is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
-    /// The hand itself: it moves in the plane of the picture.
+    /// The point itself: it moves in the plane of the picture.
     Free,
     /// An arrow: 0, 1, 2 for x, y, z.
     Axis(usize),
@@ -32,15 +32,17 @@ pub struct DragInput {
     pub snap: bool,
 }
 
-/// A hand that is held. Where it goes is computed from where everything was at the press, never
+/// A point that is held. Where it goes is computed from where everything was at the press, never
 /// from the last move, so that nothing drifts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HandDrag {
+pub struct PointDrag {
     handle: Handle,
     constraint: Option<Constraint>,
-    /// The Root-space cursor and the shoulder at the press.
+    /// The point at the press, and what it is relative to, in the world.
     start: Vec3,
-    root: Vec3,
+    origin: Vec3,
+    /// What snapping goes by.
+    step: f32,
     /// Normal of the picture.
     forward: Vec3,
     pressed: Ray,
@@ -58,19 +60,21 @@ struct Slow {
     offset: Vec3,
 }
 
-impl HandDrag {
+impl PointDrag {
     const PRECISION: f32 = 0.1;
+    /// The step of an arm as long as the seed's.
     const SNAP: f32 = 10.0;
-    const PRECISE_SNAP: f32 = 1.0;
+    const PRECISE_SNAP: f32 = 0.1;
 
-    /// Takes hold of the hand at `start` (Root space) below a shoulder at `root`.
-    pub(super) fn new(handle: Handle, start: Vec3, root: Vec3, forward: Vec3, ray: Ray) -> Self {
+    /// Takes hold of the point that is at `start` relative to `origin` in the world.
+    pub(super) fn new(handle: Handle, start: Vec3, origin: Vec3, forward: Vec3, ray: Ray) -> Self {
         let now = DragInput { ray, precise: false, snap: false };
         Self {
             handle,
             constraint: None,
             start,
-            root,
+            origin,
+            step: Self::SNAP,
             forward,
             pressed: ray,
             now,
@@ -78,6 +82,11 @@ impl HandDrag {
             typed: String::new(),
             last: start,
         }
+    }
+
+    /// Snaps to other steps.
+    pub(super) fn with_step(self, step: f32) -> Self {
+        Self { step, ..self }
     }
 
     pub fn handle(&self) -> Handle {
@@ -103,7 +112,7 @@ impl HandDrag {
         !self.typed.is_empty() || self.slow.is_some() || self.now.ray != self.pressed
     }
 
-    /// How far the hand has been moved.
+    /// How far the point has been moved.
     pub fn moved(&self) -> Vec3 {
         self.last - self.start
     }
@@ -125,16 +134,16 @@ impl HandDrag {
         self.now = input;
     }
 
-    /// Where the hand is to be, in Root space. Coordinates that the drag does not move keep every
-    /// bit.
-    pub(super) fn hand(&mut self) -> Vec3 {
+    /// Where the point is to be, relative to the origin. Coordinates that the drag does not move keep
+    /// every bit.
+    pub(super) fn point(&mut self) -> Vec3 {
         let offset = if self.typed.is_empty() {
             self.pointed()
         } else {
             offset_of(&self.typed, self.constraint()).unwrap_or(Vec3::ZERO)
         };
         let snap = self.now.snap && self.typed.is_empty();
-        let step = if self.now.precise { Self::PRECISE_SNAP } else { Self::SNAP };
+        let step = self.step * if self.now.precise { Self::PRECISE_SNAP } else { 1.0 };
         for axis in 0..3 {
             if self.is_moved(axis) {
                 let to = self.start[axis] + offset[axis];
@@ -163,10 +172,10 @@ impl HandDrag {
         offset + since * if on { Self::PRECISION } else { 1.0 }
     }
 
-    /// How far the hand goes when the pointer goes from one ray to another; nothing if the pointer
+    /// How far the point goes when the pointer goes from one ray to another; nothing if the pointer
     /// is where the line or plane it drags along cannot be.
     fn between(&self, from: Ray, to: Ray) -> Option<Vec3> {
-        let held = self.root + self.start;
+        let held = self.origin + self.start;
         let offset = match self.constraint() {
             Some(Constraint::Axis(axis)) => {
                 let axis = Vec3::AXES[axis];
@@ -182,7 +191,7 @@ impl HandDrag {
     }
 }
 
-/// What numbers mean when they are typed while a hand is held: the first is for the first
+/// What numbers mean when they are typed while a point is held: the first is for the first
 /// coordinate that the drag moves, and so on.
 fn offset_of(typed: &str, constraint: Option<Constraint>) -> Option<Vec3> {
     let axes: &[usize] = match constraint {
@@ -227,11 +236,11 @@ mod tests {
     const START: Vec3 = Vec3::new(250.0, 120.0, 60.0);
     const ROOT: Vec3 = Vec3::new(30.0, -20.0, 10.0);
 
-    fn drag(handle: Handle) -> (HandDrag, crate::document::Projection) {
+    fn drag(handle: Handle) -> (PointDrag, crate::document::Projection) {
         let projection = Camera::default().projection(1.6);
         let at = projection.project(ROOT + START).expect("in the picture");
         let ray = projection.ray(at);
-        (HandDrag::new(handle, START, ROOT, projection.forward, ray), projection)
+        (PointDrag::new(handle, START, ROOT, projection.forward, ray), projection)
     }
 
     fn input(ray: Ray) -> DragInput {
@@ -243,7 +252,7 @@ mod tests {
         let (mut drag, projection) = drag(Handle::Free);
         for at in [Vec2::new(0.1, 0.2), Vec2::new(-0.9, 0.8), Vec2::new(0.99, -0.99)] {
             drag.set_input(input(projection.ray(at)));
-            let seen = projection.project(ROOT + drag.hand()).expect("in the picture");
+            let seen = projection.project(ROOT + drag.point()).expect("in the picture");
             assert!(seen.distance(at) < 1e-4, "{seen} is not under {at}");
         }
     }
@@ -253,7 +262,7 @@ mod tests {
         for axis in 0..3 {
             let (mut drag, projection) = drag(Handle::Axis(axis));
             drag.set_input(input(projection.ray(Vec2::new(0.31, 0.47))));
-            let hand = drag.hand();
+            let hand = drag.point();
             for other in 0..3 {
                 assert_eq!(hand[other] == START[other], other != axis);
             }
@@ -265,7 +274,7 @@ mod tests {
         for axis in 0..3 {
             let (mut drag, projection) = drag(Handle::Plane(axis));
             drag.set_input(input(projection.ray(Vec2::new(0.31, 0.17))));
-            let hand = drag.hand();
+            let hand = drag.point();
             for other in 0..3 {
                 assert_eq!(hand[other] == START[other], other == axis);
             }
@@ -279,10 +288,10 @@ mod tests {
             let pressed = drag.pressed;
             for step in 0..50 {
                 drag.set_input(input(projection.ray(Vec2::new(step as f32 * 0.01, 0.3))));
-                drag.hand();
+                drag.point();
             }
             drag.set_input(input(pressed));
-            assert_eq!(drag.hand(), START);
+            assert_eq!(drag.point(), START);
         }
     }
 
@@ -292,14 +301,14 @@ mod tests {
         let at = projection.project(ROOT + START).expect("in the picture");
         let ray = |x: f32| projection.ray(at + Vec2::new(x, 0.0));
         drag.set_input(input(ray(0.2)));
-        let coarse = drag.hand().x;
+        let coarse = drag.point().x;
         drag.set_input(DragInput { precise: true, ..input(ray(0.2)) });
-        assert!((drag.hand().x - coarse).abs() < 1e-3, "turning precision on moves nothing");
+        assert!((drag.point().x - coarse).abs() < 1e-3, "turning precision on moves nothing");
         drag.set_input(DragInput { precise: true, ..input(ray(0.4)) });
-        let fine = drag.hand().x - coarse;
+        let fine = drag.point().x - coarse;
         drag.set_input(input(ray(0.4)));
         drag.set_input(input(ray(0.2)));
-        let back = drag.hand().x - (coarse + fine);
+        let back = drag.point().x - (coarse + fine);
         assert!((fine * 10.0 + back).abs() < 0.05, "{fine} is not a tenth of {back}");
     }
 
@@ -308,10 +317,10 @@ mod tests {
         let (mut drag, projection) = drag(Handle::Plane(1));
         let ray = projection.ray(Vec2::new(0.3, 0.1));
         drag.set_input(DragInput { snap: true, ..input(ray) });
-        let hand = drag.hand();
+        let hand = drag.point();
         assert_eq!((hand.x % 10.0, hand.y, hand.z % 10.0), (0.0, START.y, 0.0));
         drag.set_input(DragInput { snap: true, precise: true, ..input(ray) });
-        let hand = drag.hand();
+        let hand = drag.point();
         assert_eq!((hand.x % 1.0, hand.z % 1.0), (0.0, 0.0));
     }
 
@@ -320,11 +329,11 @@ mod tests {
         let (mut drag, projection) = drag(Handle::Free);
         drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
         drag.set_constraint(Some(Constraint::Axis(2)));
-        let hand = drag.hand();
+        let hand = drag.point();
         assert_eq!((hand.x, hand.y), (START.x, START.y));
         assert_ne!(hand.z, START.z);
         drag.set_constraint(None);
-        assert_ne!(drag.hand().x, START.x);
+        assert_ne!(drag.point().x, START.x);
     }
 
     #[test]
@@ -333,7 +342,7 @@ mod tests {
             let (mut drag, projection) = drag(handle);
             drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
             drag.set_typed(text.to_owned());
-            drag.hand() - START
+            drag.point() - START
         };
         assert_eq!(typed(Handle::Axis(1), "12.5"), Vec3::new(0.0, 12.5, 0.0));
         assert_eq!(typed(Handle::Plane(1), "-3,4"), Vec3::new(-3.0, 0.0, 4.0));
@@ -348,6 +357,6 @@ mod tests {
         let (mut drag, _) = drag(Handle::Plane(1));
         let up = Ray { origin: Vec3::new(0.0, 500.0, 0.0), direction: Vec3::Y };
         drag.set_input(input(up));
-        assert_eq!(drag.hand(), START);
+        assert_eq!(drag.point(), START);
     }
 }

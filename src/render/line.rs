@@ -3,10 +3,10 @@ use glam::Vec3;
 
 use super::Gpu;
 use super::quads::{self, Quads};
-use crate::scene::{Dash, Scene};
+use crate::scene::{Line, Scene};
 
 pub(super) const SHADER: &str =
-    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/dash.wgsl"),);
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/line.wgsl"),);
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
@@ -14,30 +14,31 @@ struct Instance {
     from: Vec3,
     to: Vec3,
     colour: [f32; 4],
+    dashed: f32,
 }
 
-const _: () = assert!(size_of::<Instance>() == 40);
+const _: () = assert!(size_of::<Instance>() == 44);
 
-/// Draws dashed lines.
+/// Draws lines.
 #[derive(Debug)]
-pub(super) struct Dashes(Quads<Instance>);
+pub(super) struct Lines(Quads<Instance>);
 
-impl Dashes {
+impl Lines {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
             &quads::Kind {
-                label: "dash",
+                label: "line",
                 shader: SHADER,
                 layouts: &[view],
-                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4],
+                attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32],
                 depth: wgpu::CompareFunction::Greater,
             },
         ))
     }
 
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
-        self.0.upload(gpu, scene.dashes.iter().map(Instance::new));
+        self.0.upload(gpu, scene.lines.iter().map(Instance::new));
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -46,7 +47,8 @@ impl Dashes {
 }
 
 impl Instance {
-    fn new(dash: &Dash) -> Self {
-        Self { from: dash.from, to: dash.to, colour: dash.colour.channels() }
+    fn new(line: &Line) -> Self {
+        let dashed = if line.dashed { 1.0 } else { 0.0 };
+        Self { from: line.from, to: line.to, colour: line.colour.channels(), dashed }
     }
 }

@@ -1,0 +1,61 @@
+//! `ik-arm examples`: the scenes that come with the program.
+
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::builder::PossibleValuesParser;
+use thiserror::Error;
+
+use crate::io::{self as files, Example, WriteError};
+
+#[derive(clap::Args)]
+#[command(after_help = "Without NAME it lists them. With NAME it prints that scene as a document:
+  ik-arm examples human > human.json
+  ik-arm examples human | ik-arm pose --solver dls -")]
+pub struct Args {
+    /// Which one to print
+    #[arg(value_name = "NAME", value_parser = names())]
+    name: Option<String>,
+    /// Write it to a file instead
+    #[arg(short, long, value_name = "FILE", requires = "name")]
+    output: Option<PathBuf>,
+}
+
+fn names() -> PossibleValuesParser {
+    PossibleValuesParser::new(Example::ALL.map(|example| example.name))
+}
+
+/// Why there is no example.
+#[derive(Debug, Error)]
+enum Failure {
+    #[error(transparent)]
+    File(#[from] WriteError),
+    #[error("cannot write to standard output: {0}")]
+    Write(#[from] io::Error),
+}
+
+pub fn run(args: &Args) -> ExitCode {
+    match show(args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+            ExitCode::SUCCESS
+        }
+        Err(failure) => super::fail(&failure),
+    }
+}
+
+fn show(args: &Args) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    let Some(example) = args.name.as_deref().and_then(Example::find) else {
+        for Example { name, title, sentence, .. } in Example::ALL {
+            writeln!(stdout, "{name:<12} {title}: {sentence}")?;
+        }
+        return Ok(());
+    };
+    match &args.output {
+        Some(path) => files::write(path, example.text.as_bytes())?,
+        None => stdout.write_all(example.text.as_bytes())?,
+    }
+    Ok(())
+}

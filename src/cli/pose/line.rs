@@ -1,0 +1,96 @@
+use glam::{Mat4, Vec3};
+use serde::Serialize;
+
+use crate::document::SkeletonRig;
+use crate::kinematics::solve::Report;
+
+/// What is printed.
+#[derive(Serialize)]
+pub struct Line<'a> {
+    joints: Vec<JointLine<'a>>,
+    targets: Vec<TargetLine>,
+    report: Option<ReportLine>,
+}
+
+#[derive(Serialize)]
+struct JointLine<'a> {
+    index: usize,
+    name: &'a str,
+    parent: Option<usize>,
+    rotation_deg: Vec3,
+    base: Vec3,
+    tip: Vec3,
+    transform: [f32; 16],
+}
+
+#[derive(Serialize)]
+struct TargetLine {
+    joint: usize,
+    target: Vec3,
+    tip: Vec3,
+    error: f32,
+}
+
+#[derive(Serialize)]
+struct ReportLine {
+    solver: &'static str,
+    iterations: u32,
+    error: f32,
+    converged: bool,
+}
+
+impl<'a> Line<'a> {
+    /// A joint that floats cannot hold is named instead.
+    pub fn new(
+        rig: &'a SkeletonRig,
+        order: &[usize],
+        report: Option<Report>,
+    ) -> Result<Self, &'a str> {
+        let mut index_of = vec![0; order.len()];
+        for (index, joint) in order.iter().enumerate() {
+            index_of[*joint] = index;
+        }
+        let pose = rig.skeleton.pose();
+        let joints = order.iter().enumerate().map(|(index, &joint)| {
+            let bone = &rig.skeleton.joints()[joint];
+            let (full, tip) = (pose.full(joint), pose.tip(joint));
+            if !(full.is_finite() && tip.is_finite()) {
+                return Err(bone.name.as_str());
+            }
+            Ok(JointLine {
+                index,
+                name: &bone.name,
+                parent: bone.parent.map(|parent| index_of[parent]),
+                rotation_deg: degrees(bone.rotation),
+                base: pose.base(joint),
+                tip,
+                transform: Mat4::from(full).to_cols_array(),
+            })
+        });
+        let joints = joints.collect::<Result<_, _>>()?;
+        let targets = rig.goals(0.0).into_iter().map(|goal| {
+            let tip = pose.tip(goal.joint);
+            let error = goal.point.as_dvec3().distance(tip.as_dvec3());
+            TargetLine {
+                joint: index_of[goal.joint],
+                target: goal.point,
+                tip,
+                error: (error as f32).min(f32::MAX),
+            }
+        });
+        let targets = targets.collect();
+        let report = report.map(|report| ReportLine {
+            solver: report.method.name(),
+            iterations: report.iterations,
+            error: report.error,
+            converged: report.converged,
+        });
+        Ok(Self { joints, targets, report })
+    }
+}
+
+/// By way of f64, so that 90 is 90 again.
+fn degrees(radians: Vec3) -> Vec3 {
+    let degrees = radians.as_dvec3() * 1_f64.to_degrees();
+    degrees.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
+}

@@ -1,0 +1,194 @@
+use core::f32::consts::TAU;
+
+use glam::{Vec3, Vec3A};
+
+use super::{Camera, Slither};
+use crate::kinematics::skeleton::{Moved, Pose, Skeleton};
+use crate::kinematics::solve::{self, Options};
+
+/// A skeleton with its targets, and how it is brought to them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkeletonRig {
+    pub skeleton: Skeleton,
+    /// At most one for a joint.
+    pub targets: Vec<Target>,
+    pub solver: Options,
+    /// How many iterations a running solver makes between two pictures.
+    pub iterations_per_frame: u32,
+    /// The first root's chain follows its head along a path, as a function of time.
+    pub slither: Option<Slither>,
+}
+
+/// Where the tip of a joint's bone is asked to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    pub joint: usize,
+    /// Where it is at time 0, in the world.
+    pub home: Vec3,
+    pub weight: f32,
+    pub enabled: bool,
+    pub motion: Motion,
+}
+
+/// How a target moves by itself: a curve in the plane that faces +z, through the target's home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    pub path: Path,
+    /// In the world.
+    pub radius: f32,
+    /// How long once around takes, in seconds.
+    pub period: f32,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Path {
+    #[default]
+    Still,
+    Circle,
+    FigureEight,
+}
+
+impl Motion {
+    /// A target that stays, and would go around at such a radius if it went.
+    pub fn still(radius: f32) -> Self {
+        Self { path: Path::Still, radius, period: 4.0 }
+    }
+
+    /// How far from home, at a time in seconds; nothing at 0.
+    pub fn offset(&self, time: f64) -> Vec3 {
+        let turn = (time / f64::from(self.period)).fract() as f32 * TAU;
+        let (sin, cos) = turn.sin_cos();
+        self.radius
+            * match self.path {
+                Path::Still => Vec3::ZERO,
+                Path::Circle => Vec3::new(sin, cos - 1.0, 0.0),
+                // The lemniscate of Gerono.
+                Path::FigureEight => Vec3::new(sin, sin * cos, 0.0),
+            }
+    }
+}
+
+impl Target {
+    /// An enabled target that stays.
+    pub fn new(joint: usize, home: Vec3, radius: f32) -> Self {
+        Self { joint, home, weight: 1.0, enabled: true, motion: Motion::still(radius) }
+    }
+
+    pub fn at(&self, time: f64) -> Vec3 {
+        self.home + self.motion.offset(time)
+    }
+}
+
+impl SkeletonRig {
+    /// How many iterations a frame can have.
+    pub const MOST_ITERATIONS_PER_FRAME: u32 = 1000;
+
+    /// A skeleton without targets.
+    pub fn new(skeleton: Skeleton) -> Self {
+        Self {
+            skeleton,
+            targets: Vec::new(),
+            solver: Options::default(),
+            iterations_per_frame: 1,
+            slither: None,
+        }
+    }
+
+    /// From where all of it is seen at time 0.
+    pub fn first_view(&self) -> Camera {
+        let (centre, radius) = self.bounds(&self.at(0.0).pose(), 0.0);
+        Camera::default().framing(centre, radius, 1.0)
+    }
+
+    /// How large the circle of a new target is.
+    pub fn circle(&self) -> f32 {
+        const PART: f32 = 0.15;
+        PART * self.reach()
+    }
+
+    /// The target of a joint.
+    pub fn target(&self, joint: usize) -> Option<usize> {
+        self.targets.iter().position(|target| target.joint == joint)
+    }
+
+    /// What a solver is asked for at a time: the targets that are switched on.
+    pub fn goals(&self, time: f64) -> Vec<solve::Target> {
+        let enabled = self.targets.iter().filter(|target| target.enabled);
+        let goal = |target: &Target| solve::Target {
+            joint: target.joint,
+            point: target.at(time),
+            weight: target.weight,
+        };
+        enabled.map(goal).collect()
+    }
+
+    /// The skeleton as it stands at a time.
+    pub fn at(&self, time: f64) -> std::borrow::Cow<'_, Skeleton> {
+        match &self.slither {
+            None => std::borrow::Cow::Borrowed(&self.skeleton),
+            Some(slither) => std::borrow::Cow::Owned(slither.pose(&self.skeleton, time)),
+        }
+    }
+
+    /// Whether anything moves by itself.
+    pub fn is_moving(&self) -> bool {
+        let moves = |target: &Target| target.enabled && target.motion.path != Path::Still;
+        self.slither.is_some() || self.targets.iter().any(moves)
+    }
+
+    /// Lets the targets follow their joints to new places; those whose joints are gone go too.
+    pub fn follow(&mut self, moved: &Moved) {
+        self.targets.retain_mut(|target| {
+            moved.get(target.joint).map(|joint| target.joint = joint).is_some()
+        });
+    }
+
+    /// How far the skeleton's bones and the offsets between them reach from its roots, in the world:
+    /// what its size is measured by.
+    pub fn reach(&self) -> f32 {
+        let joints = self.skeleton.joints();
+        let mut reach = vec![0.0_f32; joints.len()];
+        let mut farthest = 0.0_f32;
+        for (index, joint) in joints.iter().enumerate() {
+            let above = joint.parent.map_or(0.0, |parent| reach[parent] + joint.offset.length());
+            reach[index] = above;
+            farthest = farthest.max(above + joint.axis.length());
+        }
+        let scale = self.skeleton.transform().matrix3;
+        let stretch = [scale.x_axis, scale.y_axis, scale.z_axis].map(Vec3A::length);
+        let reach = farthest * stretch.into_iter().fold(0.0, f32::max);
+        if reach.is_finite() && reach > 0.0 { reach } else { 1.0 }
+    }
+
+    /// A sphere around a pose and the targets, in the world: centre and radius.
+    pub fn bounds(&self, pose: &Pose, time: f64) -> (Vec3, f32) {
+        let targets = self.targets.iter().map(|target| target.at(time));
+        let way = self.slither.iter().flat_map(|slither| slither.corners(&self.skeleton));
+        let all = pose.points().chain(targets).chain(way);
+        let (centre, radius) = around(all).unwrap_or_default();
+        (centre, radius.max(0.25 * self.reach()))
+    }
+
+    /// A sphere around the bones of some joints, if there are any.
+    pub fn bounds_of(&self, pose: &Pose, joints: &[usize]) -> Option<(Vec3, f32)> {
+        let ends = joints.iter().flat_map(|joint| [pose.base(*joint), pose.tip(*joint)]);
+        let (centre, radius) = around(ends)?;
+        Some((centre, radius.max(0.05 * self.reach())))
+    }
+}
+
+/// The sphere around the box around points.
+fn around(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, f32)> {
+    let (low, high) = points
+        .filter(|point| point.is_finite())
+        .map(|point| (point, point))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    Some((low.midpoint(high), 0.5 * low.distance(high)))
+}
+
+impl Default for SkeletonRig {
+    /// A new skeleton: a root to hang joints from.
+    fn default() -> Self {
+        Self::new(Skeleton::with_root("root"))
+    }
+}

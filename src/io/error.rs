@@ -1,0 +1,83 @@
+use std::fmt;
+use std::io;
+
+use thiserror::Error;
+
+use super::source::Source;
+
+/// Why a file is not open.
+#[derive(Debug, Error)]
+pub enum OpenError {
+    #[error("{file} cannot be read: {source}")]
+    Read { file: String, source: io::Error },
+    #[error("{file} is larger than {} MB, and no document is", Source::LONGEST >> 20)]
+    TooLarge { file: String },
+    #[error("{file}, {remark}")]
+    Content { file: String, remark: Remark },
+    #[error("{file} has no skeleton called {name:?}; {}", list(names))]
+    NoSkeleton { file: String, name: String, names: Vec<String> },
+}
+
+/// What there is to say about a place in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// From 1.
+    pub line: usize,
+    /// From 1, in characters.
+    pub column: usize,
+    /// The path of the field, as `skeleton.joints[3].parent`; empty where there is none.
+    pub field: String,
+    pub reason: String,
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, column, field, reason } = self;
+        write!(f, "line {line}, column {column}: ")?;
+        if !field.is_empty() {
+            write!(f, "{field}: ")?;
+        }
+        f.write_str(reason)
+    }
+}
+
+/// Why a document is not on the disk.
+#[derive(Debug, Error)]
+pub enum SaveError {
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    #[error("the document cannot be written: {0}")]
+    Value(#[from] serde_json::Error),
+}
+
+/// Why a file is not on the disk.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    #[error("{path} could not be written: there is no folder {folder}")]
+    NoFolder { path: String, folder: String },
+    #[error("{path} could not be written: {source}")]
+    Write { path: String, source: io::Error },
+}
+
+fn list(names: &[String]) -> String {
+    match names {
+        [] => "it has one skeleton, without a name".to_owned(),
+        names => {
+            let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
+            format!("it has {}", quoted.join(", "))
+        }
+    }
+}
+
+/// A message that quotes something long keeps its start and its end.
+pub(crate) fn shortened(message: String) -> String {
+    const START: usize = 200;
+    const END: usize = 120;
+    let count = message.chars().count();
+    if count <= START + END {
+        return message;
+    }
+    let start = message.chars().take(START);
+    let end = message.chars().skip(count - END);
+    start.chain("…".chars()).chain(end).collect()
+}

@@ -1,0 +1,267 @@
+//! What stands in a file, field by field.
+
+use glam::Mat3;
+use serde::{Deserialize, Serialize};
+
+use super::{NAME, VERSION};
+use crate::document::{self, Camera, Document, Layer, RigKind, SkeletonRig};
+use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::kinematics::skeleton::{self, Limit};
+use crate::kinematics::solve;
+
+#[derive(Serialize, Deserialize)]
+pub struct File {
+    format: String,
+    version: Whole,
+    pub rig: Rig,
+    pub arm: Option<Object<Arm>>,
+    pub skeleton: Option<Object<Skeleton>>,
+    pub targets: Option<Vec<Object<Target>>>,
+    pub solver: Option<Object<Solver>>,
+    pub slither: Option<Object<Slither>>,
+    pub camera: Option<Object<View>>,
+    pub display: Option<Vec<Layer>>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rig {
+    Arm,
+    Skeleton,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Arm {
+    pub cursor: Option<Point>,
+    pub elbow_spin: Option<Number>,
+    pub root: Option<Point>,
+    pub upper: Option<Number>,
+    pub lower: Option<Number>,
+    pub facing: Option<Object<Facing>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Facing {
+    pub direction: Point,
+    pub heading: Numbers<2>,
+}
+
+#[derive(Default, Serialize, Deserialize)]
+pub struct Skeleton {
+    pub joints: Option<Vec<Object<Joint>>>,
+    pub transform: Option<Numbers<12>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Joint {
+    pub name: String,
+    pub parent: Option<Whole>,
+    pub offset: Option<Point>,
+    pub axis: Option<Point>,
+    pub rotation: Option<Point>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Numbers<9>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Object<Limits>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub locked: Option<bool>,
+    pub radius: Option<Number>,
+}
+
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Limits {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<Numbers<2>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<Numbers<2>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<Numbers<2>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Target {
+    pub joint: Whole,
+    pub home: Point,
+    pub weight: Option<Number>,
+    pub enabled: Option<bool>,
+    pub motion: Option<Object<Motion>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Motion {
+    pub path: Path,
+    pub radius: Option<Number>,
+    pub period: Option<Number>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Path {
+    Still,
+    Circle,
+    FigureEight,
+}
+
+#[derive(Default, Serialize, Deserialize)]
+pub struct Solver {
+    pub method: Option<String>,
+    pub iterations: Option<Whole>,
+    pub tolerance: Option<Number>,
+    pub damping: Option<Number>,
+    pub step: Option<Number>,
+    pub root: Option<Root>,
+    pub iterations_per_frame: Option<Whole>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Root {
+    Fixed,
+    Free,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct Slither {
+    pub radius: Number,
+    pub amplitude: Number,
+    pub waves: Whole,
+    pub period: Number,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct View {
+    pub target: Option<Point>,
+    pub yaw: Option<Number>,
+    pub pitch: Option<Number>,
+    pub distance: Option<Number>,
+    pub orthographic: Option<bool>,
+}
+
+impl File {
+    pub fn new(document: &Document) -> Self {
+        let Document { rig, arm, skeleton: rig_of_joints, camera, display } = document;
+        let SkeletonRig { skeleton, targets, slither, .. } = rig_of_joints;
+        Self {
+            format: NAME.to_owned(),
+            version: Whole(VERSION),
+            rig: match rig {
+                RigKind::Arm => Rig::Arm,
+                RigKind::Skeleton => Rig::Skeleton,
+            },
+            arm: Some(Object(Arm::new(arm))),
+            skeleton: Some(Object(Skeleton::new(skeleton))),
+            targets: Some(targets.iter().map(Target::new).map(Object).collect()),
+            solver: Some(Object(Solver::new(rig_of_joints))),
+            slither: slither.as_ref().map(Slither::new).map(Object),
+            camera: Some(Object(View::new(camera))),
+            display: Some(display.layers().collect()),
+        }
+    }
+}
+
+impl Arm {
+    fn new(arm: &document::Arm) -> Self {
+        let facing = Facing {
+            direction: Point(arm.facing.direction),
+            heading: Numbers(arm.facing.heading.to_array()),
+        };
+        Self {
+            cursor: Some(Point(arm.cursor)),
+            elbow_spin: Some(Number(arm.elbow_spin)),
+            root: Some(Point(arm.root)),
+            upper: Some(Number(arm.bones.upper())),
+            lower: Some(Number(arm.bones.lower())),
+            facing: Some(Object(facing)),
+        }
+    }
+}
+
+impl Skeleton {
+    fn new(skeleton: &skeleton::Skeleton) -> Self {
+        Self {
+            joints: Some(skeleton.joints().iter().map(Joint::new).map(Object).collect()),
+            transform: Some(Numbers(skeleton.transform().to_cols_array())),
+        }
+    }
+}
+
+impl Joint {
+    fn new(joint: &skeleton::Joint) -> Self {
+        let frame = joint.frame.to_cols_array();
+        let is_identity =
+            frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
+        let [x, y, z] =
+            joint.limits.map(|limit| limit.map(|Limit { min, max }| Numbers([min, max])));
+        Self {
+            name: joint.name.clone(),
+            parent: joint.parent.and_then(|parent| u32::try_from(parent).ok()).map(Whole),
+            offset: Some(Point(joint.offset)),
+            axis: Some(Point(joint.axis)),
+            rotation: Some(Point(joint.rotation)),
+            frame: (!is_identity).then_some(Numbers(frame)),
+            limits: joint.is_limited().then_some(Object(Limits { x, y, z })),
+            locked: joint.locked.then_some(true),
+            radius: Some(Number(joint.radius)),
+        }
+    }
+}
+
+impl Target {
+    fn new(target: &document::Target) -> Self {
+        let document::Motion { path, radius, period } = target.motion;
+        let path = match path {
+            document::Path::Still => Path::Still,
+            document::Path::Circle => Path::Circle,
+            document::Path::FigureEight => Path::FigureEight,
+        };
+        let motion = Motion { path, radius: Some(Number(radius)), period: Some(Number(period)) };
+        Self {
+            joint: Whole(u32::try_from(target.joint).unwrap_or(u32::MAX)),
+            home: Point(target.home),
+            weight: Some(Number(target.weight)),
+            enabled: Some(target.enabled),
+            motion: Some(Object(motion)),
+        }
+    }
+}
+
+impl Solver {
+    fn new(rig: &SkeletonRig) -> Self {
+        let solver = rig.solver;
+        Self {
+            method: Some(solver.method.name().to_owned()),
+            iterations: solver.iterations.map(Whole),
+            tolerance: solver.tolerance.map(Number),
+            damping: Some(Number(solver.damping)),
+            step: Some(Number(solver.step)),
+            root: Some(match solver.root {
+                solve::Root::Fixed => Root::Fixed,
+                solve::Root::Free => Root::Free,
+            }),
+            iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
+        }
+    }
+}
+
+impl Slither {
+    fn new(slither: &document::Slither) -> Self {
+        Self {
+            radius: Number(slither.radius),
+            amplitude: Number(slither.amplitude),
+            waves: Whole(slither.waves),
+            period: Number(slither.period),
+        }
+    }
+}
+
+impl View {
+    fn new(camera: &Camera) -> Self {
+        Self {
+            target: Some(Point(camera.target)),
+            yaw: Some(Number(camera.yaw)),
+            pitch: Some(Number(camera.pitch)),
+            distance: Some(Number(camera.distance)),
+            orthographic: Some(camera.orthographic),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The program's own format: JSON, `"format": "ik-arm"`, `"version": 1`.
+//!
+//! ```text
+//! {
+//!   "format": "ik-arm", "version": 1,
+//!   "rig": "arm" | "skeleton",                        which one is shown
+//!   "arm": { "cursor", "elbow_spin", "root", "upper", "lower", "facing": { "direction", "heading" } },
+//!   "skeleton": {
+//!     "joints": [{ "name", "parent", "offset", "axis", "rotation", "frame", "limits": { "x", "y", "z" },
+//!                  "locked", "radius" }],
+//!     "transform": [12 numbers]
+//!   },
+//!   "targets": [{ "joint", "home", "weight", "enabled", "motion": { "path", "radius", "period" } }],
+//!   "solver": { "method", "iterations", "tolerance", "damping", "step", "root", "iterations_per_frame" },
+//!   "slither": { "radius", "amplitude", "waves", "period" },
+//!   "camera": { "target", "yaw", "pitch", "distance", "orthographic" },
+//!   "display": ["cursor", "pointer", "inner_limit", "outer_limit", "grid_xy", "grid_xz", "grid_yz",
+//!               "ground", "axes", "labels", "shadow"]
+//! }
+//! ```
+//!
+//! Angles are radians, points `[x, y, z]`. `parent` and `joint` count joints from 0; a parent stands
+//! before its children, and a root has none (`null`). A `transform` is a 3×4 matrix, column after
+//! column: where the skeleton's x, y and z axes point in the world, then its origin; a `frame` a 3×3
+//! matrix likewise. A limit is `[from, to]`.
+//!
+//! Only `format`, `version` and `rig` must be there, a joint's `name`, and a target's `joint` and
+//! `home`. What is absent is as at first; an absent `offset` puts a joint on its parent's tip, an
+//! absent `camera` shows the whole skeleton. Fields that are not known are remarked on and ignored.
+
+mod check;
+mod file;
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::error::{OpenError, SaveError};
+use super::field::Field;
+use super::layout::laid_out;
+use super::open::Opened;
+use super::source::{Odd, Source, Wrong};
+use super::value::{Object, Whole};
+use crate::document::Document;
+use file::File;
+
+const NAME: &str = "ik-arm";
+const VERSION: u32 = 1;
+
+/// What tells whether the rest can be read.
+#[derive(Deserialize)]
+struct Header {
+    format: String,
+    version: Whole,
+}
+
+/// Reads a document whose text is there.
+pub fn read(source: &Source) -> Result<Opened, OpenError> {
+    // Where there is no header, reading all of it says why, and more exactly.
+    if let Ok(Object(header)) = source.parse::<Object<Header>>(|_| {}) {
+        check_header(&header).map_err(|wrong| source.wrong(&wrong))?;
+    }
+    let mut odd = Odd::default();
+    let Object(file) = source.parse::<Object<File>>(|field| {
+        odd.push(field, "no such field is known; it is ignored");
+    })?;
+    let document = check::document(file, &mut odd).map_err(|wrong| source.wrong(&wrong))?;
+    Ok(Opened {
+        order: (0..document.skeleton.skeleton.joints().len()).collect(),
+        document,
+        warnings: source.remarks(&odd),
+        skeletons: Vec::new(),
+    })
+}
+
+fn check_header(Header { format, version }: &Header) -> Result<(), Wrong> {
+    if format != NAME {
+        let reason = format!("{format:?} is not a format that is known; it must be {NAME:?}");
+        return Err(Wrong::new(Field::root().key("format"), reason));
+    }
+    let version = version.0;
+    if version != VERSION {
+        let reason = if version > VERSION {
+            format!("version {version} needs a newer ik-arm; this one reads version {VERSION}")
+        } else {
+            format!("there is no version {version}; it must be {VERSION}")
+        };
+        return Err(Wrong::new(Field::root().key("version"), reason));
+    }
+    Ok(())
+}
+
+/// The document as a file has it: reading it again gives the same, bit for bit.
+///
+/// # Errors
+///
+/// If a number is not finite.
+pub fn to_json(document: &Document) -> Result<String, serde_json::Error> {
+    laid_out(&File::new(document))
+}
+
+/// Writes a document, whole or not at all.
+///
+/// # Errors
+///
+/// If the folder or the file cannot be written, or a number is not finite.
+pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
+    Ok(super::write(path, to_json(document)?.as_bytes())?)
+}

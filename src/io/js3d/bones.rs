@@ -1,0 +1,117 @@
+use glam::{DMat3, DVec3, Vec3};
+
+use super::file::{Bone, Skeleton as File};
+use crate::io::field::Field;
+use crate::io::source::Wrong;
+use crate::io::value::{Number, Object, Point};
+use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
+
+/// A skeleton, and for every bone in the file's order the joint that it is.
+pub struct Bones {
+    pub skeleton: Skeleton,
+    pub order: Vec<usize>,
+}
+
+pub fn read(at: &Field, file: &File) -> Result<Bones, Wrong> {
+    let at_bone = |bone| at.clone().key("bones").index(bone);
+    if file.bones.len() > Skeleton::MOST_JOINTS {
+        return Err(Wrong::new(at.clone().key("bones"), SkeletonError::TooMany.to_string()));
+    }
+    let parents: Vec<_> = file.bones.iter().map(|Object(bone)| bone.parent()).collect();
+    let bones = parents_first(&parents)
+        .map_err(|(bone, reason)| Wrong::new(at_bone(bone).key("parent"), reason))?;
+    let mut order = vec![0; bones.len()];
+    for (joint, bone) in bones.iter().enumerate() {
+        order[*bone] = joint;
+    }
+    let root = file.base.0 + file.base_offset.0;
+    if !root.is_finite() {
+        let reason = "base and base_offset add up to more than 3.4028235e38";
+        return Err(Wrong::new(at.clone().key("base_offset"), reason));
+    }
+    let joints = bones.iter().map(|&index| joint(file, index, root, &order)).collect();
+    let skeleton = Skeleton::from_joints(joints).map_err(|error| match &error {
+        SkeletonError::Radius { joint, value } => {
+            let reason = format!("is {value}; it must be 0 or more");
+            Wrong::new(at_bone(bones[*joint]).key("radius"), reason)
+        }
+        _ => Wrong::new(at.clone(), error.to_string()),
+    })?;
+    Ok(Bones { skeleton, order })
+}
+
+/// The bones in an order in which parents come before their children, and otherwise as it was; else
+/// a bone whose parent cannot be its parent, and why.
+fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String)> {
+    let mut first = Vec::with_capacity(parents.len());
+    let mut is_placed = vec![false; parents.len()];
+    let mut path_of = vec![None; parents.len()];
+    for start in 0..parents.len() {
+        let mut path = Vec::new();
+        let mut next = Some(start).filter(|bone| !is_placed[*bone]);
+        while let Some(bone) = next {
+            path_of[bone] = Some(start);
+            path.push(bone);
+            next = parents[bone];
+            match next {
+                Some(parent) if parent >= parents.len() => {
+                    let count = counted(parents.len());
+                    return Err((bone, format!("there is no bone {parent}; {count}")));
+                }
+                Some(parent) if path_of[parent] == Some(start) => {
+                    let reason = format!("bone {parent} hangs from bone {bone} itself");
+                    return Err((bone, reason));
+                }
+                Some(parent) if is_placed[parent] => next = None,
+                _ => {}
+            }
+        }
+        for bone in path.into_iter().rev() {
+            is_placed[bone] = true;
+            first.push(bone);
+        }
+    }
+    Ok(first)
+}
+
+pub fn counted(bones: usize) -> String {
+    match bones {
+        0 => "there are none".to_owned(),
+        1 => "there is only bone 0".to_owned(),
+        _ => format!("they are 0 to {}", bones - 1),
+    }
+}
+
+fn joint(file: &File, index: usize, root: Vec3, order: &[usize]) -> Joint {
+    let Object(bone) = &file.bones[index];
+    let Point(axis) = bone.extent;
+    let parent = bone.parent();
+    let seed = Joint::new(&format!("bone_{index}"), parent.map(|parent| order[parent]), axis);
+    Joint {
+        offset: parent.map_or(root, |parent| file.bones[parent].0.extent.0),
+        rotation: radians(bone.pose.0.as_dvec3()).as_vec3(),
+        frame: bone.frame().as_mat3(),
+        radius: bone.radius.map_or(seed.radius.min(f32::MAX), |Number(radius)| radius),
+        ..seed
+    }
+}
+
+fn radians(degrees: DVec3) -> DVec3 {
+    DVec3::from_array(degrees.to_array().map(f64::to_radians))
+}
+
+impl Bone {
+    /// A, in which the bone's angles are measured: y along the bone, x as near to the skeleton's x
+    /// as can be and then turned by the roll.
+    ///
+    /// In f64, in which no f32's square is too large or too small.
+    pub fn frame(&self) -> DMat3 {
+        let y = self.extent.0.as_dvec3().try_normalize().unwrap_or(DVec3::Y);
+        // (1, 0, 0) − y_x·y, without a difference of near equals.
+        let beside = DVec3::new(y.y * y.y + y.z * y.z, -y.x * y.y, -y.x * y.z);
+        let flat = beside.try_normalize().unwrap_or(DVec3::Z);
+        let (sin, cos) = f64::from(self.roll.0).to_radians().sin_cos();
+        let x = flat * cos - flat.cross(y) * sin;
+        DMat3::from_cols(x, y, x.cross(y))
+    }
+}

@@ -1,0 +1,133 @@
+//! Scotty3D's scenes, `.js3d`: their skeletons.
+//!
+//! ```text
+//! scene.skinned_meshes.NAME.skeleton
+//!     base, base_offset      where bones without a parent begin: at the sum
+//!     bones[]                extent, roll (degrees), radius, parent, pose (x, y, z in degrees)
+//!     handles[]              bone, target (in the skeleton's own space), enabled
+//! scene.instances.skinned_meshes.*   mesh (a NAME), transform (the name of one)
+//! scene.transforms.*                 parent, translation, rotation [x, y, z, w], scale
+//! ```
+//!
+//! Bones count from 0 in the file's order, and a parent may come after its children; 4294967295 is
+//! none. The angles of a bone are measured in the frame [`Bone::frame`](file::Bone::frame). The
+//! skeleton stands where the first instance of its mesh does.
+
+mod bones;
+mod file;
+mod place;
+
+use glam::DAffine3;
+
+use super::error::OpenError;
+use super::field::Field;
+use super::open::Opened;
+use super::source::{Odd, Source, Wrong};
+use super::value::Object;
+use crate::document::{Document, RigKind, SkeletonRig, Target};
+use bones::Bones;
+use file::{File, Handle, Scene, Skeleton};
+
+/// Reads the skeleton of that name, or the first one.
+pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
+    let Object(File { scene: Object(scene) }) = source.parse::<Object<File>>(|_| {})?;
+    let names: Vec<String> = scene.skeletons().map(|(name, _)| name.to_owned()).collect();
+    let mut skeletons = scene.skeletons();
+    let chosen = match name {
+        Some(name) => skeletons.find(|(other, _)| *other == name),
+        None => skeletons.next(),
+    };
+    let Some((chosen, skeleton)) = chosen else {
+        return Err(match name.filter(|_| !names.is_empty()) {
+            Some(name) => OpenError::NoSkeleton {
+                file: source.name().to_owned(),
+                name: name.to_owned(),
+                names,
+            },
+            None => source.wrong(&no_skeleton()),
+        });
+    };
+    let mut odd = Odd::default();
+    let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.wrong(&w))?;
+    let camera = rig.first_view();
+    Ok(Opened {
+        document: Document { rig: RigKind::Skeleton, skeleton: rig, camera, ..Document::default() },
+        warnings: source.remarks(&odd),
+        order,
+        skeletons: names,
+    })
+}
+
+fn no_skeleton() -> Wrong {
+    let field = Field::root().key("scene").key("skinned_meshes");
+    Wrong::new(field, "there is no skeleton; one is under the name of a mesh, as its `skeleton`")
+}
+
+fn rig(
+    scene: &Scene,
+    name: &str,
+    file: &Skeleton,
+    odd: &mut Odd,
+) -> Result<(SkeletonRig, Vec<usize>), Wrong> {
+    let at = Field::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
+    let place = place::of(scene, name, odd)?;
+    let Bones { mut skeleton, order } = bones::read(&at, file)?;
+    skeleton.set_transform(place.as_affine3a()).map_err(|error| {
+        Wrong::new(Field::root().key("scene").key("transforms"), error.to_string())
+    })?;
+    let mut rig = SkeletonRig::new(skeleton);
+    rig.targets = targets(&at, file, place, &order, rig.circle(), odd)?;
+    Ok((rig, order))
+}
+
+/// Of several handles on a bone the first that is enabled counts, or the first.
+fn targets(
+    at: &Field,
+    file: &Skeleton,
+    place: DAffine3,
+    order: &[usize],
+    circle: f32,
+    odd: &mut Odd,
+) -> Result<Vec<Target>, Wrong> {
+    let at_handle = |handle| at.clone().key("handles").index(handle);
+    // Each with its handle, and for every joint which of them is its own.
+    let mut targets: Vec<(usize, Target)> = Vec::new();
+    let mut own = vec![None; order.len()];
+    for (handle, Object(file)) in file.handles.iter().flatten().enumerate() {
+        let target = target(&at_handle(handle), file, place, order, circle)?;
+        let Some(own) = own[target.joint] else {
+            own[target.joint] = Some(targets.len());
+            targets.push((handle, target));
+            continue;
+        };
+        let (mut counts, mut ignored) = (targets[own], (handle, target));
+        if target.enabled && !counts.1.enabled {
+            std::mem::swap(&mut counts, &mut ignored);
+        }
+        let reason = format!("handle {} of the same bone counts; this one is ignored", counts.0);
+        odd.push(at_handle(ignored.0), reason);
+        targets[own] = counts;
+    }
+    Ok(targets.into_iter().map(|(_, target)| target).collect())
+}
+
+fn target(
+    at: &Field,
+    handle: &Handle,
+    place: DAffine3,
+    order: &[usize],
+    circle: f32,
+) -> Result<Target, Wrong> {
+    let bone = handle.bone.0 as usize;
+    let joint = order.get(bone).copied().ok_or_else(|| {
+        let reason = format!("there is no bone {bone}; {}", bones::counted(order.len()));
+        Wrong::new(at.clone().key("bone"), reason)
+    })?;
+    let home = place.transform_point3(handle.target.0.as_dvec3()).as_vec3();
+    if !home.is_finite() {
+        let reason = "is beyond 3.4028235e38 in the world; bring it nearer to 0";
+        return Err(Wrong::new(at.clone().key("target"), reason));
+    }
+    let enabled = handle.enabled.unwrap_or(true);
+    Ok(Target { enabled, ..Target::new(joint, home, circle) })
+}

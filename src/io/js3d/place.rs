@@ -1,0 +1,70 @@
+use std::collections::{HashMap, HashSet};
+
+use glam::{DAffine3, DQuat, DVec3, DVec4};
+
+use super::file::{Scene, Transform};
+use crate::io::field::Field;
+use crate::io::source::{Odd, Wrong};
+use crate::io::value::{Numbers, Point};
+
+/// Where the first instance of a mesh stands in the world; a mesh without an instance is at the
+/// origin.
+pub fn of(scene: &Scene, mesh: &str, odd: &mut Odd) -> Result<DAffine3, Wrong> {
+    let instances = &scene.instances.0.skinned_meshes.0;
+    let at = Field::root().key("scene").key("instances").key("skinned_meshes");
+    let mut of_mesh =
+        instances.iter().filter(|(_, instance)| instance.mesh.as_deref() == Some(mesh));
+    let Some((name, instance)) = of_mesh.next() else {
+        return Ok(DAffine3::IDENTITY);
+    };
+    for (other, _) in of_mesh {
+        let reason = format!("{mesh:?} stands where {name:?} is; this instance is ignored");
+        odd.push(at.clone().key(other), reason);
+    }
+    match &instance.transform {
+        Some(transform) => world(scene, transform, at.key(name).key("transform")),
+        None => Ok(DAffine3::IDENTITY),
+    }
+}
+
+/// The product of a transform and all those above it. `field` is where its name stands.
+fn world(scene: &Scene, name: &str, field: Field) -> Result<DAffine3, Wrong> {
+    let mut place = DAffine3::IDENTITY;
+    let (mut next, mut field) = (Some(name), field);
+    let transforms: HashMap<_, _> =
+        scene.transforms.0.iter().map(|(name, transform)| (name.as_str(), transform)).collect();
+    let mut seen = HashSet::new();
+    while let Some(name) = next {
+        if !seen.insert(name) {
+            return Err(Wrong::new(field, format!("transform {name:?} hangs from itself")));
+        }
+        let Some(transform) = transforms.get(name) else {
+            return Err(Wrong::new(field, format!("there is no transform called {name:?}")));
+        };
+        let at = Field::root().key("scene").key("transforms").key(name);
+        place = local(&at, transform)? * place;
+        if !place.as_affine3a().is_finite() {
+            return Err(Wrong::new(at, "leads beyond 3.4028235e38 in the world"));
+        }
+        field = at.key("parent");
+        next = transform.parent.as_deref();
+    }
+    Ok(place)
+}
+
+fn local(at: &Field, transform: &Transform) -> Result<DAffine3, Wrong> {
+    let Transform { translation, rotation, scale, .. } = transform;
+    let or = |point: &Option<Point>, usual: DVec3| point.map_or(usual, |Point(p)| p.as_dvec3());
+    let rotation = match rotation {
+        Some(Numbers(rotation)) => {
+            let turn = DVec4::from_array(rotation.map(f64::from)).try_normalize();
+            turn.map(DQuat::from_vec4).ok_or_else(|| {
+                let reason = "four zeros turn nothing; no rotation is [0, 0, 0, 1]";
+                Wrong::new(at.clone().key("rotation"), reason)
+            })?
+        }
+        None => DQuat::IDENTITY,
+    };
+    let (translation, scale) = (or(translation, DVec3::ZERO), or(scale, DVec3::ONE));
+    Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
+}

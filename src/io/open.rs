@@ -1,0 +1,112 @@
+use std::borrow::Cow;
+use std::fmt;
+use std::io::Read;
+use std::path::Path;
+
+use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
+
+use super::error::{OpenError, Remark};
+use super::field::Field;
+use super::source::{Source, Wrong};
+use super::{format, js3d};
+use crate::document::Document;
+
+/// A document from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opened {
+    pub document: Document,
+    /// What is odd in the file, yet did not keep it from being opened.
+    pub warnings: Vec<Remark>,
+    /// For every joint in the file's order, which joint of the document's skeleton it is.
+    pub order: Vec<usize>,
+    /// The names of the file's skeletons, one of which is the document's; none where skeletons have
+    /// no names.
+    pub skeletons: Vec<String>,
+}
+
+/// Opens a document or a scene of Scotty3D, whichever the file has; of a scene the skeleton of that
+/// name, or the first.
+///
+/// # Errors
+///
+/// If the file cannot be read, or what is in it is no document.
+pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+    opened(&Source::open(path)?, skeleton)
+}
+
+/// As [`open`], from something that is called `name` in errors.
+///
+/// # Errors
+///
+/// As [`open`].
+pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+    opened(&Source::read(name, input)?, skeleton)
+}
+
+/// As [`open`], from a text that is called `name` in errors.
+///
+/// # Errors
+///
+/// As [`open`].
+pub fn parse(name: &str, text: &str, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+    opened(&Source::new(name, text), skeleton)
+}
+
+fn opened(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+    match (kind(source)?, skeleton) {
+        (Kind::Scene, skeleton) => js3d::read(source, skeleton),
+        (Kind::Document, None) => format::read(source),
+        (Kind::Document, Some(name)) => Err(OpenError::NoSkeleton {
+            file: source.name().to_owned(),
+            name: name.to_owned(),
+            names: Vec::new(),
+        }),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Document,
+    Scene,
+}
+
+/// What the first key that tells says; the rest is not read for it.
+fn kind(source: &Source) -> Result<Kind, OpenError> {
+    let mut kind = None;
+    let mut json = serde_json::Deserializer::from_str(source.text());
+    let read = json.deserialize_map(KindVisitor(&mut kind)).and_then(|()| json.end());
+    match (kind, read) {
+        (Some(kind), _) => Ok(kind),
+        (None, Err(error)) => Err(source.not_read(&Field::root(), &error)),
+        (None, Ok(())) => {
+            let reason = "neither \"format\" is there, as in a document of ik-arm, nor \"scene\", \
+                          as in a .js3d file of Scotty3D";
+            Err(source.wrong(&Wrong::new(Field::root(), reason)))
+        }
+    }
+}
+
+struct KindVisitor<'a>(&'a mut Option<Kind>);
+
+impl<'de> Visitor<'de> for KindVisitor<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object: {…}")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(key) = map.next_key::<Cow<'_, str>>()? {
+            *self.0 = match &*key {
+                "format" => Some(Kind::Document),
+                "scene" => Some(Kind::Scene),
+                _ => None,
+            };
+            if self.0.is_some() {
+                return Err(A::Error::custom("enough is read"));
+            }
+            map.next_value::<IgnoredAny>()?;
+        }
+        Ok(())
+    }
+}

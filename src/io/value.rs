@@ -1,0 +1,174 @@
+//! What files are made of: objects, finite numbers, rows of them.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use glam::Vec3;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::ser::{Error as _, Serializer};
+use serde::{Deserialize, Serialize};
+
+/// An object. Derived code alone would take an array, too.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Object<T>(pub T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ObjectVisitor<T>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+            type Value = Object<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object: {…}")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Object<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(map)).map(Object)
+            }
+        }
+
+        deserializer.deserialize_map(ObjectVisitor(PhantomData))
+    }
+}
+
+/// A finite f32; the parser refuses what rounds past the largest one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Number(pub f32);
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberVisitor;
+
+        impl Visitor<'_> for NumberVisitor {
+            type Value = Number;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Number, E> {
+                Ok(Number(value as f32))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<Number, E> {
+                Ok(Number(value as f32))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Number, E> {
+                Ok(Number(value as f32))
+            }
+        }
+
+        // As f32, so that decimals are rounded once, not to f64 first.
+        deserializer.deserialize_f32(NumberVisitor)
+    }
+}
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !self.0.is_finite() {
+            return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
+        }
+        serializer.serialize_f32(self.0)
+    }
+}
+
+/// So many numbers in a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers<const N: usize>(pub [f32; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumbersVisitor<const N: usize>;
+
+        impl<'de, const N: usize> Visitor<'de> for NumbersVisitor<N> {
+            type Value = Numbers<N>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match N {
+                    2 => f.write_str("two numbers: [a, b]"),
+                    3 => f.write_str("three numbers: [x, y, z]"),
+                    4 => f.write_str("four numbers: [x, y, z, w]"),
+                    _ => write!(f, "{N} numbers: […]"),
+                }
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<Numbers<N>, A::Error> {
+                let mut numbers = [0.0; N];
+                let mut found = 0;
+                while let Some(Number(number)) = row.next_element()? {
+                    if let Some(place) = numbers.get_mut(found) {
+                        *place = number;
+                    }
+                    found += 1;
+                }
+                if found != N {
+                    let s = if found == 1 { "" } else { "s" };
+                    let expected: &dyn serde::de::Expected = &self;
+                    let expected = expected.to_string().replace(" numbers:", ":");
+                    let error = format!("found {found} number{s}, expected {expected}");
+                    return Err(A::Error::custom(error));
+                }
+                Ok(Numbers(numbers))
+            }
+        }
+
+        deserializer.deserialize_seq(NumbersVisitor)
+    }
+}
+
+impl<const N: usize> Serialize for Numbers<N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.map(Number))
+    }
+}
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point(pub Vec3);
+
+impl<'de> Deserialize<'de> for Point {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Numbers::deserialize(deserializer).map(|Numbers(point)| Self(Vec3::from_array(point)))
+    }
+}
+
+impl Serialize for Point {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Numbers(self.0.to_array()).serialize(serializer)
+    }
+}
+
+/// A whole number, 0 or more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Whole(pub u32);
+
+impl<'de> Deserialize<'de> for Whole {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct WholeVisitor;
+
+        impl Visitor<'_> for WholeVisitor {
+            type Value = Whole;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number from 0 to 4294967295")
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Whole, E> {
+                let whole = u32::try_from(value).map(Whole);
+                whole.map_err(|_| E::invalid_value(Unexpected::Unsigned(value), &self))
+            }
+        }
+
+        deserializer.deserialize_u32(WholeVisitor)
+    }
+}
+
+impl Serialize for Whole {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u32(self.0)
+    }
+}

@@ -1,0 +1,22 @@
+use glam::Vec3;
+
+use super::Shadow;
+
+/// The part of a limb above y = 0: what is below casts no shadow on it.
+pub(super) fn above_ground(limb: Shadow) -> Option<Shadow> {
+    let at = |part: f32| {
+        let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * part;
+        (limb.base.lerp(limb.tip, part), radius)
+    };
+    let (base_y, tip_y) = (limb.base.y, limb.tip.y);
+    let crossing = base_y / (base_y - tip_y);
+    let (from, to) = match (base_y >= 0.0, tip_y >= 0.0) {
+        (true, true) => return Some(limb),
+        (true, false) => (0.0, crossing),
+        (false, true) => (crossing, 1.0),
+        (false, false) => return None,
+    };
+    let ((base, base_radius), (tip, tip_radius)) = (at(from), at(to));
+    let flat = |v: Vec3| Vec3 { y: v.y.max(0.0), ..v };
+    Some(Shadow { base: flat(base), base_radius, tip: flat(tip), tip_radius })
+}

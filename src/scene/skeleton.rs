@@ -1,0 +1,225 @@
+use glam::Vec3;
+
+use super::shadow::above_ground;
+use super::{Ball, Colour, Label, Line, Scene, Shadow, Side};
+use crate::document::{Display, Layer, Path, SkeletonRig, Slither, Target};
+use crate::kinematics::skeleton::{Joint, Pose, Skeleton};
+use crate::session::Staging;
+
+/// A bone is drawn no thicker than this part of its length, and this part of the skeleton's reach,
+/// whatever its radius is.
+const THICKEST: (f32, f32) = (0.45, 0.028);
+/// A joint that is a point is drawn as large as this part of the skeleton's reach at most.
+const POINT: f32 = 0.02;
+/// How much a slender bone tapers to its tip; one that is shorter than so many of its radii does not,
+/// so that many of them make one smooth body.
+const TAPER: f32 = 0.6;
+const SLENDER: f32 = 4.0;
+/// Ghosts are as thin beside a bone as this.
+const GHOST: f32 = 0.45;
+/// A target's ball, as a part of the skeleton's reach.
+const TARGET: f32 = 0.014;
+/// How many seconds a target's trail is long, and how finely it is drawn.
+const TRAIL: (f64, usize) = (1.2, 48);
+
+/// Where the ground's middle is, and how far the skeleton reaches.
+pub(super) fn stage(rig: &SkeletonRig) -> (Vec3, f32) {
+    let (centre, radius) = rig.bounds(&rig.skeleton.pose(), 0.0);
+    (Vec3 { y: 0.0, ..centre }, rig.reach().max(radius))
+}
+
+/// Adds the bones, targets with their trails and gaps, ghosts, and the bones' shadows.
+pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, display: Display) {
+    let skeleton = rig.at(staging.time);
+    let pose = skeleton.pose();
+    let figure = Figure::new(&skeleton, &pose, rig.reach());
+    for joint in 0..pose.len() {
+        let colour = figure.colour(scene, joint, staging);
+        figure.add_bone(scene, joint, colour);
+        if display.shows(Layer::Shadow) {
+            figure.add_shadow(scene, joint);
+        }
+    }
+    for ghost in &staging.ghosts {
+        let colour = scene.palette.method(ghost.method);
+        Figure { pose: &ghost.pose, ..figure }.add_ghost(scene, colour);
+    }
+    if display.shows(Layer::Cursor) {
+        for target in &rig.targets {
+            figure.add_target(scene, target, staging);
+        }
+    }
+    if let Some(slither) = &rig.slither
+        && display.shows(Layer::Pointer)
+    {
+        add_way(scene, slither, &skeleton, staging.time);
+    }
+    if display.shows(Layer::Labels) {
+        figure.add_labels(scene, staging);
+    }
+}
+
+/// A posed skeleton with the measures that it is drawn by.
+#[derive(Clone, Copy)]
+struct Figure<'a> {
+    joints: &'a [Joint],
+    pose: &'a Pose,
+    /// In the world.
+    reach: f32,
+    /// From the skeleton's units to the world's.
+    scale: f32,
+}
+
+impl<'a> Figure<'a> {
+    fn new(skeleton: &'a Skeleton, pose: &'a Pose, reach: f32) -> Self {
+        let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
+        Self { joints: skeleton.joints(), pose, reach, scale }
+    }
+
+    /// How thick a bone is drawn where it begins.
+    fn radius(&self, joint: usize) -> f32 {
+        let length = self.pose.base(joint).distance(self.pose.tip(joint));
+        let (of_length, of_reach) = THICKEST;
+        let thickest = match length {
+            0.0 => POINT * self.reach,
+            length => (of_length * length).min(of_reach * self.reach),
+        };
+        (self.joints[joint].radius * self.scale).clamp(0.25 * thickest, thickest)
+    }
+
+    fn tip_radius(&self, joint: usize) -> f32 {
+        let length = self.pose.base(joint).distance(self.pose.tip(joint));
+        let radius = self.radius(joint);
+        if length > SLENDER * radius { radius * TAPER } else { radius }
+    }
+
+    /// Bones take turns in the limbs' colours from parent to child; the accent says selected.
+    fn colour(&self, scene: &Scene, joint: usize, staging: &Staging) -> Colour {
+        let palette = &scene.palette;
+        let depth = self.depth(joint);
+        let plain = if depth.is_multiple_of(2) { palette.upper } else { palette.lower };
+        let colour = match self.joints[joint].locked {
+            true => palette.joint,
+            false => plain,
+        };
+        if staging.selection.contains(&joint) {
+            palette.accent
+        } else if staging.pointed == Some(joint) {
+            colour.mixed(palette.guide, 0.3)
+        } else {
+            colour
+        }
+    }
+
+    /// How many bones are above a joint; points do not count.
+    fn depth(&self, joint: usize) -> usize {
+        let parent = |joint: &usize| self.joints[*joint].parent;
+        let above = std::iter::successors(parent(&joint), parent);
+        above.filter(|joint| self.joints[*joint].axis != Vec3::ZERO).count()
+    }
+
+    fn add_bone(&self, scene: &mut Scene, joint: usize, colour: Colour) {
+        let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
+        if base != tip {
+            scene.add_solid(base, tip, radius, self.tip_radius(joint), colour);
+        }
+        let ball = if base == tip { colour } else { scene.palette.joint };
+        scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
+        let is_leaf = self.joints.iter().all(|child| child.parent != Some(joint));
+        if is_leaf && base != tip {
+            let colour = scene.palette.joint;
+            scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
+        }
+    }
+
+    fn add_ghost(&self, scene: &mut Scene, colour: Colour) {
+        for joint in 0..self.pose.len() {
+            let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
+            let radius = self.radius(joint) * GHOST;
+            if base != tip {
+                scene.add_solid(base, tip, radius, radius, colour);
+            }
+            scene.balls.push(Ball { centre: tip, radius, colour });
+        }
+    }
+
+    fn add_shadow(&self, scene: &mut Scene, joint: usize) {
+        let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
+        let limb = Shadow { base, base_radius: radius, tip, tip_radius: self.tip_radius(joint) };
+        scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
+    }
+
+    /// A ball where the target is, its trail, and the gap to the tip that does not reach it.
+    fn add_target(&self, scene: &mut Scene, target: &Target, staging: &Staging) {
+        let at = target.at(staging.time);
+        let tip = self.pose.tip(target.joint);
+        let radius = TARGET * self.reach;
+        let (guide, accent) = (scene.palette.guide, scene.palette.accent);
+        let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
+        scene.guide_balls.push(Ball { centre: at, radius, colour });
+        if !target.enabled {
+            return;
+        }
+        add_trail(scene, target, staging.time);
+        let gap = tip.distance(at);
+        if gap > 1.5 * radius {
+            scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
+            scene.labels.push(Label {
+                at,
+                clearance: radius,
+                side: Side::Above,
+                text: residual(gap, self.reach),
+                colour: accent,
+            });
+        }
+    }
+
+    /// The name of what is selected or pointed at.
+    fn add_labels(&self, scene: &mut Scene, staging: &Staging) {
+        let mut named: Vec<usize> =
+            staging.selection.iter().copied().chain(staging.pointed).collect();
+        named.sort_unstable();
+        named.dedup();
+        for joint in named.into_iter().filter(|joint| *joint < self.joints.len()) {
+            scene.labels.push(Label {
+                at: self.pose.base(joint).midpoint(self.pose.tip(joint)),
+                clearance: self.radius(joint),
+                side: Side::Below,
+                text: self.joints[joint].name.clone(),
+                colour: scene.palette.text,
+            });
+        }
+    }
+}
+
+/// A distance with as many digits as a skeleton of such a reach needs.
+fn residual(gap: f32, reach: f32) -> String {
+    let decimals = (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{gap:.decimals$}")
+}
+
+/// Where a moving target has just been, fading.
+fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
+    if target.motion.path == Path::Still {
+        return;
+    }
+    let (seconds, steps) = TRAIL;
+    let seconds = seconds.min(f64::from(target.motion.period));
+    let at = |step: usize| target.at(time - seconds * step as f64 / steps as f64);
+    let colour = scene.palette.accent;
+    for step in 0..steps {
+        let colour = colour.with_opacity(0.9 * (1.0 - step as f32 / steps as f32));
+        scene.lines.push(Line { from: at(step), to: at(step + 1), colour, dashed: false });
+    }
+}
+
+/// The way before a snake's head and behind its tail, once around.
+fn add_way(scene: &mut Scene, slither: &Slither, skeleton: &Skeleton, time: f64) {
+    let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
+    let head = slither.head(time);
+    let way = slither.trail(skeleton.transform(), height, head, head + 1.0);
+    let colour = scene.palette.guide.with_opacity(0.35);
+    for ends in way.windows(2) {
+        scene.lines.push(Line { from: ends[0], to: ends[1], colour, dashed: false });
+    }
+}

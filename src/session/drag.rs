@@ -1,0 +1,79 @@
+use super::point_drag::{Constraint, DragInput, Handle, PointDrag};
+use super::turn_drag::TurnDrag;
+
+/// What can be taken hold of in the viewport.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// The arm's hand.
+    Hand(Handle),
+    /// The target of a joint.
+    Target(usize, Handle),
+    /// The tip of a joint's bone.
+    Tip(usize, Handle),
+    /// The ring about which a joint's angle x, y or z (0, 1, 2) turns.
+    Ring(usize, usize),
+}
+
+/// What is held, and where it has been taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drag {
+    pub(super) grip: Grip,
+    pub(super) way: Way,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Way {
+    Point(PointDrag),
+    Turn(TurnDrag),
+}
+
+impl Drag {
+    pub fn grip(&self) -> Grip {
+        self.grip
+    }
+
+    /// The point that is held, unless it is a ring.
+    pub fn point(&self) -> Option<&PointDrag> {
+        match &self.way {
+            Way::Point(drag) => Some(drag),
+            Way::Turn(_) => None,
+        }
+    }
+
+    /// The ring that is held, unless it is a point.
+    pub fn turn(&self) -> Option<&TurnDrag> {
+        match &self.way {
+            Way::Turn(drag) => Some(drag),
+            Way::Point(_) => None,
+        }
+    }
+
+    /// What is typed while it is held.
+    pub fn typed(&self) -> &str {
+        match &self.way {
+            Way::Point(drag) => drag.typed(),
+            Way::Turn(drag) => drag.typed(),
+        }
+    }
+
+    pub(super) fn set_input(&mut self, input: DragInput) {
+        match &mut self.way {
+            Way::Point(drag) => drag.set_input(input),
+            Way::Turn(drag) => drag.set_input(input),
+        }
+    }
+
+    pub(super) fn set_typed(&mut self, typed: String) {
+        match &mut self.way {
+            Way::Point(drag) => drag.set_typed(typed),
+            Way::Turn(drag) => drag.set_typed(typed),
+        }
+    }
+
+    /// Rings have nothing to be held to.
+    pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
+        if let Way::Point(drag) = &mut self.way {
+            drag.set_constraint(constraint);
+        }
+    }
+}

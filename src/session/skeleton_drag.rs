@@ -1,0 +1,109 @@
+use glam::{Vec3, Vec3A};
+
+use super::drag::Way;
+use super::{Drag, Grip, PointDrag, Ring, Session, TurnDrag};
+use crate::document::Ray;
+use crate::kinematics::solve::{self, Method, Options};
+
+/// Iterations while something is dragged, in every frame: enough for a short way.
+const ITERATIONS_OF_A_DRAG: u32 = 64;
+
+/// What is dragged of a skeleton.
+impl Session {
+    pub(super) fn grab_target(&mut self, grip: Grip, joint: usize, ray: Ray, forward: Vec3) {
+        let Grip::Target(_, handle) = grip else { return };
+        let Some(target) = self.skeleton().target(joint) else { return };
+        let at = self.skeleton().targets[target].at(self.clock.time);
+        let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
+        self.begin_edit(Some(Drag { grip, way: Way::Point(drag) }));
+    }
+
+    pub(super) fn grab_tip(&mut self, grip: Grip, joint: usize, ray: Ray, forward: Vec3) {
+        let Grip::Tip(_, handle) = grip else { return };
+        if joint >= self.skeleton_pose.len() || self.skeleton().slither.is_some() {
+            return;
+        }
+        let tip = self.skeleton_pose.tip(joint);
+        let drag = PointDrag::new(handle, tip, Vec3::ZERO, forward, ray).with_step(self.snap());
+        self.begin_edit(Some(Drag { grip, way: Way::Point(drag) }));
+    }
+
+    pub(super) fn grab_ring(&mut self, joint: usize, axis: usize, ray: Ray) {
+        let Some(ring) = self.ring(joint, axis) else { return };
+        let start = self.skeleton().skeleton.joints()[joint].rotation[axis];
+        let drag = TurnDrag::new(ring, start, ray);
+        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: Way::Turn(drag) }));
+    }
+
+    /// What a joint's angle turns about, in the world.
+    pub fn ring(&self, joint: usize, axis: usize) -> Option<Ring> {
+        let skeleton = &self.skeleton().skeleton;
+        skeleton.joint(joint)?;
+        let world = skeleton.transform_to_base(joint);
+        let local = skeleton.joints()[joint].rotation_axis(axis);
+        // A mirror turns every rotation around.
+        let sign = world.matrix3.determinant().signum();
+        let axis = (Vec3::from(world.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
+        Some(Ring { centre: world.translation.into(), axis })
+    }
+
+    /// A tenth of the grid.
+    fn snap(&self) -> f32 {
+        self.document.cell() * 0.1
+    }
+
+    pub(super) fn drag_skeleton(&mut self, grip: Grip, to: Vec3, moved: Vec3) {
+        match grip {
+            Grip::Target(joint, _) => self.drag_target(joint, to),
+            Grip::Tip(joint, _) => self.drag_tip(joint, to, moved),
+            Grip::Hand(_) | Grip::Ring(..) => {}
+        }
+    }
+
+    fn drag_target(&mut self, joint: usize, to: Vec3) {
+        let Some(index) = self.skeleton().target(joint) else { return };
+        let mut target = self.skeleton().targets[index];
+        target.home = to - target.motion.offset(self.clock.time);
+        self.set_target(target);
+        if self.preferences.follow && !self.is_running() && self.skeleton().slither.is_none() {
+            let goals = self.skeleton().goals(self.clock.time);
+            self.solve_drag(&goals, self.skeleton().solver);
+        }
+    }
+
+    /// The tip follows the pointer from the pose at the press; a root that is a point moves.
+    fn drag_tip(&mut self, joint: usize, to: Vec3, moved: Vec3) {
+        let Some(edit) = &self.edit else { return };
+        let before = edit.skeleton.skeleton.clone();
+        let Some(held) = before.joint(joint) else { return };
+        if held.parent.is_none() && held.axis == Vec3::ZERO {
+            let (transform, offset) = (before.transform(), held.offset);
+            let moved = transform.inverse().transform_vector3(moved);
+            self.change_joint(joint, |joint| joint.offset = offset + moved);
+            return;
+        }
+        let mut goals = self.skeleton().goals(self.clock.time);
+        goals.retain(|goal| goal.joint != joint);
+        goals.push(solve::Target { joint, point: to, weight: 1.0 });
+        let mut solver = self.skeleton().solver;
+        if solver.method == Method::TwoBone {
+            solver.method = Method::Fabrik;
+        }
+        self.document.skeleton.skeleton = before;
+        self.solve_drag(&goals, solver);
+    }
+
+    fn solve_drag(&mut self, goals: &[solve::Target], solver: Options) {
+        let options = Options { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
+        let solved = solve::solve(&mut self.document.skeleton.skeleton, goals, &options);
+        self.refresh_skeleton();
+        match solved {
+            Ok(_) => self.message = None,
+            Err(error) => self.say_impossible(&error.to_string()),
+        }
+    }
+
+    pub(super) fn turn_joint(&mut self, joint: usize, axis: usize, angle: f32) {
+        self.change_joint(joint, |joint| joint.rotation[axis] = angle);
+    }
+}

@@ -1,0 +1,195 @@
+use core::f32::consts::{PI, TAU};
+
+use glam::Vec3;
+
+use super::DragInput;
+use crate::document::Ray;
+
+/// A ring that is held: it turns about its axis by the angle that the pointer goes around it,
+/// computed from the press, never from the last move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurnDrag {
+    ring: Ring,
+    /// The angle at the press, radians.
+    start: f32,
+    pressed: Ray,
+    now: DragInput,
+    /// Where precision began: the pointer's angle and the offset by then.
+    slow: Option<(f32, f32)>,
+    /// How far the pointer has gone around, whole turns included.
+    pointed: f32,
+    typed: String,
+    last: f32,
+}
+
+/// A circle around a joint, in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ring {
+    pub centre: Vec3,
+    /// Unit vector about which a growing angle turns, right-handed.
+    pub axis: Vec3,
+}
+
+impl TurnDrag {
+    const PRECISION: f32 = 0.1;
+    const SNAP: f32 = 5.0 * PI / 180.0;
+    const PRECISE_SNAP: f32 = PI / 180.0;
+
+    pub(super) fn new(ring: Ring, start: f32, ray: Ray) -> Self {
+        let now = DragInput { ray, precise: false, snap: false };
+        Self {
+            ring,
+            start,
+            pressed: ray,
+            now,
+            slow: None,
+            pointed: 0.0,
+            typed: String::new(),
+            last: start,
+        }
+    }
+
+    /// The offset in degrees as it is typed; empty while the pointer leads.
+    pub fn typed(&self) -> &str {
+        &self.typed
+    }
+
+    /// How far the ring has been turned, radians.
+    pub fn turned(&self) -> f32 {
+        self.last - self.start
+    }
+
+    pub(super) fn set_typed(&mut self, typed: String) {
+        self.typed = typed;
+    }
+
+    pub(super) fn set_input(&mut self, input: DragInput) {
+        if input.precise != self.now.precise {
+            self.slow = Some((self.pointed, self.offset()));
+        }
+        self.now = input;
+        let around = self.ring.angle_between(self.pressed, input.ray);
+        self.pointed = around + ((self.pointed - around) / TAU).round() * TAU;
+    }
+
+    /// The angle that is asked for, radians.
+    pub(super) fn angle(&mut self) -> f32 {
+        if !self.typed.is_empty() {
+            let degrees = self.typed.parse().ok().filter(|degrees: &f32| degrees.is_finite());
+            self.last = self.start + degrees.unwrap_or(0.0).to_radians();
+            return self.last;
+        }
+        let to = self.start + self.offset();
+        let step = if self.now.precise { Self::PRECISE_SNAP } else { Self::SNAP };
+        self.last = if self.now.snap { (to / step).round() * step } else { to };
+        self.last
+    }
+
+    fn offset(&self) -> f32 {
+        let Some((pointed, offset)) = self.slow else {
+            return self.pointed;
+        };
+        let part = if self.now.precise { Self::PRECISION } else { 1.0 };
+        offset + (self.pointed - pointed) * part
+    }
+}
+
+impl Ring {
+    /// A ring whose axis is nearer than this (the sine) to lying in the picture is seen edge-on.
+    const EDGE_ON: f32 = 0.1;
+
+    /// How far one goes around the ring from one ray to another, within half a turn either way.
+    fn angle_between(&self, from: Ray, to: Ray) -> f32 {
+        if self.axis.dot(to.direction.normalize_or_zero()).abs() < Self::EDGE_ON {
+            return self.rolled(from, to);
+        }
+        let met = |ray: Ray| Some(ray.meets_plane(self.centre, self.axis)? - self.centre);
+        let (Some(from), Some(to)) = (met(from), met(to)) else {
+            return 0.0;
+        };
+        self.axis.dot(from.cross(to)).atan2(from.dot(to))
+    }
+
+    /// The turn of a ring that is seen edge-on and rolled by a pointer on its front: the way across
+    /// the picture over the radius at which it was taken.
+    fn rolled(&self, from: Ray, to: Ray) -> f32 {
+        let Some(tangent) = from.direction.cross(self.axis).try_normalize() else {
+            return 0.0;
+        };
+        let facing = from.direction.normalize_or_zero();
+        let at = |ray: Ray| ray.meets_plane(self.centre, facing).map(|met| met - self.centre);
+        let (Some(from), Some(to)) = (at(from), at(to)) else {
+            return 0.0;
+        };
+        let radius = from.length().max(to.distance(from) * 1e-3);
+        if radius > 0.0 { (to - from).dot(tangent) / radius } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::document::{Camera, Projection};
+
+    fn ring(axis: Vec3) -> (Ring, Projection) {
+        (Ring { centre: Vec3::new(10.0, 20.0, -5.0), axis }, Camera::default().projection(1.6))
+    }
+
+    /// A ray through the point of the ring at an angle.
+    fn through(ring: Ring, projection: &Projection, radius: f32, angle: f32) -> Ray {
+        let (u, v) = ring.axis.any_orthonormal_pair();
+        let (u, v) = if u.cross(v).dot(ring.axis) > 0.0 { (u, v) } else { (v, u) };
+        let at = ring.centre + (u * angle.cos() + v * angle.sin()) * radius;
+        projection.ray(projection.project(at).expect("in the picture"))
+    }
+
+    #[test]
+    fn a_ring_turns_by_the_angle_that_the_pointer_goes_around_it_also_past_whole_turns() {
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.6, 0.0, 0.8)] {
+            let (ring, projection) = ring(axis);
+            let mut drag = TurnDrag::new(ring, 0.25, through(ring, &projection, 60.0, 0.0));
+            for step in 1..=100 {
+                let angle = step as f32 * 0.1;
+                let ray = through(ring, &projection, 60.0, angle);
+                drag.set_input(DragInput { ray, precise: false, snap: false });
+                let asked = drag.angle();
+                assert!((asked - 0.25 - angle).abs() < 1e-3, "{asked} at {angle} about {axis}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ring_seen_edge_on_rolls() {
+        let (ring, projection) = ring(Vec3::ZERO);
+        let ring = Ring { axis: projection.up.normalize(), ..ring };
+        let near = ring.centre - projection.forward * 60.0;
+        let at = projection.project(near).expect("seen");
+        let mut drag = TurnDrag::new(ring, 0.0, projection.ray(at + Vec2::new(0.02, 0.0)));
+        let mut last = 0.0;
+        for step in 1..20 {
+            let ray = projection.ray(at + Vec2::new(0.02 + step as f32 * 0.01, 0.0));
+            drag.set_input(DragInput { ray, precise: false, snap: false });
+            let angle = drag.angle();
+            assert!((angle - last).abs() < 2.0 && angle.is_finite(), "{angle} after {last}");
+            last = angle;
+        }
+        assert!(last.abs() > 0.1);
+    }
+
+    #[test]
+    fn snapping_precision_and_typed_degrees_are_as_for_points() {
+        let (ring, projection) = ring(Vec3::Z);
+        let ray = |angle| through(ring, &projection, 60.0, angle);
+        let mut drag = TurnDrag::new(ring, 0.0, ray(0.0));
+        drag.set_input(DragInput { ray: ray(0.52), precise: false, snap: true });
+        assert!((drag.angle().to_degrees() - 30.0).abs() < 1e-3);
+        drag.set_input(DragInput { ray: ray(0.52), precise: true, snap: false });
+        let coarse = drag.angle();
+        drag.set_input(DragInput { ray: ray(0.72), precise: true, snap: false });
+        assert!((drag.angle() - coarse - 0.02).abs() < 1e-3);
+        drag.set_typed("-90".to_owned());
+        assert!((drag.angle().to_degrees() + 90.0).abs() < 1e-3);
+    }
+}

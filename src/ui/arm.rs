@@ -1,0 +1,138 @@
+//! The arm: where the hand is, how the elbow is spun, where the root is, how long the limbs are.
+
+use core::f32::consts::TAU;
+
+use egui::Ui;
+use glam::Vec3;
+
+use super::slider::Slider;
+use super::{row, style};
+use crate::document::Arm;
+use crate::session::{Action, Session};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const ROOT_RANGE: f32 = 500.0;
+const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    row::section(ui, "Hand", |ui| hand(ui, session, actions));
+    row::section(ui, "Elbow", |ui| elbow(ui, session, actions));
+    row::section(ui, "Root", |ui| root(ui, session, actions));
+    row::section(ui, "Lengths", |ui| lengths(ui, session, actions));
+}
+
+fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let reach = session.arm().bones.outer_limit();
+    point(
+        ui,
+        session,
+        actions,
+        &Point {
+            name: "Hand",
+            value: session.arm().cursor,
+            default: Arm::default().cursor,
+            range: reach,
+            tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
+            set: Action::SetHand,
+        },
+    );
+}
+
+fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    point(
+        ui,
+        session,
+        actions,
+        &Point {
+            name: "Root",
+            value: session.arm().root,
+            default: Vec3::ZERO,
+            range: ROOT_RANGE,
+            tooltip: "Where the Root, the shoulder, is in the world; the whole arm moves with it",
+            set: Action::SetRoot,
+        },
+    );
+}
+
+/// Three sliders that set a point, each leaving the two other coordinates as they are.
+struct Point<'a> {
+    name: &'a str,
+    value: Vec3,
+    default: Vec3,
+    range: f32,
+    tooltip: &'a str,
+    set: fn(Vec3) -> Action,
+}
+
+fn point(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>, point: &Point<'_>) {
+    let axes = style::palette(ui).axes;
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let slider = Slider {
+            name: &format!("{} {label}", point.name),
+            label,
+            colour: Some(style::colour(axes[axis])),
+            tooltip: &format!("{}: {label}", point.tooltip),
+            value: point.value[axis],
+            range: (-point.range, point.range),
+            default: point.default[axis],
+            unit: "",
+            step: 1.0,
+            disabled: None,
+        };
+        slider.show(ui, super::is_sliding(session), actions, |coordinate| {
+            let mut moved = point.value;
+            moved[axis] = coordinate;
+            (point.set)(moved)
+        });
+    }
+}
+
+fn elbow(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let slider = Slider {
+        name: "Elbow spin",
+        label: "Spin",
+        colour: None,
+        tooltip: "How far the Socket is turned about the Pointer: it takes the elbow around and \
+                  leaves the hand",
+        value: session.arm().elbow_spin.to_degrees(),
+        range: (0.0, TAU.to_degrees()),
+        default: 0.0,
+        unit: "°",
+        step: 1.0,
+        disabled: None,
+    };
+    slider.show(ui, super::is_sliding(session), actions, |degrees| {
+        Action::SetElbowSpin((degrees % 360.0).to_radians())
+    });
+}
+
+fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let (palette, bones) = (style::palette(ui), session.arm().bones);
+    let seed = Arm::default().bones;
+    let upper = Slider {
+        name: "Upper length",
+        label: "Upper d_1",
+        colour: Some(style::colour(palette.upper)),
+        tooltip: "The Upper Limb, from shoulder to elbow",
+        value: bones.upper(),
+        range: LENGTH_RANGE,
+        default: seed.upper(),
+        unit: "",
+        step: 1.0,
+        disabled: None,
+    };
+    upper.show(ui, super::is_sliding(session), actions, Action::SetUpper);
+    let lower = Slider {
+        name: "Lower length",
+        label: "Lower d_2",
+        colour: Some(style::colour(palette.lower)),
+        tooltip: "The Lower Limb, from elbow to hand",
+        value: bones.lower(),
+        range: LENGTH_RANGE,
+        default: seed.lower(),
+        unit: "",
+        step: 1.0,
+        disabled: None,
+    };
+    lower.show(ui, super::is_sliding(session), actions, Action::SetLower);
+}

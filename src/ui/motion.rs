@@ -1,0 +1,85 @@
+//! The time, and what moves with it.
+
+use egui::Ui;
+
+use super::row;
+use super::slider::Slider;
+use crate::document::Slither;
+use crate::session::{Action, Session};
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    clock(ui, session, actions);
+    slithers(ui, session, actions);
+    if let Some(slither) = session.skeleton().slither {
+        sliders(ui, session, slither, actions);
+    }
+}
+
+fn clock(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    row::pair(ui, &format!("{:.1} s", session.time()), |ui| {
+        if ui.button("Rewind").on_hover_text("Back to 0 s").clicked() {
+            actions.push(Action::SetTime(0.0));
+        }
+        let playing = session.is_playing();
+        let name = if playing { "Pause" } else { "Play" };
+        let nothing = "Nothing moves by itself yet: let a target go around";
+        let disabled = (!playing && !session.skeleton().is_moving()).then_some(nothing);
+        if row::button(ui, name, "Let the time go on, or stand (Space)", disabled) {
+            actions.push(Action::Play(!playing));
+        }
+    });
+}
+
+fn slithers(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut slithers = session.skeleton().slither.is_some();
+    let tooltip = "The first chain of joints follows its head along a wavy ring, like a snake";
+    if ui.checkbox(&mut slithers, "Slither").on_hover_text(tooltip).changed() {
+        let slither = first(session.skeleton().reach());
+        actions.push(Action::SetSlither(slithers.then_some(slither)));
+    }
+}
+
+/// The way that a skeleton of such a reach has at first.
+fn first(reach: f32) -> Slither {
+    Slither { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
+}
+
+fn sliders(ui: &mut Ui, session: &Session, slither: Slither, actions: &mut Vec<Action>) {
+    let reach = session.skeleton().reach();
+    let first = first(reach);
+    let step = session.document().cell() * 0.1;
+    let is_editing = super::is_sliding(session);
+    let set = |slither| Action::SetSlither(Some(slither));
+    let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
+        name,
+        label,
+        colour: None,
+        tooltip,
+        value,
+        range,
+        default,
+        unit,
+        step,
+        disabled: None,
+    };
+    let tooltip = "How far from the middle the way is";
+    slider("Ring", "Ring", tooltip, slither.radius, (0.0, 2.0 * reach), first.radius, "", step)
+        .show(ui, is_editing, actions, |radius| set(Slither { radius, ..slither }));
+    let tooltip = "How far the waves go to either side";
+    let range = (0.0, 0.5 * reach);
+    slider("Amplitude", "Waves", tooltip, slither.amplitude, range, first.amplitude, "", step)
+        .show(ui, is_editing, actions, |amplitude| set(Slither { amplitude, ..slither }));
+    let tooltip = "How many waves there are once around";
+    let waves = slither.waves as f32;
+    slider("Number of waves", "Count", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0)
+        .show(ui, is_editing, actions, |waves| {
+            set(Slither { waves: waves.round().clamp(0.0, 1000.0) as u32, ..slither })
+        });
+    let tooltip = "How long the head takes once around";
+    slider("Period", "Period", tooltip, slither.period, (1.0, 60.0), first.period, " s", 1.0).show(
+        ui,
+        is_editing,
+        actions,
+        |period| set(Slither { period, ..slither }),
+    );
+}

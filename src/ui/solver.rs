@@ -1,0 +1,238 @@
+//! The right panel of a skeleton: how it is brought to its targets, and how that goes.
+
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
+
+use super::row::{self, Field};
+use super::status::method_name;
+use super::{convergence, number, race};
+use crate::kinematics::solve::{Method, Options, Root};
+use crate::session::{Action, Session};
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(6.0);
+        row::section(ui, "Solver", |ui| {
+            method(ui, session, actions);
+            settings(ui, session, actions);
+            buttons(ui, session, actions);
+            // A race has a table of its own.
+            if session.race().is_none() {
+                report(ui, session);
+            }
+        });
+        row::section(ui, "Convergence", |ui| convergence::ui(ui, session));
+        row::section(ui, "Race", |ui| race::ui(ui, session, actions));
+    });
+}
+
+/// What a solver does, and what it is good and bad at.
+pub(super) fn describe(method: Method) -> &'static str {
+    match method {
+        Method::TransposeFixed => {
+            "Gradient descent: every angle goes down the slope of the squared distance, by a step \
+             of one length throughout. Slow, but never leaps"
+        }
+        Method::Transpose => {
+            "Gradient descent whose step is searched for: doubled while it helps, halved when it \
+             does not. Slow at the end"
+        }
+        Method::DampedLeastSquares => {
+            "Least squares on the Jacobian, damped so that it stays calm near a straight chain. Few \
+             iterations, good with limits and many targets"
+        }
+        Method::Ccd => {
+            "One joint after the other, from the tip to the root, each turned to bring the tip \
+             nearest. Cheap; bends the tip more than the root"
+        }
+        Method::Fabrik => {
+            "Pulls points from the target to the root and back. Very few, very cheap iterations; \
+             may stop short where limits are in the way"
+        }
+        Method::TwoBone => {
+            "The closed form of the arm, for a target's joint and its parent: one iteration, and no \
+             other joint moves"
+        }
+    }
+}
+
+fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let options = session.skeleton().solver;
+    let combo = ComboBox::from_id_salt("method")
+        .selected_text(method_name(options.method))
+        .width(ui.available_width() - 12.0)
+        .truncate();
+    let response = combo.show_ui(ui, |ui| {
+        for method in Method::ALL {
+            let item = ui.selectable_label(method == options.method, method_name(method));
+            if item.on_hover_text(describe(method)).clicked() {
+                actions.push(Action::SetSolver(Options { method, ..options }));
+            }
+        }
+    });
+    let response = response.response;
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Method"));
+    response.on_hover_text(describe(options.method));
+}
+
+fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    let options = rig.solver;
+    let set = |options| Action::SetSolver(options);
+    row::pair(ui, "Iterations per frame", |ui| {
+        let value = rig.iterations_per_frame as f32;
+        let tooltip = "How many iterations a running solver makes between two pictures";
+        Field { name: "Iterations per frame", value, unit: "", step: 1.0, digits: 0, tooltip }
+            .show(ui, session, actions, |value| {
+                Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
+            });
+    });
+    row::pair(ui, "Iterations at most", |ui| {
+        let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
+        let tooltip = "After so many a solver gives up";
+        Field { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }.show(
+            ui,
+            session,
+            actions,
+            |value| {
+                let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
+                set(Options { iterations, ..options })
+            },
+        );
+    });
+    tolerance(ui, session, actions);
+    match options.method {
+        Method::DampedLeastSquares => {
+            row::pair(ui, "Damping", |ui| {
+                let tooltip = "λ, in chain lengths: more is calmer and slower";
+                let value = options.damping;
+                Field { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
+                    ui,
+                    session,
+                    actions,
+                    |damping| set(Options { damping, ..options }),
+                );
+            });
+        }
+        Method::TransposeFixed => {
+            row::pair(ui, "Step", |ui| {
+                let tooltip = "The step's length, in parts of the one that is always stable";
+                Field {
+                    name: "Step length",
+                    value: options.step,
+                    unit: "",
+                    step: 0.1,
+                    digits: 2,
+                    tooltip,
+                }
+                .show(ui, session, actions, |step| set(Options { step, ..options }));
+            });
+        }
+        Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
+    }
+    let mut free = options.root == Root::Free;
+    let tooltip = "Whether the roots may move, as a snake's head does";
+    if ui.checkbox(&mut free, "Free root").on_hover_text(tooltip).changed() {
+        let root = if free { Root::Free } else { Root::Fixed };
+        actions.push(set(Options { root, ..options }));
+    }
+    let mut follow = session.preferences().follow;
+    let tooltip = "Solve at once while a target is dragged; switch it off to watch the solver run";
+    if ui.checkbox(&mut follow, "Follow while dragged").on_hover_text(tooltip).changed() {
+        actions.push(Action::SetFollow(follow));
+    }
+}
+
+fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let options = session.skeleton().solver;
+    row::pair(ui, "Tolerance", |ui| {
+        let auto = 1e-4 * session.skeleton().reach();
+        if let Some(tolerance) = options.tolerance {
+            let tooltip = "How near every tip must come, in the world";
+            let step = 0.05 * tolerance;
+            let short = |value: f64| number::short(value as f32);
+            Field { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
+                .show_as(ui, session, actions, &short, |tolerance| {
+                    Action::SetSolver(Options { tolerance: Some(tolerance), ..options })
+                });
+        }
+        let mut is_auto = options.tolerance.is_none();
+        let tooltip = "A ten-thousandth of the chain's length";
+        if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
+            let tolerance = (!is_auto).then_some(auto);
+            actions.push(Action::SetSolver(Options { tolerance, ..options }));
+        }
+    });
+}
+
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let disabled = why_not(session);
+    ui.add_space(2.0);
+    ui.columns(3, |columns| {
+        for column in columns.iter_mut() {
+            column.set_min_height(24.0);
+        }
+        let [run, step, reset] = columns else { return };
+        let running = session.is_running();
+        let name = if running { "Pause solver" } else { "Run" };
+        if wide(run, name, "Iterate until it is there (R)", disabled) {
+            actions.push(Action::Run(!running));
+        }
+        if wide(step, "Step", "One iteration (S)", disabled) {
+            actions.push(Action::Step);
+        }
+        let nothing = session.solving().is_none().then_some("The solver has not run yet");
+        if wide(reset, "Reset", "Back to the pose before the solver ran", nothing) {
+            actions.push(Action::ResetSolver);
+        }
+    });
+}
+
+fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
+    let layout = Layout::top_down_justified(Align::Center);
+    ui.with_layout(layout, |ui| row::button(ui, name, tooltip, disabled)).inner
+}
+
+/// Why no solver can run.
+pub(super) fn why_not(session: &Session) -> Option<&'static str> {
+    let rig = session.skeleton();
+    if rig.slither.is_some() {
+        Some("The joints follow the head; there is nothing to solve")
+    } else if rig.targets.is_empty() {
+        Some("There is no target; add one to a joint")
+    } else if !rig.targets.iter().any(|target| target.enabled) {
+        Some("Every target is switched off")
+    } else {
+        None
+    }
+}
+
+/// Always as high, so that nothing below moves.
+fn report(ui: &mut Ui, session: &Session) {
+    let report = session.solving().map(crate::session::Solving::report);
+    let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
+    let none = || "–".to_owned();
+    row::pair(ui, "Iterations", |ui| {
+        value(ui, report.map_or_else(none, |report| report.iterations.to_string()))
+    });
+    row::pair(ui, "Error", |ui| {
+        value(ui, report.map_or_else(none, |report| number::short(report.error)))
+            .on_hover_text("The largest distance from a tip to its target, in the world")
+    });
+    row::pair(ui, "State", |ui| ui.label(state(session)));
+}
+
+fn state(session: &Session) -> &'static str {
+    let Some(solving) = session.solving() else { return "not run yet" };
+    let report = solving.report();
+    if report.converged {
+        "reached"
+    } else if report.resting {
+        "at rest, out of reach"
+    } else if solving.is_running() {
+        "running"
+    } else if solving.is_spent() {
+        "gave up"
+    } else {
+        "paused"
+    }
+}

@@ -1,0 +1,126 @@
+//! The targets: which are on, how far tips are from them, and where the selected one is.
+
+use egui::{ComboBox, RichText, Ui};
+use glam::Vec3;
+
+use super::row::{self, Field};
+use super::slider::{self, Slider};
+use super::{number, style};
+use crate::document::{Motion, Path, Target};
+use crate::session::{Action, Session};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const PATHS: [(Path, &str); 3] =
+    [(Path::Still, "Still"), (Path::Circle, "Circle"), (Path::FigureEight, "Figure eight")];
+
+/// Every target in a row.
+pub(super) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    if rig.targets.is_empty() {
+        ui.weak("No targets yet: select a joint and add one.");
+    }
+    for target in &rig.targets {
+        let Some(joint) = rig.skeleton.joint(target.joint) else { continue };
+        row::pair(ui, "", |ui| {
+            let residual = residual(session, target);
+            ui.label(RichText::new(number::short(residual)).monospace())
+                .on_hover_text("From the tip to its target");
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let mut enabled = target.enabled;
+                let name = format!("Target of {}", joint.name);
+                let check = ui.checkbox(&mut enabled, "").on_hover_text("Whether solvers mind it");
+                ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
+                if check.changed() {
+                    actions.push(Action::SetTarget(Target { enabled, ..*target }));
+                }
+                let selected = session.selected() == Some(target.joint);
+                let label = egui::Button::selectable(selected, &joint.name).truncate();
+                if ui.add(label).on_hover_text("Select its joint").clicked() {
+                    actions.push(Action::Select(vec![target.joint]));
+                }
+            });
+        });
+    }
+}
+
+fn residual(session: &Session, target: &Target) -> f32 {
+    session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
+}
+
+/// The target of the selected joint.
+pub(super) fn selected(ui: &mut Ui, session: &Session, target: Target, actions: &mut Vec<Action>) {
+    let step = session.document().cell() * 0.1;
+    place(ui, session, target, step, actions);
+    row::pair(ui, "Weight", |ui| {
+        let tooltip = "How much it counts beside other targets";
+        let field =
+            Field { name: "Weight", value: target.weight, unit: "", step: 0.1, digits: 2, tooltip };
+        field.show(ui, session, actions, |weight| Action::SetTarget(Target { weight, ..target }));
+    });
+    moves(ui, target, actions);
+    if target.motion.path != Path::Still {
+        motion(ui, session, target, step, actions);
+    }
+}
+
+fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
+    let colours = style::palette(ui).axes;
+    let reach = 1.5 * session.skeleton().reach();
+    let tip = session.skeleton_pose().tip(target.joint);
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let slider = Slider {
+            name: &format!("Target {label}"),
+            label,
+            colour: Some(style::colour(colours[axis])),
+            tooltip: &format!("Where the tip is asked to be, in the world: {label}"),
+            value: target.home[axis],
+            range: (-reach, reach),
+            default: tip[axis],
+            unit: "",
+            step,
+            disabled: None,
+        };
+        slider.show(ui, super::is_sliding(session), actions, |value| {
+            let mut home: Vec3 = target.home;
+            home[axis] = value;
+            Action::SetTarget(Target { home, ..target })
+        });
+    }
+}
+
+fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
+    row::pair(ui, "Moves", |ui| {
+        let now = PATHS.iter().find(|(path, _)| *path == target.motion.path);
+        let combo = ComboBox::from_id_salt("moves").selected_text(now.map_or("", |now| now.1));
+        let response = combo.show_ui(ui, |ui| {
+            for (path, name) in PATHS {
+                if ui.selectable_label(path == target.motion.path, name).clicked() {
+                    let motion = Motion { path, ..target.motion };
+                    actions.push(Action::SetTarget(Target { motion, ..target }));
+                    actions.push(Action::Play(path != Path::Still));
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Moves"));
+        response.on_hover_text("How the target moves by itself while the time goes on");
+    });
+}
+
+fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
+    let set = |motion| Action::SetTarget(Target { motion, ..target });
+    row::pair(ui, "Radius", |ui| {
+        let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
+        Field { name: "Radius", value, unit: "", step, digits: slider::decimals(step), tooltip }
+            .show(ui, session, actions, |radius| set(Motion { radius, ..target.motion }));
+    });
+    row::pair(ui, "Period", |ui| {
+        let (value, tooltip) = (target.motion.period, "How long once around takes");
+        Field { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
+            ui,
+            session,
+            actions,
+            |period| set(Motion { period, ..target.motion }),
+        );
+    });
+}

@@ -1,0 +1,320 @@
+//! `ik-arm pose`, as a person or a script runs it.
+#![cfg(feature = "app")]
+
+use std::fs;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use glam::{Mat4, Vec3};
+use ik_arm::io::{self, Example};
+use serde::Deserialize;
+
+/// A file in a folder of its own.
+struct Scene {
+    _folder: tempfile::TempDir,
+    path: PathBuf,
+}
+
+impl Scene {
+    fn new(text: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene");
+        fs::write(&path, text).expect("written");
+        Self { _folder: folder, path }
+    }
+
+    fn example(name: &str) -> Self {
+        Self::new(Example::find(name).expect("there").text)
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+        command.arg("pose").arg(&self.path).args(arguments).output().expect("the program runs")
+    }
+
+    fn pose(&self, arguments: &[&str]) -> Answer {
+        let output = self.run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
+        answer(&output)
+    }
+
+    /// What is said after the file's name.
+    fn refusal(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{output:?}");
+        let complaint = complaint(&output);
+        let start = format!("ik-arm: {}", self.path.display());
+        complaint.strip_prefix(&start).expect("the file is named").trim_end().to_owned()
+    }
+}
+
+fn complaint(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn answer(output: &Output) -> Answer {
+    let text = str::from_utf8(&output.stdout).expect("UTF-8");
+    assert_eq!(text.find('\n'), Some(text.len() - 1), "one line: {text}");
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Answer {
+    joints: Vec<Joint>,
+    targets: Vec<Target>,
+    report: Option<Report>,
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Joint {
+    index: usize,
+    name: String,
+    parent: Option<usize>,
+    rotation_deg: Vec3,
+    base: Vec3,
+    tip: Vec3,
+    transform: [f32; 16],
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Target {
+    joint: usize,
+    target: Vec3,
+    tip: Vec3,
+    error: f32,
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Report {
+    solver: String,
+    iterations: u32,
+    error: f32,
+    converged: bool,
+}
+
+const BENT: &str = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"bones":[
+    {"extent":[0,2,0],"parent":1},{"extent":[0,1,0],"pose":[0,0,90]}],
+    "handles":[{"bone":0,"target":[1,1,0]},{"bone":1,"target":[0,0,0],"enabled":false}]}}},
+    "transforms":{"T":{"scale":[-1,1,1],"translation":[10,0,0]}},
+    "instances":{"skinned_meshes":{"I":{"mesh":"X","transform":"T"}}}}}"#;
+
+// Posing
+
+#[test]
+fn an_answer_has_exactly_these_keys_in_this_order() {
+    let bone = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"base":[0,0,5],
+        "bones":[{"extent":[0,1,0]}],"handles":[{"bone":0,"target":[0,1,4]}]}}}}}"#;
+    let output = Scene::new(bone).run(&[]);
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout),
+        concat!(
+            r#"{"joints":[{"index":0,"name":"bone_0","parent":null,"rotation_deg":[0.0,0.0,0.0],"#,
+            r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
+            r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
+            r#""targets":[{"joint":0,"target":[0.0,1.0,4.0],"tip":[0.0,1.0,5.0],"error":1.0}],"#,
+            r#""report":null}"#,
+            "\n"
+        )
+    );
+    assert_eq!(complaint(&output), "");
+}
+
+#[test]
+fn joints_have_the_order_and_the_numbers_of_the_file_and_stand_in_the_world() {
+    let Answer { joints, targets, report } = Scene::new(BENT).pose(&[]);
+    let names: Vec<_> = joints.iter().map(|joint| (joint.index, joint.name.as_str())).collect();
+    assert_eq!(names, [(0, "bone_0"), (1, "bone_1")]);
+    assert_eq!([joints[0].parent, joints[1].parent], [Some(1), None]);
+    assert_eq!(joints[1].rotation_deg, Vec3::new(0.0, 0.0, 90.0));
+    let close = |a: Vec3, b: [f32; 3]| assert!(a.distance(Vec3::from_array(b)) < 1e-5, "{a}");
+    close(joints[1].base, [10.0, 0.0, 0.0]);
+    close(joints[1].tip, [11.0, 0.0, 0.0]);
+    close(joints[0].base, [11.0, 0.0, 0.0]);
+    close(joints[0].tip, [13.0, 0.0, 0.0]);
+    assert_eq!((targets.len(), targets[0].joint), (1, 0));
+    close(targets[0].target, [9.0, 1.0, 0.0]);
+    assert_eq!(report, None);
+}
+
+#[test]
+fn a_transform_takes_the_joints_own_space_to_the_world() {
+    for name in ["human", "snake", "degenerate"] {
+        let scene = Scene::example(name);
+        let skeleton = io::open(&scene.path, None).expect("opens").document.skeleton;
+        for (joint, own) in scene.pose(&[]).joints.iter().zip(skeleton.skeleton.joints()) {
+            let full = Mat4::from_cols_array(&joint.transform);
+            assert!(full.transform_point3(Vec3::ZERO).distance(joint.base) < 1e-5);
+            assert!(full.transform_point3(own.axis).distance(joint.tip) < 1e-5);
+            assert_eq!((joint.parent, &joint.name), (own.parent, &own.name));
+        }
+    }
+}
+
+#[test]
+fn a_document_comes_from_standard_input_as_well() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+        .args(["pose", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("it has a standard input");
+    stdin.write_all(BENT.as_bytes()).expect("it listens");
+    drop(stdin);
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(answer(&output), Scene::new(BENT).pose(&[]));
+}
+
+#[test]
+fn what_is_odd_in_a_file_is_said_beside_the_pose() {
+    let scene = Scene::new(
+        "{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"skeleton\",\n\"colour\":\"red\"}",
+    );
+    let output = scene.run(&[]);
+    assert_eq!(output.status.code(), Some(0));
+    let path = scene.path.display();
+    let expected = "line 2, column 10: colour: no such field is known; it is ignored";
+    assert_eq!(complaint(&output), format!("ik-arm: {path}, {expected}\n"));
+    assert_eq!(answer(&output).joints.len(), 1);
+}
+
+// Solving
+
+#[test]
+fn every_solver_says_how_near_it_came() {
+    let scene = Scene::example("ten-joints");
+    for solver in ["transpose", "transpose-fixed", "dls", "ccd", "fabrik"] {
+        let Answer { targets, report, .. } = scene.pose(&["--solver", solver]);
+        let report = report.expect("it solved");
+        assert_eq!(report.solver, solver);
+        assert!(report.converged && report.iterations > 0, "{report:?}");
+        assert!((report.error - targets[0].error).abs() < 1e-6 && report.error < 4e-4);
+        assert!((targets[0].tip.distance(targets[0].target) - targets[0].error).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn two_bones_are_solved_at_once_in_a_mirror() {
+    let Answer { joints, targets, report } = Scene::new(BENT).pose(&["--solver", "two-bone"]);
+    let report = report.expect("it solved");
+    assert!(report.converged, "{report:?}");
+    assert!(joints[0].tip.distance(Vec3::new(9.0, 1.0, 0.0)) < 1e-4, "{:?}", joints[0]);
+    assert_eq!(targets[0].tip, joints[0].tip);
+}
+
+#[test]
+fn iterations_and_tolerance_bound_a_solve() {
+    let scene = Scene::example("ten-joints");
+    let report = |arguments: &[&str]| {
+        scene.pose(&[&["--solver", "ccd"], arguments].concat()).report.expect("it solved")
+    };
+    let still = scene.pose(&["--solver", "ccd", "--iterations", "0"]);
+    assert_eq!(still.joints, scene.pose(&[]).joints);
+    assert_eq!(report(&["--iterations", "0"]).iterations, 0);
+    let few = report(&["--iterations", "2"]);
+    assert!(few.iterations == 2 && !few.converged, "{few:?}");
+    let (rough, fine) = (report(&["--tolerance", "0.1"]), report(&["--tolerance", "1e-5"]));
+    assert!(rough.converged && fine.converged && fine.error <= 1e-5, "{rough:?} {fine:?}");
+    assert!(rough.iterations < fine.iterations);
+}
+
+#[test]
+fn a_target_out_of_reach_is_an_answer_and_no_failure() {
+    let scene = Scene::example("degenerate");
+    for solver in ["dls", "fabrik"] {
+        let report = scene.pose(&["--solver", solver]).report.expect("it solved");
+        assert!(!report.converged && report.error > 0.5, "{report:?}");
+    }
+}
+
+#[test]
+fn the_humans_targets_are_in_reach() {
+    let scene = Scene::example("human");
+    for solver in ["dls", "ccd"] {
+        let Answer { targets, report, .. } = scene.pose(&["--solver", solver]);
+        assert_eq!(targets.len(), 4);
+        assert!(report.as_ref().is_some_and(|report| report.converged), "{report:?}");
+    }
+}
+
+// Failures
+
+#[test]
+fn a_file_that_is_no_scene_is_an_error_with_its_place() {
+    for (text, expected) in [
+        ("hello", ", line 1, column 1: not JSON: expected value"),
+        (
+            "{\"format\":\"ik-arm\",\n\"version\":7}",
+            ", line 2, column 11: version: version 7 needs a newer ik-arm; this one reads version 1",
+        ),
+        (
+            "{\"scene\":{\"skinned_meshes\":{\"X\":{\"skeleton\":{\"bones\":\n[{\"extent\":1}]}}}}}",
+            ", line 2, column 12: scene.skinned_meshes.X.skeleton.bones[0].extent: invalid type: \
+             integer `1`, expected three numbers: [x, y, z]",
+        ),
+    ] {
+        assert_eq!(Scene::new(text).refusal(&[]), expected);
+    }
+    let missing = Scene { path: PathBuf::from("/nowhere/x.json"), ..Scene::new("") };
+    assert!(missing.refusal(&[]).starts_with(" cannot be read: "));
+}
+
+#[test]
+fn a_skeleton_that_is_not_there_is_an_error_that_lists_those_that_are() {
+    let expected = " has no skeleton called \"Y\"; it has \"X\"";
+    assert_eq!(Scene::new(BENT).refusal(&["--skeleton", "Y"]), expected);
+    let expected = " has no skeleton called \"Y\"; it has one skeleton, without a name";
+    assert_eq!(Scene::example("human").refusal(&["--skeleton", "Y"]), expected);
+    assert_eq!(Scene::new(BENT).pose(&["--skeleton", "X"]), Scene::new(BENT).pose(&[]));
+}
+
+#[test]
+fn a_document_that_shows_the_arm_points_to_solve() {
+    let expected = " shows the arm, which `ik-arm solve` poses; pose is for skeletons";
+    assert_eq!(Scene::example("arm").refusal(&[]), expected);
+}
+
+#[test]
+fn a_two_bone_target_on_a_root_is_an_error_that_names_the_files_bone() {
+    let (on, off) = ("[0,0,0]", "[0,0,0],\"enabled\":false");
+    let text = BENT.replace(off, on).replace("[1,1,0]", "[1,1,0],\"enabled\":false");
+    let refusal = Scene::new(&text).refusal(&["--solver", "two-bone"]);
+    assert!(refusal.starts_with(": two-bone cannot move joint 1: "), "{refusal}");
+}
+
+#[test]
+fn a_pose_beyond_all_numbers_is_an_error() {
+    let bones = r#"{"extent":[3e38,0,0]},{"extent":[3e38,0,0],"parent":0}"#;
+    let scene = Scene::new(&format!(
+        r#"{{"scene":{{"skinned_meshes":{{"X":{{"skeleton":{{"bones":[{bones}]}}}}}}}}}}"#
+    ));
+    let expected = ": \"bone_1\" is beyond 3.4028235e38; bring it nearer to 0";
+    assert_eq!(scene.refusal(&[]), expected);
+}
+
+#[test]
+fn a_usage_error_exits_with_2_and_prints_no_result() {
+    let scene = Scene::example("human");
+    for arguments in [
+        ["--solver", "newton"].as_slice(),
+        &["--iterations", "3"],
+        &["--tolerance", "1"],
+        &["--solver", "ccd", "--iterations", "-1"],
+        &["--solver", "ccd", "--iterations", "x"],
+        &["--solver", "ccd", "--tolerance", "0"],
+        &["--solver", "ccd", "--tolerance", "-1"],
+        &["--solver", "ccd", "--tolerance", "inf"],
+        &["--solver", "ccd", "--tolerance", "nan"],
+        &["second"],
+    ] {
+        let output = scene.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert_eq!(output.stdout.len(), 0);
+        assert!(complaint(&output).starts_with("error: "), "{output:?}");
+    }
+}

@@ -1,0 +1,603 @@
+//! The program's own files: what is written is read again, and what cannot be read is said where.
+#![cfg(feature = "document")]
+
+mod files;
+
+use std::fs;
+
+use files::{Random, message, mutations};
+use glam::{Affine3A, Mat3, Quat, Vec3};
+use ik_arm::document::{
+    Arm, Camera, Display, Document, Layer, Motion, Path, RigKind, SkeletonRig, Slither, Target,
+};
+use ik_arm::io::{self, Example, Opened};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::solve::{Method, Options, Root};
+use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+
+fn open(text: &str) -> Opened {
+    io::parse("test.json", text, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn with(fields: &str) -> String {
+    format!("{{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"skeleton\",\n{fields}}}")
+}
+
+fn refusal(text: &str) -> String {
+    message(io::parse("test.json", text, None).expect_err("it is refused"))
+}
+
+// Writing and reading again
+
+#[test]
+fn every_document_is_read_again_bit_for_bit() {
+    for seed in 0..500 {
+        let document = random_document(&mut Random(seed));
+        let json = io::to_json(&document).expect("it is written");
+        let opened = open(&json);
+        assert_eq!(opened.document, document, "{json}");
+        assert_eq!(opened.warnings, []);
+        let joints = document.skeleton.skeleton.joints().len();
+        assert_eq!(opened.order, (0..joints).collect::<Vec<_>>());
+        // Equal numbers may differ in the sign of 0; their texts do not.
+        assert_eq!(io::to_json(&opened.document).expect("written"), json);
+    }
+}
+
+#[test]
+fn a_minus_zero_keeps_its_sign() {
+    let mut document = Document::default();
+    document.arm.cursor = Vec3::new(-0.0, 1.0, 0.0);
+    document.skeleton.skeleton.change(0, |root| root.rotation.y = -0.0).expect("possible");
+    let opened = open(&io::to_json(&document).expect("written")).document;
+    assert!(opened.arm.cursor.x.is_sign_negative() && opened.arm.cursor.z.is_sign_positive());
+    assert!(opened.skeleton.skeleton.joints()[0].rotation.y.is_sign_negative());
+}
+
+#[test]
+fn a_document_with_a_number_that_is_not_finite_is_not_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut document = Document::default();
+    document.camera.yaw = f32::NAN;
+    let error = io::save(&document, &folder.path().join("x.json")).expect_err("refused");
+    assert_eq!(error.to_string(), "the document cannot be written: NaN is not a finite number");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn a_file_is_laid_out_for_people() {
+    let json = io::to_json(&Document::default()).expect("written");
+    assert!(
+        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 1,\n  \"rig\": \"arm\",\n")
+    );
+    assert!(json.contains("\n    \"cursor\": [250.0, 120.0, 60.0],\n"), "{json}");
+    assert!(json.contains("\n    \"joints\": [{\n      \"name\": \"root\",\n"), "{json}");
+    assert!(json.ends_with("]\n}\n"));
+}
+
+fn random_document(random: &mut Random) -> Document {
+    let arm = Arm {
+        bones: TwoBone::new(random.above_0(), random.above_0()).expect("lengths"),
+        cursor: random.point(),
+        root: random.point(),
+        elbow_spin: random.any(),
+        facing: Facing::towards(random.point(), Facing::default()),
+    };
+
+    let mut rig = SkeletonRig::new(random_skeleton(random));
+    for joint in 0..rig.skeleton.joints().len() {
+        if random.below(3) == 0 {
+            let paths = [Path::Still, Path::Circle, Path::FigureEight];
+            let motion = Motion {
+                path: random.one_of(&paths),
+                radius: random.any(),
+                period: random.above_0(),
+            };
+            let (home, weight) = (random.point(), random.above_0());
+            rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
+        }
+    }
+    rig.solver = Options {
+        method: random.one_of(&Method::ALL),
+        iterations: random.coin().then(|| 1 + random.below(1 << 31) as u32),
+        tolerance: random.coin().then(|| random.above_0()),
+        damping: random.above_0(),
+        step: random.above_0(),
+        root: random.one_of(&[Root::Fixed, Root::Free]),
+    };
+    rig.iterations_per_frame = 1 + random.below(1000) as u32;
+    rig.slither = random.coin().then(|| Slither {
+        radius: random.any(),
+        amplitude: random.any(),
+        waves: random.below(1 << 32) as u32,
+        period: random.above_0(),
+    });
+    let layers = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS);
+    Document {
+        rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
+        arm,
+        skeleton: rig,
+        camera: Camera {
+            target: random.point(),
+            yaw: random.any(),
+            pitch: random.between(-1.5, 1.5),
+            distance: random.above_0(),
+            orthographic: random.coin(),
+        },
+        display: layers.filter(|_| random.coin()).collect::<Display>(),
+    }
+}
+
+fn random_skeleton(random: &mut Random) -> Skeleton {
+    let count = random.below(12) as usize;
+    let joints = (0..count).map(|index| {
+        let parent =
+            (index > 0 && random.below(4) > 0).then(|| random.below(index as u64) as usize);
+        let turn = [(); 4].map(|()| random.between(-1.0, 1.0));
+        Joint {
+            name: format!("{} \"é\\\n{index}", random.below(100)),
+            parent,
+            offset: random.point(),
+            axis: random.point(),
+            rotation: random.point(),
+            frame: match random.below(3) {
+                0 => Mat3::from_quat(Quat::from_array(turn).normalize()),
+                1 => Mat3::from_cols(Vec3::new(1.0, -0.0, 0.0), Vec3::Y, Vec3::Z),
+                _ => Mat3::IDENTITY,
+            },
+            limits: [(); 3].map(|()| {
+                let (a, b) = (random.any(), random.any());
+                random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
+            }),
+            locked: random.coin(),
+            radius: random.any().abs(),
+        }
+    });
+    let mut skeleton = Skeleton::from_joints(joints.collect()).expect("a skeleton");
+    let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.any()));
+    skeleton.set_transform(transform).expect("finite");
+    skeleton
+}
+
+// Files written by hand
+
+#[test]
+fn what_a_file_leaves_out_is_as_at_first() {
+    let small = "{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"arm\"}";
+    assert_eq!(open(small).document, Document::default());
+}
+
+#[test]
+fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
+    let opened = open(&with(
+        r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]},{"name":"b","parent":0,"axis":[0,2,0]},
+           {"name":"c","parent":1},{"name":"d","parent":0,"offset":[0,0,0]}]}"#,
+    ));
+    let rig = &opened.document.skeleton;
+    let base = |joint| rig.skeleton.base(joint);
+    assert_eq!([base(0), base(1), base(2), base(3)].map(|base| base.y), [0.0, 1.0, 3.0, 0.0]);
+    assert_eq!(rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
+    assert_eq!(rig.skeleton.joints()[1].radius, 0.2);
+    assert_eq!((rig.targets.len(), rig.solver), (0, Options::default()));
+}
+
+#[test]
+fn a_file_without_a_camera_shows_the_whole_skeleton() {
+    let opened =
+        open(&with(r#""skeleton":{"joints":[{"name":"a","offset":[50,0,0],"axis":[0,0.01,0]}]}"#));
+    let Camera { target, distance, .. } = opened.document.camera;
+    assert!(target.distance(Vec3::new(50.0, 0.005, 0.0)) < 1e-5);
+    assert!((0.005..0.1).contains(&distance), "{distance}");
+}
+
+#[test]
+fn a_byte_order_mark_is_no_fault() {
+    assert_eq!(open(&format!("\u{feff}{}", with("\"targets\":[]"))).warnings, []);
+}
+
+#[test]
+fn unknown_fields_and_angles_beyond_limits_are_remarked_on_and_do_no_harm() {
+    let opened = open(&with(concat!(
+        "\"colour\":{\"a\":[[[]]]},\n",
+        "\"skeleton\":{\"joints\":[{\"name\":\"a\",\"rotation\":[1,0,0],\n",
+        "  \"limits\":{\"x\":[0,0.5],\"w\":3}}]},\n",
+        " \"camera\":{\"fov\":  90}"
+    )));
+    let remarks: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
+    let unknown = "no such field is known; it is ignored";
+    assert_eq!(
+        remarks,
+        [
+            format!("line 2, column 10: colour: {unknown}"),
+            format!("line 4, column 29: skeleton.joints[0].limits.w: {unknown}"),
+            format!("line 5, column 20: camera.fov: {unknown}"),
+            "line 3, column 46: skeleton.joints[0].rotation: is beyond the joint's limits; it is \
+             brought within"
+                .to_owned(),
+        ]
+    );
+    assert_eq!(opened.document.skeleton.skeleton.joints()[0].rotation.x, 0.5);
+}
+
+#[test]
+fn of_many_remarks_the_first_are_made() {
+    let unknown: Vec<_> = (0..5000).map(|n| format!("\"u{n}\":0")).collect();
+    let warnings = open(&with(&unknown.join(",\n"))).warnings;
+    assert_eq!(warnings.len(), 21);
+    assert_eq!(warnings[19].field, "u19");
+    assert_eq!(warnings[20].reason, "and 4980 more like this");
+}
+
+// Files that are refused
+
+#[test]
+fn what_is_no_document_is_told_apart() {
+    for (text, expected) in [
+        ("", "line 1, column 1: the file is empty"),
+        ("  \n ", "line 2, column 2: the file is empty"),
+        ("hello", "line 1, column 1: not JSON: expected value"),
+        ("[1]", "line 1, column 1: invalid type: sequence, expected an object: {…}"),
+        (
+            "{\"a\":1}",
+            "line 1, column 1: neither \"format\" is there, as in a document of ik-arm, nor \
+             \"scene\", as in a .js3d file of Scotty3D",
+        ),
+        (
+            "{\n\"format\":\"png\",\"version\":1}",
+            "line 2, column 10: format: \"png\" is not a format that is known; it must be \"ik-arm\"",
+        ),
+        (
+            "{\"format\":\"ik-arm\",\n \"version\": 2, \"rig\": {}}",
+            "line 2, column 13: version: version 2 needs a newer ik-arm; this one reads version 1",
+        ),
+        (
+            "{\"format\":\"ik-arm\",\"version\":0}",
+            "line 1, column 30: version: there is no version 0; it must be 1",
+        ),
+        ("{\"format\":\"ik-arm\"}", "line 1, column 1: missing field `version`"),
+        (
+            "{\"format\":\"ik-arm\",\"version\":\"1\"}",
+            "line 1, column 30: version: invalid type: string \"1\", expected a whole number from 0 to \
+             4294967295",
+        ),
+        ("{\"format\":\"ik-arm\",\"version\":1}", "line 1, column 1: missing field `rig`"),
+        (
+            "{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"leg\"}",
+            "line 1, column 38: rig: unknown variant `leg`, expected `arm` or `skeleton`",
+        ),
+    ] {
+        assert_eq!(refusal(text), format!("test.json, {expected}"), "{text}");
+    }
+}
+
+#[test]
+fn what_is_no_json_is_said_where() {
+    for (fields, expected) in [
+        ("\"targets\":[,]", "line 2, column 12: targets[0]: not JSON: expected value"),
+        ("\"arm\":{\"upper\":01}", "line 2, column 17: arm.upper: not JSON: invalid number"),
+        ("\"arm\":{\"upper\":1,}", "line 2, column 18: arm: not JSON: trailing comma"),
+        ("\"a\":nul", "line 2, column 8: a: not JSON: expected ident"),
+    ] {
+        assert_eq!(refusal(&with(fields)), format!("test.json, {expected}"), "{fields}");
+    }
+    let end = refusal(&format!("{} x", with("\"targets\":[]")));
+    assert_eq!(end, "test.json, line 2, column 15: not JSON: trailing characters");
+    let cut = refusal(with("\"targets\":[").trim_end_matches('}'));
+    assert_eq!(cut, "test.json, line 2, column 11: targets: not JSON: EOF while parsing a list");
+}
+
+#[test]
+fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
+    for (fields, expected) in [
+        ("\"arm\":[]", "line 2, column 7: arm: invalid type: sequence, expected an object: {…}"),
+        (
+            "\"arm\":{\"upper\": \"2\"}",
+            "line 2, column 17: arm.upper: invalid type: string \"2\", expected a number",
+        ),
+        (
+            "\"arm\":{\"root\":[1,\n2]}",
+            "line 2, column 15: arm.root: found 2 numbers, expected three: [x, y, z]",
+        ),
+        (
+            "\"arm\":{\"root\":[1,\n2,null]}",
+            "line 3, column 3: arm.root[2]: invalid type: null, expected a number",
+        ),
+        (
+            "\"arm\":{\"root\":[1,2,\n 1e39]}",
+            "line 3, column 2: arm.root[2]: number out of range; it must be between ±3.4028235e38",
+        ),
+        (
+            "\"skeleton\":{\"joints\":[\n[\"a\"]]}",
+            "line 3, column 1: skeleton.joints[0]: invalid type: sequence, expected an object: {…}",
+        ),
+        (
+            "\"skeleton\":{\"joints\":[\n{\"axis\":[0,1,0]}]}",
+            "line 3, column 1: skeleton.joints[0]: missing field `name`",
+        ),
+        (
+            "\"skeleton\":{\"joints\":[\n{\"name\":\"a\",\"parent\":-1}]}",
+            "line 3, column 22: skeleton.joints[0].parent: invalid type: integer `-1`, expected a whole \
+             number from 0 to 4294967295",
+        ),
+        (
+            "\"skeleton\":{\"transform\":[1,2,3]}",
+            "line 2, column 25: skeleton.transform: found 3 numbers, expected 12: […]",
+        ),
+        (
+            "\"display\":[\"cursor\",\"elbow\"]",
+            "line 2, column 21: display[1]: unknown variant `elbow`, expected one of `cursor`, \
+             `pointer`, `inner_limit`, `outer_limit`, `grid_xy`, `grid_xz`, `grid_yz`, `ground`, \
+             `axes`, `labels`, `shadow`",
+        ),
+        ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
+    ] {
+        assert_eq!(refusal(&with(fields)), format!("test.json, {expected}"), "{fields}");
+    }
+}
+
+#[test]
+fn a_value_that_cannot_be_is_named_with_what_would_be_right() {
+    let joints = |joints: &str| format!("\"skeleton\":{{\"joints\":[\n{joints}]}}");
+    let a = "{\"name\":\"a\",\"axis\":[0,1,0]}";
+    let limit = "{\"name\":\"a\",\n\"limits\":{\"y\":[1,\n0]}}";
+    let aimed = |target: &str| format!("{},\n\"targets\":[{target}]", joints(a));
+    for (fields, expected) in [
+        (
+            joints(&format!("{a},\n{{\"name\":\"b\",\"parent\":1}}")),
+            "line 4, column 22: skeleton.joints[1].parent: parent 1 of joint 1 does not stand before \
+             it",
+        ),
+        (
+            joints(&format!("{a},\n{a}")),
+            "line 4, column 9: skeleton.joints[1].name: two joints are called \"a\"; names must differ",
+        ),
+        (
+            joints("{\"name\": \" \"}"),
+            "line 3, column 10: skeleton.joints[0].name: a joint needs a name",
+        ),
+        (
+            joints("{\"name\":\"a\",\"radius\":-1}"),
+            "line 3, column 22: skeleton.joints[0].radius: radius of joint 0 is -1; it must be a \
+             finite number, 0 or more",
+        ),
+        (
+            joints("{\"name\":\"a\",\"frame\":[2,0,0,0,1,0,0,0,1]}"),
+            "line 3, column 21: skeleton.joints[0].frame: the frame of joint 0 must be three unit \
+             vectors at right angles, right-handed",
+        ),
+        (
+            joints(limit),
+            "line 4, column 15: skeleton.joints[0].limits.y: the limit of joint 0 about y is 1 to 0; \
+             it must be finite numbers, the lower one first",
+        ),
+        (
+            aimed("{\"joint\":1,\"home\":[0,0,0]}"),
+            "line 4, column 21: targets[0].joint: there is no joint 1; there is only joint 0",
+        ),
+        (
+            aimed("{\"joint\":0,\"home\":[0,0,0]},{\"home\":[1,1,1],\"joint\":0}"),
+            "line 4, column 63: targets[1].joint: joint 0 has a target already",
+        ),
+        (
+            aimed("{\"joint\":0,\"home\":[0,0,0],\"weight\":0}"),
+            "line 4, column 47: targets[0].weight: is 0; it must be above 0",
+        ),
+        (
+            aimed("{\"joint\":0,\"home\":[0,0,0],\"motion\":{\"path\":\"circle\",\"period\":-1}}"),
+            "line 4, column 73: targets[0].motion.period: is -1; it must be above 0",
+        ),
+        (
+            "\"arm\":{\"lower\":-3}".to_owned(),
+            "line 2, column 16: arm.lower: lower length is -3; it must be a finite number above 0",
+        ),
+        (
+            "\"arm\":{\"facing\":{\"direction\":[2,0,0],\"heading\":[1,0]}}".to_owned(),
+            "line 2, column 30: arm.facing.direction: its length is 2, not 1",
+        ),
+        (
+            "\"solver\":{\"method\":\"newton\"}".to_owned(),
+            "line 2, column 20: solver.method: \"newton\" is not a method; they are transpose-fixed, \
+             transpose, dls, ccd, fabrik, two-bone",
+        ),
+        (
+            "\"solver\":{\"iterations\":0}".to_owned(),
+            "line 2, column 24: solver.iterations: is 0; it must be 1 or more, or null for the \
+             method's own",
+        ),
+        (
+            "\"solver\":{\"iterations_per_frame\":1001}".to_owned(),
+            "line 2, column 34: solver.iterations_per_frame: is 1001; it must be from 1 to 1000",
+        ),
+        (
+            "\"solver\":{\"damping\":0}".to_owned(),
+            "line 2, column 21: solver.damping: is 0; it must be above 0",
+        ),
+        (
+            "\"slither\":{\"radius\":1,\"amplitude\":1,\"waves\":3,\"period\":0}".to_owned(),
+            "line 2, column 56: slither.period: is 0; it must be above 0",
+        ),
+        (
+            "\"camera\":{\"pitch\":2}".to_owned(),
+            "line 2, column 19: camera.pitch: is 2; it must be from -1.5707964 to 1.5707964",
+        ),
+        (
+            "\"camera\":{\"distance\":0}".to_owned(),
+            "line 2, column 22: camera.distance: is 0; it must be above 0",
+        ),
+    ] {
+        assert_eq!(refusal(&with(&fields)), format!("test.json, {expected}"), "{fields}");
+    }
+}
+
+#[test]
+fn more_joints_than_a_skeleton_can_have_are_refused() {
+    let joints = |count| {
+        let joints: Vec<_> = (0..count).map(|n| format!("{{\"name\":\"{n}\"}}")).collect();
+        with(&format!("\"skeleton\":{{\"joints\":[{}]}}", joints.join(",")))
+    };
+    assert_eq!(open(&joints(10_000)).order.len(), 10_000);
+    let expected = "line 2, column 22: skeleton.joints: a skeleton has at most 10000 joints";
+    assert_eq!(refusal(&joints(10_001)), format!("test.json, {expected}"));
+}
+
+#[test]
+fn bytes_that_are_no_text_are_said_where() {
+    let error = io::read("x.json", &b"{\n \"\xc3\xa9\":\"\xff\"}"[..], None).expect_err("refused");
+    let expected = "byte 0xff is not UTF-8 there; JSON is written in UTF-8";
+    assert_eq!(message(error), format!("x.json, line 2, column 7: {expected}"));
+}
+
+#[test]
+fn deep_nesting_is_an_error_or_ignored_and_no_crash() {
+    let deep = "[".repeat(1_000_000);
+    for fields in [format!("\"x\":{deep}"), format!("\"skeleton\":{{\"joints\":{deep}")] {
+        assert!(refusal(&with(&fields)).starts_with("test.json, line 2, column "));
+    }
+    let closed = format!("\"x\":{deep}{}", "]".repeat(1_000_000));
+    assert_eq!(open(&with(&closed)).warnings[0].field, "x");
+    refusal(&deep);
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = folder.path().join("missing.json");
+    let error = io::open(&missing, None).expect_err("refused").to_string();
+    assert!(error.starts_with(&format!("{} cannot be read: ", missing.display())), "{error}");
+
+    let error = io::open(folder.path(), None).expect_err("refused").to_string();
+    assert!(error.contains(" cannot be read: "), "{error}");
+
+    let huge = folder.path().join("huge.json");
+    fs::File::create(&huge).and_then(|file| file.set_len((64 << 20) + 1)).expect("made");
+    let error = io::open(&huge, None).expect_err("refused").to_string();
+    assert_eq!(error, format!("{} is larger than 64 MB, and no document is", huge.display()));
+    let endless = io::read("endless", std::io::repeat(b' '), None).expect_err("refused");
+    assert_eq!(endless.to_string(), "endless is larger than 64 MB, and no document is");
+}
+
+#[test]
+fn a_document_has_no_skeletons_to_choose_from() {
+    let error = io::parse("a.json", &with("\"targets\":[]"), Some("Human")).expect_err("refused");
+    let expected = "a.json has no skeleton called \"Human\"; it has one skeleton, without a name";
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn damaged_files_open_or_are_refused_and_never_crash() {
+    for seed in 0..30 {
+        let document = random_document(&mut Random(seed));
+        let json = io::to_json(&document).expect("written");
+        for damaged in mutations(&json, &mut Random(seed), 40) {
+            let _ = io::read("x", &*damaged, None).map_err(message);
+        }
+    }
+    for example in Example::ALL {
+        for damaged in mutations(example.text, &mut Random(7), 150) {
+            let _ = io::read("x", &*damaged, None).map_err(message);
+        }
+    }
+}
+
+// Saving
+
+#[test]
+fn a_saved_document_is_opened_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("arm.json");
+    let document = random_document(&mut Random(3));
+    fs::write(&path, "before").expect("written");
+    io::save(&document, &path).expect("saved");
+    assert_eq!(io::open(&path, None).expect("opened").document, document);
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing beside it");
+}
+
+#[test]
+fn a_document_that_cannot_be_saved_names_the_file_and_leaves_it_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let nowhere = folder.path().join("no/arm.json");
+    let error = io::save(&Document::default(), &nowhere).expect_err("refused").to_string();
+    let parent = folder.path().join("no");
+    let expected = format!("could not be written: there is no folder {}", parent.display());
+    assert_eq!(error, format!("{} {expected}", nowhere.display()));
+
+    let error = io::save(&Document::default(), folder.path()).expect_err("refused").to_string();
+    assert!(error.starts_with(&format!("{} could not be written: ", folder.path().display())));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_saved_file_keeps_its_rights_and_a_link_stays_a_link() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, link) = (folder.path().join("arm.json"), folder.path().join("link.json"));
+    fs::write(&path, "before").expect("written");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).expect("set");
+    symlink(&path, &link).expect("a link");
+
+    io::save(&Document::default(), &link).expect("saved");
+
+    assert!(link.symlink_metadata().expect("there").is_symlink());
+    assert_eq!(path.metadata().expect("there").permissions().mode() & 0o777, 0o640);
+    assert_eq!(io::open(&path, None).expect("opened").document, Document::default());
+}
+
+// Examples
+
+#[test]
+fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
+    for example in Example::ALL {
+        let opened = example.open().unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(opened.warnings, [], "{}", example.name);
+        let again = open(&io::to_json(&opened.document).expect("written"));
+        assert_eq!(again.document, opened.document, "{}", example.name);
+        let path = format!("{}/assets/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);
+        assert_eq!(fs::read_to_string(path).expect("named as its file"), example.text);
+    }
+}
+
+#[test]
+fn the_examples_are_what_they_are_called() {
+    let rig = |name| Example::find(name).expect("there").open().expect("opens").document.skeleton;
+    let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
+    let arm = Example::find("arm").expect("there").open().expect("opens").document;
+    assert_eq!((arm.rig, arm), (RigKind::Arm, Document::default()));
+    assert_eq!(count("two-targets"), (9, 2));
+    assert_eq!(count("human"), (19, 4));
+    assert_eq!(count("snake"), (24, 0));
+    assert_eq!(count("ten-joints"), (10, 1));
+    assert_eq!(count("degenerate"), (17, 5));
+    let snake = rig("snake");
+    assert!(snake.slither.is_some() && snake.solver.root == Root::Free);
+    let degenerate = rig("degenerate").skeleton;
+    assert!(degenerate.transform().matrix3.determinant() < 0.0);
+    assert!(degenerate.joints().iter().any(|joint| joint.axis == Vec3::ZERO));
+}
+
+#[test]
+fn the_human_stands_on_the_ground_within_its_limits() {
+    let human = Example::find("human").expect("there").open().expect("opens").document.skeleton;
+    let joints = human.skeleton.joints();
+    assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
+    assert!(joints.iter().filter(|joint| joint.is_limited()).count() >= 12);
+    let heights: Vec<_> = human.skeleton.pose().points().map(|point| point.y).collect();
+    let highest = heights.iter().copied().fold(f32::MIN, f32::max);
+    let lowest = heights.iter().copied().fold(f32::MAX, f32::min);
+    assert!((1.7..1.8).contains(&highest) && (0.0..0.05).contains(&lowest), "{lowest} {highest}");
+}
+
+#[test]
+fn the_snake_lies_in_an_s() {
+    let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton;
+    let posed = snake.at(0.0).pose();
+    let turn = |joint: usize| {
+        let (before, after) =
+            (posed.tip(joint) - posed.base(joint), posed.tip(joint + 1) - posed.tip(joint));
+        before.cross(after).y
+    };
+    let turns: Vec<_> = (0..23).map(turn).collect();
+    let left = turns.iter().filter(|turn| **turn > 1e-4).count();
+    let right = turns.iter().filter(|turn| **turn < -1e-4).count();
+    assert!(left >= 5 && right >= 5, "{turns:?}");
+}

@@ -1,0 +1,494 @@
+//! Scotty3D's scenes: their bones stand where Scotty3D's formulas put them.
+#![cfg(feature = "document")]
+
+mod files;
+
+use std::fmt::Write as _;
+
+use files::{Random, message, mutations};
+use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
+use ik_arm::document::RigKind;
+use ik_arm::io::{self, Opened};
+
+fn open(text: &str) -> Opened {
+    io::parse("test.js3d", text, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(text: &str) -> String {
+    message(io::parse("test.js3d", text, None).expect_err("it is refused"))
+}
+
+/// A scene with one skeleton; the bones begin on line 2.
+fn skeleton(fields: &str) -> String {
+    format!("{{\"scene\":{{\"skinned_meshes\":{{\"X\":{{\"skeleton\":{{\n{fields}}}}}}}}}}}")
+}
+
+fn bones(bones: &str) -> String {
+    skeleton(&format!("\"bones\":[{bones}]"))
+}
+
+// What is in a scene
+
+#[test]
+fn the_smallest_scene_opens() {
+    let text = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"bones":[{"extent":[0,1,0]}]}}}}}"#;
+    let Opened { document, warnings, order, skeletons } = open(text);
+    let skeleton = &document.skeleton.skeleton;
+    let joint = &skeleton.joints()[0];
+    assert_eq!(document.rig, RigKind::Skeleton);
+    assert_eq!((joint.name.as_str(), joint.parent, joint.locked), ("bone_0", None, false));
+    assert_eq!((joint.offset, joint.axis, joint.rotation), (Vec3::ZERO, Vec3::Y, Vec3::ZERO));
+    assert!(joint.radius > 0.0);
+    assert_eq!((warnings, order, skeletons), (vec![], vec![0], vec!["X".to_owned()]));
+}
+
+#[test]
+fn the_camera_shows_all_of_a_small_skeleton_and_of_a_large_one() {
+    for size in ["0.001", "1000"] {
+        let Opened { document, .. } = open(&bones(&format!("{{\"extent\":[0,{size},0]}}")));
+        let size: f32 = size.parse().expect("a number");
+        assert!(document.camera.target.distance(Vec3::Y * size / 2.0) < 1e-3 * size);
+        assert!((size..10.0 * size).contains(&document.camera.distance), "{:?}", document.camera);
+    }
+}
+
+#[test]
+fn everything_but_skeletons_is_passed_over() {
+    let mesh = "AAECAwQF".repeat(100_000);
+    let text = format!(
+        r#"{{"animator":{{"x":[{{}}]}},"scene":{{"FORMAT":"js3d-v1","cameras":{{"c":1}},
+        "skinned_meshes":{{"X":{{"mesh":{{"positions":"vec3:{mesh}"}},
+        "skeleton":{{"bones":[{{"extent":[0,1,0],"colour":5}}]}}}},"Y":{{"mesh":{{}}}}}},
+        "textures":{{"t":null}}}}}}"#
+    );
+    let opened = open(&text);
+    assert_eq!((opened.warnings, opened.skeletons), (vec![], vec!["X".to_owned()]));
+}
+
+#[test]
+fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
+    let one = |name: &str, length: u32| {
+        format!(r#""{name}":{{"skeleton":{{"bones":[{{"extent":[0,{length},0]}}]}}}}"#)
+    };
+    let text =
+        format!(r#"{{"scene":{{"skinned_meshes":{{{},{}}}}}}}"#, one("zebra", 1), one("ant", 2));
+    let length = |opened: Opened| opened.document.skeleton.skeleton.joints()[0].axis.y;
+    assert_eq!(open(&text).skeletons, ["zebra", "ant"]);
+    assert_eq!(length(open(&text)), 1.0);
+    let named = |name| io::parse("x.js3d", &text, Some(name));
+    assert_eq!(length(named("ant").expect("there")), 2.0);
+    let error = named("Ant").expect_err("not there").to_string();
+    assert_eq!(error, "x.js3d has no skeleton called \"Ant\"; it has \"zebra\", \"ant\"");
+}
+
+#[test]
+fn a_radius_and_a_pose_are_taken_over() {
+    let opened = open(&bones(r#"{"extent":[0,1,0],"radius":0.25,"pose":[90,-180,720]}"#));
+    let joint = &opened.document.skeleton.skeleton.joints()[0];
+    let degrees = joint.rotation.to_array().map(|angle| f64::from(angle).to_degrees() as f32);
+    assert_eq!((joint.radius, degrees), (0.25, [90.0, -180.0, 720.0]));
+}
+
+#[test]
+fn parents_that_follow_their_children_are_brought_before_them() {
+    let opened = open(&bones(
+        r#"{"extent":[1,0,0],"parent":2},{"extent":[0,1,0],"parent":4294967295},
+           {"extent":[0,0,1],"parent":1},{"extent":[0,0,2],"parent":0}"#,
+    ));
+    let joints = opened.document.skeleton.skeleton.joints();
+    let name = |index: usize| joints[opened.order[index]].name.as_str();
+    assert_eq!([0, 1, 2, 3].map(name), ["bone_0", "bone_1", "bone_2", "bone_3"]);
+    let parent = |index: usize| joints[opened.order[index]].parent;
+    let [a, b, c, _] = [0, 1, 2, 3].map(|index| opened.order[index]);
+    assert_eq!([0, 1, 2, 3].map(parent), [Some(c), None, Some(b), Some(a)]);
+}
+
+// Handles
+
+#[test]
+fn a_handle_is_a_target_that_the_instances_transform_brings_into_the_world() {
+    let text = r#"{"scene":{
+        "skinned_meshes":{"X":{"skeleton":{"bones":[{"extent":[0,1,0]},{"extent":[0,1,0],"parent":0}],
+            "handles":[{"bone":1,"target":[1,2,3],"enabled":false},{"bone":0,"target":[0,0,0]}]}}},
+        "transforms":{"T":{"translation":[10,20,30],"scale":[-2,1,1]}},
+        "instances":{"skinned_meshes":{"I":{"mesh":"X","transform":"T"}}}}}"#;
+    let targets = open(text).document.skeleton.targets;
+    let at = |target: usize| (targets[target].joint, targets[target].home, targets[target].enabled);
+    assert_eq!(targets.len(), 2);
+    assert_eq!(at(0), (1, Vec3::new(8.0, 22.0, 33.0), false));
+    assert_eq!(at(1), (0, Vec3::new(10.0, 20.0, 30.0), true));
+}
+
+#[test]
+fn of_several_handles_on_a_bone_the_first_enabled_one_counts() {
+    let handle = |x: u32, enabled: bool| {
+        format!("{{\"bone\":0,\"target\":[{x},0,0],\"enabled\":{enabled}}}")
+    };
+    for (enabled, counts) in [
+        ([false, false, false], 0),
+        ([false, true, true], 1),
+        ([true, false, true], 0),
+        ([false, false, true], 2),
+    ] {
+        let handles: Vec<_> = (0..).zip(enabled).map(|(x, enabled)| handle(x, enabled)).collect();
+        let fields =
+            format!("\"bones\":[{{\"extent\":[0,1,0]}}],\n\"handles\":[{}]", handles.join(","));
+        let opened = open(&skeleton(&fields));
+        let targets = &opened.document.skeleton.targets;
+        assert_eq!((targets.len(), targets[0].home.x), (1, counts as f32), "{enabled:?}");
+        assert_eq!(opened.warnings.len(), 2);
+        for warning in opened.warnings {
+            assert!(warning.field.starts_with("scene.skinned_meshes.X.skeleton.handles["));
+            assert!(!warning.field.ends_with(&format!("[{counts}]")), "{enabled:?} {warning}");
+            assert_eq!(warning.line, 3);
+        }
+    }
+}
+
+// Where bones are: an independent twin
+
+/// A bone as the file has it.
+struct Bone {
+    extent: DVec3,
+    roll: f64,
+    parent: Option<usize>,
+    pose: DVec3,
+}
+
+/// One of the steps from the skeleton to the world.
+struct Step {
+    translation: DVec3,
+    rotation: DVec4,
+    scale: DVec3,
+}
+
+struct Scene {
+    base: DVec3,
+    base_offset: DVec3,
+    bones: Vec<Bone>,
+    /// From the instance's own outwards.
+    steps: Vec<Step>,
+}
+
+impl Scene {
+    fn random(random: &mut Random) -> Self {
+        let point = |random: &mut Random, size| random.point_within(size).as_dvec3();
+        let count = 1 + random.below(12) as usize;
+        let mut bones: Vec<_> = (0..count)
+            .map(|index| Bone {
+                extent: match random.below(8) {
+                    0 => DVec3::ZERO,
+                    1 => DVec3::X * f64::from(random.between(-1.0, 1.0)),
+                    2 => DVec3::Y * f64::from(random.between(-1.0, 1.0)),
+                    _ => point(random, 1.0),
+                },
+                roll: f64::from(random.between(-400.0, 400.0)),
+                parent: (index > 0 && random.below(5) > 0)
+                    .then(|| random.below(index as u64) as usize),
+                pose: point(random, 360.0),
+            })
+            .collect();
+        shuffle(&mut bones, random);
+        let steps = (0..random.below(4)).map(|_| {
+            let turn = [(); 4].map(|()| f64::from(random.between(-1.0, 1.0)));
+            let scale = point(random, 1.5);
+            Step {
+                translation: point(random, 3.0),
+                rotation: DVec4::from_array(turn).normalize(),
+                scale: scale + 0.5 * DVec3::from_array(scale.to_array().map(f64::signum)),
+            }
+        });
+        let steps = steps.collect();
+        Self { base: point(random, 2.0), base_offset: point(random, 2.0), bones, steps }
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::from("{\"scene\":{\"transforms\":{");
+        for (index, Step { translation, rotation, scale }) in self.steps.iter().enumerate() {
+            let parent = match index + 1 < self.steps.len() {
+                true => format!("\"T{}\"", index + 1),
+                false => "null".to_owned(),
+            };
+            let comma = if index > 0 { "," } else { "" };
+            let [t, r, s] =
+                [row(&translation.to_array()), row(&rotation.to_array()), row(&scale.to_array())];
+            let step =
+                format!("\"parent\":{parent},\"translation\":{t},\"rotation\":{r},\"scale\":{s}");
+            write!(text, "{comma}\"T{index}\":{{{step}}}").expect("written");
+        }
+        let bones: Vec<_> = self.bones.iter().map(Bone::text).collect();
+        let (base, offset) = (row(&self.base.to_array()), row(&self.base_offset.to_array()));
+        let skeleton =
+            format!("\"base\":{base},\"base_offset\":{offset},\"bones\":[{}]", bones.join(","));
+        let instance = match self.steps.is_empty() {
+            true => "\"mesh\":\"X\"".to_owned(),
+            false => "\"mesh\":\"X\",\"transform\":\"T0\"".to_owned(),
+        };
+        write!(
+            text,
+            "}},\"instances\":{{\"skinned_meshes\":{{\"other\":{{\"mesh\":\"Y\"}},\
+             \"I\":{{{instance}}}}}}},\
+             \"skinned_meshes\":{{\"X\":{{\"skeleton\":{{{skeleton}}}}}}}}}}}"
+        )
+        .expect("written");
+        text
+    }
+
+    fn world(&self) -> DMat4 {
+        self.steps.iter().fold(DMat4::IDENTITY, |below, step| {
+            let turn = DMat4::from_quat(DQuat::from_vec4(step.rotation));
+            let moved = DMat4::from_translation(step.translation);
+            moved * turn * DMat4::from_scale(step.scale) * below
+        })
+    }
+
+    /// From the bone's own space to the world.
+    fn full(&self, bone: usize) -> DMat4 {
+        let Bone { extent, roll, parent, pose } = &self.bones[bone];
+        let (above, offset) = match parent {
+            Some(parent) => (self.full(*parent), self.bones[*parent].extent),
+            None => (self.world(), self.base + self.base_offset),
+        };
+        let y = if *extent == DVec3::ZERO { DVec3::Y } else { extent.normalize() };
+        let flat = DVec3::X - y * y.x;
+        let flat = if flat.length() < 1e-9 { DVec3::Z } else { flat.normalize() };
+        let (sin, cos) = roll.to_radians().sin_cos();
+        let x = flat * cos - flat.cross(y) * sin;
+        let frame =
+            DMat4::from_cols(x.extend(0.0), y.extend(0.0), x.cross(y).extend(0.0), DVec4::W);
+        let turn = DMat4::from_rotation_z(pose.z.to_radians())
+            * DMat4::from_rotation_y(pose.y.to_radians())
+            * DMat4::from_rotation_x(pose.x.to_radians());
+        above * DMat4::from_translation(offset) * frame * turn * frame.transpose()
+    }
+}
+
+impl Bone {
+    fn text(&self) -> String {
+        let parent = self.parent.map_or(u32::MAX, |parent| parent as u32);
+        let (extent, pose) = (row(&self.extent.to_array()), row(&self.pose.to_array()));
+        let roll = self.roll;
+        format!("{{\"extent\":{extent},\"roll\":{roll},\"parent\":{parent},\"pose\":{pose}}}")
+    }
+}
+
+fn row(numbers: &[f64]) -> String {
+    format!("{numbers:?}")
+}
+
+fn shuffle(bones: &mut [Bone], random: &mut Random) {
+    for index in (1..bones.len()).rev() {
+        let other = random.below(index as u64 + 1) as usize;
+        bones.swap(index, other);
+        for bone in &mut *bones {
+            bone.parent = bone.parent.map(|parent| match parent {
+                parent if parent == index => other,
+                parent if parent == other => index,
+                parent => parent,
+            });
+        }
+    }
+}
+
+#[test]
+fn bones_stand_where_the_formulas_of_the_format_put_them() {
+    for seed in 0..2000 {
+        let scene = Scene::random(&mut Random(seed));
+        let text = scene.text();
+        let Opened { document, order, .. } = open(&text);
+        let pose = document.skeleton.skeleton.pose();
+        assert_eq!(order.len(), scene.bones.len());
+        for (bone, &joint) in order.iter().enumerate() {
+            let full = scene.full(bone);
+            let size = full.to_cols_array().iter().fold(1.0_f64, |size, n| size.max(n.abs()));
+            let bound = 2e-5 * size * scene.bones.len() as f64;
+            let own = glam::Mat4::from(pose.full(joint)).as_dmat4();
+            assert!(own.abs_diff_eq(full, bound), "seed {seed}, bone {bone}: {own} is not {full}");
+            let tip = full.transform_point3(scene.bones[bone].extent);
+            assert!(pose.tip(joint).as_dvec3().distance(tip) < bound, "seed {seed}, bone {bone}");
+        }
+    }
+}
+
+#[test]
+fn tiny_and_huge_bones_have_a_frame() {
+    for extent in ["[1e-45,0,0]", "[3e38,-3e38,3e38]", "[1,1e-40,0]", "[0,-1e-44,1e-44]"] {
+        let opened = open(&bones(&format!("{{\"extent\":{extent},\"roll\":30}}")));
+        let frame = opened.document.skeleton.skeleton.joints()[0].frame;
+        let squared = frame.transpose() * frame;
+        assert!(squared.abs_diff_eq(glam::Mat3::IDENTITY, 1e-6), "{extent}: {frame}");
+    }
+}
+
+// Scenes that are refused
+
+#[test]
+fn a_bone_or_a_handle_that_cannot_be_is_named() {
+    let at = "scene.skinned_meshes.X.skeleton";
+    let one = r#"{"extent":[0,1,0]}"#;
+    let parent = |parent: i64| format!("{{\"extent\":[0,1,0],\n\"parent\":{parent}}}");
+    for (fields, expected) in [
+        ("\"base\":[0,0,0]".to_owned(), format!("line 1, column 45: {at}: missing field `bones`")),
+        (
+            "\"bones\":[{}]".to_owned(),
+            format!("line 2, column 10: {at}.bones[0]: missing field `extent`"),
+        ),
+        (
+            format!("\"bones\":[{one},{}]", parent(7)),
+            format!("line 3, column 10: {at}.bones[1].parent: there is no bone 7; they are 0 to 1"),
+        ),
+        (
+            format!("\"bones\":[{one},{}]", parent(-1)),
+            format!(
+                "line 3, column 10: {at}.bones[1].parent: invalid type: integer `-1`, expected a \
+                 whole number from 0 to 4294967295"
+            ),
+        ),
+        (
+            format!("\"bones\":[{}]", parent(0)),
+            format!("line 3, column 10: {at}.bones[0].parent: bone 0 hangs from bone 0 itself"),
+        ),
+        (
+            format!("\"bones\":[{one},{},{},{}]", parent(2), parent(3), parent(1)),
+            format!("line 5, column 10: {at}.bones[3].parent: bone 1 hangs from bone 3 itself"),
+        ),
+        (
+            "\"bones\":[{\"extent\":[0,1]}]".to_owned(),
+            format!(
+                "line 2, column 20: {at}.bones[0].extent: found 2 numbers, expected three: [x, y, z]"
+            ),
+        ),
+        (
+            "\"bones\":[{\"extent\":[0,NaN,0]}]".to_owned(),
+            format!("line 2, column 23: {at}.bones[0].extent[1]: not JSON: expected value"),
+        ),
+        (
+            "\"bones\":[{\"extent\":[0,1,0],\"roll\":1e39}]".to_owned(),
+            format!(
+                "line 2, column 35: {at}.bones[0].roll: number out of range; it must be between \
+                 ±3.4028235e38"
+            ),
+        ),
+        (
+            "\"bones\":[{\"extent\":[0,1,0],\"roll\":\"0\"}]".to_owned(),
+            format!(
+                "line 2, column 35: {at}.bones[0].roll: invalid type: string \"0\", expected a number"
+            ),
+        ),
+        (
+            "\"bones\":[{\"extent\":[0,1,0],\"radius\":-2}]".to_owned(),
+            format!("line 2, column 37: {at}.bones[0].radius: is -2; it must be 0 or more"),
+        ),
+        (
+            "\"bones\":[],\"base\":[3e38,0,0],\"base_offset\":[3e38,0,0]".to_owned(),
+            format!(
+                "line 2, column 44: {at}.base_offset: base and base_offset add up to more than \
+                 3.4028235e38"
+            ),
+        ),
+        (
+            format!("\"bones\":[{one}],\"handles\":[{{\"bone\":3,\"target\":[0,0,0]}}]"),
+            format!(
+                "line 2, column 49: {at}.handles[0].bone: there is no bone 3; there is only bone 0"
+            ),
+        ),
+        (
+            format!("\"bones\":[{one}],\"handles\":[{{\"bone\":0}}]"),
+            format!("line 2, column 41: {at}.handles[0]: missing field `target`"),
+        ),
+    ] {
+        assert_eq!(refusal(&skeleton(&fields)), format!("test.js3d, {expected}"), "{fields}");
+    }
+}
+
+#[test]
+fn a_place_in_the_world_that_cannot_be_is_named() {
+    let scene = |transforms: &str| {
+        format!(
+            "{{\"scene\":{{\"skinned_meshes\":{{\"X\":{{\"skeleton\":{{\"bones\":[]}}}}}},\n\
+             \"instances\":{{\"skinned_meshes\":{{\"I\":{{\"mesh\":\"X\",\"transform\":\"A\"}}}}}},\n\
+             \"transforms\":{{{transforms}}}}}}}"
+        )
+    };
+    for (transforms, expected) in [
+        (
+            "",
+            "line 2, column 60: scene.instances.skinned_meshes.I.transform: there is no transform \
+             called \"A\"",
+        ),
+        (
+            "\"A\":{\"parent\":\"B\"}",
+            "line 3, column 29: scene.transforms.A.parent: there is no transform called \"B\"",
+        ),
+        (
+            "\"B\":{\"parent\":\"A\"},\n\"A\":{\"parent\":\"B\"}",
+            "line 3, column 29: scene.transforms.B.parent: transform \"A\" hangs from itself",
+        ),
+        (
+            "\"A\":{\"parent\":\"A\"}",
+            "line 3, column 29: scene.transforms.A.parent: transform \"A\" hangs from itself",
+        ),
+        (
+            "\"A\":{\"rotation\":[0,0,0,0]}",
+            "line 3, column 31: scene.transforms.A.rotation: four zeros turn nothing; no rotation is \
+             [0, 0, 0, 1]",
+        ),
+        (
+            "\"A\":{\"rotation\":[0,0,1]}",
+            "line 3, column 31: scene.transforms.A.rotation: found 3 numbers, expected four: [x, y, \
+             z, w]",
+        ),
+        (
+            "\"A\":{\"parent\":\"B\",\"scale\":[1e30,1,1]},\"B\":{\"scale\":[1e30,1,1]}",
+            "line 3, column 57: scene.transforms.B: leads beyond 3.4028235e38 in the world",
+        ),
+        ("\"A\":{},\"A\":{}", "line 3, column 24: scene.transforms: duplicate name \"A\""),
+    ] {
+        let expected = format!("test.js3d, {expected}");
+        assert_eq!(refusal(&scene(transforms)), expected, "{transforms}");
+    }
+}
+
+#[test]
+fn a_scene_without_a_skeleton_is_refused() {
+    let reason = "there is no skeleton; one is under the name of a mesh, as its `skeleton`";
+    for (text, place) in [
+        ("{\"scene\":{}}", "line 1, column 10"),
+        ("{\"scene\":{\"skinned_meshes\":{}}}", "line 1, column 28"),
+        ("{\"scene\":{\"skinned_meshes\":\n{\"X\":{\"mesh\":{}}}}}", "line 2, column 1"),
+    ] {
+        let expected = format!("test.js3d, {place}: scene.skinned_meshes: {reason}");
+        assert_eq!(refusal(text), expected);
+    }
+    assert_eq!(
+        refusal("{\"scene\": []}"),
+        "test.js3d, line 1, column 11: scene: invalid type: sequence, expected an object: {…}"
+    );
+}
+
+#[test]
+fn long_chains_and_too_many_bones_are_no_trouble() {
+    let chain = |count: usize| {
+        let bone = |index: usize| {
+            let parent = if index + 1 < count { index as u64 + 1 } else { u64::from(u32::MAX) };
+            format!("{{\"extent\":[0,1,0],\"parent\":{parent}}}")
+        };
+        bones(&(0..count).map(bone).collect::<Vec<_>>().join(","))
+    };
+    let opened = open(&chain(10_000));
+    let first = opened.order[0];
+    assert_eq!((first, opened.document.skeleton.skeleton.pose().tip(first).y), (9_999, 10_000.0));
+    let expected = "scene.skinned_meshes.X.skeleton.bones: a skeleton has at most 10000 joints";
+    assert_eq!(refusal(&chain(10_001)), format!("test.js3d, line 2, column 9: {expected}"));
+}
+
+#[test]
+fn damaged_scenes_open_or_are_refused_and_never_crash() {
+    for seed in 0..50 {
+        let random = &mut Random(seed);
+        let text = Scene::random(random).text();
+        for damaged in mutations(&text, random, 40) {
+            let _ = io::read("x", &*damaged, None).map_err(message);
+        }
+    }
+}

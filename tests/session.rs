@@ -1,0 +1,208 @@
+//! Whatever is done to a session, it stays one.
+#![cfg(feature = "document")]
+
+use glam::Vec3;
+use ik_arm::document::{
+    Camera, Document, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Target,
+};
+use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::solve::{Method, Options, Root};
+use ik_arm::session::{Action, DragInput, Grip, Handle, Session};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x5ce1_e70e),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+fn numbers() -> impl Strategy<Value = f32> + Clone {
+    prop_oneof![
+        8 => -3.0..3.0_f32,
+        1 => Just(0.0),
+        1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(1e30), Just(-1e-30)],
+    ]
+}
+
+fn points() -> impl Strategy<Value = Vec3> + Clone {
+    [numbers(), numbers(), numbers()].prop_map(Vec3::from_array)
+}
+
+fn joints() -> std::ops::Range<usize> {
+    0..9
+}
+
+fn rays() -> impl Strategy<Value = Ray> {
+    [-1.0..1.0_f32, -1.0..1.0].prop_map(|[x, y]| {
+        Camera::default().framing(Vec3::ZERO, 3.0, 1.0).projection(1.0).ray(glam::Vec2::new(x, y))
+    })
+}
+
+fn grips() -> impl Strategy<Value = Grip> {
+    let handles = prop_oneof![
+        Just(Handle::Free),
+        (0..3_usize).prop_map(Handle::Axis),
+        (0..3_usize).prop_map(Handle::Plane)
+    ];
+    prop_oneof![
+        handles.clone().prop_map(Grip::Hand),
+        (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
+        (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
+        (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
+    ]
+}
+
+fn building() -> impl Strategy<Value = Action> {
+    prop_oneof![
+        3 => (joints(), proptest::option::of(points()))
+            .prop_map(|(parent, tip)| Action::AddChild { parent, tip }),
+        1 => Just(Action::AddRoot),
+        1 => vec(joints(), 1..3).prop_map(Action::Delete),
+        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::Rename { joint, name }),
+        2 => (joints(), proptest::option::of(joints()))
+            .prop_map(|(joint, parent)| Action::Reparent { joint, parent }),
+        1 => (joints(), points()).prop_map(|(joint, axis)| Action::SetAxis { joint, axis }),
+        1 => (joints(), 0..3_usize, numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
+            Action::SetLimit { joint, axis, limit: Some(Limit { min, max }) }
+        }),
+        1 => (joints(), any::<bool>())
+            .prop_map(|(joint, locked)| Action::SetLocked { joint, locked }),
+        1 => vec(joints(), 0..3).prop_map(Action::Select),
+    ]
+}
+
+fn posing() -> impl Strategy<Value = Action> {
+    let paths = prop_oneof![Just(Path::Still), Just(Path::Circle), Just(Path::FigureEight)];
+    let motion = (paths, numbers(), numbers()).prop_map(|(path, radius, period)| Motion {
+        path,
+        radius,
+        period,
+    });
+    prop_oneof![
+        2 => (joints(), points())
+            .prop_map(|(joint, rotation)| Action::SetRotation { joint, rotation }),
+        2 => joints().prop_map(Action::AddTarget),
+        1 => joints().prop_map(Action::RemoveTarget),
+        2 => (joints(), points(), numbers(), any::<bool>(), motion).prop_map(
+            |(joint, home, weight, enabled, motion)| Action::SetTarget(Target {
+                joint, home, weight, enabled, motion
+            })
+        ),
+        1 => (0..6_usize, numbers(), any::<bool>()).prop_map(|(method, damping, free)| {
+            let root = if free { Root::Free } else { Root::Fixed };
+            Action::SetSolver(Options {
+                method: Method::ALL[method], damping, root, ..Options::default()
+            })
+        }),
+        1 => any::<bool>().prop_map(|on| Action::SetSlither(on.then_some(Slither {
+            radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0
+        }))),
+        1 => any::<bool>().prop_map(Action::Run),
+        1 => Just(Action::Step),
+        1 => Just(Action::ResetSolver),
+        1 => any::<bool>().prop_map(Action::Race),
+        1 => any::<bool>().prop_map(Action::Play),
+        2 => (0.0..60.0).prop_map(Action::Advance),
+        1 => Just(Action::ResetPose),
+    ]
+}
+
+fn dragging() -> impl Strategy<Value = Action> {
+    let input = (rays(), any::<bool>(), any::<bool>()).prop_map(|(ray, precise, snap)| DragInput {
+        ray,
+        precise,
+        snap,
+    });
+    prop_oneof![
+        (grips(), rays()).prop_map(|(grip, ray)| Action::Grab {
+            grip,
+            ray,
+            forward: Camera::default().projection(1.0).forward
+        }),
+        input.prop_map(Action::Drag),
+        "[-0-9.,]{0,4}".prop_map(Action::TypeOffset),
+        Just(Action::CommitEdit),
+        Just(Action::CancelEdit),
+    ]
+}
+
+fn actions() -> impl Strategy<Value = Vec<Action>> {
+    vec(prop_oneof![3 => building(), 3 => posing(), 2 => dragging()], 1..60)
+}
+
+fn session() -> Session {
+    let document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    Session::with_document(Default::default(), document)
+}
+
+fn check(session: &Session) -> Result<(), TestCaseError> {
+    let rig = session.skeleton();
+    let joints = rig.skeleton.joints();
+    prop_assert_eq!(session.skeleton_pose().len(), joints.len());
+    prop_assert!(session.selection().iter().all(|joint| *joint < joints.len()));
+    prop_assert!(session.pointed().is_none_or(|joint| joint < joints.len()));
+    let mut names = std::collections::HashSet::new();
+    for (index, joint) in joints.iter().enumerate() {
+        prop_assert!(joint.parent.is_none_or(|parent| parent < index));
+        prop_assert!(joint.rotation.is_finite() && joint.axis.is_finite());
+        prop_assert!(joint.offset.is_finite(), "{} at {}", joint.name, joint.offset);
+        prop_assert!(names.insert(&joint.name), "two are called {}", joint.name);
+        prop_assert_eq!(joint.clamped(joint.rotation), joint.rotation);
+    }
+    let mut targeted = std::collections::HashSet::new();
+    for target in &rig.targets {
+        prop_assert!(target.joint < joints.len() && targeted.insert(target.joint));
+        prop_assert!(target.home.is_finite() && target.weight > 0.0);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn any_actions_leave_a_session_that_is_one(actions in actions()) {
+        let mut session = session();
+        for action in actions {
+            session.apply(action);
+            check(&session)?;
+        }
+    }
+
+    #[test]
+    fn what_is_taken_back_is_as_it_was(before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
+        let mut session = session();
+        for action in before {
+            session.apply(action);
+        }
+        for action in [Action::CancelEdit, Action::Race(false), Action::Play(false)] {
+            session.apply(action);
+        }
+        let document = session.document().clone();
+        let forward = session.camera().projection(1.0).forward;
+        let ray = session.camera().projection(1.0).ray(glam::Vec2::ZERO);
+        session.apply(Action::Grab { grip, ray, forward });
+        let held = session.is_editing();
+        for action in drag {
+            let goes_on = matches!(action, Action::Drag(_) | Action::TypeOffset(_));
+            if goes_on {
+                session.apply(action);
+            }
+        }
+        session.apply(Action::CancelEdit);
+        if held {
+            prop_assert!(same(session.skeleton(), &document.skeleton));
+            prop_assert_eq!(session.arm(), &document.arm);
+        }
+    }
+}
+
+/// Equal, where not-a-number is what it was before too.
+fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
+    a == b || format!("{a:?}") == format!("{b:?}")
+}

@@ -1,0 +1,97 @@
+//! A snake's body follows the path of its head.
+#![cfg(feature = "document")]
+
+use glam::Vec3;
+use ik_arm::document::Slither;
+use ik_arm::kinematics::follow;
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+
+const WAY: Slither = Slither { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
+
+/// Bones of uneven lengths along −x, the head first.
+fn snake() -> Skeleton {
+    let mut snake = Skeleton::default();
+    let mut offset = Vec3::new(0.3, 0.07, -0.2);
+    for index in 0..24_usize {
+        let axis = Vec3::NEG_X * (0.05 + 0.01 * (index % 5) as f32);
+        let parent = index.checked_sub(1);
+        let joint = Joint { offset, ..Joint::new(&format!("joint {index}"), parent, axis) };
+        snake.add(joint).expect("a joint");
+        offset = axis;
+    }
+    snake
+}
+
+/// How far a point is from the way that the head goes, by looking everywhere.
+fn from_way(point: Vec3) -> f32 {
+    const STEPS: usize = 40_000;
+    let at = |step: usize| WAY.path(step as f64 / STEPS as f64);
+    let flat = Vec3 { y: 0.0, ..point };
+    (0..STEPS).map(|step| at(step).distance(flat)).fold(f32::INFINITY, f32::min)
+}
+
+#[test]
+fn every_joint_is_on_the_path_of_the_head() {
+    for time in [0.0, 1.7, 100.0] {
+        let pose = WAY.pose(&snake(), time).pose();
+        for joint in 0..pose.len() {
+            for point in [pose.base(joint), pose.tip(joint)] {
+                assert!(from_way(point) < 2e-4, "{point} of joint {joint} at {time} s");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_head_leads_and_bones_keep_their_lengths() {
+    let snake = snake();
+    for time in [0.0, 0.4, 3.0, 8.99] {
+        let pose = WAY.pose(&snake, time).pose();
+        let head = WAY.path(WAY.head(time)) + Vec3::Y * 0.07;
+        assert!(pose.base(0).distance(head) < 1e-6);
+        for (joint, before) in snake.joints().iter().enumerate() {
+            let length = pose.base(joint).distance(pose.tip(joint));
+            assert!((length - before.axis.length()).abs() < 1e-5, "{length} of joint {joint}");
+        }
+    }
+}
+
+#[test]
+fn the_body_trails_behind_the_head_and_never_overtakes_it() {
+    let lengths: Vec<f32> = snake().joints().iter().map(|joint| joint.axis.length()).collect();
+    let along = |time: f64| {
+        follow::along(|s| WAY.path(s), WAY.head(time), 1.0 / 256.0, lengths.iter().copied())
+    };
+    let turn = |point: Vec3| f64::from(-point.z).atan2(f64::from(point.x));
+    let points = along(4.0);
+    for ends in points.windows(2) {
+        let back = (turn(ends[0]) - turn(ends[1]) + 1.0).rem_euclid(std::f64::consts::TAU) - 1.0;
+        assert!(back > 0.0, "{} is not behind {}", ends[1], ends[0]);
+    }
+}
+
+#[test]
+fn time_goes_on_smoothly_and_comes_around() {
+    let place = |time: f64| WAY.pose(&snake(), time).pose().tip(23);
+    for step in 0..200 {
+        let time = f64::from(step) * 0.05;
+        let moved = place(time).distance(place(time + 1e-3));
+        assert!(moved < 3e-3, "the tail leaps {moved} at {time} s");
+    }
+    assert!(place(0.0).distance(place(9.0)) < 1e-4);
+}
+
+#[test]
+fn a_path_that_stands_still_holds_the_body_and_ends() {
+    let points = follow::along(|_| Vec3::ONE, 0.0, 0.1, [1.0, 2.0]);
+    assert_eq!(points, [Vec3::ONE; 3]);
+}
+
+#[test]
+fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
+    assert_eq!(WAY.pose(&Skeleton::default(), 1.0), Skeleton::default());
+    let mut point = Skeleton::default();
+    point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
+    let posed = WAY.pose(&point, 1.0).pose();
+    assert_eq!(posed.base(0), posed.tip(0));
+}

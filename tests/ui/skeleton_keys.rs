@@ -1,0 +1,283 @@
+//! Keys and typed numbers beside a skeleton: what has the keyboard gets them, and nothing else.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{DroppedFile, Event, Key, Modifiers};
+use glam::Vec3;
+use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::solve::{Method, Options};
+use ik_arm::session::{Action, Effect};
+
+use crate::bench::{Bench, SMALL};
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+
+fn example(name: &str) -> Bench {
+    Bench::after([Action::OpenExample(Example::find(name).expect("an example"))])
+}
+
+/// The Y-shaped tree with its last joint selected.
+fn tree() -> Bench {
+    let mut bench = example("two-targets");
+    let joint = bench.session().skeleton().skeleton.find("left_3").expect("there");
+    bench.apply([Action::Select(vec![joint])]);
+    bench
+}
+
+fn enter_field(bench: &mut Bench, name: &str, text: &str, key: Key) {
+    bench.node(Role::SpinButton, name).scroll_to_me();
+    bench.settle();
+    bench.click(Role::SpinButton, name);
+    bench.key_with(CTRL, Key::A);
+    bench.frame([Event::Text(text.to_owned())]);
+    bench.key(key);
+    bench.settle();
+}
+
+#[test]
+fn escape_in_a_number_leaves_it_and_the_selection_alone() {
+    for field in ["Length", "Bone x", "Weight", "Iterations at most", "Rotation x value"] {
+        let mut bench = tree();
+        let before = (bench.session().document().clone(), bench.session().selection().to_vec());
+        enter_field(&mut bench, field, "7", Key::Escape);
+        let after = (bench.session().document().clone(), bench.session().selection().to_vec());
+        assert_eq!(after, before, "{field}");
+    }
+}
+
+#[test]
+fn escape_in_a_number_lets_a_running_solver_run() {
+    let mut bench = tree();
+    let solver = bench.session().skeleton().solver;
+    bench.apply([Action::SetSolver(Options { method: Method::TransposeFixed, ..solver })]);
+    bench.apply_moving([Action::Run(true)]);
+    bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
+    bench.frame([]);
+    bench.frame([]);
+    assert!(bench.session().is_running());
+    bench.key(Key::Escape);
+    assert!(bench.session().solving().is_some(), "the key was the number's");
+}
+
+#[test]
+fn escape_closes_a_list_and_leaves_the_selection() {
+    for combo in ["Parent", "Moves", "Method"] {
+        let mut bench = tree();
+        let before = bench.session().selection().to_vec();
+        bench.node(Role::ComboBox, combo).scroll_to_me();
+        bench.settle();
+        bench.click(Role::ComboBox, combo);
+        bench.key(Key::Escape);
+        bench.settle();
+        assert_eq!(bench.session().selection(), before, "{combo}");
+        bench.key(Key::Escape);
+        bench.settle();
+        assert!(bench.session().selection().is_empty(), "{combo}: the next one is the skeleton's");
+    }
+}
+
+#[test]
+fn escape_closes_a_menu_and_leaves_the_selection() {
+    let mut bench = tree();
+    bench.choose(&["File"]);
+    bench.key(Key::Escape);
+    bench.settle();
+    assert!(!bench.says("New skeleton"));
+    assert!(!bench.session().selection().is_empty());
+}
+
+#[test]
+fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
+    let mut bench = tree();
+    let joint = bench.session().selected().expect("one");
+    let target = bench.session().skeleton().targets[0];
+    let solver = bench.session().skeleton().solver;
+    bench.apply([
+        Action::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
+        Action::SetLimit { joint, axis: 0, limit: Some(Limit { min: -1.234_567, max: 0.7654 }) },
+        Action::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
+        Action::SetSolver(Options {
+            method: Method::DampedLeastSquares,
+            tolerance: Some(1.234e-8),
+            damping: 0.012_345_678,
+            ..solver
+        }),
+    ]);
+    let before = bench.session().document().clone();
+    for field in [
+        "Bone x",
+        "Bone y",
+        "Bone z",
+        "Length",
+        "x from",
+        "x to",
+        "Weight",
+        "Tolerance",
+        "Damping",
+        "Iterations per frame",
+    ] {
+        bench.node(Role::SpinButton, field).scroll_to_me();
+        bench.settle();
+        bench.click(Role::SpinButton, field);
+        bench.key(Key::Enter);
+        bench.settle();
+        assert_eq!(bench.session().document(), &before, "{field}");
+    }
+    assert_eq!(bench.session().message(), None, "nothing was refused");
+}
+
+#[test]
+fn a_number_can_be_typed_with_its_unit() {
+    let mut bench = tree();
+    bench.click(Role::CheckBox, "Limit x");
+    enter_field(&mut bench, "x to", "30°", Key::Enter);
+    let joint = bench.session().selected().expect("one");
+    let limit = bench.session().skeleton().skeleton.joints()[joint].limits[0].expect("limited");
+    assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
+}
+
+#[test]
+fn what_is_not_a_number_changes_no_field() {
+    for typed in ["nan", "inf", "", "x"] {
+        let mut bench = tree();
+        let before = bench.session().document().clone();
+        for field in ["Length", "Bone y", "Iterations per frame", "Iterations at most"] {
+            enter_field(&mut bench, field, typed, Key::Enter);
+            assert_eq!(bench.session().document(), &before, "{field} {typed:?}");
+        }
+    }
+}
+
+#[test]
+fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
+    let mut bench = tree();
+    let joints = bench.session().skeleton_pose().len();
+    bench.click(Role::Button, "Joint left_2");
+    let clicked = bench.session().selection().to_vec();
+    bench.key(Key::ArrowDown);
+    bench.settle();
+    let next = bench.session().selected().expect("one");
+    assert_eq!(bench.session().skeleton().skeleton.joints()[next].name, "left_3");
+    bench.key(Key::ArrowUp);
+    bench.settle();
+    assert_eq!(bench.session().selection(), clicked);
+    bench.key(Key::A);
+    bench.settle();
+    assert_eq!(bench.session().skeleton_pose().len(), joints + 1);
+    bench.key(Key::Delete);
+    bench.settle();
+    assert_eq!(bench.session().skeleton_pose().len(), joints);
+    bench.key(Key::T);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().targets.len(), 3);
+}
+
+#[test]
+fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
+    let mut bench = Bench::new();
+    bench.choose(&["File", "New skeleton"]);
+    bench.apply([Action::Delete(vec![0])]);
+    for key in [Key::A, Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F]
+    {
+        bench.key(key);
+        bench.settle();
+    }
+    bench.key_with(CTRL, Key::A);
+    bench.key(Key::Escape);
+    bench.click(Role::Button, "Bind pose");
+    bench.apply([Action::Race(true)]);
+    assert!(bench.session().skeleton().skeleton.joints().is_empty());
+    assert_eq!(bench.session().dialog(), None);
+}
+
+/// A file as a window hands it over.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Err("nobody reads it here".to_owned())
+    }
+}
+
+#[test]
+fn a_file_that_is_dropped_on_the_window_is_opened() {
+    let mut bench = Bench::new();
+    let path = PathBuf::from("dropped scene.js3d");
+    bench.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+    bench.frame([]);
+    assert_eq!(bench.effects(), [Effect::Open { path, skeleton: None }]);
+}
+
+#[test]
+fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
+    for example in Example::ALL {
+        let mut bench = Bench::of_size(SMALL);
+        bench.apply([Action::OpenExample(example)]);
+        bench.apply([Action::Select(vec![0])]);
+        bench.harness.check_accessibility();
+        let joint = bench.session().skeleton().targets.first().map(|target| target.joint);
+        bench.apply([Action::Select(joint.into_iter().collect()), Action::Step]);
+        bench.harness.check_accessibility();
+    }
+}
+
+#[test]
+fn the_list_of_keys_fits_a_small_window() {
+    let mut bench = Bench::of_size(SMALL);
+    bench.key(Key::F1);
+    bench.wait(0.5);
+    let window = bench.rect(Role::Window, "Shortcuts");
+    assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL).contains_rect(window), "{window:?}");
+    for text in ["Turn", "Take back a drag", "Enter, Esc or right button", "Ctrl+A, Esc"] {
+        let rect = bench.rect(Role::Label, text);
+        assert!(window.shrink(8.0).contains_rect(rect), "{text}: {rect:?}");
+    }
+}
+
+#[test]
+fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
+    let mut bench = example("snake");
+    bench.node(Role::CheckBox, "Slither").scroll_to_me();
+    bench.settle();
+    bench.click(Role::CheckBox, "Slither");
+    assert_eq!(bench.session().skeleton().slither, None);
+    bench.apply([Action::Select(vec![1])]);
+    bench.enter("Rotation x", "10");
+    let angle = bench.session().skeleton().skeleton.joints()[1].rotation.x;
+    assert!((angle.to_degrees() - 10.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
+    let mut bench = Bench::of_size(SMALL);
+    bench.choose(&["File", "New skeleton"]);
+    bench.click(Role::Button, "Add child");
+    bench.click(Role::Button, "Add target");
+    let before = bench.viewport();
+    let name = "a name of many letters ".repeat(3);
+    bench.apply([Action::Rename { joint: 1, name: name.clone() }]);
+    bench.apply([Action::AddChild { parent: 1, tip: None }, Action::Select(vec![1])]);
+    assert_eq!(bench.viewport(), before);
+    for field in ["Bone x", "Bone z", "Length"] {
+        let rect = bench.rect(Role::SpinButton, field);
+        assert!(rect.left() > 0.0 && rect.right() < before.left(), "{field}: {rect:?}");
+    }
+    assert!(bench.says(&format!("Joint: {}", name.trim())), "it is read out whole");
+}
+
+#[test]
+fn a_race_says_of_every_solver_how_it_ended() {
+    let mut bench = tree();
+    bench.apply_moving([Action::Race(true)]);
+    bench.wait(4.0);
+    assert!(bench.shows(Role::Image, "FABRIK: Reached"));
+    assert!(bench.shows(Role::Image, "Two-bone: At rest, out of reach"));
+}

@@ -1,0 +1,464 @@
+//! The skeleton in the panels: built, turned, given targets and solved, by the names of widgets.
+
+use core::f32::consts::FRAC_PI_2;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use glam::Vec3;
+use ik_arm::document::{Path, RigKind};
+use ik_arm::io::Example;
+use ik_arm::kinematics::solve::{Method, Root};
+use ik_arm::session::{Action, Dialog, Effect};
+
+use crate::bench::{Bench, SMALL};
+
+/// A root with three joints in a chain, built by pressing buttons.
+fn built() -> Bench {
+    let mut bench = Bench::new();
+    bench.choose(&["File", "New skeleton"]);
+    for _ in 0..3 {
+        bench.click(Role::Button, "Add child");
+    }
+    bench
+}
+
+fn example(name: &str) -> Bench {
+    Bench::after([Action::OpenExample(Example::find(name).expect("an example"))])
+}
+
+fn names(bench: &Bench) -> Vec<&str> {
+    let joints = bench.session().skeleton().skeleton.joints();
+    joints.iter().map(|joint| joint.name.as_str()).collect()
+}
+
+fn select(bench: &mut Bench, name: &str) {
+    let name = format!("Joint {name}");
+    bench.click(Role::Button, &name);
+}
+
+fn choose_item(bench: &mut Bench, combo: &str, item: &str) {
+    bench.click(Role::ComboBox, combo);
+    bench.click(Role::Button, item);
+}
+
+fn is_enabled(bench: &Bench, role: Role, name: &str) -> bool {
+    use egui_kittest::kittest::NodeT as _;
+    !bench.node(role, name).accesskit_node().is_disabled()
+}
+
+#[test]
+fn the_rig_is_chosen_at_the_top_and_the_other_is_kept() {
+    let mut bench = Bench::new();
+    bench.click(Role::Button, "Skeleton");
+    assert_eq!(bench.session().rig(), RigKind::Skeleton);
+    assert!(bench.shows(Role::Button, "Joint root"));
+    assert!(!bench.shows(Role::Slider, "Hand x"));
+    bench.click(Role::Button, "Add root");
+    bench.click(Role::Button, "Arm");
+    assert!(bench.shows(Role::Slider, "Hand x"));
+    bench.click(Role::Button, "Skeleton");
+    assert_eq!(names(&bench), ["root", "root_1"]);
+}
+
+#[test]
+fn a_new_skeleton_is_a_locked_point_on_which_children_are_hung_one_on_the_other() {
+    let bench = built();
+    assert_eq!(names(&bench), ["root", "joint", "joint_1", "joint_2"]);
+    let skeleton = &bench.session().skeleton().skeleton;
+    let joints = skeleton.joints();
+    assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
+    for (joint, it) in joints.iter().enumerate().skip(1) {
+        assert_eq!(it.parent, Some(joint - 1));
+        assert!(skeleton.base(joint).distance(skeleton.tip(joint - 1)) < 1e-6);
+    }
+    assert_eq!(bench.session().selection(), [3], "the new one can be gone on from");
+}
+
+#[test]
+fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
+    let mut bench = built();
+    bench.click(Role::Button, "Rename…");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text("hand".to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(names(&bench), ["root", "joint", "joint_1", "hand"]);
+    bench.apply([Action::Rename { joint: 1, name: "hand".to_owned() }]);
+    assert_eq!(names(&bench)[1], "joint");
+    assert!(bench.says("Two joints are called \"hand\""));
+}
+
+#[test]
+fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
+    let mut bench = built();
+    select(&mut bench, "joint_1");
+    bench.click(Role::Button, "Delete");
+    assert_eq!(names(&bench), ["root", "joint"]);
+    assert_eq!(bench.session().selection(), [1]);
+    select(&mut bench, "root");
+    bench.click(Role::Button, "Delete");
+    assert!(names(&bench).is_empty());
+    assert!(bench.says("No joints yet"));
+    bench.click(Role::Button, "Add root");
+    assert_eq!(names(&bench), ["root"]);
+}
+
+#[test]
+fn without_a_selection_what_needs_one_is_disabled() {
+    let mut bench = built();
+    bench.apply([Action::Select(Vec::new())]);
+    for name in ["Add child", "Delete", "Rename…", "Add target"] {
+        assert!(!is_enabled(&bench, Role::Button, name), "{name}");
+    }
+    for name in ["Run", "Step", "Reset", "Race all solvers"] {
+        assert!(!is_enabled(&bench, Role::Button, name), "{name} without a target");
+    }
+}
+
+#[test]
+fn a_joint_hangs_from_the_parent_that_is_chosen_and_stays_where_it_is() {
+    let mut bench = built();
+    let (base, tip) = {
+        let pose = bench.session().skeleton_pose();
+        (pose.base(3), pose.tip(3))
+    };
+    choose_item(&mut bench, "Parent", "root");
+    let rig = bench.session().skeleton();
+    let moved = rig.skeleton.find("joint_2").expect("there");
+    assert_eq!(rig.skeleton.joints()[moved].parent, Some(0));
+    let pose = bench.session().skeleton_pose();
+    assert!(pose.base(moved).distance(base) < 1e-5 && pose.tip(moved).distance(tip) < 1e-5);
+    assert_eq!(bench.session().selected(), Some(moved));
+}
+
+#[test]
+fn a_slider_turns_a_joint_and_all_that_hangs_from_it_and_nothing_else() {
+    let mut bench = built();
+    select(&mut bench, "joint_1");
+    let before = bench.session().skeleton_pose().clone();
+    bench.enter("Rotation z", "90");
+    let skeleton = &bench.session().skeleton().skeleton;
+    assert!((skeleton.joints()[2].rotation.z - FRAC_PI_2).abs() < 1e-6);
+    let pose = bench.session().skeleton_pose();
+    assert_eq!(pose.tip(1), before.tip(1));
+    for joint in [2, 3] {
+        assert!(pose.tip(joint).distance(before.tip(joint)) > 0.5);
+    }
+}
+
+#[test]
+fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
+    let mut bench = built();
+    bench.click(Role::CheckBox, "Limit z");
+    bench.enter("Rotation z", "170");
+    let rotation =
+        |bench: &Bench| bench.session().skeleton().skeleton.joints()[3].rotation.z.to_degrees();
+    assert!((rotation(&bench) - 90.0).abs() < 1e-4, "the limit begins at 90° either way");
+    bench.click(Role::SpinButton, "z to");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text("30".to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+    assert!((rotation(&bench) - 30.0).abs() < 1e-4);
+    bench.click(Role::CheckBox, "Limit z");
+    assert_eq!(bench.session().skeleton().skeleton.joints()[3].limits, [None; 3]);
+}
+
+#[test]
+fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
+    for (method, name) in [
+        (Method::Fabrik, "FABRIK"),
+        (Method::DampedLeastSquares, "Damped least squares"),
+        (Method::Ccd, "Cyclic coordinate descent"),
+    ] {
+        let mut bench = built();
+        select(&mut bench, "joint");
+        bench.click(Role::Button, "Add child");
+        bench.click(Role::Button, "Add child");
+        bench.click(Role::Button, "Add target");
+        bench.enter("Target x", "0.9");
+        bench.enter("Target y", "1.6");
+        select(&mut bench, "joint_2");
+        bench.click(Role::Button, "Add target");
+        bench.enter("Target x", "-0.8");
+        bench.enter("Target y", "1.9");
+        assert_eq!(bench.session().skeleton().targets.len(), 2);
+
+        choose_item(&mut bench, "Method", name);
+        assert_eq!(bench.session().skeleton().solver.method, method);
+        bench.click_at(bench.rect(Role::Button, "Run").center());
+        assert!(bench.session().is_running());
+        bench.wait(4.0);
+        let solving = bench.session().solving().expect("it ran");
+        assert!(!solving.is_running(), "it stops by itself");
+        let report = solving.report();
+        assert!(report.converged, "{name}: {report:?}");
+        assert!(bench.says("reached"));
+        let (rig, pose) = (bench.session().skeleton(), bench.session().skeleton_pose());
+        for target in &rig.targets {
+            assert!(pose.tip(target.joint).distance(target.home) < 1e-3);
+        }
+        let points: Vec<_> = solving.history().points().collect();
+        assert_eq!(points.len(), report.iterations as usize + 1);
+        assert_eq!(points.last().map(|point| point.1), Some(report.error));
+    }
+}
+
+#[test]
+fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
+    let mut bench = example("two-targets");
+    let before = bench.session().skeleton().skeleton.clone();
+    for iterations in 1..=3 {
+        bench.click(Role::Button, "Step");
+        let report = bench.session().solving().expect("it stepped").report();
+        assert_eq!(report.iterations, iterations);
+    }
+    assert_ne!(bench.session().skeleton().skeleton, before);
+    bench.click(Role::Button, "Reset");
+    assert_eq!(bench.session().skeleton().skeleton, before);
+    assert!(bench.session().solving().is_none());
+}
+
+#[test]
+fn escape_takes_back_what_a_running_solver_has_done() {
+    let mut bench = example("ten-joints");
+    bench.apply([Action::SetSolver({
+        let solver = bench.session().skeleton().solver;
+        ik_arm::kinematics::solve::Options { method: Method::TransposeFixed, ..solver }
+    })]);
+    let before = bench.session().skeleton().skeleton.clone();
+    bench.click_at(bench.rect(Role::Button, "Run").center());
+    bench.wait(0.2);
+    assert!(bench.session().is_running());
+    assert_ne!(bench.session().skeleton().skeleton, before);
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().skeleton, before);
+}
+
+#[test]
+fn a_target_that_is_switched_off_is_not_minded() {
+    let mut bench = example("two-targets");
+    bench.click(Role::CheckBox, "Target of left_3");
+    assert!(!bench.session().skeleton().targets[0].enabled);
+    assert_eq!(bench.session().skeleton().goals(0.0).len(), 1);
+    bench.click(Role::CheckBox, "Target of right_3");
+    assert!(!is_enabled(&bench, Role::Button, "Run"));
+}
+
+#[test]
+fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
+    let mut bench = example("two-targets");
+    let before = bench.session().skeleton().clone();
+    bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
+    bench.wait(4.0);
+    let race = bench.session().race().expect("it goes on");
+    assert!(!race.is_running(), "it ends");
+    assert_eq!(race.runners().len(), Method::ALL.len());
+    for runner in race.runners() {
+        let report = runner.report().expect("all can run here");
+        assert!(report.iterations > 0 && runner.time.as_nanos() > 0);
+        let converges = !matches!(runner.method, Method::TwoBone | Method::TransposeFixed);
+        assert!(report.converged || !converges, "{:?}: {report:?}", runner.method);
+    }
+    assert_eq!(bench.session().staging().ghosts.len(), Method::ALL.len());
+    assert_eq!(bench.session().skeleton(), &before);
+    assert!(bench.says("CCD") && bench.says("FABRIK"));
+    bench.click(Role::Button, "End race");
+    assert!(bench.session().race().is_none());
+}
+
+#[test]
+fn a_solver_that_cannot_run_says_so_in_the_race() {
+    let mut bench = built();
+    select(&mut bench, "joint");
+    bench.click(Role::Button, "Add target");
+    bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
+    bench.wait(1.0);
+    let race = bench.session().race().expect("it goes on");
+    let two_bone = race.runners().iter().find(|runner| runner.method == Method::TwoBone);
+    let error = two_bone.expect("it is there").report().expect_err("its parent is locked");
+    assert!(error.to_string().contains("locked"), "{error}");
+}
+
+#[test]
+fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
+    let mut bench = built();
+    bench.click(Role::Button, "Add target");
+    bench.click_at(bench.rect(Role::ComboBox, "Moves").center());
+    bench.wait(0.1);
+    let at = bench.rect(Role::Button, "Circle").center();
+    bench.click_at(at);
+    bench.wait(0.1);
+    let target = bench.session().skeleton().targets[0];
+    assert_eq!(target.motion.path, Path::Circle);
+    assert!(bench.session().is_playing(), "it goes at once");
+    bench.apply_moving([Action::Run(true)]);
+    bench.wait(1.0);
+    let time = bench.session().time();
+    assert!(time > 0.8, "{time} s");
+    let at = bench.session().skeleton().targets[0].at(time);
+    assert!(at.distance(target.home) > 0.1 * target.motion.radius);
+    let tip = bench.session().skeleton_pose().tip(3);
+    assert!(tip.distance(at) < 0.2, "{tip} follows {at}");
+    assert!(bench.session().is_running(), "it goes on as long as the target does");
+    bench.key(Key::Space);
+    bench.wait(1.0);
+    assert!(!bench.session().is_playing());
+    bench.apply([Action::Run(false)]);
+    bench.settle();
+}
+
+#[test]
+fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
+    let mut bench = example("snake");
+    let before = bench.session().skeleton_pose().clone();
+    bench.click_at(bench.rect(Role::Button, "Play").center());
+    bench.wait(1.0);
+    assert!(bench.session().skeleton_pose().base(0).distance(before.base(0)) > 0.05);
+    let document = bench.session().document().clone();
+    bench.wait(0.5);
+    assert_eq!(bench.session().document(), &document, "playing writes nothing");
+    bench.click_at(bench.rect(Role::Button, "Pause").center());
+    bench.settle();
+    bench.click(Role::Button, "Rewind");
+    assert_eq!(bench.session().skeleton_pose(), &before);
+    select(&mut bench, "head");
+    assert!(!is_enabled(&bench, Role::Slider, "Rotation x"));
+    assert!(!is_enabled(&bench, Role::Button, "Run"));
+}
+
+#[test]
+fn the_tree_selects_one_more_or_none_and_follows_the_arrow_keys() {
+    let mut bench = built();
+    select(&mut bench, "joint");
+    assert_eq!(bench.session().selection(), [1]);
+    bench.hold(Modifiers::SHIFT);
+    select(&mut bench, "joint_2");
+    assert_eq!(bench.session().selection(), [1, 3]);
+    select(&mut bench, "joint");
+    assert_eq!(bench.session().selection(), [3]);
+    bench.hold(Modifiers::NONE);
+    select(&mut bench, "joint");
+    bench.focus(Role::Button, "Joint joint");
+    bench.key(Key::ArrowDown);
+    assert_eq!(bench.session().selection(), [2]);
+    bench.key(Key::ArrowUp);
+    bench.key(Key::ArrowUp);
+    assert_eq!(bench.session().selection(), [0]);
+}
+
+#[test]
+fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
+    let mut bench = Bench::new();
+    bench.choose(&["File", "New skeleton"]);
+    let empty = bench.empty_place();
+    bench.move_to(empty);
+    bench.apply([Action::Select(vec![0])]);
+    bench.key(Key::A);
+    bench.key(Key::A);
+    assert_eq!(names(&bench).len(), 3);
+    bench.key(Key::T);
+    assert_eq!(bench.session().skeleton().targets.len(), 1);
+    bench.key(Key::S);
+    assert!(bench.session().solving().is_some());
+    bench.key(Key::T);
+    assert!(bench.session().skeleton().targets.is_empty());
+    bench.key(Key::F2);
+    assert!(matches!(bench.session().dialog(), Some(Dialog::Rename { joint: 2, .. })));
+    bench.frame([]);
+    bench.type_text("a");
+    assert_eq!(names(&bench).len(), 3, "a letter in a text box is a letter");
+    bench.key(Key::Escape);
+    bench.settle();
+    bench.apply([Action::CloseDialog]);
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    assert_eq!(bench.session().selection(), [0, 1, 2]);
+    bench.key(Key::Escape);
+    assert!(bench.session().selection().is_empty());
+    bench.apply([Action::Select(vec![1])]);
+    bench.key(Key::Delete);
+    assert_eq!(names(&bench), ["root"]);
+}
+
+#[test]
+fn a_bone_is_made_longer_and_what_sits_on_its_tip_goes_with_it() {
+    let mut bench = built();
+    select(&mut bench, "joint_1");
+    bench.click(Role::SpinButton, "Length");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text("2.5".to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+    let skeleton = &bench.session().skeleton().skeleton;
+    assert!((skeleton.joints()[2].axis.length() - 2.5).abs() < 1e-6);
+    assert!(skeleton.base(3).distance(skeleton.tip(2)) < 1e-6);
+}
+
+#[test]
+fn a_root_that_is_free_is_moved_by_the_solver() {
+    let mut bench = built();
+    bench.click(Role::Button, "Add target");
+    bench.click(Role::CheckBox, "Free root");
+    assert_eq!(bench.session().skeleton().solver.root, Root::Free);
+    bench.enter("Target x", "25");
+    bench.click_at(bench.rect(Role::Button, "Run").center());
+    bench.wait(4.0);
+    let report = bench.session().solving().expect("it ran").report();
+    assert!(report.converged, "{report:?}");
+    assert!(bench.session().skeleton().skeleton.joints()[0].offset.x > 15.0);
+}
+
+#[test]
+fn files_are_asked_for_opened_and_saved() {
+    let mut bench = Bench::new();
+    bench.key_with(Modifiers::COMMAND, Key::O);
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Open { path: String::new() }));
+    bench.frame([]);
+    bench.frame([egui::Event::Text("scene.js3d".to_owned())]);
+    bench.key(Key::Enter);
+    let open = Effect::Open { path: "scene.js3d".into(), skeleton: None };
+    assert_eq!(bench.effects(), [open]);
+    bench.key_with(Modifiers::COMMAND, Key::S);
+    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
+    bench.settle();
+    bench.key(Key::Enter);
+    assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
+    bench.apply([Action::Saved("ik-arm.json".into())]);
+    bench.key_with(Modifiers::COMMAND, Key::S);
+    assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
+}
+
+#[test]
+fn of_several_skeletons_one_is_chosen() {
+    let names = ["left", "right"].map(str::to_owned).to_vec();
+    let dialog = Dialog::ChooseSkeleton { path: "two.js3d".into(), names };
+    let mut bench = Bench::after([Action::OpenDialog(dialog)]);
+    bench.click(Role::Button, "right");
+    let open = Effect::Open { path: "two.js3d".into(), skeleton: Some("right".to_owned()) };
+    assert_eq!(bench.effects(), [open]);
+}
+
+#[test]
+fn every_example_opens_from_its_menu() {
+    let mut bench = Bench::new();
+    for example in Example::ALL {
+        bench.choose(&["Examples", example.title]);
+        let opened = example.open().expect("it opens").document;
+        assert_eq!(bench.session().document(), &opened, "{}", example.title);
+        assert!(bench.says(example.sentence));
+    }
+}
+
+#[test]
+fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
+    let mut bench = Bench::of_size(SMALL);
+    bench.choose(&["File", "New skeleton"]);
+    let name = "a name of many letters ".repeat(4);
+    bench.apply([Action::Rename { joint: 0, name }]);
+    bench.apply((0..200).map(|parent| Action::AddChild { parent, tip: None }));
+    assert_eq!(names(&bench).len(), 201);
+    assert_eq!(bench.session().selected(), Some(200));
+    bench.apply([Action::AddTarget(200), Action::Select((0..201).collect())]);
+    bench.settle();
+}

@@ -1,0 +1,319 @@
+//! The skeleton in the viewport: selected, posed, turned and brought to targets by the mouse.
+
+use core::f32::consts::PI;
+
+use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
+use glam::Vec3;
+use ik_arm::document::{Document, Motion, Path, RigKind, SkeletonRig};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::session::{Action, Drag, Grip};
+
+use crate::bench::{Bench, bits};
+
+const LEFT: PointerButton = PointerButton::Primary;
+
+/// A root that is a point with a bent chain of three on it, and a short bone aside.
+fn skeleton() -> Skeleton {
+    let mut skeleton = Skeleton::with_root("root");
+    let add = |skeleton: &mut Skeleton, name: &str, parent: usize, axis: Vec3| {
+        let offset = skeleton.joints()[parent].axis;
+        let joint = Joint { offset, ..Joint::new(name, Some(parent), axis) };
+        skeleton.add(joint).expect("a joint")
+    };
+    let a = add(&mut skeleton, "a", 0, Vec3::new(0.2, 1.0, 0.0));
+    let b = add(&mut skeleton, "b", a, Vec3::new(0.8, 0.3, 0.1));
+    add(&mut skeleton, "c", b, Vec3::new(0.7, -0.4, 0.2));
+    add(&mut skeleton, "d", a, Vec3::new(-0.6, 0.2, 0.0));
+    skeleton
+}
+
+fn bench() -> Bench {
+    let skeleton = SkeletonRig::new(skeleton());
+    let document = Document { rig: RigKind::Skeleton, skeleton, ..Document::default() };
+    let mut bench = Bench::after([Action::Opened { document: Box::new(document), file: None }]);
+    let camera = bench.session().framing_all();
+    bench.apply([Action::SetCamera(camera)]);
+    bench
+}
+
+fn joint(bench: &Bench, name: &str) -> usize {
+    bench.session().skeleton().skeleton.find(name).expect("a joint of that name")
+}
+
+fn tip(bench: &Bench, name: &str) -> Vec3 {
+    bench.session().skeleton_pose().tip(joint(bench, name))
+}
+
+fn tip_place(bench: &Bench, name: &str) -> Pos2 {
+    bench.place(tip(bench, name))
+}
+
+/// The middle of a bone, on screen.
+fn bone_place(bench: &Bench, name: &str) -> Pos2 {
+    let pose = bench.session().skeleton_pose();
+    let joint = joint(bench, name);
+    bench.place(pose.base(joint).midpoint(pose.tip(joint)))
+}
+
+/// A point of a ring around the selected joint, so many radians along from where it starts.
+fn ring_place(bench: &Bench, axis: usize, radius: f32, angle: f32) -> Pos2 {
+    let selected = bench.session().selected().expect("one");
+    let ring = bench.session().ring(selected, axis).expect("a ring");
+    let (u, v) = ring.axis.any_orthonormal_pair();
+    let v = v * u.cross(v).dot(ring.axis).signum();
+    let rect = bench.viewport();
+    let projection = bench.session().camera().projection(rect.aspect_ratio());
+    let unit = projection.half_height_at(ring.centre) / (rect.height() / 2.0);
+    bench.place(ring.centre + (u * angle.cos() + v * angle.sin()) * radius * unit)
+}
+
+#[test]
+fn a_click_selects_the_bone_that_it_hits_and_one_beside_all_selects_none() {
+    let mut bench = bench();
+    for name in ["b", "d", "a", "c"] {
+        let at = bone_place(&bench, name);
+        bench.click_at(at);
+        assert_eq!(bench.session().selection(), [joint(&bench, name)]);
+    }
+    let empty = bench.empty_place();
+    bench.click_at(empty);
+    assert!(bench.session().selection().is_empty());
+}
+
+#[test]
+fn shift_and_a_click_add_a_bone_or_take_it_away() {
+    let mut bench = bench();
+    let places = ["a", "b", "c"].map(|name| bone_place(&bench, name));
+    bench.click_at(places[0]);
+    bench.hold(Modifiers::SHIFT);
+    bench.click_at(places[1]);
+    bench.click_at(places[2]);
+    assert_eq!(bench.session().selection(), [1, 2, 3]);
+    bench.click_at(places[1]);
+    assert_eq!(bench.session().selection(), [1, 3]);
+}
+
+#[test]
+fn a_turned_view_keeps_the_selection() {
+    let mut bench = bench();
+    let at = bone_place(&bench, "b");
+    bench.click_at(at);
+    let empty = bench.empty_place();
+    bench.drag_and_drop(LEFT, empty, empty + vec2(120.0, 40.0));
+    assert_eq!(bench.session().selection(), [joint(&bench, "b")]);
+}
+
+#[test]
+fn the_bone_under_the_pointer_is_pointed_out() {
+    let mut bench = bench();
+    let at = bone_place(&bench, "c");
+    bench.move_to(at);
+    assert_eq!(bench.session().pointed(), Some(joint(&bench, "c")));
+    let empty = bench.empty_place();
+    bench.move_to(empty);
+    assert_eq!(bench.session().pointed(), None);
+}
+
+#[test]
+fn a_tip_that_is_dragged_stays_under_the_pointer_and_bones_keep_their_lengths() {
+    let mut bench = bench();
+    let start = tip_place(&bench, "c");
+    bench.move_to(start);
+    assert_eq!(bench.harness.output().platform_output.cursor_icon, CursorIcon::Grab);
+    bench.press(LEFT);
+    let root = bench.session().skeleton_pose().base(0);
+    for step in 1..=20 {
+        let pointer = start + vec2(-4.0, -5.0) * step as f32;
+        bench.move_to(pointer);
+        let seen = tip_place(&bench, "c");
+        assert!(seen.distance(pointer) < 1.0, "{seen} is not under {pointer}");
+    }
+    bench.release(LEFT);
+    let (before, pose) = (skeleton(), bench.session().skeleton_pose().clone());
+    assert_eq!(bits(pose.base(0)), bits(root));
+    for (index, joint) in before.joints().iter().enumerate() {
+        let length = pose.base(index).distance(pose.tip(index));
+        assert!((length - joint.axis.length()).abs() < 1e-4);
+    }
+    assert!(bench.session().selection().is_empty(), "a drag selects nothing");
+    assert_eq!(bench.session().skeleton().targets, [], "the target was only for the drag");
+}
+
+#[test]
+fn escape_takes_a_pose_back_bit_for_bit() {
+    let mut bench = bench();
+    let before = bench.session().skeleton().clone();
+    let start = tip_place(&bench, "c");
+    bench.drag(LEFT, start, start + vec2(-70.0, 90.0));
+    assert_ne!(bench.session().skeleton(), &before);
+    bench.key(Key::Escape);
+    bench.release(LEFT);
+    assert_eq!(bench.session().skeleton(), &before);
+}
+
+#[test]
+fn a_tip_comes_back_to_where_it_was_when_the_pointer_does() {
+    let mut bench = bench();
+    let before = bench.session().skeleton().clone();
+    let start = tip_place(&bench, "c");
+    bench.drag(LEFT, start, start + vec2(-70.0, 90.0));
+    bench.move_to(start + vec2(1.0, 0.0));
+    bench.release(LEFT);
+    for (now, then) in
+        bench.session().skeleton().skeleton.joints().iter().zip(before.skeleton.joints())
+    {
+        assert!(now.rotation.distance(then.rotation) < 0.1, "{} at {}", now.name, now.rotation);
+    }
+}
+
+#[test]
+fn a_root_that_is_a_point_moves_with_all_that_hangs_from_it() {
+    let mut bench = bench();
+    let (root, before) = (tip_place(&bench, "root"), tip(&bench, "c"));
+    bench.drag_and_drop(LEFT, root, root + vec2(60.0, 25.0));
+    let moved = tip(&bench, "c") - before;
+    assert!(moved.length() > 0.1);
+    assert!(tip_place(&bench, "root").distance(root + vec2(60.0, 25.0)) < 1.0);
+    for joint in bench.session().skeleton().skeleton.joints() {
+        assert_eq!(joint.rotation, Vec3::ZERO, "{} is not turned", joint.name);
+    }
+}
+
+#[test]
+fn a_ring_turns_its_angle_alone_by_as_much_as_the_pointer_goes_around() {
+    for axis in 0..3 {
+        let mut bench = bench();
+        let b = joint(&bench, "b");
+        bench.apply([Action::Select(vec![b])]);
+        // Where nothing else can be taken.
+        let grip = |bench: &mut Bench, from: f32| {
+            let at = ring_place(bench, axis, 56.0, from);
+            bench.move_to(at);
+            bench.press(LEFT);
+            let drag = bench.session().drag().map(Drag::grip);
+            if drag != Some(Grip::Ring(b, axis)) {
+                bench.key(Key::Escape);
+                bench.release(LEFT);
+                bench.apply([Action::Select(vec![b])]);
+            }
+            drag == Some(Grip::Ring(b, axis))
+        };
+        let from = (0..16)
+            .map(|part| part as f32 * PI / 8.0)
+            .find(|from| grip(&mut bench, *from))
+            .expect("the ring can be taken");
+        for step in 1..=12 {
+            let angle = step as f32 * 0.1;
+            // The ring itself turns with other angles, not with its own.
+            let at = ring_place(&bench, axis, 56.0, from + angle);
+            bench.move_to(at);
+            let rotation = bench.session().skeleton().skeleton.joints()[b].rotation;
+            assert!((rotation[axis] - angle).abs() < 0.02, "{rotation} for {angle} about {axis}");
+            for other in (0..3).filter(|other| *other != axis) {
+                assert_eq!(rotation[other], 0.0);
+            }
+        }
+        bench.release(LEFT);
+    }
+}
+
+#[test]
+fn digits_type_the_degrees_that_a_ring_turns() {
+    let mut bench = bench();
+    let b = joint(&bench, "b");
+    let forward = bench.session().camera().projection(1.0).forward;
+    let ray = bench.session().camera().projection(1.0).ray(glam::Vec2::new(0.3, 0.3));
+    bench.apply([Action::Grab { grip: Grip::Ring(b, 2), ray, forward }]);
+    bench.apply([Action::TypeOffset("37.5".to_owned())]);
+    let rotation = bench.session().skeleton().skeleton.joints()[b].rotation;
+    assert!((rotation.z.to_degrees() - 37.5).abs() < 1e-4);
+    bench.apply([Action::CancelEdit]);
+    assert_eq!(bench.session().skeleton().skeleton.joints()[b].rotation, Vec3::ZERO);
+}
+
+#[test]
+fn a_target_is_dragged_and_the_skeleton_follows() {
+    let mut bench = bench();
+    let c = joint(&bench, "c");
+    bench.apply([Action::AddTarget(c)]);
+    let start = tip_place(&bench, "c");
+    for step in 1..=15 {
+        let pointer = start + vec2(-5.0, 4.0) * step as f32;
+        if step == 1 {
+            bench.move_to(start);
+            bench.press(LEFT);
+            assert!(matches!(
+                bench.session().drag().map(Drag::grip),
+                Some(Grip::Target(joint, _)) if joint == c
+            ));
+        }
+        bench.move_to(pointer);
+        let target = bench.session().skeleton().targets[0].home;
+        assert!(bench.place(target).distance(pointer) < 0.1);
+        assert!(tip(&bench, "c").distance(target) < 0.01, "the tip follows");
+    }
+    bench.release(LEFT);
+}
+
+#[test]
+fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
+    let mut bench = bench();
+    let c = joint(&bench, "c");
+    bench.apply([Action::AddTarget(c), Action::SetFollow(false)]);
+    let before = bench.session().skeleton().skeleton.clone();
+    let start = tip_place(&bench, "c");
+    bench.drag_and_drop(LEFT, start, start + vec2(-60.0, 50.0));
+    assert_eq!(bench.session().skeleton().skeleton, before);
+    bench.apply([Action::Run(true)]);
+    bench.wait(2.0);
+    assert!(!bench.session().is_running(), "it rests when it is there");
+    let report = bench.session().solving().expect("it ran").report();
+    assert!(report.converged && report.iterations > 0, "{report:?}");
+    bench.settle();
+}
+
+#[test]
+fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
+    let mut bench = bench();
+    let c = joint(&bench, "c");
+    bench.apply([Action::AddTarget(c), Action::Select(vec![c])]);
+    let home = bench.session().skeleton().targets[0].home;
+    let start = bench.place(home);
+    let camera = bench.session().camera();
+    let projection = camera.projection(bench.viewport().aspect_ratio());
+    let up = vec2(0.0, -Vec3::Y.dot(projection.up.normalize()));
+    bench.drag_and_drop(LEFT, start + up * 70.0, start + up * 30.0);
+    let moved = bench.session().skeleton().targets[0].home;
+    assert_eq!([moved.x.to_bits(), moved.z.to_bits()], [home.x.to_bits(), home.z.to_bits()]);
+    assert!(moved.y < home.y);
+}
+
+#[test]
+fn a_moving_target_is_dragged_along_its_way() {
+    let mut bench = bench();
+    let c = joint(&bench, "c");
+    bench.apply([Action::AddTarget(c)]);
+    let mut target = bench.session().skeleton().targets[0];
+    target.motion = Motion { path: Path::Circle, ..target.motion };
+    bench.apply([Action::SetTarget(target), Action::SetTime(1.0)]);
+    let start = bench.place(target.at(1.0));
+    bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));
+    let dragged = bench.session().skeleton().targets[0];
+    assert!(bench.place(dragged.at(1.0)).distance(start + vec2(30.0, 0.0)) < 0.1);
+    assert_eq!(dragged.motion, target.motion);
+}
+
+#[test]
+fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_pointer() {
+    let mut bench = bench();
+    let c = joint(&bench, "c");
+    bench.apply([Action::Select(vec![c])]);
+    let (from, at) = (tip(&bench, "c"), tip_place(&bench, "c") + vec2(-20.0, 90.0));
+    bench.hold(Modifiers::COMMAND);
+    bench.click_at(at);
+    let added = bench.session().selected().expect("the new joint");
+    let (pose, rig) = (bench.session().skeleton_pose(), bench.session().skeleton());
+    assert_eq!(rig.skeleton.joints()[added].parent, Some(c));
+    assert!(pose.base(added).distance(from) < 1e-5);
+    assert!(bench.place(pose.tip(added)).distance(at) < 0.1);
+}
