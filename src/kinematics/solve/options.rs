@@ -41,7 +41,7 @@ impl Method {
         }
     }
 
-    /// After how many iterations [`Solve::run`] gives up, unless asked otherwise.
+    /// After how many iterations [`Solve::run`](super::Solve::run) gives up, unless asked otherwise.
     pub fn budget(self) -> u32 {
         match self {
             Self::Fabrik | Self::Ccd => 2_000,
