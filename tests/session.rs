@@ -5,6 +5,7 @@ use glam::Vec3;
 use ik_arm::document::{
     Camera, Document, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Target,
 };
+use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::Limit;
 use ik_arm::kinematics::solve::{Method, Options, Root};
 use ik_arm::session::{Action, DragInput, Grip, Handle, Session};
@@ -203,6 +204,26 @@ proptest! {
 }
 
 /// Equal, where not-a-number is what it was before too.
+#[test]
+fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
+    let mut session = Session::default();
+    session.apply(Action::OpenExample(Example::find("two-targets").expect("an example")));
+    let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
+    let targets: Vec<_> = session.skeleton().targets.clone();
+    for (target, home) in targets.iter().zip(apart) {
+        session.apply(Action::SetTarget(Target { home, ..*target }));
+    }
+    let heavy = targets[0];
+    let gap = |session: &mut Session| {
+        (0..400).for_each(|_| drop(session.apply(Action::Step)));
+        session.skeleton_pose().tip(heavy.joint).distance(apart[0])
+    };
+    let before = gap(&mut session);
+    session.apply(Action::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
+    let after = gap(&mut session);
+    assert!(after < before * 0.99, "{before} before and {after} after");
+}
+
 fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
     a == b || format!("{a:?}") == format!("{b:?}")
 }

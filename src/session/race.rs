@@ -21,7 +21,6 @@ pub struct Runner {
     /// What the iterations took.
     pub time: Duration,
     solve: Result<Solve, SolveError>,
-    budget: u32,
 }
 
 impl Race {
@@ -34,14 +33,7 @@ impl Race {
             if let Ok(solve) = &solve {
                 history.push(solve.report().error);
             }
-            Runner {
-                method,
-                skeleton: rig.skeleton.clone(),
-                history,
-                time: Duration::ZERO,
-                solve,
-                budget: method.budget(),
-            }
+            Runner { method, skeleton: rig.skeleton.clone(), history, time: Duration::ZERO, solve }
         });
         Self { runners: runners.collect() }
     }
@@ -71,9 +63,7 @@ impl Runner {
     }
 
     pub fn is_running(&self) -> bool {
-        self.report().is_ok_and(|report| {
-            !report.converged && !report.resting && report.iterations < self.budget
-        })
+        self.solve.as_ref().is_ok_and(|solve| !solve.is_over())
     }
 
     fn advance(&mut self) {

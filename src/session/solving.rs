@@ -75,7 +75,7 @@ impl Solving {
     /// Whether it has made all the iterations that it may make, and is not there.
     pub fn is_spent(&self) -> bool {
         let report = self.solve.report();
-        self.is_done() && !report.converged && !report.resting
+        self.solve.is_over() && !report.converged && !report.resting
     }
 
     pub fn history(&self) -> &History {
@@ -96,7 +96,7 @@ impl Solving {
     ) -> Result<(), SolveError> {
         self.keep_up(rig, time)?;
         for _ in 0..iterations {
-            if self.is_done() {
+            if self.solve.is_over() {
                 break;
             }
             let report = self.solve.step();
@@ -109,17 +109,14 @@ impl Solving {
 
     /// Whether another iteration would be in vain.
     pub(super) fn is_done(&self) -> bool {
-        let report = self.solve.report();
-        let budget = self.options.iterations.unwrap_or_else(|| self.options.method.budget());
-        report.converged || report.resting || report.iterations >= budget
+        self.solve.is_over()
     }
 
     /// Follows what has changed since the last iteration.
     fn keep_up(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
         let goals = rig.goals(time);
-        let joints = |goals: &[Target]| goals.iter().map(|goal| goal.joint).collect::<Vec<_>>();
         let is_same = rig.solver == self.options && rig.skeleton == self.written;
-        if !is_same || joints(&goals) != joints(&self.goals) {
+        if !is_same || !only_points_differ(&goals, &self.goals) {
             let before = self.report().iterations;
             let anew = Self::new(rig, time)?;
             let old = mem::replace(self, anew);
@@ -134,4 +131,12 @@ impl Solving {
         }
         Ok(())
     }
+}
+
+/// Whether a solve for some goals can be aimed at others.
+fn only_points_differ(goals: &[Target], others: &[Target]) -> bool {
+    let same = |(goal, other): (&Target, &Target)| {
+        goal.joint == other.joint && goal.weight.to_bits() == other.weight.to_bits()
+    };
+    goals.len() == others.len() && goals.iter().zip(others).all(same)
 }

@@ -155,10 +155,16 @@ impl Solve {
 
     /// Until every tip is near enough, nothing gets better, or so many iterations are over.
     pub fn run(&mut self) -> Report {
-        while self.report.iterations < self.budget && !self.is_done() {
+        while !self.is_over() {
             self.step();
         }
         self.report
+    }
+
+    /// Whether [`run`](Self::run) would do nothing: it has converged, rests, or has made all the
+    /// iterations that it may make.
+    pub fn is_over(&self) -> bool {
+        self.is_done() || self.report.iterations >= self.budget
     }
 
     /// Moves the targets: the same joints, in the same order, with the weights they had. Starts
