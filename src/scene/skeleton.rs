@@ -32,7 +32,8 @@ pub(super) fn stage(rig: &SkeletonRig) -> (Vec3, f32) {
 pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, display: Display) {
     let skeleton = rig.at(staging.time);
     let pose = skeleton.pose();
-    let figure = Figure::new(&skeleton, &pose, rig.reach());
+    let tree = Tree::new(skeleton.joints());
+    let figure = Figure::new(&skeleton, &pose, &tree, rig.reach());
     for joint in 0..pose.len() {
         let colour = figure.colour(scene, joint, staging);
         figure.add_bone(scene, joint, colour);
@@ -59,11 +60,34 @@ pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, displ
     }
 }
 
+/// What a way through all joints tells of each.
+struct Tree {
+    /// How many bones are above it; points do not count.
+    depths: Vec<usize>,
+    /// Whether nothing hangs from it.
+    are_leaves: Vec<bool>,
+}
+
+impl Tree {
+    fn new(joints: &[Joint]) -> Self {
+        let mut tree = Self { depths: vec![0; joints.len()], are_leaves: vec![true; joints.len()] };
+        for (joint, parent) in joints.iter().map(|joint| joint.parent).enumerate() {
+            if let Some(parent) = parent {
+                let is_bone = joints[parent].axis != Vec3::ZERO;
+                tree.depths[joint] = tree.depths[parent] + usize::from(is_bone);
+                tree.are_leaves[parent] = false;
+            }
+        }
+        tree
+    }
+}
+
 /// A posed skeleton with the measures that it is drawn by.
 #[derive(Clone, Copy)]
 struct Figure<'a> {
     joints: &'a [Joint],
     pose: &'a Pose,
+    tree: &'a Tree,
     /// In the world.
     reach: f32,
     /// From the skeleton's units to the world's.
@@ -71,9 +95,9 @@ struct Figure<'a> {
 }
 
 impl<'a> Figure<'a> {
-    fn new(skeleton: &'a Skeleton, pose: &'a Pose, reach: f32) -> Self {
+    fn new(skeleton: &'a Skeleton, pose: &'a Pose, tree: &'a Tree, reach: f32) -> Self {
         let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
-        Self { joints: skeleton.joints(), pose, reach, scale }
+        Self { joints: skeleton.joints(), pose, tree, reach, scale }
     }
 
     /// How thick a bone is drawn where it begins.
@@ -96,8 +120,8 @@ impl<'a> Figure<'a> {
     /// Bones take turns in the limbs' colours from parent to child; the accent says selected.
     fn colour(&self, scene: &Scene, joint: usize, staging: &Staging) -> Colour {
         let palette = &scene.palette;
-        let depth = self.depth(joint);
-        let plain = if depth.is_multiple_of(2) { palette.upper } else { palette.lower };
+        let plain =
+            if self.tree.depths[joint].is_multiple_of(2) { palette.upper } else { palette.lower };
         let colour = match self.joints[joint].locked {
             true => palette.joint,
             false => plain,
@@ -111,13 +135,6 @@ impl<'a> Figure<'a> {
         }
     }
 
-    /// How many bones are above a joint; points do not count.
-    fn depth(&self, joint: usize) -> usize {
-        let parent = |joint: &usize| self.joints[*joint].parent;
-        let above = std::iter::successors(parent(&joint), parent);
-        above.filter(|joint| self.joints[*joint].axis != Vec3::ZERO).count()
-    }
-
     fn add_bone(&self, scene: &mut Scene, joint: usize, colour: Colour) {
         let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
         if base != tip {
@@ -125,8 +142,7 @@ impl<'a> Figure<'a> {
         }
         let ball = if base == tip { colour } else { scene.palette.joint };
         scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
-        let is_leaf = self.joints.iter().all(|child| child.parent != Some(joint));
-        if is_leaf && base != tip {
+        if self.tree.are_leaves[joint] && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
         }
