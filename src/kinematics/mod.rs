@@ -4,6 +4,7 @@ mod arc;
 pub mod follow;
 pub mod skeleton;
 pub mod solve;
+pub mod spline;
 pub mod two_bone;
 
 pub(crate) use arc::arc;

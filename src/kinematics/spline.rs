@@ -1,0 +1,170 @@
+//! Values that change smoothly in time: cubic splines through unevenly spaced knots.
+//!
+//! Between two knots the curve is the cubic Hermite polynomial with Catmull–Rom tangents:
+//!
+//! ```text
+//! m₁ = (p₂ − p₀)/(t₂ − t₀)        m₂ = (p₃ − p₁)/(t₃ − t₁)        h = t₂ − t₁,  s = (t − t₁)/h
+//! p(t) = (2s³ − 3s² + 1) p₁ + (s³ − 2s² + s) h m₁ + (3s² − 2s³) p₂ + (s³ − s²) h m₂
+//! ```
+//!
+//! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
+//! first knot and after the last, the curve stays at that knot's value. It is C¹ at interior knots.
+//!
+//! # What breaks
+//!
+//! A spline overshoots: lengths 1000, 10, 10, 1000 give −114 between the two in the middle. Who
+//! samples a value that has a valid range brings it within. Angles are to be unwrapped: from 350° to
+//! 10° the curve goes back through 180°, from 350° to 370° forward through 360°.
+//!
+//! # Source
+//!
+//! E. Catmull, R. Rom, *A Class of Local Interpolating Splines*, 1974; the tangents over uneven
+//! times as in *Animation: Spline Interpolation*, wiki of Scotty3D (CMU 15-462).
+
+use core::ops::{Add, Mul, Sub};
+
+/// A value at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot<V> {
+    /// In seconds; finite.
+    pub time: f64,
+    pub value: V,
+}
+
+/// Knots in the order of their times, no two at the same.
+///
+/// ```
+/// use ik_arm::kinematics::spline::Spline;
+///
+/// let mut height = Spline::default();
+/// height.insert(0.0, 1.0_f32);
+/// height.insert(2.0, 3.0);
+/// height.insert(3.0, 3.0);
+/// assert_eq!(height.at(2.0), Some(3.0));
+/// assert_eq!(height.at(-5.0), Some(1.0));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline<V> {
+    knots: Vec<Knot<V>>,
+}
+
+impl<V> Default for Spline<V> {
+    /// Without knots.
+    fn default() -> Self {
+        Self { knots: Vec::new() }
+    }
+}
+
+/// Later knots take the place of earlier ones at the same time; those at no finite time are left
+/// out.
+impl<V: Copy> FromIterator<Knot<V>> for Spline<V> {
+    fn from_iter<T: IntoIterator<Item = Knot<V>>>(knots: T) -> Self {
+        let mut spline = Self::default();
+        for Knot { time, value } in knots {
+            spline.insert(time, value);
+        }
+        spline
+    }
+}
+
+impl<V: Copy> Spline<V> {
+    pub fn knots(&self) -> &[Knot<V>] {
+        &self.knots
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.knots.is_empty()
+    }
+
+    /// Puts a knot at a time, in the place of one that is there. A time that is not finite is
+    /// refused: nothing changes.
+    pub fn insert(&mut self, time: f64, value: V) {
+        if !time.is_finite() {
+            return;
+        }
+        // One time, not two, at −0 and 0.
+        let knot = Knot { time: time + 0.0, value };
+        match self.search(time) {
+            Ok(index) => self.knots[index] = knot,
+            Err(index) => self.knots.insert(index, knot),
+        }
+    }
+
+    /// Takes the knot at a time away, and gives its value.
+    pub fn remove(&mut self, time: f64) -> Option<V> {
+        let index = self.search(time).ok()?;
+        Some(self.knots.remove(index).value)
+    }
+
+    /// The value of the knot that stands at a time.
+    pub fn get(&self, time: f64) -> Option<V> {
+        Some(self.knots[self.search(time).ok()?].value)
+    }
+
+    /// The value of the last knot until a time, for what does not blend; before the first knot that
+    /// one's. Nothing without knots.
+    pub fn step(&self, time: f64) -> Option<V> {
+        let until = self.knots.partition_point(|knot| knot.time <= time);
+        Some(self.knots.get(until.saturating_sub(1))?.value)
+    }
+
+    fn search(&self, time: f64) -> Result<usize, usize> {
+        let index = self.knots.partition_point(|knot| knot.time < time);
+        match self.knots.get(index) {
+            Some(knot) if knot.time == time => Ok(index),
+            _ => Err(index),
+        }
+    }
+}
+
+impl<V> Spline<V>
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
+{
+    /// The value at a time: see the module. Nothing without knots.
+    pub fn at(&self, time: f64) -> Option<V> {
+        let (first, last) = (self.knots.first()?, self.knots.last()?);
+        if time.is_nan() || time <= first.time {
+            return Some(first.value);
+        }
+        if time >= last.time {
+            return Some(last.value);
+        }
+        let after = self.knots.partition_point(|knot| knot.time <= time);
+        let (from, to) = (self.knots[after - 1], self.knots[after]);
+        if time == from.time {
+            return Some(from.value);
+        }
+        let span = to.time - from.time;
+        let s = (time - from.time) / span;
+        let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
+        let (leaving, arriving) = (self.turn(after - 1, span), self.turn(after, span));
+        Some(from.value * a + leaving * b + to.value * c + arriving * d)
+    }
+
+    /// How fast the value changes at a knot, over a span of time: h·m.
+    fn turn(&self, knot: usize, span: f64) -> V {
+        let here = self.knots[knot];
+        let mirrored = |of: Knot<V>| Knot {
+            time: here.time - (of.time - here.time),
+            value: here.value - (of.value - here.value),
+        };
+        let before = knot.checked_sub(1).map(|before| self.knots[before]);
+        let after = self.knots.get(knot + 1).copied();
+        let (before, after) = match (before, after) {
+            (Some(before), Some(after)) => (before, after),
+            (None, Some(after)) => (mirrored(after), after),
+            (Some(before), None) => (before, mirrored(before)),
+            (None, None) => (here, here),
+        };
+        let wide = after.time - before.time;
+        let part = if wide > 0.0 { span / wide } else { 0.0 };
+        (after.value - before.value) * part as f32
+    }
+}
+
+/// What p₁, h·m₁, p₂ and h·m₂ weigh at s from 0 to 1.
+fn hermite(s: f64) -> [f64; 4] {
+    let (s2, s3) = (s * s, s * s * s);
+    [2.0 * s3 - 3.0 * s2 + 1.0, s3 - 2.0 * s2 + s, 3.0 * s2 - 2.0 * s3, s3 - s2]
+}
