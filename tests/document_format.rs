@@ -8,7 +8,8 @@ use std::fs;
 use files::{Random, message, mutations};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Display, Document, Layer, Motion, Path, RigKind, SkeletonRig, Slither, Target,
+    Arm, Camera, Channel, Display, Document, Keys, Layer, Motion, Path, Quantity, RigKind,
+    SkeletonRig, Slither, Target, Timeline,
 };
 use ik_arm::io::{self, Example, Opened};
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
@@ -112,11 +113,21 @@ fn random_document(random: &mut Random) -> Document {
         waves: random.below(1 << 32) as u32,
         period: random.above_0(),
     });
+    let keys = random_keys(random, &rig);
+    let start = f64::from(random.between(-100.0, 100.0));
+    let timeline = Timeline {
+        start,
+        end: start + f64::from(random.between(0.1, 100.0)) / 3.0,
+        frame_rate: 1 + random.below(1000) as u32,
+    };
     let layers = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS);
     Document {
         rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
         arm,
         skeleton: rig,
+        keys,
+        timeline,
+        metres: random.coin().then(|| random.above_0()),
         camera: Camera {
             target: random.point(),
             yaw: random.any(),
@@ -126,6 +137,32 @@ fn random_document(random: &mut Random) -> Document {
         },
         display: layers.filter(|_| random.coin()).collect::<Display>(),
     }
+}
+
+fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
+    let arm = [Channel::Hand, Channel::ElbowSpin, Channel::Root, Channel::Upper, Channel::Lower];
+    let layers = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS).map(Channel::Layer);
+    let joints = (0..rig.skeleton.joints().len())
+        .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
+    let targets = rig.targets.iter();
+    let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
+    let all = arm.into_iter().chain(layers).chain([Channel::Translation]);
+    let mut keys = Keys::default();
+    for channel in all.chain(joints).chain(targets) {
+        if random.below(3) > 0 {
+            continue;
+        }
+        for _ in 0..1 + random.below(5) {
+            let value = match channel.quantity() {
+                Quantity::Point | Quantity::Angles => random.point(),
+                Quantity::Angle => Vec3::new(random.any(), 0.0, 0.0),
+                Quantity::Length => Vec3::new(random.above_0(), 0.0, 0.0),
+                Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),
+            };
+            keys.insert(channel, f64::from(random.any()) / 3.0, value);
+        }
+    }
+    keys
 }
 
 fn random_skeleton(random: &mut Random) -> Skeleton {
@@ -600,4 +637,72 @@ fn the_snake_lies_in_an_s() {
     let left = turns.iter().filter(|turn| **turn > 1e-4).count();
     let right = turns.iter().filter(|turn| **turn < -1e-4).count();
     assert!(left >= 5 && right >= 5, "{turns:?}");
+}
+
+// Keys
+
+#[test]
+fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
+    let opened = open(&with(
+        r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"targets":[{"joint":0,"home":[0,1,0]}],
+           "keys":[{"channel":"hand","knots":[[0,1,2,3],[1.5,4,5,6]]},
+                   {"channel":"elbow_spin","knots":[[0.1,7]]},
+                   {"channel":"rotation","joint":0,"knots":[[2,0,0,1],[1,0,0,3]]},
+                   {"channel":"enabled","joint":0,"knots":[[1,0]]},
+                   {"channel":"layer","layer":"cursor","knots":[[1,1]]},
+                   {"channel":"root","knots":[]}],
+           "timeline":{"start":1,"frame_rate":24},"metres_per_unit":0.01"#,
+    ));
+    assert_eq!(opened.warnings, []);
+    let document = opened.document;
+    let keys = &document.keys;
+    let value = |channel, time| keys.value(channel, time).expect("keyed").to_array();
+    assert_eq!(value(Channel::Hand, 1.5), [4.0, 5.0, 6.0]);
+    assert_eq!(value(Channel::ElbowSpin, 9.0), [7.0, 0.0, 0.0]);
+    assert_eq!(value(Channel::Rotation(0), 1.5), [0.0, 0.0, 2.0]);
+    assert_eq!(value(Channel::Enabled(0), 1.5), [0.0; 3]);
+    assert_eq!(value(Channel::Layer(Layer::Cursor), 0.0), [1.0, 0.0, 0.0]);
+    assert!(!keys.has(Channel::Root));
+    assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24 });
+    assert_eq!((document.metres, document.metres_per_unit()), (Some(0.01), 0.01));
+}
+
+#[test]
+fn keys_that_are_wrong_are_named() {
+    let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"keys":"#;
+    for (keys, reason) in [
+        (
+            r#"[{"channel":"foot","knots":[]}]"#,
+            "line 2, column 57: keys[0].channel: unknown variant",
+        ),
+        (
+            r#"[{"channel":"hand","knots":[[0,1,2]]}]"#,
+            "keys[0].knots[0]: found 2 after the time, \
+          expected three numbers",
+        ),
+        (r#"[{"channel":"upper","knots":[[0,1],[1,0]]}]"#, "keys[0].knots[1]: length 0 must be"),
+        (r#"[{"channel":"layer","layer":"axes","knots":[[0,0.5]]}]"#, "0.5 is no switch"),
+        (r#"[{"channel":"layer","knots":[]}]"#, "keys[0]: this channel is a layer's"),
+        (r#"[{"channel":"rotation","knots":[]}]"#, "keys[0]: this channel is a joint's"),
+        (
+            r#"[{"channel":"offset","joint":1,"knots":[]}]"#,
+            "keys[0].joint: there is no joint 1; \
+          there is only joint 0",
+        ),
+        (r#"[{"channel":"target","joint":0,"knots":[]}]"#, "keys[0].joint: joint 0 has no target"),
+        (
+            r#"[{"channel":"hand","knots":[[0,1,2,3]]},{"channel":"hand","knots":[[0,1,2,3]]}]"#,
+            "keys[1]: another entry has keys of the same channel",
+        ),
+        (r#"[{"channel":"hand","knots":[[]]}]"#, "keys[0].knots[0]: invalid length 0"),
+        (r#"[{"channel":"hand","knots":[[1e999,0,0,0]]}]"#, "keys[0].knots[0][0]: number out of"),
+    ] {
+        let said = refusal(&with(&format!("{skeleton}{keys}")));
+        assert!(said.contains(reason), "{keys}: {said}");
+    }
+    for timeline in ["\"end\":-1", "\"frame_rate\":0", "\"frame_rate\":1001", "\"start\":1e9"] {
+        let said = refusal(&with(&format!("\"timeline\":{{{timeline}}}")));
+        assert!(said.contains("timeline: must start before it ends"), "{said}");
+    }
+    assert!(refusal(&with("\"metres_per_unit\":0")).contains("metres_per_unit: is 0"));
 }

@@ -47,6 +47,11 @@ impl Arm {
         self.root + self.cursor
     }
 
+    /// Lengths that no bones can have change nothing.
+    pub(super) fn set_lengths(&mut self, upper: f32, lower: f32) {
+        self.bones = TwoBone::new(upper, lower).unwrap_or(self.bones);
+    }
+
     /// A sphere around the arm as it stands, in the world: centre and radius.
     pub fn bounds(&self, pose: &Pose) -> (Vec3, f32) {
         let points = [Vec3::ZERO, pose.elbow, pose.hand];

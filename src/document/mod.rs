@@ -1,19 +1,26 @@
-//! What is saved: the arm, the skeleton, where they are looked at from, and what is shown.
+//! What is saved: the arm, the skeleton, their keys in time, where they are looked at from, and what
+//! is shown.
 //!
 //! The pose is a function of the document and the time alone, so whatever a stateful choice needs
 //! (the last direction and yaw of the Pointer, the joints' angles) is in it too.
 
 mod arm;
 mod camera;
+mod channel;
 mod display;
+mod keys;
 mod skeleton;
 mod slither;
+mod timeline;
 
 pub use arm::Arm;
 pub use camera::{AxisView, Camera, Projection, Ray};
+pub use channel::{Channel, Quantity};
 pub use display::{Display, Layer, Theme};
+pub use keys::Keys;
 pub use skeleton::{Motion, Path, SkeletonRig, Target};
 pub use slither::Slither;
+pub use timeline::Timeline;
 
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,8 +29,13 @@ pub struct Document {
     pub rig: RigKind,
     pub arm: Arm,
     pub skeleton: SkeletonRig,
+    pub keys: Keys,
+    pub timeline: Timeline,
     pub camera: Camera,
     pub display: Display,
+    /// How long a unit of the shown rig is for other programs; nothing says what is usual: see
+    /// [`Document::metres_per_unit`].
+    pub metres: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +46,15 @@ pub enum RigKind {
 }
 
 impl Document {
+    /// How long a unit of the shown rig is for other programs, in metres: a millimetre for the arm,
+    /// which is as long as the seed's, a metre for a skeleton, unless the document says.
+    pub fn metres_per_unit(&self) -> f32 {
+        self.metres.unwrap_or(match self.rig {
+            RigKind::Arm => 0.001,
+            RigKind::Skeleton => 1.0,
+        })
+    }
+
     /// How wide the grid's cells are: those of the seed around the arm; around a skeleton the power
     /// of ten that goes 2 to 20 times into its reach.
     pub fn cell(&self) -> f32 {

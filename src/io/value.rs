@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use glam::Vec3;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
-use serde::ser::{Error as _, Serializer};
+use serde::ser::{Error as _, SerializeSeq as _, Serializer};
 use serde::{Deserialize, Serialize};
 
 /// An object. Derived code alone would take an array, too.
@@ -73,6 +73,66 @@ impl Serialize for Number {
             return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
         }
         serializer.serialize_f32(self.0)
+    }
+}
+
+/// A finite f64: a time, which single precision would be too coarse for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seconds(pub f64);
+
+impl<'de> Deserialize<'de> for Seconds {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        f64::deserialize(deserializer).map(Self)
+    }
+}
+
+impl Serialize for Seconds {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !self.0.is_finite() {
+            return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
+        }
+        serializer.serialize_f64(self.0)
+    }
+}
+
+/// A time and the numbers at it, in a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knot {
+    pub time: Seconds,
+    pub values: Vec<Number>,
+}
+
+impl<'de> Deserialize<'de> for Knot {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct KnotVisitor;
+
+        impl<'de> Visitor<'de> for KnotVisitor {
+            type Value = Knot;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a time and the value at it: [seconds, x, …]")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<Knot, A::Error> {
+                let time = row.next_element()?.ok_or_else(|| A::Error::invalid_length(0, &self))?;
+                let mut values = Vec::with_capacity(3);
+                while let Some(number) = row.next_element()? {
+                    values.push(number);
+                }
+                Ok(Knot { time, values })
+            }
+        }
+
+        deserializer.deserialize_seq(KnotVisitor)
+    }
+}
+
+impl Serialize for Knot {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut row = serializer.serialize_seq(Some(1 + self.values.len()))?;
+        row.serialize_element(&self.time)?;
+        self.values.iter().try_for_each(|number| row.serialize_element(number))?;
+        row.end()
     }
 }
 

@@ -6,7 +6,10 @@ use std::collections::HashSet;
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 use super::file::{self, File, Rig, Root};
-use crate::document::{Arm, Camera, Document, Motion, Path, RigKind, SkeletonRig, Slither, Target};
+use super::keys::{keys, timeline};
+use crate::document::{
+    Arm, Camera, Document, Keys, Motion, Path, RigKind, SkeletonRig, Slither, Target,
+};
 use crate::io::field::Field;
 use crate::io::source::{Odd, Wrong};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
@@ -36,7 +39,20 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
         None => first_view(rig, &skeleton),
     };
     let display = file.display.map(|layers| layers.into_iter().collect()).unwrap_or_default();
-    Ok(Document { rig, arm, skeleton, camera, display })
+    let metres = file.metres_per_unit.map(|Number(metres)| above_0(at("metres_per_unit"), metres));
+    let timeline = file.timeline.map(|Object(file)| timeline(at("timeline"), &file));
+    let mut document = Document {
+        rig,
+        arm,
+        skeleton,
+        keys: Keys::default(),
+        timeline: timeline.transpose()?.unwrap_or_default(),
+        camera,
+        display,
+        metres: metres.transpose()?,
+    };
+    document.keys = keys(file.keys.unwrap_or_default(), &document)?;
+    Ok(document)
 }
 
 fn arm(at: &Field, file: &file::Arm) -> Result<Arm, Wrong> {
@@ -180,7 +196,7 @@ fn target(at: &Field, file: &file::Target, joints: usize, circle: f32) -> Result
     Ok(Target { weight, motion, enabled: file.enabled.unwrap_or(seed.enabled), ..seed })
 }
 
-fn counted(joints: usize) -> String {
+pub(super) fn counted(joints: usize) -> String {
     match joints {
         0 => "the skeleton has none".to_owned(),
         1 => "there is only joint 0".to_owned(),

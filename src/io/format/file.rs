@@ -3,6 +3,7 @@
 use glam::Mat3;
 use serde::{Deserialize, Serialize};
 
+use super::keys::{self, Timeline, Track};
 use super::{NAME, VERSION};
 use crate::document::{self, Camera, Document, Layer, RigKind, SkeletonRig};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
@@ -19,6 +20,11 @@ pub struct File {
     pub targets: Option<Vec<Object<Target>>>,
     pub solver: Option<Object<Solver>>,
     pub slither: Option<Object<Slither>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keys: Option<Vec<Object<Track>>>,
+    pub timeline: Option<Object<Timeline>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub metres_per_unit: Option<Number>,
     pub camera: Option<Object<View>>,
     pub display: Option<Vec<Layer>>,
 }
@@ -139,7 +145,7 @@ pub struct View {
 
 impl File {
     pub fn new(document: &Document) -> Self {
-        let Document { rig, arm, skeleton: rig_of_joints, camera, display } = document;
+        let Document { rig, arm, skeleton: rig_of_joints, camera, display, .. } = document;
         let SkeletonRig { skeleton, targets, slither, .. } = rig_of_joints;
         Self {
             format: NAME.to_owned(),
@@ -153,6 +159,9 @@ impl File {
             targets: Some(targets.iter().map(Target::new).map(Object).collect()),
             solver: Some(Object(Solver::new(rig_of_joints))),
             slither: slither.as_ref().map(Slither::new).map(Object),
+            keys: (!document.keys.is_empty()).then(|| keys::tracks(&document.keys)),
+            timeline: Some(Object(Timeline::new(document.timeline))),
+            metres_per_unit: document.metres.map(Number),
             camera: Some(Object(View::new(camera))),
             display: Some(display.layers().collect()),
         }

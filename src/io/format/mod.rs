@@ -13,6 +13,9 @@
 //!   "targets": [{ "joint", "home", "weight", "enabled", "motion": { "path", "radius", "period" } }],
 //!   "solver": { "method", "iterations", "tolerance", "damping", "step", "root", "iterations_per_frame" },
 //!   "slither": { "radius", "amplitude", "waves", "period" },
+//!   "keys": [{ "channel", "joint" or "layer", "knots": [[seconds, x, y, z], …] }],
+//!   "timeline": { "start", "end", "frame_rate" },
+//!   "metres_per_unit": number,
 //!   "camera": { "target", "yaw", "pitch", "distance", "orthographic" },
 //!   "display": ["cursor", "pointer", "inner_limit", "outer_limit", "grid_xy", "grid_xz", "grid_yz",
 //!               "ground", "axes", "labels", "shadow"]
@@ -24,12 +27,19 @@
 //! column: where the skeleton's x, y and z axes point in the world, then its origin; a `frame` a 3×3
 //! matrix likewise. A limit is `[from, to]`.
 //!
+//! Keys are of the channels `hand`, `elbow_spin`, `root`, `upper`, `lower`, `translation`, of a joint's
+//! `rotation`, `offset`, `target` and `enabled`, and of a `layer` that is shown or not. A knot has a
+//! time in seconds and the value at it: one number or three, as the channel has; switches are 0 or 1.
+//! Between knots values are as [`spline`](crate::kinematics::spline) has it. `metres_per_unit` is how
+//! long a unit is for other programs; absent, a millimetre for the arm and a metre for a skeleton.
+//!
 //! Only `format`, `version` and `rig` must be there, a joint's `name`, and a target's `joint` and
 //! `home`. What is absent is as at first; an absent `offset` puts a joint on its parent's tip, an
 //! absent `camera` shows the whole skeleton. Fields that are not known are remarked on and ignored.
 
 mod check;
 mod file;
+mod keys;
 
 use std::path::Path;
 

@@ -1,0 +1,166 @@
+use core::f32::consts::TAU;
+
+use glam::Vec3;
+
+use super::{Document, Layer};
+use crate::kinematics::skeleton::{Moved, Skeleton};
+
+/// One thing of a document that keys can change in time.
+///
+/// All values are vectors, so that they can be handled alike: a number is in x, with y and z 0, and a
+/// switch is 0 or 1 in x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Channel {
+    /// The arm's cursor, in Root space.
+    Hand,
+    /// ψ in radians, unwrapped.
+    ElbowSpin,
+    /// The arm's shoulder, in the world.
+    Root,
+    /// The upper limb's length.
+    Upper,
+    /// The lower limb's length.
+    Lower,
+    /// Where the skeleton's own origin is, in the world.
+    Translation,
+    /// A joint's Euler angles in radians, unwrapped.
+    Rotation(usize),
+    /// A joint's offset from its parent's base.
+    Offset(usize),
+    /// Where the target of a joint is, in the world: its home.
+    Target(usize),
+    /// Whether the target of a joint counts.
+    Enabled(usize),
+    /// Whether a layer is shown.
+    Layer(Layer),
+}
+
+/// What the values of a channel are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// In units of the scene.
+    Point,
+    /// In units of the scene, above 0.
+    Length,
+    /// In radians.
+    Angle,
+    /// Three of them, in radians.
+    Angles,
+    /// 0 or 1; it steps.
+    Switch,
+}
+
+impl Quantity {
+    /// How many numbers a value has.
+    pub fn width(self) -> usize {
+        match self {
+            Self::Point | Self::Angles => 3,
+            Self::Length | Self::Angle | Self::Switch => 1,
+        }
+    }
+}
+
+impl Channel {
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Self::Hand | Self::Root | Self::Translation | Self::Offset(_) | Self::Target(_) => {
+                Quantity::Point
+            }
+            Self::Upper | Self::Lower => Quantity::Length,
+            Self::ElbowSpin => Quantity::Angle,
+            Self::Rotation(_) => Quantity::Angles,
+            Self::Enabled(_) | Self::Layer(_) => Quantity::Switch,
+        }
+    }
+
+    /// The joint that it belongs to.
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Self::Rotation(joint)
+            | Self::Offset(joint)
+            | Self::Target(joint)
+            | Self::Enabled(joint) => Some(joint),
+            Self::Hand
+            | Self::ElbowSpin
+            | Self::Root
+            | Self::Upper
+            | Self::Lower
+            | Self::Translation
+            | Self::Layer(_) => None,
+        }
+    }
+
+    /// The same where the joints have new places; nothing if its joint is gone.
+    #[must_use]
+    pub fn moved(self, moved: &Moved) -> Option<Self> {
+        Some(match self {
+            Self::Rotation(joint) => Self::Rotation(moved.get(joint)?),
+            Self::Offset(joint) => Self::Offset(moved.get(joint)?),
+            Self::Target(joint) => Self::Target(moved.get(joint)?),
+            Self::Enabled(joint) => Self::Enabled(moved.get(joint)?),
+            other => other,
+        })
+    }
+
+    /// The value that a document has; nothing if it has no such joint or target.
+    pub fn value(self, document: &Document) -> Option<Vec3> {
+        let Document { arm, skeleton: rig, display, .. } = document;
+        let number = |value| Vec3::new(value, 0.0, 0.0);
+        let switch = |on: bool| number(f32::from(u8::from(on)));
+        let target = |joint| Some(rig.targets[rig.target(joint)?]);
+        Some(match self {
+            Self::Hand => arm.cursor,
+            Self::ElbowSpin => number(arm.elbow_spin),
+            Self::Root => arm.root,
+            Self::Upper => number(arm.bones.upper()),
+            Self::Lower => number(arm.bones.lower()),
+            Self::Translation => rig.skeleton.transform().translation.into(),
+            Self::Rotation(joint) => rig.skeleton.joint(joint)?.rotation,
+            Self::Offset(joint) => rig.skeleton.joint(joint)?.offset,
+            Self::Target(joint) => target(joint)?.home,
+            Self::Enabled(joint) => switch(target(joint)?.enabled),
+            Self::Layer(layer) => switch(display.shows(layer)),
+        })
+    }
+
+    /// Gives a document the value, brought within what is valid; nothing happens where it has no
+    /// such joint or target.
+    pub fn set(self, document: &mut Document, value: Vec3) {
+        let Document { arm, skeleton: rig, display, .. } = document;
+        let value = value.clamp(Vec3::MIN, Vec3::MAX);
+        if value.is_nan() {
+            return;
+        }
+        let on = value.x >= 0.5;
+        match self {
+            Self::Hand => arm.cursor = value,
+            Self::ElbowSpin => arm.elbow_spin = value.x.rem_euclid(TAU),
+            Self::Root => arm.root = value,
+            Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),
+            Self::Lower => arm.set_lengths(arm.bones.upper(), value.x),
+            Self::Translation => translate(&mut rig.skeleton, value),
+            Self::Rotation(joint) => rig.skeleton.turn(joint, |joint| {
+                joint.rotation = joint.clamped(value);
+            }),
+            Self::Offset(joint) => rig.skeleton.turn(joint, |joint| joint.offset = value),
+            Self::Target(joint) => {
+                if let Some(target) = rig.target(joint) {
+                    rig.targets[target].home = value;
+                }
+            }
+            Self::Enabled(joint) => {
+                if let Some(target) = rig.target(joint) {
+                    rig.targets[target].enabled = on;
+                }
+            }
+            Self::Layer(layer) => *display = display.with(layer, on),
+        }
+    }
+}
+
+fn translate(skeleton: &mut Skeleton, translation: Vec3) {
+    let mut transform = skeleton.transform();
+    transform.translation = translation.into();
+    // Refused only where it is not finite, which it is.
+    let _ = skeleton.set_transform(transform);
+}

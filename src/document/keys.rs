@@ -1,0 +1,121 @@
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use super::{Channel, Document, Quantity};
+use crate::kinematics::skeleton::Moved;
+use crate::kinematics::spline::Spline;
+
+/// What changes in time: for every keyed channel, the knots that it goes through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Keys {
+    /// None is empty.
+    tracks: BTreeMap<Channel, Spline<Vec3>>,
+}
+
+impl Keys {
+    pub fn is_empty(&self) -> bool {
+        self.tracks.is_empty()
+    }
+
+    /// Every channel that has a key, with all its keys.
+    pub fn tracks(&self) -> impl Iterator<Item = (Channel, &Spline<Vec3>)> {
+        self.tracks.iter().map(|(channel, track)| (*channel, track))
+    }
+
+    pub fn track(&self, channel: Channel) -> Option<&Spline<Vec3>> {
+        self.tracks.get(&channel)
+    }
+
+    pub fn has(&self, channel: Channel) -> bool {
+        self.tracks.contains_key(&channel)
+    }
+
+    /// How many keys there are in all.
+    pub fn count(&self) -> usize {
+        self.tracks.values().map(|track| track.knots().len()).sum()
+    }
+
+    /// Puts a key, in the place of one that is there. Numbers that are not finite are refused.
+    pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
+        if time.is_finite() && value.is_finite() {
+            self.tracks.entry(channel).or_default().insert(time, value);
+        }
+    }
+
+    /// Takes a key away, and gives its value.
+    pub fn remove(&mut self, channel: Channel, time: f64) -> Option<Vec3> {
+        let track = self.tracks.get_mut(&channel)?;
+        let value = track.remove(time);
+        if track.is_empty() {
+            self.tracks.remove(&channel);
+        }
+        value
+    }
+
+    /// Takes all keys of a channel away.
+    pub fn clear(&mut self, channel: Channel) {
+        self.tracks.remove(&channel);
+    }
+
+    /// What a channel is at a time, before it is brought within what is valid there: limits of
+    /// joints are not known here. Nothing without keys.
+    pub fn value(&self, channel: Channel, time: f64) -> Option<Vec3> {
+        let track = self.track(channel)?;
+        match channel.quantity() {
+            Quantity::Switch => track.step(time),
+            Quantity::Length => Some(track.at(time)?.max(Vec3::X * shortest(track))),
+            Quantity::Point | Quantity::Angle | Quantity::Angles => track.at(time),
+        }
+    }
+
+    /// Every time at which there is a key, in order.
+    pub fn times(&self) -> Vec<f64> {
+        let knots = self.tracks.values().flat_map(|track| track.knots());
+        let mut times: Vec<f64> = knots.map(|knot| knot.time).collect();
+        times.sort_unstable_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// Lets the keys follow their joints to new places; those whose joints are gone go too.
+    pub fn follow(&mut self, moved: &Moved) {
+        let tracks = std::mem::take(&mut self.tracks).into_iter();
+        let moved = tracks.filter_map(|(channel, track)| Some((channel.moved(moved)?, track)));
+        self.tracks = moved.collect();
+    }
+}
+
+/// A keyed length never falls below a thousandth of its longest key: a spline overshoots, and a
+/// bone needs a length.
+fn shortest(track: &Spline<Vec3>) -> f32 {
+    const PART: f32 = 1e-3;
+    let longest = track.knots().iter().map(|knot| knot.value.x).fold(0.0, f32::max);
+    (PART * longest).max(f32::MIN_POSITIVE)
+}
+
+impl Document {
+    /// The document as it stands at a time: every keyed channel has the value that its keys give.
+    /// What moves without keys, such as a [`Slither`](super::Slither), is not in it: see
+    /// [`SkeletonRig::at`](super::SkeletonRig::at).
+    pub fn at(&self, time: f64) -> Cow<'_, Self> {
+        if self.keys.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut posed = self.clone();
+        posed.keys_to(time);
+        Cow::Owned(posed)
+    }
+
+    /// Gives every keyed channel the value that its keys give at a time.
+    pub(crate) fn keys_to(&mut self, time: f64) {
+        let keys = std::mem::take(&mut self.keys);
+        for (channel, _) in keys.tracks() {
+            if let Some(value) = keys.value(channel, time) {
+                channel.set(self, value);
+            }
+        }
+        self.keys = keys;
+    }
+}

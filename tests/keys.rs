@@ -1,0 +1,146 @@
+//! A document at a time: what its keys make of it.
+#![cfg(feature = "document")]
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Document, Keys, Layer, RigKind, Target, Timeline};
+use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::Limit;
+
+fn number(value: f32) -> Vec3 {
+    Vec3::new(value, 0.0, 0.0)
+}
+
+fn human() -> Document {
+    Example::find("human").expect("an example").open().expect("it opens").document
+}
+
+#[test]
+fn every_channel_gives_the_document_its_value_and_nothing_else_changes() {
+    let mut document = human();
+    document.rig = RigKind::Arm;
+    let (point, on) = (Vec3::new(1.5, -2.5, 0.25), Vec3::ZERO);
+    for (channel, value) in [
+        (Channel::Hand, point),
+        (Channel::ElbowSpin, number(1.25)),
+        (Channel::Root, point),
+        (Channel::Upper, number(123.0)),
+        (Channel::Lower, number(45.0)),
+        (Channel::Translation, point),
+        (Channel::Rotation(2), Vec3::new(0.1, 0.05, -0.1)),
+        (Channel::Offset(2), point),
+        (Channel::Target(8), point),
+        (Channel::Enabled(8), on),
+        (Channel::Layer(Layer::Cursor), on),
+    ] {
+        let mut keyed = document.clone();
+        keyed.keys.insert(channel, 1.0, value);
+        let mut posed = keyed.at(7.0).into_owned();
+        assert_eq!(channel.value(&posed), Some(value), "{channel:?}");
+        channel.set(&mut posed, channel.value(&document).expect("there"));
+        posed.keys = Keys::default();
+        assert_eq!(posed, document, "{channel:?}");
+    }
+}
+
+#[test]
+fn a_document_without_keys_is_the_same_at_every_time() {
+    let document = human();
+    assert_eq!(*document.at(3.0), document);
+}
+
+#[test]
+fn a_keyed_hand_goes_along_a_spline() {
+    let mut document = Document::default();
+    for (time, x) in [(0.0, 0.0), (1.0, 100.0), (3.0, 400.0), (4.0, 300.0)] {
+        document.keys.insert(Channel::Hand, time, Vec3::new(x, 2.0 * x, 5.0));
+    }
+    // 8/3 · 100: see the spline's tests.
+    let hand = document.at(2.0).arm.cursor;
+    assert!(hand.distance(Vec3::new(266.666_67, 533.333_3, 5.0)) < 1e-3, "{hand}");
+}
+
+#[test]
+fn lengths_stay_above_0_where_their_spline_does_not() {
+    let mut document = Document::default();
+    for (time, length) in [(0.0, 1000.0), (1.0, 10.0), (2.0, 10.0), (3.0, 1000.0)] {
+        document.keys.insert(Channel::Upper, time, number(length));
+    }
+    let upper = |time| document.at(time).arm.bones.upper();
+    assert_eq!(upper(1.5), 1.0);
+    assert_eq!((upper(0.0), upper(1.0), upper(9.0)), (1000.0, 10.0, 1000.0));
+    for step in 0..400 {
+        let arm = document.at(f64::from(step) * 0.01).arm;
+        assert!(arm.bones.upper() > 0.0 && arm.pose().elbow.is_finite());
+    }
+}
+
+#[test]
+fn angles_stay_within_the_limits_of_their_joint() {
+    let mut document = human();
+    let limits = [Some(Limit { min: -0.5, max: 0.5 }), None, None];
+    document.skeleton.skeleton.change(1, |joint| joint.limits = limits).expect("possible");
+    document.keys.insert(Channel::Rotation(1), 0.0, Vec3::new(3.0, 30.0, -3.0));
+    let joint = document.at(0.0).skeleton.skeleton.joints()[1].clone();
+    assert_eq!(joint.rotation, Vec3::new(0.5, 30.0, -3.0));
+}
+
+#[test]
+fn switches_step() {
+    let mut document = Document::default();
+    let limit = Channel::Layer(Layer::OuterLimit);
+    for (time, on) in [(1.0, 1.0), (2.0, 0.0)] {
+        document.keys.insert(limit, time, number(on));
+    }
+    let shown = |time| document.at(time).display.shows(Layer::OuterLimit);
+    assert_eq!([0.0, 1.0, 1.99, 2.0].map(shown), [true, true, true, false]);
+}
+
+#[test]
+fn huge_values_stay_finite() {
+    let mut document = Document::default();
+    for (time, x) in [(0.0, f32::MAX), (1.0, f32::MAX), (1.5, f32::MIN), (2.0, f32::MAX)] {
+        document.keys.insert(Channel::Hand, time, Vec3::splat(x));
+        document.keys.insert(Channel::ElbowSpin, time, number(x));
+        document.keys.insert(Channel::Upper, time, number(x.abs()));
+    }
+    for step in 0..100 {
+        let arm = document.at(f64::from(step) * 0.03).arm;
+        assert!(arm.cursor.is_finite() && arm.elbow_spin.is_finite(), "{arm:?}");
+        assert!(arm.pose().hand.is_finite());
+    }
+}
+
+#[test]
+fn keys_that_are_not_numbers_are_refused() {
+    let mut keys = Keys::default();
+    keys.insert(Channel::Hand, f64::NAN, Vec3::ZERO);
+    keys.insert(Channel::Hand, 0.0, Vec3::new(0.0, f32::INFINITY, 0.0));
+    assert!(keys.is_empty());
+}
+
+#[test]
+fn keys_follow_their_joints() {
+    let mut document = human();
+    let target: &Target = &document.skeleton.targets[0];
+    let (hand, joints) = (target.joint, document.skeleton.skeleton.joints().to_vec());
+    for joint in [hand, 15] {
+        document.keys.insert(Channel::Rotation(joint), 0.0, Vec3::X);
+    }
+    document.keys.insert(Channel::Root, 0.0, Vec3::X);
+    let moved = document.skeleton.skeleton.remove(&[hand]);
+    document.keys.follow(&moved);
+    let tracks: Vec<Channel> = document.keys.tracks().map(|(channel, _)| channel).collect();
+    let foot = document.skeleton.skeleton.find(&joints[15].name).expect("it is still there");
+    assert_eq!(tracks, [Channel::Root, Channel::Rotation(foot)]);
+}
+
+#[test]
+fn frames_are_counted_with_both_ends() {
+    let timeline = Timeline { start: 1.0, end: 2.0, frame_rate: 24 };
+    assert_eq!((timeline.frames(), timeline.time(24)), (25, 2.0));
+    assert_eq!(Timeline { end: 2.02, ..timeline }.frames(), 25);
+    assert_eq!(timeline.snapped(1.49), 36.0 / 24.0);
+    assert_eq!(timeline.snapped(1.47), 35.0 / 24.0);
+    let third = Timeline { start: 0.1, end: 0.1 + 1.0 / 3.0, frame_rate: 30 };
+    assert_eq!(third.frames(), 11);
+}
