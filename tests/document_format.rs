@@ -120,7 +120,7 @@ fn random_document(random: &mut Random) -> Document {
         end: start + f64::from(random.between(0.1, 100.0)) / 3.0,
         frame_rate: 1 + random.below(1000) as u32,
     };
-    let layers = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS);
+    let layers = Layer::all();
     Document {
         rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
         arm,
@@ -141,7 +141,7 @@ fn random_document(random: &mut Random) -> Document {
 
 fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let arm = [Channel::Hand, Channel::ElbowSpin, Channel::Root, Channel::Upper, Channel::Lower];
-    let layers = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS).map(Channel::Layer);
+    let layers = Layer::all().map(Channel::Layer);
     let joints = (0..rig.skeleton.joints().len())
         .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
     let targets = rig.targets.iter();
@@ -364,7 +364,7 @@ fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
             "\"display\":[\"cursor\",\"elbow\"]",
             "line 2, column 21: display[1]: unknown variant `elbow`, expected one of `cursor`, \
              `pointer`, `inner_limit`, `outer_limit`, `grid_xy`, `grid_xz`, `grid_yz`, `ground`, \
-             `axes`, `labels`, `shadow`",
+             `axes`, `labels`, `shadow`, `trail`, `onion_skins`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {

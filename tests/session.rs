@@ -3,7 +3,8 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Camera, Document, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Target,
+    Camera, Channel, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Target,
+    Timeline,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::Limit;
@@ -113,6 +114,48 @@ fn posing() -> impl Strategy<Value = Action> {
     ]
 }
 
+fn channels() -> impl Strategy<Value = Channel> + Clone {
+    prop_oneof![
+        prop_oneof![
+            Just(Channel::Hand),
+            Just(Channel::ElbowSpin),
+            Just(Channel::Upper),
+            Just(Channel::Translation),
+            Just(Channel::Layer(Layer::Cursor)),
+        ],
+        joints().prop_map(Channel::Rotation),
+        joints().prop_map(Channel::Offset),
+        joints().prop_map(Channel::Target),
+        joints().prop_map(Channel::Enabled),
+    ]
+}
+
+fn keying() -> impl Strategy<Value = Action> {
+    let times = prop_oneof![(0..5).prop_map(|step| f64::from(step) * 0.5), -1.0..9.0_f64];
+    let key = (channels(), times.clone());
+    prop_oneof![
+        4 => vec(channels(), 1..4).prop_map(Action::Key),
+        3 => times.clone().prop_map(Action::SetTime),
+        1 => vec(key.clone(), 1..3).prop_map(Action::DeleteKeys),
+        1 => vec(channels(), 1..3).prop_map(Action::ClearChannels),
+        1 => (vec(key.clone(), 1..3), -2.0..2.0_f64)
+            .prop_map(|(keys, by)| Action::MoveKeys { keys, by }),
+        1 => vec(key, 1..3).prop_map(Action::SelectKeys),
+        1 => Just(Action::CopyKeys),
+        1 => Just(Action::PasteKeys),
+        1 => any::<bool>().prop_map(Action::SetAutoKey),
+        1 => (times.clone(), times, 0..70_u32).prop_map(|(start, end, frame_rate)| {
+            Action::SetTimeline(Timeline { start, end, frame_rate })
+        }),
+        1 => points().prop_map(Action::SetHand),
+        1 => numbers().prop_map(Action::SetElbowSpin),
+        1 => numbers().prop_map(Action::SetUpper),
+        1 => any::<bool>().prop_map(|shown| Action::Show(Layer::Cursor, shown)),
+        1 => Just(Action::Undo),
+        1 => Just(Action::Redo),
+    ]
+}
+
 fn dragging() -> impl Strategy<Value = Action> {
     let input = (rays(), any::<bool>(), any::<bool>()).prop_map(|(ray, precise, snap)| DragInput {
         ray,
@@ -133,7 +176,7 @@ fn dragging() -> impl Strategy<Value = Action> {
 }
 
 fn actions() -> impl Strategy<Value = Vec<Action>> {
-    vec(prop_oneof![3 => building(), 3 => posing(), 2 => dragging()], 1..60)
+    vec(prop_oneof![3 => building(), 3 => posing(), 2 => dragging(), 3 => keying()], 1..80)
 }
 
 fn session() -> Session {
@@ -160,11 +203,21 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
         prop_assert!(target.joint < joints.len() && targeted.insert(target.joint));
         prop_assert!(target.home.is_finite() && target.weight > 0.0);
     }
+    let document = session.document();
+    prop_assert!(document.timeline.is_valid());
+    for (channel, track) in document.keys.tracks() {
+        prop_assert!(channel.value(document).is_some(), "{channel:?} is of nothing");
+        prop_assert!(track.knots().is_sorted_by(|a, b| a.time < b.time));
+        prop_assert!(track.knots().iter().all(|knot| knot.value.is_finite()));
+    }
+    for (channel, time) in session.selected_keys() {
+        prop_assert!(document.keys.track(*channel).and_then(|track| track.get(*time)).is_some());
+    }
     Ok(())
 }
 
 proptest! {
-    #![proptest_config(config(400))]
+    #![proptest_config(config(200))]
 
     #[test]
     fn any_actions_leave_a_session_that_is_one(actions in actions()) {
@@ -184,7 +237,7 @@ proptest! {
         for action in [Action::CancelEdit, Action::Race(false), Action::Play(false)] {
             session.apply(action);
         }
-        let document = session.document().clone();
+        let (document, shown) = (session.document().clone(), session.shown().clone());
         let forward = session.camera().projection(1.0).forward;
         let ray = session.camera().projection(1.0).ray(glam::Vec2::ZERO);
         session.apply(Action::Grab { grip, ray, forward });
@@ -197,13 +250,41 @@ proptest! {
         }
         session.apply(Action::CancelEdit);
         if held {
-            prop_assert!(same(session.skeleton(), &document.skeleton));
-            prop_assert_eq!(session.arm(), &document.arm);
+            prop_assert!(same(session.skeleton(), &shown.skeleton));
+            prop_assert_eq!(session.arm(), &shown.arm);
+            prop_assert_eq!(&session.document().keys, &document.keys);
         }
+    }
+
+    #[test]
+    fn undo_leads_back_to_the_first_document_and_redo_to_the_last(actions in actions()) {
+        let mut session = session();
+        let first = session.document().clone();
+        for action in actions {
+            session.apply(action);
+        }
+        for action in [Action::CommitEdit, Action::Run(false), Action::Play(false)] {
+            session.apply(action);
+        }
+        while session.redo_name().is_some() {
+            session.apply(Action::Redo);
+        }
+        let last = session.document().clone();
+        prop_assert!(session.is_unsaved() || last == first);
+        while session.undo_name().is_some() {
+            session.apply(Action::Undo);
+            check(&session)?;
+        }
+        prop_assert_eq!(session.document(), &first);
+        prop_assert!(!session.is_unsaved());
+        while session.redo_name().is_some() {
+            session.apply(Action::Redo);
+            check(&session)?;
+        }
+        prop_assert_eq!(session.document(), &last);
     }
 }
 
-/// Equal, where not-a-number is what it was before too.
 #[test]
 fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
     let mut session = Session::default();
@@ -224,6 +305,7 @@ fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
     assert!(after < before * 0.99, "{before} before and {after} after");
 }
 
+/// Equal, where not-a-number is what it was before too.
 fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
     a == b || format!("{a:?}") == format!("{b:?}")
 }

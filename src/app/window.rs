@@ -222,7 +222,7 @@ impl AppWindow {
             Effect::SavePicture(path) => {
                 let scale = self.egui.egui_ctx().pixels_per_point();
                 let shot = Shot {
-                    document: session.document().clone(),
+                    document: session.shown().clone(),
                     staging: session.staging(),
                     theme: session.preferences().theme,
                     size: pixels(viewport, scale),
@@ -246,7 +246,7 @@ impl AppWindow {
     /// Draws the scene for the panels to show, if it is not what they show already.
     fn draw_scene(&mut self, session: &Session, viewport: Rect, scale: f32) {
         let (width, height) = pixels(viewport, scale);
-        let scene = Scene::new(session.document(), &session.staging(), session.preferences().theme);
+        let scene = Scene::new(session.shown(), &session.staging(), session.preferences().theme);
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.scene = None;

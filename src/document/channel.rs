@@ -2,8 +2,9 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Document, Layer};
+use super::{Document, Layer, RigKind, SkeletonRig};
 use crate::kinematics::skeleton::{Moved, Skeleton};
+use crate::kinematics::solve::Root;
 
 /// One thing of a document that keys can change in time.
 ///
@@ -70,6 +71,47 @@ impl Channel {
             Self::ElbowSpin => Quantity::Angle,
             Self::Rotation(_) => Quantity::Angles,
             Self::Enabled(_) | Self::Layer(_) => Quantity::Switch,
+        }
+    }
+
+    pub fn is_switch(self) -> bool {
+        self.quantity() == Quantity::Switch
+    }
+
+    /// All that shapes a document's arm.
+    pub const OF_ARM: [Self; 5] =
+        [Self::Hand, Self::ElbowSpin, Self::Root, Self::Upper, Self::Lower];
+
+    /// All that shapes the rig that is shown. Of a skeleton where it is, how its joints are turned,
+    /// where they sit if the solver moves roots, and where its targets are.
+    pub fn of_rig(document: &Document) -> Vec<Self> {
+        if document.rig == RigKind::Arm {
+            return Self::OF_ARM.to_vec();
+        }
+        let SkeletonRig { skeleton, targets, solver, .. } = &document.skeleton;
+        let joints = skeleton.joints().iter().enumerate();
+        let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
+        let mut channels = vec![Self::Translation];
+        if solver.root == Root::Free {
+            channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
+        }
+        channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
+        channels.extend(targets.iter().map(|target| Self::Target(target.joint)));
+        channels
+    }
+
+    /// The rig whose pose or targets it changes, if any.
+    pub fn rig(self) -> Option<RigKind> {
+        match self {
+            Self::Hand | Self::ElbowSpin | Self::Root | Self::Upper | Self::Lower => {
+                Some(RigKind::Arm)
+            }
+            Self::Translation
+            | Self::Rotation(_)
+            | Self::Offset(_)
+            | Self::Target(_)
+            | Self::Enabled(_) => Some(RigKind::Skeleton),
+            Self::Layer(_) => None,
         }
     }
 

@@ -24,11 +24,23 @@ pub enum Layer {
     Axes,
     Labels,
     Shadow,
+    /// The way of the hand or of the selected joint through the keys.
+    Trail,
+    /// The rig as it stands somewhat before and after.
+    OnionSkins,
 }
 
 impl Layer {
+    /// Everything, in the order in which it is offered.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::GUIDES.into_iter().chain(Self::MOTION).chain(Self::SURROUNDINGS)
+    }
+
     /// The four guides of the paper.
     pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
+
+    /// What shows how the rig moves.
+    pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
 
     /// What surrounds the arm.
     pub const SURROUNDINGS: [Self; 7] = [
@@ -65,8 +77,7 @@ impl Display {
 
     /// What is shown.
     pub fn layers(self) -> impl Iterator<Item = Layer> {
-        let all = Layer::GUIDES.into_iter().chain(Layer::SURROUNDINGS);
-        all.filter(move |layer| self.shows(*layer))
+        Layer::all().filter(move |layer| self.shows(*layer))
     }
 }
 
@@ -78,9 +89,10 @@ impl FromIterator<Layer> for Display {
 }
 
 impl Default for Display {
-    /// The whole scene, with Cursor and Pointer; the limits would veil the arm.
+    /// The whole scene, with Cursor, Pointer and trail; the limits would veil the arm.
     fn default() -> Self {
-        Layer::SURROUNDINGS.into_iter().chain([Layer::Cursor, Layer::Pointer]).collect()
+        let guides = [Layer::Cursor, Layer::Pointer, Layer::Trail];
+        Layer::SURROUNDINGS.into_iter().chain(guides).collect()
     }
 }
 

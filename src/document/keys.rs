@@ -1,9 +1,10 @@
+use core::f32::consts::TAU;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{Channel, Document, Quantity};
+use super::{Channel, Document, Quantity, RigKind};
 use crate::kinematics::skeleton::Moved;
 use crate::kinematics::spline::Spline;
 
@@ -106,6 +107,25 @@ impl Document {
         let mut posed = self.clone();
         posed.keys_to(time);
         Cow::Owned(posed)
+    }
+
+    /// Whether the pose of the rig that is shown changes in time.
+    pub fn is_posed_by_time(&self) -> bool {
+        let slithers = self.rig == RigKind::Skeleton && self.skeleton.slither.is_some();
+        slithers || self.keys.tracks().any(|(channel, _)| channel.rig() == Some(self.rig))
+    }
+
+    /// Keys a channel as it is now, at a time; an angle unwrapped to be near the keys that it has.
+    pub fn key(&mut self, channel: Channel, time: f64) {
+        let Some(mut value) = channel.value(self) else {
+            return;
+        };
+        if channel.quantity() == Quantity::Angle
+            && let Some(near) = self.keys.value(channel, time)
+        {
+            value.x += ((near.x - value.x) / TAU).round() * TAU;
+        }
+        self.keys.insert(channel, time, value);
     }
 
     /// Gives every keyed channel the value that its keys give at a time.

@@ -22,6 +22,8 @@ pub use skeleton::{Motion, Path, SkeletonRig, Target};
 pub use slither::Slither;
 pub use timeline::Timeline;
 
+use crate::kinematics::skeleton::Moved;
+
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
@@ -53,6 +55,12 @@ impl Document {
             RigKind::Arm => 0.001,
             RigKind::Skeleton => 1.0,
         })
+    }
+
+    /// Lets targets and keys follow their joints to new places.
+    pub fn follow(&mut self, moved: &Moved) {
+        self.skeleton.follow(moved);
+        self.keys.follow(moved);
     }
 
     /// How wide the grid's cells are: those of the seed around the arm; around a skeleton the power

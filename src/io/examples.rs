@@ -14,7 +14,7 @@ pub struct Example {
 }
 
 impl Example {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self {
             name: "arm",
             title: "Arm",
@@ -44,6 +44,12 @@ impl Example {
             title: "Ten-joint chain",
             sentence: "A chain with one target, to watch the solvers at work.",
             text: include_str!("../../assets/ten-joints.json"),
+        },
+        Self {
+            name: "keyframes",
+            title: "Keyframes",
+            sentence: "An arm whose hand goes along a spline through six keys; press Space to play.",
+            text: include_str!("../../assets/keyframes.json"),
         },
         Self {
             name: "degenerate",

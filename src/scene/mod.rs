@@ -3,6 +3,7 @@
 //! Nothing here knows how things are drawn; nothing in [`crate::render`] knows what they mean.
 
 mod arm;
+mod motion;
 mod palette;
 mod shadow;
 mod skeleton;
@@ -133,6 +134,7 @@ impl Scene {
             RigKind::Arm => arm::add(&mut scene, &document.arm, &document.arm.pose(), display),
             RigKind::Skeleton => skeleton::add(&mut scene, &document.skeleton, staging, display),
         }
+        motion::add(&mut scene, document, staging, reach);
         scene
     }
 

@@ -2,8 +2,10 @@ use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
 
-use super::{Constraint, Dialog, DragInput, Grip, Motion, Navigation};
-use crate::document::{Camera, Document, Layer, Ray, RigKind, Slither, Target, Theme};
+use super::{Constraint, Dialog, DragInput, Grip, Key, Motion, Navigation};
+use crate::document::{
+    Camera, Channel, Document, Layer, Ray, RigKind, Slither, Target, Theme, Timeline,
+};
 use crate::io::Example;
 use crate::kinematics::skeleton::Limit;
 use crate::kinematics::solve::Options;
@@ -91,12 +93,40 @@ pub enum Action {
     Play(bool),
     /// In seconds.
     SetTime(f64),
+    /// Whether the time begins again where the timeline ends.
+    SetLooping(bool),
+    /// Seconds of the document in one of the window.
+    SetSpeed(f64),
+
+    /// Keys channels as they are shown, where the time is.
+    Key(Vec<Channel>),
+    DeleteKeys(Vec<Key>),
+    /// Takes all keys of channels away.
+    ClearChannels(Vec<Channel>),
+    /// Moves keys, named by where they were before the change under way.
+    MoveKeys {
+        keys: Vec<Key>,
+        by: f64,
+    },
+    /// Selects these keys and no others.
+    SelectKeys(Vec<Key>),
+    SelectChannels(Vec<Channel>),
+    CopyKeys,
+    /// Puts the copied keys to where the time is.
+    PasteKeys,
+    /// Whether every edit makes keys.
+    SetAutoKey(bool),
+    SetTimeline(Timeline),
+    /// How long a unit is for other programs, in metres; nothing for what is usual.
+    SetMetres(Option<f32>),
 
     /// Begins a change of several steps, such as a slider's drag.
     BeginEdit,
     CommitEdit,
     /// Takes back the change under way.
     CancelEdit,
+    Undo,
+    Redo,
     /// Takes hold of something; `forward` is the picture's normal.
     Grab {
         grip: Grip,
@@ -123,6 +153,9 @@ pub enum Action {
     SetTheme(Theme),
     SetNavigation(Navigation),
     ShowExplain(bool),
+    ShowTimeline(bool),
+    /// Shows the keys as curves.
+    ShowCurves(bool),
     OpenDialog(Dialog),
     CloseDialog,
     /// Says what just happened.
@@ -130,6 +163,8 @@ pub enum Action {
 
     CopyPose,
     SavePicture(String),
+    /// Asks for a path: by the system's own dialog, or where it has none by this one.
+    Ask(Dialog),
     /// Asks the system's own dialog for the path that the open dialog wants.
     ChoosePath,
     /// A file, and which of its skeletons if it has several.
@@ -146,11 +181,24 @@ pub enum Action {
     Save,
     SaveAs(PathBuf),
     Saved(PathBuf),
+    /// Says why the document is not saved.
+    NotSaved(String),
+    /// Saves, then does what would have lost the changes.
+    SaveAnd(Box<Action>),
+    /// Does it, though it loses changes.
+    Discard(Box<Action>),
     /// One of the scenes that come with the program.
     OpenExample(Example),
     /// A root to hang joints from.
     NewSkeleton,
     Quit,
+}
+
+impl Action {
+    /// Whether the open document is left behind.
+    pub(super) fn leaves_document(&self) -> bool {
+        matches!(self, Self::Open { .. } | Self::OpenExample(_) | Self::NewSkeleton | Self::Quit)
+    }
 }
 
 /// What the world outside the session is asked to do.

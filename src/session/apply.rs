@@ -1,15 +1,29 @@
-use std::path::PathBuf;
-
 use glam::Vec3;
 
 use super::drag::Way;
-use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Session, ViewDrag};
+use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Session, ViewDrag, naming};
 use crate::document::{Arm, Camera, Display, Document, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
 impl Session {
-    /// Does it; what is not possible changes nothing and is said in [`Session::message`].
+    /// Does it; what is not possible changes nothing and is said in [`Session::message`]. What would
+    /// lose changes that are not saved is asked about first.
     pub fn apply(&mut self, action: Action) -> Option<Effect> {
+        if self.is_unsaved() && action.leaves_document() {
+            self.dialog = Some(Dialog::Unsaved { then: Box::new(action) });
+            return None;
+        }
+        self.apply_unasked(action)
+    }
+
+    pub(super) fn apply_unasked(&mut self, action: Action) -> Option<Effect> {
+        match naming::of(&action) {
+            Some(name) => self.step_by(name, |session| session.act(action)),
+            None => self.act(action),
+        }
+    }
+
+    fn act(&mut self, action: Action) -> Option<Effect> {
         match action {
             Action::SetHand(hand) => self.set_point("hand", hand, |arm| &mut arm.cursor),
             Action::SetRoot(root) => self.set_point("shoulder", root, |arm| &mut arm.root),
@@ -22,14 +36,12 @@ impl Session {
             },
             Action::ResetAll => self.reset_all(),
             Action::Show(layer, shown) => {
-                self.document.display = self.document.display.with(layer, shown);
+                let display = self.shown.display.with(layer, shown);
+                self.commit(Document { display, ..self.shown.clone() });
             }
             Action::ShowRig(rig) => self.show_rig(rig),
 
-            Action::Select(joints) => {
-                self.selection = joints;
-                self.refresh_skeleton();
-            }
+            Action::Select(joints) => self.select(joints),
             Action::Point(joint) => self.pointed = joint,
             Action::AddChild { parent, tip } => self.add_joint(Some(parent), tip),
             Action::AddRoot => self.add_joint(None, None),
@@ -54,17 +66,15 @@ impl Session {
             Action::SetSlither(slither) => self.set_slither(slither),
 
             Action::AddTarget(joint) => self.add_target(joint),
-            Action::RemoveTarget(joint) => {
-                self.edit_skeleton(|rig| {
-                    rig.targets.retain(|target| target.joint != joint);
-                    Ok(())
-                });
-            }
+            Action::RemoveTarget(joint) => self.remove_target(joint),
             Action::SetTarget(target) => self.set_target(target),
             Action::SetSolver(solver) => self.set_solver(solver),
             Action::SetIterationsPerFrame(iterations) => {
-                self.document.skeleton.iterations_per_frame =
-                    iterations.clamp(1, SkeletonRig::MOST_ITERATIONS_PER_FRAME);
+                self.edit_skeleton(|rig| {
+                    rig.iterations_per_frame =
+                        iterations.clamp(1, SkeletonRig::MOST_ITERATIONS_PER_FRAME);
+                    Ok(())
+                });
             }
             Action::SetFollow(follow) => self.preferences.follow = follow,
             Action::Run(running) => self.run(running),
@@ -73,17 +83,38 @@ impl Session {
             Action::ResetSolver => self.reset_solver(),
             Action::Race(true) => self.start_race(),
             Action::Race(false) => self.race = None,
-            Action::Play(playing) => {
-                self.clock.playing = playing;
-                self.clock.last = None;
-            }
-            Action::SetTime(time) => {
-                self.clock.time = if time.is_finite() { time } else { 0.0 };
-                self.refresh_skeleton();
+            Action::Play(playing) => self.play(playing),
+            Action::SetTime(time) => self.set_time(time),
+            Action::SetLooping(looping) => self.clock.looping = looping,
+            Action::SetSpeed(speed) => {
+                let (slowest, fastest) = Self::SPEEDS;
+                if speed.is_finite() {
+                    self.clock.speed = speed.clamp(slowest, fastest);
+                }
             }
 
+            Action::Key(channels) => self.key(&channels),
+            Action::DeleteKeys(keys) => self.delete_keys(&keys),
+            Action::ClearChannels(channels) => self.clear_channels(&channels),
+            Action::MoveKeys { keys, by } => self.move_keys(&keys, by),
+            Action::CopyKeys => self.copy_keys(),
+            Action::PasteKeys => self.paste_keys(),
+            Action::SelectKeys(keys) => {
+                self.selected_keys = keys;
+                self.retain_keys();
+            }
+            Action::SelectChannels(channels) => {
+                self.selected_channels = channels.into_iter().collect();
+                self.retain_keys();
+            }
+            Action::SetAutoKey(auto_key) => self.auto_key = auto_key,
+            Action::SetTimeline(timeline) => self.set_timeline(timeline),
+            Action::SetMetres(metres) => self.set_metres(metres),
+
             Action::BeginEdit => self.begin_edit(None),
-            Action::CommitEdit => self.edit = None,
+            Action::CommitEdit => self.commit_edit(),
+            Action::Undo => self.undo(),
+            Action::Redo => self.redo(),
             Action::CancelEdit => self.cancel_edit(),
             Action::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
             Action::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
@@ -94,7 +125,7 @@ impl Session {
 
             Action::SetCamera(camera) => {
                 self.glide = None;
-                self.document.camera = camera;
+                self.set_camera(camera);
             }
             Action::GlideTo(camera) => self.glide = Some(Glide::new(self.document.camera, camera)),
             Action::Advance(seconds) => self.advance(seconds),
@@ -104,21 +135,23 @@ impl Session {
             }
             Action::DragView { to, aspect } => {
                 if let Some(drag) = &self.view_drag {
-                    self.document.camera = drag.camera(to, aspect);
+                    self.set_camera(drag.camera(to, aspect));
                 }
             }
             Action::DropView => self.view_drag = None,
             Action::CancelView => {
                 if let Some(drag) = self.view_drag.take() {
-                    self.document.camera = drag.before;
+                    self.set_camera(drag.before);
                 }
             }
 
             Action::SetTheme(theme) => self.preferences.theme = theme,
             Action::SetNavigation(navigation) => self.preferences.navigation = navigation,
             Action::ShowExplain(shown) => self.preferences.explain = shown,
+            Action::ShowTimeline(shown) => self.preferences.timeline = shown,
+            Action::ShowCurves(shown) => self.preferences.curves = shown,
             Action::OpenDialog(dialog) => self.dialog = Some(dialog),
-            Action::CloseDialog => self.dialog = None,
+            Action::CloseDialog => self.close_dialog(),
             Action::Report(message) => self.message = Some(message),
 
             Action::CopyPose => {
@@ -130,23 +163,31 @@ impl Session {
                 self.message = Some(format!("Saving {path} …"));
                 return Some(Effect::SavePicture(path));
             }
+            Action::Ask(dialog) => return Some(Effect::ChoosePath(dialog)),
             Action::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),
             Action::Open { path, skeleton } => {
                 self.dialog = None;
                 return Some(Effect::Open { path, skeleton });
             }
             Action::Opened { document, file } => self.replace_document(*document, file),
-            Action::Save => match self.file.clone() {
-                Some(path) => return Some(Effect::Save(path)),
-                None => self.dialog = Some(Dialog::SaveAs { path: "ik-arm.json".to_owned() }),
-            },
+            Action::Save => return Some(self.save()),
             Action::SaveAs(path) => {
                 self.dialog = None;
                 return Some(Effect::Save(path));
             }
-            Action::Saved(path) => {
-                self.message = Some(format!("Saved {}", path.display()));
-                self.file = Some(path);
+            Action::Saved(path) => return self.saved(path),
+            Action::NotSaved(why) => {
+                self.then = None;
+                self.message = Some(why);
+            }
+            Action::SaveAnd(then) => {
+                self.dialog = None;
+                self.then = Some(then);
+                return Some(self.save());
+            }
+            Action::Discard(then) => {
+                self.dialog = None;
+                return self.apply_unasked(*then);
             }
             Action::OpenExample(example) => self.open_example(example),
             Action::NewSkeleton => self.new_skeleton(),
@@ -161,7 +202,7 @@ impl Session {
     }
 
     fn reset_all(&mut self) {
-        self.document.display = Display::default();
+        self.commit(Document { display: Display::default(), ..self.shown.clone() });
         match self.rig() {
             RigKind::Arm => {
                 self.glide = Some(Glide::new(self.document.camera, Camera::default()));
@@ -173,10 +214,6 @@ impl Session {
                 self.bind_pose();
             }
         }
-    }
-
-    fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
-        *self = Self { file, ..Self::with_document(self.preferences, document) };
     }
 
     fn open_example(&mut self, example: Example) {
@@ -192,44 +229,29 @@ impl Session {
     fn new_skeleton(&mut self) {
         let document = Document { rig: RigKind::Skeleton, ..Document::default() };
         self.replace_document(document, None);
-        self.selection = vec![0];
-        self.document.camera = self.framing_all();
+        self.select(vec![0]);
+        self.set_camera(self.framing_all());
         self.message =
             Some("Press A to hang a joint on the root, or Ctrl+click in the view".to_owned());
-    }
-
-    pub(super) fn begin_edit(&mut self, drag: Option<Drag>) {
-        if self.edit.is_none() {
-            let (arm, skeleton) = (*self.arm(), self.skeleton().clone());
-            self.edit = Some(Edit { arm, skeleton, drag });
-        }
-    }
-
-    fn cancel_edit(&mut self) {
-        if let Some(edit) = self.edit.take() {
-            self.replace_arm(edit.arm);
-            self.document.skeleton = edit.skeleton;
-            self.refresh_skeleton();
-            self.message = Some("Taken back".to_owned());
-        }
     }
 
     fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {
         self.glide = None;
         match grip {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
-            Grip::Target(joint, _) => self.grab_target(grip, joint, ray, forward),
-            Grip::Tip(joint, _) => self.grab_tip(grip, joint, ray, forward),
+            Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
+            Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
         }
     }
 
     fn drag_by(&mut self, change: impl FnOnce(&mut Drag)) {
-        let Some(Edit { arm: before, drag: Some(drag), .. }) = &mut self.edit else {
+        let Some(Edit { shown, drag: Some(drag), name, .. }) = &mut self.edit else {
             return;
         };
         change(drag);
         let grip = drag.grip;
+        *name = Some(naming::of_drag(grip));
         match (grip, &mut drag.way) {
             (Grip::Ring(joint, axis), Way::Turn(turn)) => {
                 let angle = turn.angle();
@@ -237,8 +259,8 @@ impl Session {
             }
             (Grip::Hand(_), Way::Point(point)) => {
                 let held = point.point();
-                let hand = if point.has_moved() { held } else { before.cursor };
-                self.apply(Action::SetHand(hand));
+                let hand = if point.has_moved() { held } else { shown.arm.cursor };
+                self.set_point("hand", hand, |arm| &mut arm.cursor);
             }
             (_, Way::Point(point)) => {
                 let to = point.point();
@@ -254,12 +276,15 @@ impl Session {
     fn advance(&mut self, seconds: f64) {
         if let Some(glide) = &mut self.glide {
             let (camera, arrived) = glide.at(seconds);
-            self.document.camera = camera;
             if arrived {
                 self.glide = None;
             }
+            self.set_camera(camera);
         }
-        self.advance_skeleton(seconds);
+        if self.clock.last != Some(seconds) {
+            self.advance_clock(seconds);
+            self.advance_solvers();
+        }
     }
 }
 

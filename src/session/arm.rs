@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::drag::Way;
 use super::{Drag, Grip, Handle, PointDrag, Session};
-use crate::document::{Arm, Ray};
+use crate::document::{Arm, Document, Ray};
 use crate::kinematics::two_bone::TwoBone;
 
 /// What actions do to the arm.
@@ -34,12 +34,11 @@ impl Session {
         }
     }
 
-    /// Every change of the arm comes through here: the pose follows, and where it faces is kept.
+    /// Every change of the arm comes through here: where it faces is kept.
     pub(super) fn replace_arm(&mut self, arm: Arm) {
         self.message = None;
-        self.document.arm = arm;
-        self.pose = arm.pose();
-        self.document.arm.facing = self.pose.facing;
+        let arm = Arm { facing: arm.pose().facing, ..arm };
+        self.commit(Document { arm, ..self.shown.clone() });
     }
 
     /// The hand is taken where it is seen, or its cursor if that is out of reach and nearer to the

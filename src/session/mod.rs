@@ -4,7 +4,13 @@
 mod action;
 mod apply;
 mod arm;
+mod clock;
 mod drag;
+mod edit;
+mod files;
+mod history;
+mod keys;
+mod naming;
 mod point_drag;
 mod preferences;
 mod race;
@@ -13,24 +19,32 @@ mod skeleton;
 mod skeleton_drag;
 mod solving;
 mod staging;
+mod trail;
 mod turn_drag;
 mod view_drag;
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 pub use action::{Action, Effect};
 pub use drag::{Drag, Grip};
+pub use keys::Key;
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
 pub use preferences::{Navigation, Preferences};
 pub use race::{Race, Runner};
 pub use solving::{History, Solving};
-pub use staging::{Ghost, Staging};
+pub use staging::{Ghost, OnionSkin, Staging};
 pub use turn_drag::{Ring, TurnDrag};
 pub use view_drag::{Motion, ViewDrag};
 
-use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
+use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::kinematics::skeleton::Pose as SkeletonPose;
 use crate::kinematics::two_bone::Pose;
+use clock::Clock;
+use edit::Edit;
+use history::{Overrides, State};
+use keys::Clipboard;
+use trail::Trail;
 use view_drag::Glide;
 
 /// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
@@ -41,47 +55,51 @@ const ASPECT: f32 = 1.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     document: Document,
+    /// The document as it stands now: at this time, with what is shown against its keys.
+    shown: Document,
     /// Where the document was opened from or saved to.
     file: Option<PathBuf>,
+    recent: Vec<PathBuf>,
     pose: Pose,
     skeleton_pose: SkeletonPose,
+    trail: Trail,
     preferences: Preferences,
     edit: Option<Edit>,
+    history: history::History,
+    /// The same number, the same document.
+    revision: u64,
+    saved_revision: u64,
+    newest_revision: u64,
+    overrides: Overrides,
+    auto_key: bool,
+    selected_channels: BTreeSet<Channel>,
+    selected_keys: Vec<Key>,
+    clipboard: Clipboard,
     /// Joints; the last one is the one that is worked on.
     selection: Vec<usize>,
     pointed: Option<usize>,
     clock: Clock,
     solving: Option<Solving>,
+    /// How everything was before the solver that is running.
+    run_before: Option<State>,
     race: Option<Race>,
     view_drag: Option<ViewDrag>,
     glide: Option<Glide>,
     dialog: Option<Dialog>,
+    /// What waits for the document to be saved.
+    then: Option<Box<Action>>,
     message: Option<String>,
 }
 
-/// A change that is not finished: it can still be taken back.
-#[derive(Clone, Debug, PartialEq)]
-struct Edit {
-    arm: Arm,
-    skeleton: SkeletonRig,
-    drag: Option<Drag>,
-}
-
-/// The time that targets and snakes move by.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Clock {
-    /// In seconds.
-    time: f64,
-    playing: bool,
-    /// When the last picture was made, in seconds of the window; nothing before the first.
-    last: Option<f64>,
-}
-
 /// A window over the others.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Dialog {
     About,
     Shortcuts,
+    /// What would lose changes that are not saved.
+    Unsaved {
+        then: Box<Action>,
+    },
     /// Each asks for a path, which is shown as it is typed.
     SavePicture {
         path: String,
@@ -120,29 +138,45 @@ impl Session {
         Self {
             pose: document.arm.pose(),
             skeleton_pose: document.skeleton.at(0.0).pose(),
+            shown: document.clone(),
             document,
             file: None,
+            recent: Vec::new(),
+            trail: Trail::default(),
             preferences,
             edit: None,
+            history: history::History::default(),
+            revision: 0,
+            saved_revision: 0,
+            newest_revision: 0,
+            overrides: Overrides::default(),
+            auto_key: false,
+            selected_channels: BTreeSet::new(),
+            selected_keys: Vec::new(),
+            clipboard: Clipboard::default(),
             selection: Vec::new(),
             pointed: None,
             clock: Clock::default(),
             solving: None,
+            run_before: None,
             race: None,
             view_drag: None,
             glide: None,
             dialog: None,
+            then: None,
             message: None,
         }
     }
 
+    /// What is saved.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// Where the document was opened from or saved to.
-    pub fn file(&self) -> Option<&Path> {
-        self.file.as_deref()
+    /// The document as it stands now: keyed channels have the values of this time, or those that
+    /// they were given since the time changed.
+    pub fn shown(&self) -> &Document {
+        &self.shown
     }
 
     pub fn rig(&self) -> RigKind {
@@ -150,11 +184,11 @@ impl Session {
     }
 
     pub fn arm(&self) -> &Arm {
-        &self.document.arm
+        &self.shown.arm
     }
 
     pub fn skeleton(&self) -> &SkeletonRig {
-        &self.document.skeleton
+        &self.shown.skeleton
     }
 
     pub fn camera(&self) -> &Camera {
@@ -180,6 +214,8 @@ impl Session {
             selection: self.selection.clone(),
             pointed: self.pointed,
             ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
+            trail: self.trail.points().to_vec(),
+            onion_skins: self.onion_skins(),
         }
     }
 
@@ -226,16 +262,6 @@ impl Session {
         self.pointed
     }
 
-    /// In seconds.
-    pub fn time(&self) -> f64 {
-        self.clock.time
-    }
-
-    /// Whether the time goes on.
-    pub fn is_playing(&self) -> bool {
-        self.clock.playing
-    }
-
     /// What a solver has done since the last reset.
     pub fn solving(&self) -> Option<&Solving> {
         self.solving.as_ref()
@@ -252,9 +278,8 @@ impl Session {
 
     /// Whether the next picture is another one by itself.
     pub fn is_moving(&self) -> bool {
-        let plays = self.clock.playing && self.skeleton().is_moving();
         self.is_gliding()
-            || plays
+            || self.clock.playing
             || self.is_running()
             || self.race.as_ref().is_some_and(Race::is_running)
     }
@@ -278,6 +303,32 @@ impl Session {
             RigKind::Skeleton => self.skeleton().bounds(&self.skeleton_pose, self.clock.time),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// All that is shown follows the document and the time.
+    fn refresh(&mut self) {
+        self.shown.clone_from(&self.document);
+        self.shown.keys_to(self.clock.time);
+        for (channel, value) in &self.overrides {
+            channel.set(&mut self.shown, *value);
+        }
+        self.pose = self.shown.arm.pose();
+        self.skeleton_pose = self.shown.skeleton.at(self.clock.time).pose();
+        let count = self.skeleton_pose.len();
+        self.selection.retain(|joint| *joint < count);
+        self.pointed = self.pointed.filter(|joint| *joint < count);
+        self.retain_keys();
+    }
+
+    fn set_camera(&mut self, camera: Camera) {
+        self.document.camera = camera;
+        self.shown.camera = camera;
+    }
+
+    fn select(&mut self, joints: Vec<usize>) {
+        self.selection = joints;
+        self.selection.retain(|joint| *joint < self.skeleton_pose.len());
+        self.refresh_trail();
     }
 
     pub fn dialog(&self) -> Option<&Dialog> {

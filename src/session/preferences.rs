@@ -10,6 +10,10 @@ pub struct Preferences {
     pub navigation: Navigation,
     /// Whether the panel on the right is open.
     pub explain: bool,
+    /// Whether the panel with the keys is open.
+    pub timeline: bool,
+    /// Whether it shows the keys as curves.
+    pub curves: bool,
     /// Whether a skeleton follows its target while that is dragged.
     pub follow: bool,
 }
@@ -31,6 +35,8 @@ impl Default for Preferences {
             theme: Theme::default(),
             navigation: Navigation::default(),
             explain: true,
+            timeline: true,
+            curves: false,
             follow: true,
         }
     }

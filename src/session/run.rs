@@ -27,27 +27,61 @@ impl Session {
 
     pub(super) fn run(&mut self, running: bool) {
         self.race = None;
-        if let Some(mut solving) = self.solving_or_new() {
-            solving.running = running;
-            self.solving = Some(solving);
+        if !running {
+            return self.stop_run();
         }
+        if let Some(mut solving) = self.solving_or_new() {
+            solving.running = true;
+            self.solving = Some(solving);
+            self.begin_run();
+        }
+    }
+
+    /// A running solver is one change, until it stops or something else is changed meanwhile.
+    pub(super) fn begin_run(&mut self) {
+        if self.is_running() && self.run_before.is_none() && self.edit.is_none() {
+            self.run_before = Some(self.state());
+        }
+    }
+
+    /// Makes a step of what a running solver has done by now.
+    pub(super) fn end_run(&mut self) {
+        if let Some(before) = self.run_before.take() {
+            self.remember("solve", before);
+        }
+    }
+
+    pub(super) fn stop_run(&mut self) {
+        if let Some(solving) = &mut self.solving {
+            solving.running = false;
+        }
+        self.end_run();
     }
 
     /// Stops, and takes back what has been done since the solver was started.
     pub(super) fn cancel_run(&mut self) {
-        self.reset_solver();
+        self.race = None;
+        self.solving = None;
+        if let Some(before) = self.run_before.take() {
+            self.restore(&before);
+        }
         self.message = Some("Taken back".to_owned());
     }
 
     /// One iteration, after which the solver waits.
     pub(super) fn step(&mut self) {
-        self.run(false);
-        self.iterate(1);
+        self.race = None;
+        self.stop_run();
+        if let Some(solving) = self.solving_or_new() {
+            self.solving = Some(solving);
+            self.iterate(1);
+        }
     }
 
     /// Back to where the skeleton was before the first iteration.
     pub(super) fn reset_solver(&mut self) {
         self.race = None;
+        self.stop_run();
         let Some(solving) = self.solving.take() else { return };
         let start = solving.start().joints();
         self.edit_skeleton(|rig| {
@@ -64,26 +98,15 @@ impl Session {
     }
 
     pub(super) fn start_race(&mut self) {
-        if let Some(mut solving) = self.solving_or_new() {
-            solving.running = false;
+        self.stop_run();
+        if let Some(solving) = self.solving_or_new() {
             self.solving = Some(solving);
             self.race = Some(Race::new(self.skeleton(), self.clock.time));
         }
     }
 
-    /// Lets the time, the solver and the race go on.
-    pub(super) fn advance_skeleton(&mut self, seconds: f64) {
-        /// A window that slept does not leap.
-        const LONGEST: f64 = 0.25;
-        let passed = self.clock.last.map_or(0.0, |last| (seconds - last).clamp(0.0, LONGEST));
-        if self.clock.last == Some(seconds) {
-            return;
-        }
-        self.clock.last = Some(seconds);
-        if self.clock.playing {
-            self.clock.time += passed;
-            self.refresh_skeleton();
-        }
+    /// Lets the solver and the race go on.
+    pub(super) fn advance_solvers(&mut self) {
         if self.is_running() {
             self.iterate(self.skeleton().iterations_per_frame);
             self.rest();
@@ -95,25 +118,26 @@ impl Session {
 
     fn iterate(&mut self, iterations: u32) {
         let Some(mut solving) = self.solving.take() else { return };
-        match solving.advance(&mut self.document.skeleton, self.clock.time, iterations) {
+        let mut after = self.shown.clone();
+        match solving.advance(&mut after.skeleton, self.clock.time, iterations) {
             Ok(()) => {
                 self.solving = Some(solving);
-                self.refresh_skeleton();
+                self.commit(after);
             }
-            Err(error) => self.say_impossible(&error.to_string()),
+            Err(error) => {
+                self.end_run();
+                self.say_impossible(&error.to_string());
+            }
         }
     }
 
     /// A solver that is done waits, unless its targets move by themselves.
     fn rest(&mut self) {
-        let goes_on = self.clock.playing && self.skeleton().is_moving();
+        let goes_on = self.clock.playing && self.has_motion();
         let is_held = self.drag().is_some();
-        if let Some(solving) = &mut self.solving
-            && solving.is_done()
-            && !goes_on
-            && !is_held
-        {
-            solving.running = false;
+        let is_done = self.solving.as_ref().is_some_and(Solving::is_done);
+        if is_done && !goes_on && !is_held {
+            self.stop_run();
         }
     }
 }

@@ -1,38 +1,18 @@
 use glam::Vec3;
 
 use super::Session;
-use crate::document::{RigKind, SkeletonRig, Slither, Target};
+use crate::document::{Channel, Document, RigKind, SkeletonRig, Slither, Target};
 use crate::kinematics::skeleton::{Joint, SkeletonError};
 use crate::kinematics::solve::Options;
 
 /// What actions do to the skeleton.
 impl Session {
-    /// Every change of the skeleton comes through here: what is not possible is said and changes
-    /// nothing, and the pose follows.
+    /// Every change of the skeleton comes through here.
     pub(super) fn edit_skeleton<T>(
         &mut self,
         change: impl FnOnce(&mut SkeletonRig) -> Result<T, SkeletonError>,
     ) -> Option<T> {
-        let before = self.document.skeleton.clone();
-        match change(&mut self.document.skeleton) {
-            Ok(value) => {
-                self.message = None;
-                self.refresh_skeleton();
-                Some(value)
-            }
-            Err(error) => {
-                self.document.skeleton = before;
-                self.say_impossible(&error.to_string());
-                None
-            }
-        }
-    }
-
-    pub(super) fn refresh_skeleton(&mut self) {
-        let count = self.document.skeleton.skeleton.joints().len();
-        self.selection.retain(|joint| *joint < count);
-        self.pointed = self.pointed.filter(|joint| *joint < count);
-        self.skeleton_pose = self.document.skeleton.at(self.clock.time).pose();
+        self.edit_document(|document| change(&mut document.skeleton))
     }
 
     pub(super) fn say_impossible(&mut self, why: &str) {
@@ -68,34 +48,33 @@ impl Session {
             skeleton.add(Joint { offset: above.axis, radius, ..joint })
         });
         if let Some(joint) = added {
-            self.selection = vec![joint];
+            self.select(vec![joint]);
         }
     }
 
     pub(super) fn remove_joints(&mut self, joints: &[usize]) {
-        let skeleton = &self.document.skeleton.skeleton;
+        let skeleton = &self.skeleton().skeleton;
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
         let parents: Vec<usize> = parents.collect();
-        let moved = self.edit_skeleton(|rig| {
-            let moved = rig.skeleton.remove(joints);
-            rig.follow(&moved);
-            Ok(moved)
+        let moved = self.edit_document(|document| {
+            let moved = document.skeleton.skeleton.remove(joints);
+            document.follow(&moved);
+            Ok::<_, SkeletonError>(moved)
         });
         let Some(moved) = moved else { return };
-        self.selection =
-            parents.iter().rev().find_map(|parent| moved.get(*parent)).into_iter().collect();
-        self.refresh_skeleton();
+        let left = parents.iter().rev().find_map(|parent| moved.get(*parent));
+        self.select(left.into_iter().collect());
     }
 
     pub(super) fn reparent(&mut self, joint: usize, parent: Option<usize>) {
-        let moved = self.edit_skeleton(|rig| {
-            let moved = rig.skeleton.reparent(joint, parent)?;
-            rig.follow(&moved);
-            Ok(moved)
+        let moved = self.edit_document(|document| {
+            let moved = document.skeleton.skeleton.reparent(joint, parent)?;
+            document.follow(&moved);
+            Ok::<_, SkeletonError>(moved)
         });
         if let Some(moved) = moved {
-            self.selection = self.selection.iter().filter_map(|joint| moved.get(*joint)).collect();
             self.pointed = self.pointed.and_then(|joint| moved.get(joint));
+            self.select(self.selection.iter().filter_map(|joint| moved.get(*joint)).collect());
         }
     }
 
@@ -160,23 +139,33 @@ impl Session {
             && solver.tolerance.is_none_or(above_0)
             && solver.iterations.is_none_or(|iterations| iterations > 0);
         if is_possible {
-            self.document.skeleton.solver = solver;
+            self.edit_skeleton(|rig| {
+                rig.solver = solver;
+                Ok(())
+            });
         } else {
             self.message =
                 Some("Tolerance, damping, step and iterations must be above 0".to_owned());
         }
     }
 
+    /// Takes a target away, with its keys.
+    pub(super) fn remove_target(&mut self, joint: usize) {
+        self.edit_document(|document| {
+            document.skeleton.targets.retain(|target| target.joint != joint);
+            document.keys.clear(Channel::Target(joint));
+            document.keys.clear(Channel::Enabled(joint));
+            Ok::<_, SkeletonError>(())
+        });
+    }
+
     /// What is not seen waits.
     pub(super) fn show_rig(&mut self, rig: RigKind) {
         if rig == RigKind::Arm {
-            self.clock.playing = false;
             self.race = None;
-            if let Some(solving) = &mut self.solving {
-                solving.running = false;
-            }
+            self.stop_run();
         }
-        self.document.rig = rig;
+        self.commit(Document { rig, ..self.shown.clone() });
         self.message = None;
     }
 }

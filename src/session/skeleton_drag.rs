@@ -1,30 +1,32 @@
 use glam::{Vec3, Vec3A};
 
 use super::drag::Way;
-use super::{Drag, Grip, PointDrag, Ring, Session, TurnDrag};
+use super::{Drag, Grip, Handle, PointDrag, Ring, Session, TurnDrag};
 use crate::document::Ray;
-use crate::kinematics::solve::{self, Method, Options};
+use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::solve::{self, Method, Options, SolveError};
 
 /// Iterations while something is dragged, in every frame: enough for a short way.
 const ITERATIONS_OF_A_DRAG: u32 = 64;
 
 /// What is dragged of a skeleton.
 impl Session {
-    pub(super) fn grab_target(&mut self, grip: Grip, joint: usize, ray: Ray, forward: Vec3) {
-        let Grip::Target(_, handle) = grip else { return };
-        let Some(target) = self.skeleton().target(joint) else { return };
-        let at = self.skeleton().targets[target].at(self.clock.time);
-        let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip, way: Way::Point(drag) }));
+    pub(super) fn grab_target(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
+        if let Some(target) = self.skeleton().target(joint) {
+            let at = self.skeleton().targets[target].at(self.clock.time);
+            self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
+        }
     }
 
-    pub(super) fn grab_tip(&mut self, grip: Grip, joint: usize, ray: Ray, forward: Vec3) {
-        let Grip::Tip(_, handle) = grip else { return };
-        if joint >= self.skeleton_pose.len() || self.skeleton().slither.is_some() {
-            return;
+    pub(super) fn grab_tip(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
+        if joint < self.skeleton_pose.len() && self.skeleton().slither.is_none() {
+            let tip = self.skeleton_pose.tip(joint);
+            self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
-        let tip = self.skeleton_pose.tip(joint);
-        let drag = PointDrag::new(handle, tip, Vec3::ZERO, forward, ray).with_step(self.snap());
+    }
+
+    fn grab_point(&mut self, grip: Grip, handle: Handle, at: Vec3, ray: Ray, forward: Vec3) {
+        let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
         self.begin_edit(Some(Drag { grip, way: Way::Point(drag) }));
     }
 
@@ -49,7 +51,7 @@ impl Session {
 
     /// A tenth of the grid.
     fn snap(&self) -> f32 {
-        self.document.cell() * 0.1
+        self.shown.cell() * 0.1
     }
 
     pub(super) fn drag_skeleton(&mut self, grip: Grip, to: Vec3, moved: Vec3) {
@@ -67,14 +69,15 @@ impl Session {
         self.set_target(target);
         if self.preferences.follow && !self.is_running() && self.skeleton().slither.is_none() {
             let goals = self.skeleton().goals(self.clock.time);
-            self.solve_drag(&goals, self.skeleton().solver);
+            let skeleton = self.skeleton().skeleton.clone();
+            self.solve_drag(skeleton, &goals, self.skeleton().solver);
         }
     }
 
     /// The tip follows the pointer from the pose at the press; a root that is a point moves.
     fn drag_tip(&mut self, joint: usize, to: Vec3, moved: Vec3) {
         let Some(edit) = &self.edit else { return };
-        let before = edit.skeleton.skeleton.clone();
+        let before = edit.shown.skeleton.skeleton.clone();
         let Some(held) = before.joint(joint) else { return };
         if held.parent.is_none() && held.axis == Vec3::ZERO {
             let (transform, offset) = (before.transform(), held.offset);
@@ -89,18 +92,17 @@ impl Session {
         if solver.method == Method::TwoBone {
             solver.method = Method::Fabrik;
         }
-        self.document.skeleton.skeleton = before;
-        self.solve_drag(&goals, solver);
+        self.solve_drag(before, &goals, solver);
     }
 
-    fn solve_drag(&mut self, goals: &[solve::Target], solver: Options) {
+    /// Brings a skeleton to goals, from a pose, and shows it.
+    fn solve_drag(&mut self, mut from: Skeleton, goals: &[solve::Target], solver: Options) {
         let options = Options { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
-        let solved = solve::solve(&mut self.document.skeleton.skeleton, goals, &options);
-        self.refresh_skeleton();
-        match solved {
-            Ok(_) => self.message = None,
-            Err(error) => self.say_impossible(&error.to_string()),
-        }
+        self.edit_document(|document| {
+            solve::solve(&mut from, goals, &options)?;
+            document.skeleton.skeleton = from;
+            Ok::<_, SolveError>(())
+        });
     }
 
     pub(super) fn turn_joint(&mut self, joint: usize, axis: usize, angle: f32) {

@@ -1,3 +1,6 @@
+use glam::Vec3;
+
+use crate::document::Arm;
 use crate::kinematics::skeleton::{Pose, Skeleton};
 use crate::kinematics::solve::Method;
 
@@ -12,6 +15,20 @@ pub struct Staging {
     pub pointed: Option<usize>,
     /// The skeleton as solvers in a race have it.
     pub ghosts: Vec<Ghost>,
+    /// Where the hand or the selected joint's tip is at every frame, in the world.
+    pub trail: Vec<Vec3>,
+    pub onion_skins: Vec<OnionSkin>,
+}
+
+/// The rig as it stands somewhat before or after.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnionSkin {
+    pub arm: Arm,
+    pub pose: Pose,
+    /// Whether it is before.
+    pub past: bool,
+    /// How well it is seen: 1 is nearest in time.
+    pub opacity: f32,
 }
 
 /// A skeleton as a solver has it.

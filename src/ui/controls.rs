@@ -16,7 +16,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton(ui, session, actions),
         }
-        row::section(ui, "Guides", |ui| layers(ui, session, guides(session), actions));
+        row::section(ui, "Guides", |ui| layers(ui, session, &guides(session), actions));
         row::section(ui, "Display", |ui| layers(ui, session, &Layer::SURROUNDINGS, actions));
         resets(ui, session, actions);
         ui.add_space(8.0);
@@ -63,21 +63,22 @@ fn skeleton(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     row::section(ui, "Motion", |ui| motion::ui(ui, session, actions));
 }
 
-fn guides(session: &Session) -> &'static [Layer] {
-    match session.rig() {
-        RigKind::Arm => &Layer::GUIDES,
+fn guides(session: &Session) -> Vec<Layer> {
+    let guides = match session.rig() {
+        RigKind::Arm => &Layer::GUIDES[..],
         RigKind::Skeleton if session.skeleton().slither.is_some() => {
             &[Layer::Cursor, Layer::Pointer]
         }
         RigKind::Skeleton => &[Layer::Cursor],
-    }
+    };
+    guides.iter().copied().chain(Layer::MOTION).collect()
 }
 
 fn layers(ui: &mut Ui, session: &Session, layers: &[Layer], actions: &mut Vec<Action>) {
     ui.columns(2, |columns| {
         for (index, layer) in layers.iter().enumerate() {
             let (name, tooltip) = describe(session.rig(), *layer);
-            let mut shown = session.document().display.shows(*layer);
+            let mut shown = session.shown().display.shows(*layer);
             if columns[index % 2].checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
                 actions.push(Action::Show(*layer, shown));
             }
@@ -91,6 +92,15 @@ fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static str) {
             ("Targets", "Where tips are asked to be, with their ways and the gaps to them")
         }
         (RigKind::Skeleton, Layer::Pointer) => ("Path", "The way that the head goes"),
+        (RigKind::Arm, Layer::Trail) => {
+            ("Trail", "The way of the hand, with a dot for every frame")
+        }
+        (RigKind::Skeleton, Layer::Trail) => {
+            ("Trail", "The way of the selected joint's tip, with a dot for every frame")
+        }
+        (_, Layer::OnionSkins) => {
+            ("Onion skins", "The rig as it stands 5, 10 and 15 frames before and after")
+        }
         (RigKind::Skeleton, Layer::Labels) => ("Labels", "Names of the selected joints"),
         (RigKind::Arm, Layer::Cursor) => ("Cursor", "A small sphere where the hand is asked to be"),
         (RigKind::Arm, Layer::Pointer) => (

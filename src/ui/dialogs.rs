@@ -32,6 +32,9 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
         Some(Dialog::Rename { joint, name }) => {
             window(ui, "Rename", actions, |ui, actions| rename(ui, *joint, name, actions));
         }
+        Some(Dialog::Unsaved { then }) => {
+            window(ui, "Save changes?", actions, |ui, actions| unsaved(ui, session, then, actions));
+        }
         None => {}
     }
 }
@@ -240,6 +243,25 @@ fn rename(ui: &mut Ui, joint: usize, name: &str, actions: &mut Vec<Action>) {
             .on_disabled_hover_text("A joint needs a name");
         if (accept.clicked() || entered) && can_go {
             actions.push(Action::Rename { joint, name: typed.trim().to_owned() });
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Action>) {
+    ui.set_width(380.0);
+    let name = session.file().and_then(Path::file_name);
+    let name = name.map_or("The document".into(), |name| name.to_string_lossy());
+    ui.label(format!("{name} has changes that are not saved."));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if ui.button("Save").clicked() {
+            actions.push(Action::SaveAnd(Box::new(then.clone())));
+        }
+        if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
+            actions.push(Action::Discard(Box::new(then.clone())));
         }
         if ui.button("Cancel").clicked() {
             actions.push(Action::CloseDialog);

@@ -121,7 +121,7 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
 }
 
 fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
-    let step = session.document().cell() * 0.1;
+    let step = session.shown().cell() * 0.1;
     let tooltip = "From the joint's base to its tip, in its own space";
     row::pair(ui, "Bone", |ui| {
         for axis in (0..3).rev() {

@@ -47,7 +47,7 @@ fn first(reach: f32) -> Slither {
 fn sliders(ui: &mut Ui, session: &Session, slither: Slither, actions: &mut Vec<Action>) {
     let reach = session.skeleton().reach();
     let first = first(reach);
-    let step = session.document().cell() * 0.1;
+    let step = session.shown().cell() * 0.1;
     let is_editing = super::is_sliding(session);
     let set = |slither| Action::SetSlither(Some(slither));
     let slider = |name, label, tooltip, value, range, default, unit, step| Slider {

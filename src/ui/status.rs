@@ -121,7 +121,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     };
     let digits = match session.rig() {
         RigKind::Arm => 1,
-        RigKind::Skeleton => decimals(session.document().cell()),
+        RigKind::Skeleton => decimals(session.shown().cell()),
     };
     format!(
         "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift fine · Ctrl snap · X Y Z \

@@ -49,7 +49,7 @@ fn residual(session: &Session, target: &Target) -> f32 {
 
 /// The target of the selected joint.
 pub(super) fn selected(ui: &mut Ui, session: &Session, target: Target, actions: &mut Vec<Action>) {
-    let step = session.document().cell() * 0.1;
+    let step = session.shown().cell() * 0.1;
     place(ui, session, target, step, actions);
     row::pair(ui, "Weight", |ui| {
         let tooltip = "How much it counts beside other targets";

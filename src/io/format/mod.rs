@@ -18,7 +18,7 @@
 //!   "metres_per_unit": number,
 //!   "camera": { "target", "yaw", "pitch", "distance", "orthographic" },
 //!   "display": ["cursor", "pointer", "inner_limit", "outer_limit", "grid_xy", "grid_xz", "grid_yz",
-//!               "ground", "axes", "labels", "shadow"]
+//!               "ground", "axes", "labels", "shadow", "trail", "onion_skins"]
 //! }
 //! ```
 //!

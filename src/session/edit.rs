@@ -1,0 +1,200 @@
+use core::fmt::Display;
+
+use super::history::State;
+use super::{Drag, Session};
+use crate::document::{Channel, Document};
+use crate::kinematics::skeleton::Skeleton;
+
+/// A change that is not finished: it can still be taken back.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Edit {
+    pub before: State,
+    /// The document as it was shown before.
+    pub shown: Document,
+    /// What has been done, once something has.
+    pub name: Option<&'static str>,
+    pub drag: Option<Drag>,
+}
+
+/// Changes of the document.
+impl Session {
+    /// Every change comes through here: what is not possible is said and changes nothing, and all
+    /// that is shown follows.
+    pub(super) fn edit_document<T, E: Display>(
+        &mut self,
+        change: impl FnOnce(&mut Document) -> Result<T, E>,
+    ) -> Option<T> {
+        let mut after = self.shown.clone();
+        match change(&mut after) {
+            Ok(value) => {
+                self.message = None;
+                self.commit(after);
+                Some(value)
+            }
+            Err(error) => {
+                self.say_impossible(&error.to_string());
+                None
+            }
+        }
+    }
+
+    /// What was shown has become this. What has keys and has changed gets one, or is shown as it is
+    /// until the time changes.
+    pub(super) fn commit(&mut self, mut after: Document) {
+        if after == self.shown {
+            return;
+        }
+        if is_rebuilt(&self.shown.skeleton.skeleton, &after.skeleton.skeleton) {
+            self.overrides.clear();
+        } else {
+            self.hold_changes(&mut after);
+        }
+        self.document = after;
+        self.refresh();
+        self.refresh_trail();
+    }
+
+    fn hold_changes(&mut self, after: &mut Document) {
+        let changed = |channel: &Channel| {
+            let value = channel.value(after);
+            value.is_some() && value != channel.value(&self.shown)
+        };
+        let channels: Vec<Channel> = if self.auto_key {
+            // What is shown or not gets keys only where it has some.
+            let switches =
+                after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
+            Channel::of_rig(after).into_iter().chain(switches).filter(changed).collect()
+        } else {
+            after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
+        };
+        for channel in channels {
+            if self.auto_key {
+                after.key(channel, self.clock.time);
+            } else if let Some(value) = channel.value(after) {
+                self.overrides.insert(channel, value);
+            }
+        }
+    }
+
+    pub(super) fn state(&self) -> State {
+        State::new(&self.document, &self.overrides, self.clock.time, self.revision)
+    }
+
+    /// Makes a step of what has changed since, if anything has.
+    pub(super) fn remember(&mut self, name: &'static str, before: State) {
+        if before.differs_from(&self.document) {
+            self.newest_revision += 1;
+            self.revision = self.newest_revision;
+        } else if before.overrides == self.overrides {
+            return;
+        }
+        self.history.push(name, before);
+    }
+
+    pub(super) fn restore(&mut self, state: &State) {
+        self.document = state.document(self.document.camera);
+        self.overrides.clone_from(&state.overrides);
+        self.revision = state.revision;
+        self.refresh();
+        self.refresh_trail();
+    }
+
+    /// Does something that makes a step, unless it is part of a larger one.
+    pub(super) fn step_by<T>(&mut self, name: &'static str, act: impl FnOnce(&mut Self) -> T) -> T {
+        if let Some(edit) = &mut self.edit {
+            edit.name = Some(name);
+            return act(self);
+        }
+        self.end_run();
+        let before = self.state();
+        let value = act(self);
+        if self.edit.is_none() {
+            self.remember(name, before);
+            self.begin_run();
+        }
+        value
+    }
+
+    pub(super) fn begin_edit(&mut self, drag: Option<Drag>) {
+        if self.edit.is_none() {
+            self.end_run();
+            let (before, shown) = (self.state(), self.shown.clone());
+            self.edit = Some(Edit { before, shown, name: None, drag });
+        }
+    }
+
+    pub(super) fn commit_edit(&mut self) {
+        if let Some(edit) = self.edit.take() {
+            self.remember(edit.name.unwrap_or("change"), edit.before);
+            self.begin_run();
+        }
+    }
+
+    pub(super) fn cancel_edit(&mut self) {
+        if let Some(edit) = self.edit.take() {
+            self.restore(&edit.before);
+            self.begin_run();
+            self.message = Some("Taken back".to_owned());
+        }
+    }
+
+    /// A change that is not finished is taken back first.
+    pub(super) fn undo(&mut self) {
+        if self.edit.is_some() {
+            return self.cancel_edit();
+        }
+        if self.run_before.is_some() {
+            return self.cancel_run();
+        }
+        let (now, time) = (self.state(), self.clock.time);
+        self.message = Some(match self.history.undo(now, time) {
+            Some((name, state)) => {
+                self.restore(&state);
+                format!("Undone: {name}")
+            }
+            None => "There is nothing to undo".to_owned(),
+        });
+    }
+
+    pub(super) fn redo(&mut self) {
+        self.commit_edit();
+        self.stop_run();
+        let (now, time) = (self.state(), self.clock.time);
+        self.message = Some(match self.history.redo(now, time) {
+            Some((name, state)) => {
+                self.restore(&state);
+                format!("Done again: {name}")
+            }
+            None => "There is nothing to do again".to_owned(),
+        });
+    }
+
+    /// What Undo would take back, as in "Undo move hand".
+    pub fn undo_name(&self) -> Option<&'static str> {
+        match (&self.edit, &self.run_before) {
+            (Some(edit), _) => Some(edit.name.unwrap_or("change")),
+            (None, Some(_)) => Some("solve"),
+            (None, None) => self.history.undo_name(),
+        }
+    }
+
+    /// What Redo would do again.
+    pub fn redo_name(&self) -> Option<&'static str> {
+        self.history.redo_name()
+    }
+
+    /// Whether the document is not as it was saved last, or opened.
+    pub fn is_unsaved(&self) -> bool {
+        let changing = self.edit.as_ref().map(|edit| &edit.before).or(self.run_before.as_ref());
+        self.revision != self.saved_revision
+            || changing.is_some_and(|before| before.differs_from(&self.document))
+    }
+}
+
+/// Whether joints have come, gone or been hung from others.
+fn is_rebuilt(before: &Skeleton, after: &Skeleton) -> bool {
+    let parents = |skeleton: &Skeleton| -> Vec<_> {
+        skeleton.joints().iter().map(|joint| joint.parent).collect()
+    };
+    parents(before) != parents(after)
+}

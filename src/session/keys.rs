@@ -1,0 +1,200 @@
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use super::Session;
+use crate::document::{Channel, Document, Keys, RigKind, Timeline};
+
+/// A key: its channel and its time, in seconds.
+pub type Key = (Channel, f64);
+
+/// Keys that were copied: their times from the first one's.
+pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
+
+/// What actions do to the keys.
+impl Session {
+    /// Channels that are selected in the timeline.
+    pub fn selected_channels(&self) -> &BTreeSet<Channel> {
+        &self.selected_channels
+    }
+
+    /// Keys that are selected in the timeline.
+    pub fn selected_keys(&self) -> &[Key] {
+        &self.selected_keys
+    }
+
+    /// Whether there are copied keys to paste.
+    pub fn can_paste(&self) -> bool {
+        !self.clipboard.is_empty()
+    }
+
+    /// Whether an edit makes keys.
+    pub fn is_auto_key(&self) -> bool {
+        self.auto_key
+    }
+
+    /// Whether a channel is not shown as its keys have it, but as it was changed since.
+    pub fn is_overridden(&self, channel: Channel) -> bool {
+        self.overrides.contains_key(&channel)
+    }
+
+    /// What K keys: the selected channels, else those of the selected joints, else all that shapes
+    /// the rig; of the arm without a selection hand and elbow spin.
+    pub fn channels_to_key(&self) -> Vec<Channel> {
+        let is_there = |channel: &Channel| channel.value(&self.shown).is_some();
+        if !self.selected_channels.is_empty() {
+            return self.selected_channels.iter().copied().filter(is_there).collect();
+        }
+        match self.rig() {
+            RigKind::Arm => vec![Channel::Hand, Channel::ElbowSpin],
+            RigKind::Skeleton if self.selection.is_empty() => self.all_channels(),
+            RigKind::Skeleton => {
+                let of_joint = |joint: &usize| [Channel::Rotation(*joint), Channel::Target(*joint)];
+                self.selection.iter().flat_map(of_joint).filter(is_there).collect()
+            }
+        }
+    }
+
+    /// All that shapes the rig, and what has keys besides.
+    pub fn all_channels(&self) -> Vec<Channel> {
+        let keyed = self.shown.keys.tracks().map(|(channel, _)| channel);
+        let all: BTreeSet<Channel> =
+            Channel::of_rig(&self.shown).into_iter().chain(keyed).collect();
+        all.into_iter().collect()
+    }
+
+    /// Keys channels as they are shown.
+    pub(super) fn key(&mut self, channels: &[Channel]) {
+        let time = self.clock.time;
+        self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
+        for channel in channels {
+            self.overrides.remove(channel);
+        }
+        self.refresh();
+        self.message = Some(match channels {
+            [] => "There is nothing to key".to_owned(),
+            _ => format!("Keyed at {time:.2} s"),
+        });
+    }
+
+    pub(super) fn delete_keys(&mut self, keys: &[Key]) {
+        self.edit_keys(|document| {
+            for (channel, time) in keys {
+                document.keys.remove(*channel, *time);
+            }
+        });
+    }
+
+    pub(super) fn clear_channels(&mut self, channels: &[Channel]) {
+        self.edit_keys(|document| {
+            for channel in channels {
+                document.keys.clear(*channel);
+            }
+        });
+    }
+
+    /// Moves keys, as they were before the change under way, by a time. Others that are in the way
+    /// are replaced.
+    pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
+        let farthest = Timeline::FARTHEST;
+        let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
+        let before = self.edit.as_ref().map_or(&self.shown, |edit| &edit.shown).keys.clone();
+        let to = |time: f64| self.moved_to(time, by);
+        let moved: Vec<_> = keys
+            .iter()
+            .filter_map(|(channel, time)| {
+                let value = before.track(*channel)?.get(*time)?;
+                Some((*channel, to(*time), value))
+            })
+            .collect();
+        self.selected_keys = moved.iter().map(|(channel, time, _)| (*channel, *time)).collect();
+        let keys = keys.to_vec();
+        self.edit_keys(|document| {
+            document.keys = before;
+            for (channel, time) in keys {
+                document.keys.remove(channel, time);
+            }
+            insert(&mut document.keys, &moved);
+        });
+    }
+
+    /// Where a key goes that is moved: a time that has been on a frame stays on one, bit for bit.
+    fn moved_to(&self, time: f64, by: f64) -> f64 {
+        let timeline = self.document.timeline;
+        let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
+        let is_on_frame = |time: f64, frame: f64| (time - frame).abs() < 1e-9;
+        if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
+    }
+
+    pub(super) fn copy_keys(&mut self) {
+        let copied = |(channel, time): &Key| {
+            Some((*channel, *time, self.document.keys.track(*channel)?.get(*time)?))
+        };
+        let mut copies: Clipboard = self.selected_keys.iter().filter_map(copied).collect();
+        let first = copies.iter().map(|(_, time, _)| *time).fold(f64::INFINITY, f64::min);
+        copies.iter_mut().for_each(|(_, time, _)| *time -= first);
+        self.message = Some(match copies.len() {
+            0 => "Select keys to copy them".to_owned(),
+            1 => "1 key copied".to_owned(),
+            count => format!("{count} keys copied"),
+        });
+        if !copies.is_empty() {
+            self.clipboard = copies;
+        }
+    }
+
+    /// Puts the copied keys to where the time is; those whose joints are gone are left out.
+    pub(super) fn paste_keys(&mut self) {
+        let pasted: Vec<_> = self
+            .clipboard
+            .iter()
+            .filter(|(channel, ..)| channel.value(&self.shown).is_some())
+            .map(|(channel, time, value)| (*channel, self.moved_to(self.clock.time, *time), *value))
+            .collect();
+        self.selected_keys = pasted.iter().map(|(channel, time, _)| (*channel, *time)).collect();
+        self.edit_keys(|document| insert(&mut document.keys, &pasted));
+    }
+
+    pub(super) fn set_timeline(&mut self, timeline: Timeline) {
+        if !timeline.is_valid() {
+            self.message = Some(format!(
+                "A timeline starts before it ends, within a day of 0, and has 1 to {} frames in a \
+                 second",
+                Timeline::HIGHEST_FRAME_RATE
+            ));
+            return;
+        }
+        self.edit_keys(|document| document.timeline = timeline);
+    }
+
+    pub(super) fn set_metres(&mut self, metres: Option<f32>) {
+        if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
+            self.message = Some("A unit must be longer than 0 m".to_owned());
+            return;
+        }
+        self.edit_keys(|document| document.metres = metres);
+    }
+
+    fn edit_keys(&mut self, change: impl FnOnce(&mut Document)) {
+        let never = |document: &mut _| -> Result<(), core::convert::Infallible> {
+            change(document);
+            Ok(())
+        };
+        self.edit_document(never);
+    }
+
+    /// Lets go of keys and channels that are no longer there.
+    pub(super) fn retain_keys(&mut self) {
+        let keys = &self.document.keys;
+        self.selected_keys.retain(|(channel, time)| {
+            keys.track(*channel).is_some_and(|track| track.get(*time).is_some())
+        });
+        self.selected_channels.retain(|channel| channel.value(&self.document).is_some());
+    }
+}
+
+fn insert(keys: &mut Keys, all: &[(Channel, f64, Vec3)]) {
+    for (channel, time, value) in all {
+        keys.insert(*channel, *time, *value);
+    }
+}

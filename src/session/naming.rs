@@ -1,0 +1,57 @@
+use super::{Action, Grip};
+use crate::document::{Channel, RigKind};
+
+/// What an action does to the document, as in "Undo move hand"; nothing if it leaves it alone.
+pub(super) fn of(action: &Action) -> Option<&'static str> {
+    Some(match action {
+        Action::SetHand(_) => "move hand",
+        Action::SetElbowSpin(_) => "spin elbow",
+        Action::SetRoot(_) => "move shoulder",
+        Action::SetUpper(_) | Action::SetLower(_) => "change length",
+        Action::ResetPose => "reset pose",
+        Action::ResetAll => "reset all",
+        Action::Show(_, true) => "show guide",
+        Action::Show(_, false) => "hide guide",
+        Action::ShowRig(RigKind::Arm) => "show arm",
+        Action::ShowRig(RigKind::Skeleton) => "show skeleton",
+        Action::AddChild { .. } => "add joint",
+        Action::AddRoot => "add root",
+        Action::Delete(joints) if joints.len() == 1 => "delete joint",
+        Action::Delete(_) => "delete joints",
+        Action::Rename { .. } => "rename joint",
+        Action::Reparent { .. } => "re-parent joint",
+        Action::SetRotation { .. } => "turn joint",
+        Action::SetAxis { .. } => "change bone",
+        Action::SetLimit { .. } => "change limit",
+        Action::SetLocked { locked: true, .. } => "lock joint",
+        Action::SetLocked { locked: false, .. } => "unlock joint",
+        Action::SetSlither(_) => "change slither",
+        Action::AddTarget(_) => "add target",
+        Action::RemoveTarget(_) => "remove target",
+        Action::SetTarget(_) => "change target",
+        Action::SetSolver(_) | Action::SetIterationsPerFrame(_) => "change solver",
+        Action::Step => "solver step",
+        Action::ResetSolver => "reset solver",
+        Action::Key(channels) => match channels[..] {
+            [Channel::Hand] => "key hand",
+            [Channel::ElbowSpin] => "key elbow spin",
+            _ => "set keys",
+        },
+        Action::DeleteKeys(_) | Action::ClearChannels(_) => "delete keys",
+        Action::MoveKeys { .. } => "move keys",
+        Action::PasteKeys => "paste keys",
+        Action::SetTimeline(_) => "change timeline",
+        Action::SetMetres(_) => "change unit",
+        _ => return None,
+    })
+}
+
+/// What a drag does.
+pub(super) fn of_drag(grip: Grip) -> &'static str {
+    match grip {
+        Grip::Hand(_) => "move hand",
+        Grip::Target(..) => "move target",
+        Grip::Tip(..) => "pose joints",
+        Grip::Ring(..) => "turn joint",
+    }
+}
