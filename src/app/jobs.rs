@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
 
@@ -72,11 +73,22 @@ pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError
     actions
 }
 
+/// What became of a question for a path.
+#[derive(Debug)]
+pub(super) enum Choice {
+    Path(PathBuf),
+    Cancelled,
+    /// The system has no dialog of its own.
+    NoDialog,
+}
+
 /// Opens the system's own dialog for the path that one of ours asks for.
 pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
+    /// Nobody cancels as fast as a system answers that has no dialog; both answer alike.
+    const FASTEST_HAND: Duration = Duration::from_millis(400);
     let (path, name, extensions): (_, _, &[&str]) = match &dialog {
         Dialog::SavePicture { path } => (path, "PNG", &["png"]),
-        Dialog::Open { path } => (path, "Scene", &["json", "js3d"]),
+        Dialog::Open { path } => (path, "Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
         Dialog::SaveAs { path } => (path, "Scene", &["json"]),
         _ => return,
     };
@@ -88,6 +100,7 @@ pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
     if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
         system = system.set_directory(folder);
     }
+    let asked = Instant::now();
     let is_open = matches!(dialog, Dialog::Open { .. });
     let (open, save) = match is_open {
         true => (Some(system.pick_file()), None),
@@ -99,21 +112,27 @@ pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
             (None, Some(save)) => pollster::block_on(save),
             (None, None) => None,
         };
-        report(&proxy, UserEvent::Chosen(dialog, file.map(|file| file.path().to_owned())));
+        let choice = match file {
+            Some(file) => Choice::Path(file.path().to_owned()),
+            None if asked.elapsed() < FASTEST_HAND => Choice::NoDialog,
+            None => Choice::Cancelled,
+        };
+        report(&proxy, UserEvent::Chosen(dialog, choice));
     });
 }
 
-/// A dialog that was cancelled and a system that has none answer alike.
-pub(super) fn chosen(dialog: Dialog, path: Option<PathBuf>) -> Action {
-    let Some(path) = path else {
-        return Action::Report("No file was chosen; a path can be typed instead".to_owned());
-    };
-    let path = path.display().to_string();
-    Action::OpenDialog(match dialog {
-        Dialog::Open { .. } => Dialog::Open { path },
-        Dialog::SaveAs { .. } => Dialog::SaveAs { path },
-        _ => Dialog::SavePicture { path },
-    })
+/// A path is taken at once; where the system has no dialog, ours asks for it.
+pub(super) fn chosen(dialog: Dialog, choice: Choice) -> Option<Action> {
+    match (choice, dialog) {
+        (Choice::Path(path), Dialog::Open { .. }) => Some(Action::Open { path, skeleton: None }),
+        (Choice::Path(path), Dialog::SaveAs { .. }) => Some(Action::SaveAs(path)),
+        (Choice::Path(path), Dialog::SavePicture { .. }) => {
+            Some(Action::SavePicture(path.display().to_string()))
+        }
+        (Choice::Path(_), _) => None,
+        (Choice::Cancelled, _) => Some(Action::NotSaved("No file was chosen".to_owned())),
+        (Choice::NoDialog, dialog) => Some(Action::OpenDialog(dialog)),
+    }
 }
 
 fn report(proxy: &EventLoopProxy<UserEvent>, event: UserEvent) {

@@ -2,6 +2,7 @@
 
 mod jobs;
 mod present;
+mod recovery;
 mod settings;
 mod window;
 
@@ -19,6 +20,8 @@ use crate::document::Document;
 use crate::io::{OpenError, Opened};
 use crate::render::GpuError;
 use crate::session::{Action, Dialog, Session};
+use jobs::Choice;
+use recovery::{Found, Recovery};
 use settings::Settings;
 use window::{AppWindow, Repaint};
 
@@ -61,8 +64,8 @@ enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Something that ran beside the window says how it ended.
     Report(String),
-    /// The path that a dialog asked the system for, if there is one.
-    Chosen(Dialog, Option<PathBuf>),
+    /// The path that a dialog asked the system for.
+    Chosen(Dialog, Choice),
     /// A file was read, with one of its skeletons chosen or not.
     Opened {
         path: PathBuf,
@@ -88,14 +91,23 @@ pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
     let settings = Settings::load();
     let mut session = Session::new(settings.preferences);
+    session.set_recent(settings.recent.clone());
     if let Some((document, file)) = document {
         session.apply(Action::Opened { document: Box::new(document), file });
+    }
+    let recovery = Recovery::start();
+    let found = recovery.find();
+    if let Some(Found { kept, .. }) = &found {
+        let (document, file) = (Box::new(kept.document.clone()), kept.file.clone());
+        session.apply(Action::OpenDialog(Dialog::Recover { document, file }));
     }
     let mut app = App {
         started,
         proxy: event_loop.create_proxy(),
         session,
         settings,
+        recovery,
+        found,
         state: State::Suspended,
     };
     event_loop.run_app(&mut app).map_err(AppError::EventLoop)?;
@@ -110,6 +122,9 @@ struct App {
     proxy: EventLoopProxy<UserEvent>,
     session: Session,
     settings: Settings,
+    recovery: Recovery,
+    /// What another run left.
+    found: Option<Found>,
     state: State,
 }
 
@@ -128,10 +143,28 @@ impl App {
         if window.frames() == 1 {
             log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
         }
-        match drawn {
-            Repaint::Quit => event_loop.exit(),
-            Repaint::At(time) => event_loop.set_control_flow(ControlFlow::WaitUntil(time)),
-            Repaint::OnInput => event_loop.set_control_flow(ControlFlow::Wait),
+        let keep = self.recovery.follow(&self.session, &self.proxy);
+        self.leave_recovered();
+        let again = match drawn {
+            Repaint::Quit => return event_loop.exit(),
+            Repaint::At(time) => Some(time),
+            Repaint::OnInput => None,
+        };
+        event_loop.set_control_flow(match again.into_iter().chain(keep).min() {
+            Some(time) => ControlFlow::WaitUntil(time),
+            None => ControlFlow::Wait,
+        });
+    }
+
+    /// What another run left goes once it was declined, or this run keeps it.
+    fn leave_recovered(&mut self) {
+        let is_settled = self.session.has_settled_recovery();
+        let is_safe = !self.session.is_unsaved() || self.recovery.has(self.session.revision());
+        if is_settled
+            && is_safe
+            && let Some(Found { path, .. }) = self.found.take()
+        {
+            recovery::remove(&path);
         }
     }
 }
@@ -173,7 +206,10 @@ impl ApplicationHandler<UserEvent> for App {
         };
         match &event {
             WindowEvent::CloseRequested => {
-                event_loop.exit();
+                match self.session.apply(Action::Quit) {
+                    Some(_) => event_loop.exit(),
+                    None => window.request_redraw(),
+                }
                 return;
             }
             WindowEvent::Resized(size) => window.resize(size.width, size.height),
@@ -198,17 +234,20 @@ impl ApplicationHandler<UserEvent> for App {
                     self.session.apply(action);
                 }
             }
-            UserEvent::Chosen(dialog, path) => {
-                self.session.apply(jobs::chosen(dialog, path));
+            UserEvent::Chosen(dialog, choice) => {
+                if let Some(action) = jobs::chosen(dialog, choice) {
+                    window.act(action, &mut self.session, &self.proxy);
+                }
             }
         }
         window.request_redraw();
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.recovery.end();
         if let State::Active(window) = &self.state {
             log::info!("{} frames drawn", window.frames());
-            window.settings(*self.session.preferences()).save();
+            window.settings(&self.session).save();
         }
     }
 }

@@ -7,11 +7,14 @@ use serde::{Deserialize, Serialize};
 use crate::io;
 use crate::session::Preferences;
 
-/// What is kept from one start to the next: preferences, the window's place, the panels' layout.
+/// What is kept from one start to the next: preferences, recent files, the window's
+/// place, the panels' layout.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Settings {
     pub preferences: Preferences,
+    /// Files that were opened or saved, the last one first.
+    pub recent: Vec<PathBuf>,
     pub window: Option<WindowSettings>,
     pub layout: IdTypeMap,
 }

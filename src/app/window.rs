@@ -1,3 +1,4 @@
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -15,7 +16,7 @@ use super::{AppError, UserEvent};
 use crate::io;
 use crate::render::{Canvas, Gpu, Renderer};
 use crate::scene::Scene;
-use crate::session::{Action, Effect, Preferences, Session};
+use crate::session::{Action, Effect, Session};
 use crate::ui::{self, Machine, style};
 
 const TITLE: &str = "ik-arm";
@@ -46,6 +47,10 @@ pub(super) struct AppWindow {
     pub(super) machine: Machine,
     pub(super) frames: u64,
     title: String,
+    /// Where the scene is, in points.
+    viewport: Rect,
+    /// Whether the program is to end at the next frame.
+    ends: bool,
 }
 
 /// The scene as it was last drawn, for the panels to show.
@@ -105,6 +110,8 @@ impl AppWindow {
             picture: Shown { canvas, texture, scene: None },
             frames: 0,
             title: TITLE.to_owned(),
+            viewport: Rect::ZERO,
+            ends: false,
         })
     }
 
@@ -142,10 +149,11 @@ impl AppWindow {
     }
 
     /// What to keep for the next start.
-    pub fn settings(&self, preferences: Preferences) -> Settings {
+    pub fn settings(&self, session: &Session) -> Settings {
         let ctx = self.egui.egui_ctx();
         Settings {
-            preferences,
+            preferences: *session.preferences(),
+            recent: session.recent().to_vec(),
             window: Some(WindowSettings::from_window(ctx.zoom_factor(), &self.window, None)),
             layout: ctx.data(Clone::clone),
         }
@@ -158,10 +166,9 @@ impl AppWindow {
         let input = self.egui.take_egui_input(&self.window);
         style::apply(self.egui.egui_ctx(), session.preferences().theme);
         let (mut output, viewport, effects) = self.run(input, session);
-        for effect in effects {
-            if self.carry_out(effect, session, viewport, proxy) {
-                return Repaint::Quit;
-            }
+        self.viewport = viewport;
+        if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
+            return Repaint::Quit;
         }
         self.entitle(session);
         let platform = std::mem::take(&mut output.platform_output);
@@ -201,11 +208,30 @@ impl AppWindow {
 
     /// Says what is open.
     fn entitle(&mut self, session: &Session) {
-        let name = session.file().and_then(Path::file_name);
-        let title = name.map_or(TITLE.to_owned(), |name| format!("{} – {TITLE}", name.display()));
+        let unsaved = if session.is_unsaved() { "*" } else { "" };
+        let name = session.file().and_then(Path::file_name).map(OsStr::to_string_lossy);
+        let title = match name {
+            Some(name) => format!("{name}{unsaved} – {TITLE}"),
+            None if session.is_unsaved() => format!("untitled* – {TITLE}"),
+            None => TITLE.to_owned(),
+        };
         if title != self.title {
             self.window.set_title(&title);
             self.title = title;
+        }
+    }
+
+    /// Does what the session is told from elsewhere than the panels.
+    pub fn act(
+        &mut self,
+        action: Action,
+        session: &mut Session,
+        proxy: &EventLoopProxy<UserEvent>,
+    ) {
+        if let Some(effect) = session.apply(action)
+            && self.carry_out(effect, session, proxy)
+        {
+            self.ends = true;
         }
     }
 
@@ -214,7 +240,6 @@ impl AppWindow {
         &self,
         effect: Effect,
         session: &mut Session,
-        viewport: Rect,
         proxy: &EventLoopProxy<UserEvent>,
     ) -> bool {
         match effect {
@@ -225,7 +250,7 @@ impl AppWindow {
                     document: session.shown().clone(),
                     staging: session.staging(),
                     theme: session.preferences().theme,
-                    size: pixels(viewport, scale),
+                    size: pixels(self.viewport, scale),
                     scale,
                 };
                 jobs::save_picture(shot, PathBuf::from(path), proxy.clone());
@@ -233,10 +258,12 @@ impl AppWindow {
             Effect::ChoosePath(dialog) => jobs::choose_path(dialog, proxy.clone()),
             Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
             Effect::Save(path) => {
-                session.apply(match io::save(session.document(), &path) {
+                let saved = match io::save(session.document(), &path) {
                     Ok(()) => Action::Saved(path),
-                    Err(error) => Action::Report(format!("Not saved: {error}")),
-                });
+                    Err(error) => Action::NotSaved(format!("Not saved: {error}")),
+                };
+                let next = session.apply(saved);
+                return next.is_some_and(|effect| self.carry_out(effect, session, proxy));
             }
             Effect::Quit => return true,
         }

@@ -187,6 +187,10 @@ pub enum Action {
     SaveAnd(Box<Action>),
     /// Does it, though it loses changes.
     Discard(Box<Action>),
+    /// Opens what the dialog offers that an earlier run kept.
+    Recover,
+    /// Declines it.
+    ForgetRecovered,
     /// One of the scenes that come with the program.
     OpenExample(Example),
     /// A root to hang joints from.

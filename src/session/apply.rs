@@ -189,6 +189,11 @@ impl Session {
                 self.dialog = None;
                 return self.apply_unasked(*then);
             }
+            Action::Recover => self.recover(),
+            Action::ForgetRecovered => {
+                self.dialog = None;
+                self.recovery_settled = true;
+            }
             Action::OpenExample(example) => self.open_example(example),
             Action::NewSkeleton => self.new_skeleton(),
             Action::Quit => return Some(Effect::Quit),

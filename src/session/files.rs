@@ -13,6 +13,11 @@ impl Session {
         self.file.as_deref()
     }
 
+    /// The same number, the same document: what is saved, not how it is looked at.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
     /// Files that were opened or saved, the last one first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent
@@ -22,6 +27,21 @@ impl Session {
     pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
         self.recent = recent;
         self.recent.truncate(Self::MOST_RECENT);
+    }
+
+    /// Opens what an earlier run of the program kept: it is not saved yet.
+    pub(super) fn recover(&mut self) {
+        if let Some(Dialog::Recover { document, file }) = self.dialog.take() {
+            self.replace_document(*document, file);
+            self.saved_revision = self.revision - 1;
+            self.recovery_settled = true;
+            self.message = Some("The document that was kept is open; save it".to_owned());
+        }
+    }
+
+    /// Whether what an earlier run kept has been opened or declined.
+    pub fn has_settled_recovery(&self) -> bool {
+        self.recovery_settled
     }
 
     pub(super) fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
@@ -40,6 +60,7 @@ impl Session {
             revision: newest_revision,
             saved_revision: newest_revision,
             newest_revision,
+            recovery_settled: self.recovery_settled,
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();

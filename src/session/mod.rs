@@ -86,6 +86,8 @@ pub struct Session {
     view_drag: Option<ViewDrag>,
     glide: Option<Glide>,
     dialog: Option<Dialog>,
+    /// Whether what an earlier run kept has been opened or declined.
+    recovery_settled: bool,
     /// What waits for the document to be saved.
     then: Option<Box<Action>>,
     message: Option<String>,
@@ -96,6 +98,11 @@ pub struct Session {
 pub enum Dialog {
     About,
     Shortcuts,
+    /// An earlier run of the program ended without saving this.
+    Recover {
+        document: Box<Document>,
+        file: Option<PathBuf>,
+    },
     /// What would lose changes that are not saved.
     Unsaved {
         then: Box<Action>,
@@ -163,6 +170,7 @@ impl Session {
             view_drag: None,
             glide: None,
             dialog: None,
+            recovery_settled: false,
             then: None,
             message: None,
         }

@@ -16,7 +16,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton(ui, session, actions),
         }
-        row::section(ui, "Guides", |ui| layers(ui, session, &guides(session), actions));
+        row::section(ui, "Guides", |ui| layers(ui, session, guides(session), actions));
         row::section(ui, "Display", |ui| layers(ui, session, &Layer::SURROUNDINGS, actions));
         resets(ui, session, actions);
         ui.add_space(8.0);
@@ -63,15 +63,14 @@ fn skeleton(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     row::section(ui, "Motion", |ui| motion::ui(ui, session, actions));
 }
 
-fn guides(session: &Session) -> Vec<Layer> {
-    let guides = match session.rig() {
-        RigKind::Arm => &Layer::GUIDES[..],
+fn guides(session: &Session) -> &'static [Layer] {
+    match session.rig() {
+        RigKind::Arm => &Layer::GUIDES,
         RigKind::Skeleton if session.skeleton().slither.is_some() => {
             &[Layer::Cursor, Layer::Pointer]
         }
         RigKind::Skeleton => &[Layer::Cursor],
-    };
-    guides.iter().copied().chain(Layer::MOTION).collect()
+    }
 }
 
 fn layers(ui: &mut Ui, session: &Session, layers: &[Layer], actions: &mut Vec<Action>) {

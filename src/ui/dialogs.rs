@@ -35,6 +35,11 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
         Some(Dialog::Unsaved { then }) => {
             window(ui, "Save changes?", actions, |ui, actions| unsaved(ui, session, then, actions));
         }
+        Some(Dialog::Recover { file, .. }) => {
+            window(ui, "Not saved last time", actions, |ui, actions| {
+                recover(ui, file.as_deref(), actions);
+            });
+        }
         None => {}
     }
 }
@@ -264,6 +269,29 @@ fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Acti
             actions.push(Action::Discard(Box::new(then.clone())));
         }
         if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+fn recover(ui: &mut Ui, file: Option<&Path>, actions: &mut Vec<Action>) {
+    ui.set_width(420.0);
+    let name = file.and_then(Path::file_name).map(|name| name.to_string_lossy());
+    ui.label(match name {
+        Some(name) => {
+            format!("ik-arm ended before the changes of {name} were saved. They are kept.")
+        }
+        None => "ik-arm ended before the document was saved. It is kept.".to_owned(),
+    });
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if ui.button("Open it").clicked() {
+            actions.push(Action::Recover);
+        }
+        if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
+            actions.push(Action::ForgetRecovered);
+        }
+        if ui.button("Ask again next time").clicked() {
             actions.push(Action::CloseDialog);
         }
     });

@@ -15,6 +15,15 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     if pressed(Modifiers::COMMAND, Key::Q) {
         actions.push(Action::Quit);
     }
+    // A text that is typed has steps of its own.
+    if !ui.text_edit_focused() {
+        let redo = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+        if pressed(redo, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+            actions.push(Action::Redo);
+        } else if pressed(Modifiers::COMMAND, Key::Z) {
+            actions.push(Action::Undo);
+        }
+    }
     if pressed(Modifiers::COMMAND, Key::O) {
         actions.push(menu::open());
     }

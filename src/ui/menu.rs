@@ -3,13 +3,13 @@
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::status;
-use crate::document::{AxisView, Camera, RigKind, Theme};
+use crate::document::{AxisView, Camera, Layer, RigKind, Theme};
 use crate::io::Example;
 use crate::session::{Action, Dialog, Navigation, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file(ui, actions));
+        ui.menu_button("File", |ui| file(ui, session, actions));
         ui.menu_button("Edit", |ui| edit(ui, session, actions));
         ui.menu_button("View", |ui| view(ui, session, actions));
         ui.menu_button("Examples", |ui| examples(ui, actions));
@@ -31,13 +31,16 @@ fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
     ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked()
 }
 
-fn file(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn file(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     if item(ui, "New skeleton", "") {
         actions.push(Action::NewSkeleton);
     }
     if item(ui, "Open…", "Ctrl+O") {
         actions.push(open());
     }
+    ui.add_enabled_ui(!session.recent().is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| recent(ui, session, actions));
+    });
     ui.separator();
     if item(ui, "Save", "Ctrl+S") {
         actions.push(Action::Save);
@@ -55,19 +58,32 @@ fn file(ui: &mut Ui, actions: &mut Vec<Action>) {
     }
 }
 
+fn recent(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for path in session.recent() {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let button = ui.button(name).on_hover_text(path.display().to_string());
+        if button.clicked() {
+            actions.push(Action::Open { path: path.clone(), skeleton: None });
+        }
+    }
+}
+
 pub(super) fn open() -> Action {
-    Action::OpenDialog(Dialog::Open { path: String::new() })
+    Action::Ask(Dialog::Open { path: String::new() })
 }
 
 pub(super) fn save_as() -> Action {
-    Action::OpenDialog(Dialog::SaveAs { path: "ik-arm.json".to_owned() })
+    Action::Ask(Dialog::SaveAs { path: "ik-arm.json".to_owned() })
 }
 
 pub(super) fn save_picture() -> Action {
-    Action::OpenDialog(Dialog::SavePicture { path: "ik-arm.png".to_owned() })
+    Action::Ask(Dialog::SavePicture { path: "ik-arm.png".to_owned() })
 }
 
 fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    step(ui, "Undo", session.undo_name(), "Ctrl+Z", Action::Undo, actions);
+    step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", Action::Redo, actions);
+    ui.separator();
     if item(ui, "Copy pose as JSON line", "Ctrl+C") {
         actions.push(Action::CopyPose);
     }
@@ -82,6 +98,22 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         }
     });
+}
+
+/// "Undo move hand", if there is something to undo.
+fn step(
+    ui: &mut Ui,
+    verb: &str,
+    name: Option<&str>,
+    keys: &str,
+    action: Action,
+    actions: &mut Vec<Action>,
+) {
+    let title = name.map_or(verb.to_owned(), |name| format!("{verb} {name}"));
+    let button = ui.add_enabled(name.is_some(), Button::new(title).shortcut_text(keys));
+    if button.clicked() {
+        actions.push(action);
+    }
 }
 
 fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -107,6 +139,12 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     }
     ui.separator();
+    for (layer, name) in [(Layer::Trail, "Motion trail"), (Layer::OnionSkins, "Onion skins")] {
+        let mut shown = session.shown().display.shows(layer);
+        if ui.checkbox(&mut shown, name).changed() {
+            actions.push(Action::Show(layer, shown));
+        }
+    }
     let mut explain = session.preferences().explain;
     let name = match session.rig() {
         RigKind::Arm => "Explain panel",

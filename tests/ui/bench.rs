@@ -76,6 +76,11 @@ impl Bench {
         self.settle();
     }
 
+    /// What the world outside answers, and what it is to do then.
+    pub fn tell(&mut self, action: Action) -> Option<Effect> {
+        self.harness.state_mut().session.apply(action)
+    }
+
     /// As [`Self::apply`], for what then moves by itself.
     pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = Action>) {
         for action in actions {
@@ -101,7 +106,13 @@ impl Bench {
             return;
         }
         for action in std::mem::take(&mut app.actions) {
-            app.effects.extend(app.session.apply(action));
+            match app.session.apply(action) {
+                // As on a system that has no dialog of its own.
+                Some(Effect::ChoosePath(dialog)) if app.session.dialog().is_none() => {
+                    app.session.apply(Action::OpenDialog(dialog));
+                }
+                effect => app.effects.extend(effect),
+            }
         }
         self.pass(Vec::new());
         self.harness.state_mut().actions.clear();

@@ -7,6 +7,7 @@ mod bench;
 mod dialogs;
 mod hand;
 mod hand_keys;
+mod history;
 mod looks;
 mod numbers;
 mod panel;

@@ -1,0 +1,244 @@
+//! Nothing is lost: steps back and forth, and questions before changes go.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton};
+use egui_kittest::kittest::NodeT as _;
+use glam::Vec3;
+use ik_arm::document::Document;
+use ik_arm::io::Example;
+use ik_arm::kinematics::solve::{Method, Options};
+use ik_arm::session::{Action, Dialog, Effect};
+
+use crate::bench::Bench;
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+
+fn moved() -> Bench {
+    Bench::after([Action::SetHand(Vec3::X * 300.0), Action::SetElbowSpin(1.0)])
+}
+
+fn menu(bench: &mut Bench, menu: &str) {
+    bench.click(Role::Button, menu);
+    bench.settle();
+}
+
+#[test]
+fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
+    for redo in [(CTRL.plus(SHIFT), Key::Z), (CTRL, Key::Y)] {
+        let mut bench = moved();
+        let last = bench.session().document().clone();
+        bench.key_with(CTRL, Key::Z);
+        assert_eq!((bench.hand(), bench.session().arm().elbow_spin), (Vec3::X * 300.0, 0.0));
+        bench.key_with(CTRL, Key::Z);
+        assert_eq!(bench.session().document(), &Document::default());
+        assert!(bench.says("Undone: move hand"));
+        bench.key_with(CTRL, Key::Z);
+        assert!(bench.says("There is nothing to undo"));
+        bench.key_with(redo.0, redo.1);
+        bench.key_with(redo.0, redo.1);
+        assert_eq!(bench.session().document(), &last);
+    }
+}
+
+#[test]
+fn the_edit_menu_names_what_it_would_undo_and_redo() {
+    let mut bench = moved();
+    menu(&mut bench, "Edit");
+    bench.click(Role::Button, "Undo spin elbow Ctrl+Z");
+    bench.settle();
+    menu(&mut bench, "Edit");
+    assert!(bench.shows(Role::Button, "Undo move hand Ctrl+Z"));
+    bench.click(Role::Button, "Redo spin elbow Ctrl+Shift+Z");
+    bench.settle();
+    assert_eq!(bench.session().arm().elbow_spin, 1.0);
+}
+
+#[test]
+fn without_a_step_the_edit_menu_offers_none() {
+    let mut bench = Bench::new();
+    menu(&mut bench, "Edit");
+    for name in ["Undo Ctrl+Z", "Redo Ctrl+Shift+Z"] {
+        assert!(bench.node(Role::Button, name).accesskit_node().is_disabled(), "{name}");
+    }
+}
+
+#[test]
+fn a_drag_of_the_hand_is_one_step() {
+    let mut bench = Bench::new();
+    let hand = bench.cursor_place();
+    bench.drag_and_drop(PointerButton::Primary, hand, hand + egui::vec2(50.0, 20.0));
+    assert_ne!(bench.session().document(), &Document::default());
+    bench.key_with(CTRL, Key::Z);
+    assert_eq!(bench.session().document(), &Document::default());
+}
+
+#[test]
+fn undo_while_something_is_dragged_takes_the_drag_back() {
+    let mut bench = Bench::new();
+    let hand = bench.cursor_place();
+    bench.drag(PointerButton::Primary, hand, hand + egui::vec2(50.0, 0.0));
+    assert_ne!(bench.session().arm(), &Document::default().arm);
+    bench.key_with(CTRL, Key::Z);
+    assert_eq!(bench.session().document(), &Document::default());
+    assert!(!bench.session().is_editing());
+}
+
+#[test]
+fn a_running_solver_is_one_step() {
+    let mut bench =
+        Bench::after([Action::OpenExample(Example::find("ten-joints").expect("there"))]);
+    let first = bench.session().document().clone();
+    bench.apply_moving([Action::Run(true)]);
+    bench.wait(2.0);
+    assert!(!bench.session().is_running());
+    assert_ne!(bench.session().document().skeleton, first.skeleton);
+    assert_eq!(bench.session().undo_name(), Some("solve"));
+    bench.key_with(CTRL, Key::Z);
+    assert_eq!(bench.session().document().skeleton, first.skeleton);
+    assert_eq!(bench.session().undo_name(), None);
+}
+
+#[test]
+fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
+    let mut bench =
+        Bench::after([Action::OpenExample(Example::find("ten-joints").expect("there"))]);
+    let method = Method::TransposeFixed;
+    bench.apply([Action::SetSolver(Options { method, ..Options::default() })]);
+    let first = bench.session().document().clone();
+    bench.apply_moving([Action::Run(true)]);
+    bench.wait(0.05);
+    assert!(bench.session().is_running());
+    bench.key_with(CTRL, Key::Z);
+    assert!(!bench.session().is_running());
+    assert_eq!(bench.session().document().skeleton, first.skeleton);
+}
+
+#[test]
+fn the_view_and_the_selection_are_no_steps() {
+    let mut bench = Bench::after([Action::OpenExample(Example::find("human").expect("there"))]);
+    let camera = *bench.session().camera();
+    bench.apply([Action::Select(vec![3]), Action::SetCamera(camera.orbited(1.0, 0.1))]);
+    bench.apply([Action::SetTime(2.0)]);
+    assert_eq!(bench.session().undo_name(), None);
+    assert!(!bench.session().is_unsaved());
+    bench.apply([Action::SetLocked { joint: 3, locked: true }, Action::Undo]);
+    assert_eq!(bench.session().selection(), [3]);
+    assert_eq!(*bench.session().camera(), camera.orbited(1.0, 0.1));
+    assert_eq!(bench.session().time(), 2.0);
+}
+
+#[test]
+fn hundreds_of_steps_can_be_undone() {
+    let mut bench = Bench::new();
+    let steps = (0..900).map(|step| Action::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
+    bench.apply(steps);
+    bench.apply((0..900).map(|_| Action::Undo));
+    assert_eq!(bench.session().document(), &Document::default());
+}
+
+#[test]
+fn what_would_lose_changes_is_asked_about() {
+    let example = Example::find("human").expect("there");
+    let open = |path: &str| Action::Open { path: path.into(), skeleton: None };
+    for leaving in [Action::Quit, Action::NewSkeleton, Action::OpenExample(example), open("a")] {
+        let mut bench = moved();
+        let document = bench.session().document().clone();
+        bench.apply([leaving.clone()]);
+        assert!(bench.says("The document has changes that are not saved."));
+        assert_eq!(bench.effects(), []);
+        bench.click(Role::Button, "Cancel");
+        assert_eq!(bench.session().document(), &document);
+        assert_eq!(bench.session().dialog(), None);
+
+        bench.apply([leaving.clone()]);
+        bench.click(Role::Button, "Don't save");
+        match leaving {
+            Action::Quit => assert_eq!(bench.effects(), [Effect::Quit]),
+            Action::Open { .. } => assert!(matches!(bench.effects()[..], [Effect::Open { .. }])),
+            _ => assert_ne!(bench.session().document(), &document),
+        }
+    }
+}
+
+#[test]
+fn saving_first_goes_on_once_it_is_saved() {
+    let mut bench = moved();
+    bench.apply([Action::Quit]);
+    bench.click(Role::Button, "Save");
+    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
+    bench.settle();
+    bench.key(Key::Enter);
+    assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
+    let quit = bench.tell(Action::Saved("ik-arm.json".into()));
+    assert_eq!(quit, Some(Effect::Quit));
+}
+
+#[test]
+fn what_is_not_saved_stays_open_and_unsaved() {
+    let mut bench = moved();
+    bench.apply([Action::Quit]);
+    bench.click(Role::Button, "Save");
+    bench.settle();
+    bench.key(Key::Enter);
+    bench.tell(Action::NotSaved("Not saved: the disk is full".to_owned()));
+    bench.settle();
+    assert!(bench.says("Not saved: the disk is full"));
+    assert!(bench.session().is_unsaved());
+    // A later save does not end the program any more.
+    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
+    assert!(!bench.session().is_unsaved());
+}
+
+#[test]
+fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
+    let mut bench = moved();
+    assert!(bench.session().is_unsaved());
+    bench.tell(Action::Saved("x.json".into()));
+    assert!(!bench.session().is_unsaved());
+    bench.apply([Action::SetHand(Vec3::Y * 200.0)]);
+    assert!(bench.session().is_unsaved());
+    bench.apply([Action::Undo]);
+    assert!(!bench.session().is_unsaved());
+    bench.apply([Action::Undo]);
+    assert!(bench.session().is_unsaved());
+}
+
+#[test]
+fn files_that_were_open_are_offered_again() {
+    let mut bench = Bench::new();
+    for name in ["/a/one.json", "/a/two.json", "/a/one.json"] {
+        bench.tell(Action::Saved(name.into()));
+    }
+    menu(&mut bench, "File");
+    menu(&mut bench, "Open recent");
+    bench.click(Role::Button, "two.json");
+    let open = Effect::Open { path: "/a/two.json".into(), skeleton: None };
+    assert_eq!(bench.effects(), [open]);
+    let recent: Vec<_> = bench.session().recent().iter().map(|path| path.display()).collect();
+    assert_eq!(
+        recent.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        ["/a/one.json", "/a/two.json"]
+    );
+}
+
+#[test]
+fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
+    let mut document = Document::default();
+    document.arm.cursor = Vec3::Y * 123.0;
+    let dialog =
+        Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
+    let mut bench = Bench::after([Action::OpenDialog(dialog.clone())]);
+    assert!(bench.says("ik-arm ended before the changes of lost.json were saved. They are kept."));
+    bench.click(Role::Button, "Open it");
+    bench.settle();
+    assert_eq!(bench.session().document(), &document);
+    assert!(bench.session().is_unsaved() && bench.session().has_settled_recovery());
+    bench.key_with(CTRL, Key::S);
+    assert_eq!(bench.effects(), [Effect::Save("/a/lost.json".into())]);
+
+    let mut bench = Bench::after([Action::OpenDialog(dialog)]);
+    bench.click(Role::Button, "Discard it");
+    assert_eq!(bench.session().document(), &Document::default());
+    assert!(bench.session().has_settled_recovery());
+}
