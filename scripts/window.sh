@@ -59,6 +59,8 @@ drag() {
 
 close_window() {
     local deadline=$((SECONDS + 15))
+    # Without changes it does not ask whether to save them.
+    xdotool key --repeat 40 --delay 20 ctrl+z
     xdotool key ctrl+q
     while kill -0 "$program_pid" 2>/dev/null; do
         if ((SECONDS > deadline)); then

@@ -191,6 +191,11 @@ fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
     assert!(changed(&reset, &dragged, to, 30.0) > 300, "the hand is not where it was dragged");
     assert!(changed(&reset, &dragged, places.elbow, 40.0) > 300, "the elbow has not followed");
 
+    // The drag is taken back, and the reset, and the slide: nothing is left to ask about.
+    xdotool(&["key", "ctrl+z"]);
+    let undone = settled(folder.path());
+    assert!(changed(&reset, &undone, places.elbow, 40.0) < 40, "the drag has not been undone");
+    xdotool(&["key", "--repeat", "2", "ctrl+z"]);
     xdotool(&["key", "ctrl+q"]);
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
 }

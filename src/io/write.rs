@@ -57,6 +57,7 @@ fn replace(
 /// With the rights that a new file has here, not the private ones of a temporary file.
 fn temporary_file(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
+    builder.prefix(".ik-arm-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;

@@ -262,7 +262,11 @@ fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Acti
     ui.label(format!("{name} has changes that are not saved."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        if ui.button("Save").clicked() {
+        let save = ui.button("Save");
+        if ui.memory(|memory| memory.focused().is_none()) {
+            save.request_focus();
+        }
+        if save.clicked() {
             actions.push(Action::SaveAnd(Box::new(then.clone())));
         }
         if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
