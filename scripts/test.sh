@@ -47,7 +47,8 @@ check_features() {
 }
 
 test_window() {
-    local test=(cargo test --locked --test window -- --ignored --nocapture)
+    # One after the other: they share the screen.
+    local test=(cargo test --locked --test window -- --ignored --nocapture --test-threads=1)
     if is_linux; then
         start_virtual_display
         # A Wayland desktop would get the window instead.

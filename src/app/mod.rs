@@ -64,6 +64,8 @@ enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Something that ran beside the window says how it ended.
     Report(String),
+    /// The document is safe, as far as it was changed by then.
+    Kept,
     /// The path that a dialog asked the system for.
     Chosen(Dialog, Choice),
     /// A file was read, with one of its skeletons chosen or not.
@@ -226,6 +228,7 @@ impl ApplicationHandler<UserEvent> for App {
         };
         match event {
             UserEvent::Accesskit(event) => window.on_accesskit(event),
+            UserEvent::Kept => {}
             UserEvent::Report(message) => {
                 self.session.apply(Action::Report(message));
             }

@@ -84,6 +84,7 @@ impl Recovery {
             .filter_map(|entry| {
                 let entry = entry.ok()?;
                 let path = entry.path();
+                forget_empty(&path);
                 let is_kept = path.extension().is_some_and(|extension| extension == "json");
                 let modified = entry.metadata().ok()?.modified().ok()?;
                 (is_kept && !is_held(&path.with_extension("lock"))).then_some((modified, path))
@@ -132,17 +133,18 @@ impl Recovery {
         self.since = None;
         let (place, proxy) = (Arc::clone(place), proxy.clone());
         self.writing = Some(thread::spawn(move || {
-            if let Err(error) = kept.write(&place.path) {
-                let _ = proxy.send_event(UserEvent::Report(format!("Not kept safe: {error}")));
-            }
+            // Nobody hears it once the window is closed.
+            let _ = proxy.send_event(match kept.write(&place.path) {
+                Ok(()) => UserEvent::Kept,
+                Err(error) => UserEvent::Report(format!("Not kept safe: {error}")),
+            });
         }));
         None
     }
 
     /// Whether a document is on the disk.
     pub fn has(&self, revision: u64) -> bool {
-        let is_written = self.writing.as_ref().is_none_or(JoinHandle::is_finished);
-        self.revisions.1 == revision && is_written
+        self.revisions.1 == revision && self.place.as_ref().is_some_and(|it| it.path.exists())
     }
 
     /// Lets go of what is saved, or not wanted.
@@ -173,7 +175,9 @@ impl Recovery {
 impl Place {
     fn take(folder: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
-        let path = folder.join(format!("{}.json", std::process::id()));
+        // Numbers of processes come again; times do not.
+        let started = SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default().as_millis();
+        let path = folder.join(format!("{started}-{}.json", std::process::id()));
         let lock = path.with_extension("lock");
         let held = File::create(&lock)?;
         held.try_lock()?;
@@ -198,6 +202,14 @@ impl Kept {
 /// Whether a run of the program holds a lock.
 fn is_held(lock: &Path) -> bool {
     File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)))
+}
+
+/// A run that was ended with nothing to keep left its lock alone.
+fn forget_empty(lock: &Path) {
+    let is_lock = lock.extension().is_some_and(|extension| extension == "lock");
+    if is_lock && !lock.with_extension("json").exists() && !is_held(lock) {
+        let _ = fs::remove_file(lock);
+    }
 }
 
 /// Takes away what another run left, once it is open or not wanted.

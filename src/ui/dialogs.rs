@@ -262,11 +262,7 @@ fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Acti
     ui.label(format!("{name} has changes that are not saved."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let save = ui.button("Save");
-        if ui.memory(|memory| memory.focused().is_none()) {
-            save.request_focus();
-        }
-        if save.clicked() {
+        if first_button(ui, "Save") {
             actions.push(Action::SaveAnd(Box::new(then.clone())));
         }
         if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
@@ -289,7 +285,7 @@ fn recover(ui: &mut Ui, file: Option<&Path>, actions: &mut Vec<Action>) {
     });
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        if ui.button("Open it").clicked() {
+        if first_button(ui, "Open it") {
             actions.push(Action::Recover);
         }
         if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
@@ -299,4 +295,13 @@ fn recover(ui: &mut Ui, file: Option<&Path>, actions: &mut Vec<Action>) {
             actions.push(Action::CloseDialog);
         }
     });
+}
+
+/// The button that Enter presses.
+fn first_button(ui: &mut Ui, name: &str) -> bool {
+    let button = ui.button(name);
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
 }
