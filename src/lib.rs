@@ -21,11 +21,11 @@
 //!
 //! | module | what it is | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | pure numbers: two bones, skeletons, solvers, following a path | |
+//! | [`kinematics`] | pure numbers: two bones, skeletons, solvers, following a path, splines | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
-//! | `document` | what is saved: arm, skeleton with targets, camera, what is shown | `document` |
+//! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
 //! | `io` | files: documents and Scotty3D's skeletons in, documents out | `document` |
-//! | `session` | the document and what is not saved; `Action` and `apply` | `document` |
+//! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
 //! | `scene` | what to draw: plain lists | `document` |
 //! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |
 //! | `ui` | egui panels: read a session, push actions | `app` |
@@ -46,7 +46,9 @@
 //! screen and on the command line. A point's name carries its space where two spaces meet. A cursor
 //! out of reach is a value, not an error; errors name the file, field or value and what would be
 //! right. All state that shapes the pose is in the document: pose = f(document, time). A solver's
-//! iteration is an action that edits angles, like any other.
+//! iteration is an action that edits angles, like any other. Keyed channels have the values of their
+//! keys; one that is edited without a new key is shown as it is edited until the time changes, which
+//! is the only state of a pose that is not saved. Playing writes nothing.
 
 #[cfg(feature = "app")]
 pub mod app;

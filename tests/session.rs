@@ -151,6 +151,8 @@ fn keying() -> impl Strategy<Value = Action> {
         1 => numbers().prop_map(Action::SetElbowSpin),
         1 => numbers().prop_map(Action::SetUpper),
         1 => any::<bool>().prop_map(|shown| Action::Show(Layer::Cursor, shown)),
+        1 => points().prop_map(Action::SetTranslation),
+        1 => numbers().prop_map(|metres| Action::SetMetres(Some(metres))),
         1 => Just(Action::Undo),
         1 => Just(Action::Redo),
     ]

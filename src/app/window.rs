@@ -255,6 +255,7 @@ impl AppWindow {
                 };
                 jobs::save_picture(shot, PathBuf::from(path), proxy.clone());
             }
+            Effect::Export(_) => {}
             Effect::ChoosePath(dialog) => jobs::choose_path(dialog, proxy.clone()),
             Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
             Effect::Save(path) => {

@@ -4,7 +4,6 @@ use glam::Vec3;
 
 use super::{Document, Layer, RigKind, SkeletonRig};
 use crate::kinematics::skeleton::{Moved, Skeleton};
-use crate::kinematics::solve::Root;
 
 /// One thing of a document that keys can change in time.
 ///
@@ -82,19 +81,17 @@ impl Channel {
     pub const OF_ARM: [Self; 5] =
         [Self::Hand, Self::ElbowSpin, Self::Root, Self::Upper, Self::Lower];
 
-    /// All that shapes the rig that is shown. Of a skeleton where it is, how its joints are turned,
-    /// where they sit if the solver moves roots, and where its targets are.
+    /// All that shapes the rig that is shown. Of a skeleton where it is, where its roots are, how its
+    /// joints are turned, and where its targets are.
     pub fn of_rig(document: &Document) -> Vec<Self> {
         if document.rig == RigKind::Arm {
             return Self::OF_ARM.to_vec();
         }
-        let SkeletonRig { skeleton, targets, solver, .. } = &document.skeleton;
+        let SkeletonRig { skeleton, targets, .. } = &document.skeleton;
         let joints = skeleton.joints().iter().enumerate();
         let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
         let mut channels = vec![Self::Translation];
-        if solver.root == Root::Free {
-            channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
-        }
+        channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
         channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
         channels.extend(targets.iter().map(|target| Self::Target(target.joint)));
         channels

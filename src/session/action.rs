@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
 
-use super::{Constraint, Dialog, DragInput, Grip, Key, Motion, Navigation};
+use super::{Constraint, Dialog, DragInput, Export, Grip, Job, Key, Motion, Navigation};
 use crate::document::{
     Camera, Channel, Document, Layer, Ray, RigKind, Slither, Target, Theme, Timeline,
 };
@@ -68,6 +68,8 @@ pub enum Action {
         locked: bool,
     },
     SetSlither(Option<Slither>),
+    /// Where the skeleton's own origin is, in the world.
+    SetTranslation(Vec3),
 
     /// Puts a target where a joint's tip is.
     AddTarget(usize),
@@ -163,6 +165,12 @@ pub enum Action {
 
     CopyPose,
     SavePicture(String),
+    Export(Export),
+    /// Says that an export has begun.
+    Exporting(Job),
+    CancelExport,
+    /// Says how an export has ended.
+    Exported(String),
     /// Asks for a path: by the system's own dialog, or where it has none by this one.
     Ask(Dialog),
     /// Asks the system's own dialog for the path that the open dialog wants.
@@ -210,6 +218,7 @@ impl Action {
 pub enum Effect {
     CopyText(String),
     SavePicture(String),
+    Export(Export),
     ChoosePath(Dialog),
     Open { path: PathBuf, skeleton: Option<String> },
     Save(PathBuf),

@@ -63,6 +63,7 @@ impl Session {
             Action::SetLocked { joint, locked } => {
                 self.change_joint(joint, |joint| joint.locked = locked);
             }
+            Action::SetTranslation(to) => self.set_translation(to),
             Action::SetSlither(slither) => self.set_slither(slither),
 
             Action::AddTarget(joint) => self.add_target(joint),
@@ -162,6 +163,13 @@ impl Session {
                 self.dialog = None;
                 self.message = Some(format!("Saving {path} …"));
                 return Some(Effect::SavePicture(path));
+            }
+            Action::Export(export) => return self.export(export),
+            Action::Exporting(job) => self.job = Some(job),
+            Action::CancelExport => self.cancel_export(),
+            Action::Exported(how) => {
+                self.job = None;
+                self.message = Some(how);
             }
             Action::Ask(dialog) => return Some(Effect::ChoosePath(dialog)),
             Action::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),

@@ -61,6 +61,7 @@ impl Session {
             saved_revision: newest_revision,
             newest_revision,
             recovery_settled: self.recovery_settled,
+            job: self.job.take(),
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();

@@ -49,8 +49,10 @@ impl Session {
             RigKind::Arm => vec![Channel::Hand, Channel::ElbowSpin],
             RigKind::Skeleton if self.selection.is_empty() => self.all_channels(),
             RigKind::Skeleton => {
-                let of_joint = |joint: &usize| [Channel::Rotation(*joint), Channel::Target(*joint)];
-                self.selection.iter().flat_map(of_joint).filter(is_there).collect()
+                let is_selected = |channel: &Channel| {
+                    channel.joint().is_some_and(|joint| self.selection.contains(&joint))
+                };
+                Channel::of_rig(&self.shown).into_iter().filter(is_selected).collect()
             }
         }
     }

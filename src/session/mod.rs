@@ -7,6 +7,7 @@ mod arm;
 mod clock;
 mod drag;
 mod edit;
+mod export;
 mod files;
 mod history;
 mod keys;
@@ -28,6 +29,7 @@ use std::path::PathBuf;
 
 pub use action::{Action, Effect};
 pub use drag::{Drag, Grip};
+pub use export::{Export, Job};
 pub use keys::Key;
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
 pub use preferences::{Navigation, Preferences};
@@ -86,6 +88,7 @@ pub struct Session {
     view_drag: Option<ViewDrag>,
     glide: Option<Glide>,
     dialog: Option<Dialog>,
+    job: Option<Job>,
     /// Whether what an earlier run kept has been opened or declined.
     recovery_settled: bool,
     /// What waits for the document to be saved.
@@ -110,6 +113,12 @@ pub enum Dialog {
     /// Each asks for a path, which is shown as it is typed.
     SavePicture {
         path: String,
+    },
+    Export {
+        path: String,
+        frame_rate: u32,
+        /// Of pictures, in pixels.
+        size: (u32, u32),
     },
     Open {
         path: String,
@@ -170,6 +179,7 @@ impl Session {
             view_drag: None,
             glide: None,
             dialog: None,
+            job: None,
             recovery_settled: false,
             then: None,
             message: None,
@@ -288,6 +298,7 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.is_gliding()
             || self.clock.playing
+            || self.job.is_some()
             || self.is_running()
             || self.race.as_ref().is_some_and(Race::is_running)
     }

@@ -26,6 +26,7 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::SetLocked { locked: true, .. } => "lock joint",
         Action::SetLocked { locked: false, .. } => "unlock joint",
         Action::SetSlither(_) => "change slither",
+        Action::SetTranslation(_) => "move skeleton",
         Action::AddTarget(_) => "add target",
         Action::RemoveTarget(_) => "remove target",
         Action::SetTarget(_) => "change target",

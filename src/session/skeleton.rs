@@ -85,6 +85,14 @@ impl Session {
         });
     }
 
+    pub(super) fn set_translation(&mut self, to: Vec3) {
+        self.edit_skeleton(|rig| {
+            let mut transform = rig.skeleton.transform();
+            transform.translation = to.into();
+            rig.skeleton.set_transform(transform)
+        });
+    }
+
     /// Puts a target where the joint's tip is.
     pub(super) fn add_target(&mut self, joint: usize) {
         if joint >= self.skeleton_pose.len() || self.skeleton().target(joint).is_some() {

@@ -5,12 +5,12 @@ use core::f32::consts::TAU;
 use egui::Ui;
 use glam::Vec3;
 
+use super::point::Point;
 use super::slider::Slider;
 use super::{row, style};
 use crate::document::Arm;
 use crate::session::{Action, Session};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
 const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
@@ -22,69 +22,27 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let reach = session.arm().bones.outer_limit();
-    point(
-        ui,
-        session,
-        actions,
-        &Point {
-            name: "Hand",
-            value: session.arm().cursor,
-            default: Arm::default().cursor,
-            range: reach,
-            tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
-            set: Action::SetHand,
-        },
-    );
+    let hand = Point {
+        name: "Hand",
+        value: session.arm().cursor,
+        default: Arm::default().cursor,
+        range: session.arm().bones.outer_limit(),
+        step: 1.0,
+        tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
+    };
+    hand.show(ui, session, actions, Action::SetHand);
 }
 
 fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    point(
-        ui,
-        session,
-        actions,
-        &Point {
-            name: "Root",
-            value: session.arm().root,
-            default: Vec3::ZERO,
-            range: ROOT_RANGE,
-            tooltip: "Where the Root, the shoulder, is in the world; the whole arm moves with it",
-            set: Action::SetRoot,
-        },
-    );
-}
-
-/// Three sliders that set a point, each leaving the two other coordinates as they are.
-struct Point<'a> {
-    name: &'a str,
-    value: Vec3,
-    default: Vec3,
-    range: f32,
-    tooltip: &'a str,
-    set: fn(Vec3) -> Action,
-}
-
-fn point(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>, point: &Point<'_>) {
-    let axes = style::palette(ui).axes;
-    for (axis, label) in AXES.into_iter().enumerate() {
-        let slider = Slider {
-            name: &format!("{} {label}", point.name),
-            label,
-            colour: Some(style::colour(axes[axis])),
-            tooltip: &format!("{}: {label}", point.tooltip),
-            value: point.value[axis],
-            range: (-point.range, point.range),
-            default: point.default[axis],
-            unit: "",
-            step: 1.0,
-            disabled: None,
-        };
-        slider.show(ui, super::is_sliding(session), actions, |coordinate| {
-            let mut moved = point.value;
-            moved[axis] = coordinate;
-            (point.set)(moved)
-        });
-    }
+    let root = Point {
+        name: "Root",
+        value: session.arm().root,
+        default: Vec3::ZERO,
+        range: ROOT_RANGE,
+        step: 1.0,
+        tooltip: "Where the Root, the shoulder, is in the world; the whole arm moves with it",
+    };
+    root.show(ui, session, actions, Action::SetRoot);
 }
 
 fn elbow(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -1,7 +1,9 @@
 //! The left panel: which rig it is, its parts, and what is shown.
 
 use egui::{ScrollArea, Ui};
+use glam::Vec3;
 
+use super::point::Point;
 use super::{arm, joint, joints, motion, row, targets};
 use crate::document::{Layer, RigKind};
 use crate::session::{Action, Session};
@@ -60,7 +62,21 @@ fn skeleton(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     }
     row::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    row::section(ui, "Place", |ui| place(ui, session, actions));
     row::section(ui, "Motion", |ui| motion::ui(ui, session, actions));
+}
+
+fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    let place = Point {
+        name: "Skeleton",
+        value: rig.skeleton.transform().translation.into(),
+        default: Vec3::ZERO,
+        range: 2.0 * rig.reach(),
+        step: session.shown().cell() * 0.1,
+        tooltip: "Where the skeleton's own origin is, in the world; its targets stay",
+    };
+    place.show(ui, session, actions, Action::SetTranslation);
 }
 
 fn guides(session: &Session) -> &'static [Layer] {

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use egui::{Align2, Grid, Key, ScrollArea, TextEdit, Ui, Window, vec2};
 
-use super::Machine;
-use crate::session::{Action, Dialog, Session};
+use super::{Machine, export};
+use crate::session::{Action, Dialog, Export, Session};
 
 pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
     match session.dialog() {
@@ -17,6 +17,10 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
             window(ui, "Save picture", actions, |ui, actions| {
                 ask_path(ui, &SAVE_PICTURE, path, actions);
             });
+        }
+        Some(Dialog::Export { path, frame_rate, size }) => {
+            let export = Export { path: path.into(), frame_rate: *frame_rate, size: *size };
+            window(ui, "Export", actions, |ui, actions| export::ui(ui, session, &export, actions));
         }
         Some(Dialog::Open { path }) => {
             window(ui, "Open", actions, |ui, actions| ask_path(ui, &OPEN, path, actions));
@@ -207,7 +211,7 @@ fn ask_path(ui: &mut Ui, question: &Question, path: &str, actions: &mut Vec<Acti
 }
 
 /// A line of text that has the keyboard: what is in it, and whether it was entered.
-fn ask(ui: &mut Ui, prompt: &str, text: &str) -> (String, bool) {
+pub(super) fn ask(ui: &mut Ui, prompt: &str, text: &str) -> (String, bool) {
     let mut typed = text.to_owned();
     let name = ui.label(prompt);
     let edit = ui.add(TextEdit::singleline(&mut typed).desired_width(f32::INFINITY));

@@ -5,13 +5,13 @@ use core::f32::consts::PI;
 use egui::{ComboBox, Ui};
 use glam::Vec3;
 
+use super::point::AXES;
 use super::row::{self, Field};
 use super::slider::{self, Slider};
 use super::style;
 use crate::kinematics::skeleton::{Joint, Limit};
 use crate::session::{Action, Session};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
 const STIFF: &str = "The limit leaves no room";
 const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
 
@@ -87,37 +87,34 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
             }
             let Some(limit) = limit else { return };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let field = |name: String, value: f32| (name, value.to_degrees());
-                let (to, max) = field(format!("{label} to"), limit.max);
-                Field {
-                    name: &to,
-                    value: max,
-                    unit: "°",
-                    step: 1.0,
-                    digits: 1,
-                    tooltip: "The largest angle",
-                }
-                .show(ui, session, actions, |degrees| {
-                    let max = degrees.to_radians();
+                angle(ui, session, actions, &format!("{label} to"), limit.max, &|max| {
                     set(Some(Limit { min: limit.min.min(max), max }))
                 });
                 ui.weak("to");
-                let (from, min) = field(format!("{label} from"), limit.min);
-                Field {
-                    name: &from,
-                    value: min,
-                    unit: "°",
-                    step: 1.0,
-                    digits: 1,
-                    tooltip: "The least angle",
-                }
-                .show(ui, session, actions, |degrees| {
-                    let min = degrees.to_radians();
+                angle(ui, session, actions, &format!("{label} from"), limit.min, &|min| {
                     set(Some(Limit { min, max: limit.max.max(min) }))
                 });
             });
         });
     }
+}
+
+/// One end of a limit, in radians; shown in degrees.
+fn angle(
+    ui: &mut Ui,
+    session: &Session,
+    actions: &mut Vec<Action>,
+    name: &str,
+    value: f32,
+    set: &dyn Fn(f32) -> Action,
+) {
+    let tooltip = "How far the angle can go";
+    Field { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
+        ui,
+        session,
+        actions,
+        |degrees| set(degrees.to_radians()),
+    );
 }
 
 fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {

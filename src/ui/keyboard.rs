@@ -37,6 +37,9 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     if let Some(path) = dropped {
         actions.push(Action::Open { path, skeleton: None });
     }
+    if pressed(Modifiers::COMMAND, Key::E) {
+        actions.push(Action::OpenDialog(session.export_dialog()));
+    }
     if pressed(Modifiers::COMMAND, Key::P) {
         actions.push(menu::save_picture());
     }

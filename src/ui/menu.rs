@@ -49,6 +49,9 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(save_as());
     }
     ui.separator();
+    if item(ui, "Export…", "Ctrl+E") {
+        actions.push(Action::OpenDialog(session.export_dialog()));
+    }
     if item(ui, "Save picture…", "Ctrl+P") {
         actions.push(save_picture());
     }

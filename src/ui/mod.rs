@@ -6,6 +6,7 @@ mod controls;
 mod convergence;
 mod dialogs;
 mod explain;
+mod export;
 mod figure;
 mod grips;
 mod handles;
@@ -15,6 +16,7 @@ mod keyboard;
 mod menu;
 mod motion;
 mod number;
+mod point;
 mod race;
 mod row;
 mod slider;
@@ -51,7 +53,7 @@ pub fn show(
 ) -> Rect {
     keyboard::global(ui, session, actions);
     Panel::top("menu").show(ui, |ui| menu::ui(ui, session, actions));
-    Panel::bottom("status").show(ui, |ui| status::ui(ui, session, machine));
+    Panel::bottom("status").show(ui, |ui| status::ui(ui, session, machine, actions));
     Panel::left("controls")
         .resizable(true)
         .default_size(272.0)

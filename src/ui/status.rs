@@ -1,23 +1,38 @@
 //! The line at the bottom: what just happened, or what the keys do now, or how the arm stands.
 
-use egui::{Align, Label, Layout, RichText, Ui};
+use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
 use super::Machine;
 use crate::document::{Arm, RigKind};
 use crate::kinematics::solve::Method;
 use crate::kinematics::two_bone::{Pose, Reach};
-use crate::session::{Drag, Grip, PointDrag, Session, Solving, TurnDrag};
+use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, Solving, TurnDrag};
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine) {
+pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         ui.set_height(24.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add(Label::new(RichText::new(describe_machine(machine)).weak()).selectable(false));
+            if let Some(job) = session.job() {
+                show_job(ui, job, actions);
+            }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(Label::new(line(session)).truncate().selectable(false));
             });
         });
     });
+}
+
+/// How far an export is; a press stops it.
+fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
+    if ui.small_button("Cancel").on_hover_text("Stops the export; no file is left").clicked() {
+        actions.push(Action::CancelExport);
+    }
+    let name = job.path.file_name().unwrap_or(job.path.as_os_str()).to_string_lossy();
+    let part = job.progress.part();
+    let bar = ProgressBar::new(part).desired_width(140.0).text(format!("{:.0} %", part * 100.0));
+    ui.add(bar).on_hover_text(format!("Exporting {}", job.path.display()));
+    ui.add(Label::new(format!("Exporting {name}")).selectable(false));
 }
 
 /// One sentence on why the arm is as it is.

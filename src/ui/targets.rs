@@ -1,15 +1,13 @@
 //! The targets: which are on, how far tips are from them, and where the selected one is.
 
 use egui::{ComboBox, RichText, Ui};
-use glam::Vec3;
 
+use super::point::Point;
 use super::row::{self, Field};
-use super::slider::{self, Slider};
-use super::{number, style};
+use super::{number, slider};
 use crate::document::{Motion, Path, Target};
 use crate::session::{Action, Session};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
 const PATHS: [(Path, &str); 3] =
     [(Path::Still, "Still"), (Path::Circle, "Circle"), (Path::FigureEight, "Figure eight")];
 
@@ -64,28 +62,15 @@ pub(super) fn selected(ui: &mut Ui, session: &Session, target: Target, actions: 
 }
 
 fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
-    let colours = style::palette(ui).axes;
-    let reach = 1.5 * session.skeleton().reach();
-    let tip = session.skeleton_pose().tip(target.joint);
-    for (axis, label) in AXES.into_iter().enumerate() {
-        let slider = Slider {
-            name: &format!("Target {label}"),
-            label,
-            colour: Some(style::colour(colours[axis])),
-            tooltip: &format!("Where the tip is asked to be, in the world: {label}"),
-            value: target.home[axis],
-            range: (-reach, reach),
-            default: tip[axis],
-            unit: "",
-            step,
-            disabled: None,
-        };
-        slider.show(ui, super::is_sliding(session), actions, |value| {
-            let mut home: Vec3 = target.home;
-            home[axis] = value;
-            Action::SetTarget(Target { home, ..target })
-        });
-    }
+    let place = Point {
+        name: "Target",
+        value: target.home,
+        default: session.skeleton_pose().tip(target.joint),
+        range: 1.5 * session.skeleton().reach(),
+        step,
+        tooltip: "Where the tip is asked to be, in the world",
+    };
+    place.show(ui, session, actions, |home| Action::SetTarget(Target { home, ..target }));
 }
 
 fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {

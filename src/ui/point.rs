@@ -1,0 +1,52 @@
+use egui::Ui;
+use glam::Vec3;
+
+use super::slider::Slider;
+use super::style;
+use crate::session::{Action, Session};
+
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A point that is shown and set by three sliders, each of which leaves the other two coordinates as
+/// they are.
+pub(super) struct Point<'a> {
+    /// What it is called where there is nothing else to see: "Hand", of which the first is "Hand x".
+    pub name: &'a str,
+    pub value: Vec3,
+    pub default: Vec3,
+    /// Of every coordinate, to either side.
+    pub range: f32,
+    pub step: f32,
+    pub tooltip: &'a str,
+}
+
+impl Point<'_> {
+    pub fn show(
+        &self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Vec<Action>,
+        set: impl Fn(Vec3) -> Action,
+    ) {
+        let colours = style::palette(ui).axes;
+        for (axis, label) in AXES.into_iter().enumerate() {
+            let slider = Slider {
+                name: &format!("{} {label}", self.name),
+                label,
+                colour: Some(style::colour(colours[axis])),
+                tooltip: self.tooltip,
+                value: self.value[axis],
+                range: (-self.range, self.range),
+                default: self.default[axis],
+                unit: "",
+                step: self.step,
+                disabled: None,
+            };
+            slider.show(ui, super::is_sliding(session), actions, |coordinate| {
+                let mut moved = self.value;
+                moved[axis] = coordinate;
+                set(moved)
+            });
+        }
+    }
+}
