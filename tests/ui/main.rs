@@ -5,6 +5,7 @@
 mod accessibility;
 mod bench;
 mod dialogs;
+mod export;
 mod hand;
 mod hand_keys;
 mod history;

@@ -1,0 +1,117 @@
+//! The document's ways out of the program.
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::NodeT as _;
+use glam::Vec3;
+use ik_arm::document::Channel;
+use ik_arm::io::{self, Cancelled, Example, Progress};
+use ik_arm::session::{Action, Effect, Export, Job};
+
+use crate::bench::Bench;
+
+fn asked() -> Bench {
+    let mut bench = Bench::after([Action::OpenExample(Example::find("keyframes").expect("there"))]);
+    bench.key_with(Modifiers::COMMAND, Key::E);
+    bench.settle();
+    bench
+}
+
+fn exported(bench: &mut Bench) -> Export {
+    match &bench.effects()[..] {
+        [Effect::Export(export)] => export.clone(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_format_gives_the_path_its_ending_and_enter_exports() {
+    for (format, path) in [
+        ("BVH", "ik-arm.bvh"),
+        ("CSV", "ik-arm.csv"),
+        ("Animated PNG", "ik-arm.apng"),
+        ("PNG sequence", "ik-arm_####.png"),
+        ("PNG", "ik-arm.png"),
+    ] {
+        let mut bench = asked();
+        assert!(bench.says("4.00 s, from 0.00 s"));
+        bench.click(Role::Button, format);
+        bench.settle();
+        bench.click(Role::Button, "GLB");
+        bench.settle();
+        bench.click(Role::Button, format);
+        bench.settle();
+        bench.focus(Role::TextInput, "To");
+        bench.key(Key::Enter);
+        let export = exported(&mut bench);
+        assert_eq!(export, Export { path: path.into(), frame_rate: 30, size: (1280, 800) });
+        assert_eq!(bench.session().dialog(), None);
+    }
+}
+
+#[test]
+fn a_path_whose_ending_is_no_format_is_not_exported() {
+    let mut bench = asked();
+    bench.focus(Role::TextInput, "To");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.type_text("arm.fbx");
+    bench.settle();
+    assert!(bench.node(Role::Button, "Export").accesskit_node().is_disabled());
+    bench.key(Key::Enter);
+    assert_eq!(bench.effects(), []);
+}
+
+#[test]
+fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
+    let mut bench = asked();
+    bench.click(Role::Button, "Export");
+    let export = exported(&mut bench);
+    let progress = Arc::new(Progress::default());
+    let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
+    bench.apply_moving([Action::Exporting(job)]);
+    assert_eq!(progress.step(30, 120), Ok(()));
+    bench.frame([]);
+    assert!(bench.says("Exporting ik-arm.glb") && bench.says("25 %"));
+    // A second one waits.
+    bench.apply_moving([Action::Export(export)]);
+    assert!(bench.says("Another export is under way; cancel it or wait"));
+    let cancel = bench.rect(Role::Button, "Cancel").center();
+    bench.click_at(cancel);
+    assert_eq!(progress.step(31, 120), Err(Cancelled));
+    bench.tell(Action::Exported("Export cancelled".to_owned()));
+    bench.settle();
+    assert!(bench.says("Export cancelled") && !bench.says("25 %"));
+}
+
+#[test]
+fn a_document_with_keys_is_saved_opened_again_and_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("saved.json");
+    let mut bench = Bench::after([
+        Action::SetHand(Vec3::new(100.0, 200.0, 50.0)),
+        Action::Key(vec![Channel::Hand, Channel::ElbowSpin]),
+        Action::SetTime(1.5),
+        Action::SetHand(Vec3::new(-100.0, 200.0, 50.0)),
+        Action::Key(vec![Channel::Hand]),
+    ]);
+    bench.key_with(Modifiers::COMMAND, Key::S);
+    bench.settle();
+    bench.focus(Role::TextInput, "Save the document to");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.type_text(path.to_str().expect("a path"));
+    bench.key(Key::Enter);
+    let [Effect::Save(to)] = &bench.effects()[..] else { panic!("it is not saved") };
+    io::save(bench.session().document(), to).expect("saved");
+    bench.tell(Action::Saved(to.clone()));
+    let saved = bench.session().document().clone();
+    assert!(!bench.session().is_unsaved());
+
+    let opened = io::open(&path, None).expect("it opens");
+    let mut again =
+        Bench::after([Action::Opened { document: Box::new(opened.document), file: Some(path) }]);
+    assert_eq!(again.session().document(), &saved);
+    again.apply([Action::SetTime(0.75)]);
+    assert_eq!(again.hand(), Vec3::new(0.0, 200.0, 50.0));
+}
