@@ -17,6 +17,7 @@ main() {
     check_features --no-default-features --features document
     check_features --no-default-features --features render
     check_features
+    step "glTF validator" scripts/validate-gltf.sh
     step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
     step "Window" test_window
     printf '\nEverything passed in %d s.\n' "$SECONDS"

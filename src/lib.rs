@@ -24,7 +24,7 @@
 //! | [`kinematics`] | pure numbers: two bones, skeletons, solvers, following a path, splines | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
 //! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
-//! | `io` | files: documents and Scotty3D's skeletons in, documents out | `document` |
+//! | `io` | files: documents, Scotty3D's skeletons and glTF in; documents and glTF out | `document` |
 //! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
 //! | `scene` | what to draw: plain lists | `document` |
 //! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |

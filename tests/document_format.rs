@@ -277,7 +277,7 @@ fn what_is_no_document_is_told_apart() {
         (
             "{\"a\":1}",
             "line 1, column 1: neither \"format\" is there, as in a document of ik-arm, nor \
-             \"scene\", as in a .js3d file of Scotty3D",
+             \"scene\", as in a .js3d file of Scotty3D, nor \"asset\", as in glTF",
         ),
         (
             "{\n\"format\":\"png\",\"version\":1}",

@@ -73,7 +73,7 @@ impl Keys {
 
     /// Every time at which there is a key, in order.
     pub fn times(&self) -> Vec<f64> {
-        let knots = self.tracks.values().flat_map(|track| track.knots());
+        let knots = self.tracks.values().flat_map(Spline::knots);
         let mut times: Vec<f64> = knots.map(|knot| knot.time).collect();
         times.sort_unstable_by(f64::total_cmp);
         times.dedup();
@@ -112,7 +112,7 @@ impl Document {
     /// Whether the pose of the rig that is shown changes in time.
     pub fn is_posed_by_time(&self) -> bool {
         let slithers = self.rig == RigKind::Skeleton && self.skeleton.slither.is_some();
-        slithers || self.keys.tracks().any(|(channel, _)| channel.rig() == Some(self.rig))
+        slithers || self.keys.tracks().any(|(channel, _)| channel.poses() == Some(self.rig))
     }
 
     /// Keys a channel as it is now, at a time; an angle unwrapped to be near the keys that it has.

@@ -21,9 +21,9 @@ pub enum OpenError {
 /// What there is to say about a place in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// From 1.
+    /// From 1; 0 in a binary file, which has no lines.
     pub line: usize,
-    /// From 1, in characters.
+    /// From 1, in characters; 0 where there are no lines.
     pub column: usize,
     /// The path of the field, as `skeleton.joints[3].parent`; empty where there is none.
     pub field: String,
@@ -33,7 +33,9 @@ pub struct Remark {
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, column, field, reason } = self;
-        write!(f, "line {line}, column {column}: ")?;
+        if *line > 0 {
+            write!(f, "line {line}, column {column}: ")?;
+        }
         if !field.is_empty() {
             write!(f, "{field}: ")?;
         }

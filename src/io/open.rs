@@ -8,7 +8,8 @@ use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
 use super::error::{OpenError, Remark};
 use super::field::Field;
 use super::source::{Source, Wrong};
-use super::{format, js3d};
+use super::value::Whole;
+use super::{format, gltf, js3d};
 use crate::document::Document;
 
 /// A document from a file.
@@ -24,8 +25,8 @@ pub struct Opened {
     pub skeletons: Vec<String>,
 }
 
-/// Opens a document or a scene of Scotty3D, whichever the file has; of a scene the skeleton of that
-/// name, or the first.
+/// Opens a document, a scene of Scotty3D or glTF (text or binary), whichever the file has; of a scene
+/// and of glTF the skeleton of that name, or the first.
 ///
 /// # Errors
 ///
@@ -55,6 +56,7 @@ pub fn parse(name: &str, text: &str, skeleton: Option<&str>) -> Result<Opened, O
 fn opened(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> {
     match (kind(source)?, skeleton) {
         (Kind::Scene, skeleton) => js3d::read(source, skeleton),
+        (Kind::Gltf, skeleton) => gltf::read(source, skeleton),
         (Kind::Document, None) => format::read(source),
         (Kind::Document, Some(name)) => Err(OpenError::NoSkeleton {
             file: source.name().to_owned(),
@@ -68,10 +70,14 @@ fn opened(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> 
 enum Kind {
     Document,
     Scene,
+    Gltf,
 }
 
 /// What the first key that tells says; the rest is not read for it.
 fn kind(source: &Source) -> Result<Kind, OpenError> {
+    if source.binary().is_some() {
+        return Ok(Kind::Gltf);
+    }
     let mut kind = None;
     let mut json = serde_json::Deserializer::from_str(source.text());
     let read = json.deserialize_map(KindVisitor(&mut kind)).and_then(|()| json.end());
@@ -80,7 +86,7 @@ fn kind(source: &Source) -> Result<Kind, OpenError> {
         (None, Err(error)) => Err(source.not_read(&Field::root(), &error)),
         (None, Ok(())) => {
             let reason = "neither \"format\" is there, as in a document of ik-arm, nor \"scene\", \
-                          as in a .js3d file of Scotty3D";
+                          as in a .js3d file of Scotty3D, nor \"asset\", as in glTF";
             Err(source.wrong(&Wrong::new(Field::root(), reason)))
         }
     }
@@ -99,7 +105,10 @@ impl<'de> Visitor<'de> for KindVisitor<'_> {
         while let Some(key) = map.next_key::<Cow<'_, str>>()? {
             *self.0 = match &*key {
                 "format" => Some(Kind::Document),
+                // In glTF this is a number, and tells nothing yet.
+                "scene" if map.next_value::<Whole>().is_ok() => continue,
                 "scene" => Some(Kind::Scene),
+                "asset" => Some(Kind::Gltf),
                 _ => None,
             };
             if self.0.is_some() {

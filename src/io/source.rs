@@ -1,16 +1,21 @@
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
 use super::error::{OpenError, Remark, shortened};
 use super::field::{Field, byte_at, line_and_column};
+use super::gltf::chunks::{self, Chunks};
 
 /// A file's text, and what the file is called.
 pub struct Source {
     name: String,
     text: String,
+    /// What a binary file has beside its text.
+    binary: Option<Vec<u8>>,
+    /// Where other files that it tells of are.
+    folder: Option<PathBuf>,
 }
 
 /// What is wrong or odd with a field.
@@ -54,7 +59,10 @@ impl Source {
         let opened = File::open(path).and_then(|file| Ok((file.metadata()?.len(), file)));
         match opened {
             Ok((length, _)) if length > Self::LONGEST => Err(OpenError::TooLarge { file: name }),
-            Ok((_, file)) => Self::read(&name, file),
+            Ok((_, file)) => {
+                let folder = path.parent().map(Path::to_owned);
+                Ok(Self { folder, ..Self::read(&name, file)? })
+            }
             Err(source) => Err(OpenError::Read { file: name, source }),
         }
     }
@@ -69,6 +77,11 @@ impl Source {
         if bytes.len() as u64 > Self::LONGEST {
             return Err(OpenError::TooLarge { file });
         }
+        if bytes.starts_with(chunks::MAGIC) {
+            let Chunks { json, binary } =
+                chunks::split(&bytes).map_err(|reason| not_whole(file, reason))?;
+            return Ok(Self { binary: Some(binary), ..Self::new(name, &json) });
+        }
         match String::from_utf8(bytes) {
             Ok(text) => Ok(Self::new(name, &text)),
             Err(error) => Err(not_utf8(file, error.as_bytes())),
@@ -77,7 +90,7 @@ impl Source {
 
     pub fn new(name: &str, text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        Self { name: name.to_owned(), text: text.to_owned() }
+        Self { name: name.to_owned(), text: text.to_owned(), binary: None, folder: None }
     }
 
     pub fn name(&self) -> &str {
@@ -86,6 +99,16 @@ impl Source {
 
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// What a binary file has beside its text; none for other files.
+    pub fn binary(&self) -> Option<&[u8]> {
+        self.binary.as_deref()
+    }
+
+    /// Where other files that it tells of are, if that is known.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// Reads the whole text; unknown fields are named to `ignored`.
@@ -141,7 +164,8 @@ impl Source {
     }
 
     fn remark_at(&self, byte: usize, field: &Field, reason: &str) -> Remark {
-        let (line, column) = line_and_column(&self.text, byte);
+        let has_lines = self.binary.is_none();
+        let (line, column) = if has_lines { line_and_column(&self.text, byte) } else { (0, 0) };
         let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));
         Remark { line, column, field, reason }
     }
@@ -149,6 +173,11 @@ impl Source {
 
 /// serde_json has no other way to tell this error from the rest.
 const OUT_OF_RANGE: &str = "number out of range";
+
+/// A binary file of which nothing can be read.
+fn not_whole(file: String, reason: String) -> OpenError {
+    OpenError::Content { file, remark: Remark { line: 0, column: 0, field: String::new(), reason } }
+}
 
 fn not_utf8(file: String, bytes: &[u8]) -> OpenError {
     let valid = bytes.utf8_chunks().next().map_or("", |chunk| chunk.valid());

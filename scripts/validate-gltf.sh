@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Exports every example, as it is and with keys, and has the Khronos Group's validator read the files.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=scripts/setup.sh
+source scripts/setup.sh
+
+validator=gltf-validator@2.0.0-dev.3.10
+tools=(node:nodejs npm:npm)
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+files=$target/gltf
+
+main() {
+    set_up
+    install_tools
+    install_validator
+    export_files
+    validate_files
+}
+
+install_tools() {
+    if has_command apt-get; then
+        install_packages "${tools[@]}"
+    else
+        name_what_is_missing "${tools[@]}"
+    fi
+}
+
+install_validator() {
+    local folder=$target/$validator
+    if [[ ! -d $folder/node_modules/gltf-validator ]]; then
+        say "installing $validator"
+        mkdir -p "$folder"
+        npm install --prefix "$folder" --no-save --no-audit --no-fund "$validator"
+    fi
+    export NODE_PATH=$folder/node_modules
+}
+
+export_files() {
+    rm -rf "$files"
+    mkdir -p "$files"
+    IK_ARM_GLB_DIR=$files cargo test --locked --no-default-features --features document \
+        --test gltf -- --exact \
+        export::every_file_is_written_for_the_validator_if_it_asks
+}
+
+# Fails at any error, warning, information or hint.
+validate_files() {
+    node - "$files"/*.glb <<'SCRIPT'
+const { readFileSync } = require("fs");
+const { basename } = require("path");
+const { validateBytes } = require("gltf-validator");
+
+async function main(paths) {
+    let issues = 0;
+    for (const path of paths) {
+        const report = await validateBytes(new Uint8Array(readFileSync(path)));
+        for (const { severity, code, message, pointer } of report.issues.messages) {
+            const kind = ["error", "warning", "information", "hint"][severity];
+            console.log(`${basename(path)}: ${kind} ${code} at ${pointer}: ${message}`);
+            issues += 1;
+        }
+    }
+    console.log(`${paths.length} files, ${issues} issues`);
+    process.exitCode = paths.length > 0 && issues === 0 ? 0 : 1;
+}
+
+main(process.argv.slice(2)).catch((error) => {
+    console.error(error);
+    process.exitCode = 1;
+});
+SCRIPT
+}
+
+main "$@"

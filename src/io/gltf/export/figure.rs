@@ -1,0 +1,210 @@
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+
+use super::GlbError;
+use crate::document::{Channel, Document, RigKind};
+use crate::io::gltf::frame::frame;
+use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::rig::{ArmRig, Cone, Part};
+
+/// The shown rig, arm or skeleton, as bones in the world, in metres.
+///
+/// In f64, in which a skeleton far from the origin is as exact as near it.
+pub struct Figure {
+    document: Document,
+    metres_per_unit: f64,
+    /// Parents before their children.
+    pub bones: Vec<Bone>,
+    /// Where each is in the bind pose.
+    pub rest: Vec<Placed>,
+}
+
+/// What does not change in time.
+pub struct Bone {
+    pub name: String,
+    pub parent: Option<usize>,
+    /// Whether a joint of its own stands at its tip: where nothing else tells how long it is.
+    pub has_tip: bool,
+    pub is_leaf: bool,
+    /// How thick it is where it begins, and where it ends; in metres.
+    pub radii: [f64; 2],
+    /// Which of the two limbs' colours it has.
+    pub shade: usize,
+}
+
+/// Where a bone is: in the world, in metres.
+#[derive(Clone, Copy)]
+pub struct Placed {
+    pub base: DVec3,
+    /// From base to tip.
+    pub along: DVec3,
+    /// Where the joint's own x and y point; of any length.
+    pub x: DVec3,
+    pub y: DVec3,
+}
+
+impl Placed {
+    /// Rigid, in the world: y along the bone; that of a bone without length is the joint's own.
+    pub fn frame(&self) -> DMat3 {
+        let has_direction = self.along.try_normalize().is_some();
+        frame(if has_direction { self.along } else { self.y }, self.x)
+    }
+}
+
+impl Figure {
+    pub fn new(document: &Document) -> Result<Self, GlbError> {
+        let metres_per_unit = f64::from(document.metres_per_unit());
+        let mut figure = Self {
+            document: document.clone(),
+            metres_per_unit,
+            bones: Vec::new(),
+            rest: Vec::new(),
+        };
+        match document.rig {
+            RigKind::Arm => {
+                figure.rest = figure.metric(straight_arm(document));
+                figure.bones = figure.limbs();
+            }
+            RigKind::Skeleton => {
+                let skeleton = &document.skeleton.skeleton;
+                figure.rest = figure.metric(placed(skeleton, |_| DMat3::IDENTITY));
+                figure.bones = figure.joints(skeleton.joints());
+            }
+        }
+        if figure.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(figure) }
+    }
+
+    /// Where the bones are at a time, in seconds.
+    pub fn at(&mut self, time: f64) -> Vec<Placed> {
+        // Not `at`, which would copy all keys for every frame.
+        self.document.keys_to(time);
+        let document = &self.document;
+        self.metric(match document.rig {
+            RigKind::Arm => posed_arm(document),
+            RigKind::Skeleton => {
+                let turned = |joint: &Joint| joint.local_rotation().as_dmat3();
+                placed(&document.skeleton.at(time), turned)
+            }
+        })
+    }
+
+    /// Whether anything that poses the rig changes in time.
+    pub fn is_moving(&self) -> bool {
+        self.document.is_posed_by_time()
+    }
+
+    /// In metres what was in the document's units.
+    fn metric(&self, mut placed: Vec<Placed>) -> Vec<Placed> {
+        for bone in &mut placed {
+            bone.base *= self.metres_per_unit;
+            bone.along *= self.metres_per_unit;
+        }
+        placed
+    }
+
+    fn limbs(&self) -> Vec<Bone> {
+        let Document { arm, keys, .. } = &self.document;
+        let rig = arm.rig(&arm.pose());
+        let radii = |limb: Cone| {
+            [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
+        };
+        vec![
+            Bone {
+                name: "upper".to_owned(),
+                parent: None,
+                has_tip: keys.has(Channel::Upper),
+                is_leaf: false,
+                radii: radii(rig.upper()),
+                shade: 0,
+            },
+            Bone {
+                name: "lower".to_owned(),
+                parent: Some(0),
+                has_tip: true,
+                is_leaf: true,
+                radii: radii(rig.lower()),
+                shade: 1,
+            },
+        ]
+    }
+
+    fn joints(&self, joints: &[Joint]) -> Vec<Bone> {
+        let scale = self.document.skeleton.skeleton.transform().as_daffine3().matrix3;
+        let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
+        let reach = f64::from(self.document.skeleton.reach()) * self.metres_per_unit;
+        let mut depths = vec![0_usize; joints.len()];
+        let mut are_leaves = vec![true; joints.len()];
+        for (index, joint) in joints.iter().enumerate() {
+            if let Some(parent) = joint.parent {
+                depths[index] = depths[parent] + usize::from(joints[parent].axis != Vec3::ZERO);
+                are_leaves[parent] = false;
+            }
+        }
+        let bone = |(index, joint): (usize, &Joint)| Bone {
+            name: joint.name.clone(),
+            parent: joint.parent,
+            has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
+            is_leaf: are_leaves[index],
+            radii: radii(f64::from(joint.radius) * metres, self.rest[index].along.length(), reach),
+            shade: depths[index] % 2,
+        };
+        joints.iter().enumerate().map(bone).collect()
+    }
+}
+
+/// How thick a bone is where it begins and where it ends: as its own radius says, yet so that it
+/// looks like a bone whatever that is, on a skeleton of such a reach. All in metres.
+fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
+    const THICKEST: (f64, f64) = (0.45, 0.028);
+    const POINT: f64 = 0.02;
+    const TAPER: f64 = 0.6;
+    const SLENDER: f64 = 4.0;
+    let thickest = match length {
+        0.0 => POINT * reach,
+        length => (THICKEST.0 * length).min(THICKEST.1 * reach),
+    };
+    let radius = own.min(thickest).max(0.25 * thickest);
+    [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
+}
+
+fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed> {
+    let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
+    for joint in skeleton.joints() {
+        let above = joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent]);
+        full.push(
+            above * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
+        );
+    }
+    let place = |(joint, full): (&Joint, DAffine3)| Placed {
+        base: full.translation,
+        along: full.matrix3 * joint.axis.as_dvec3(),
+        x: full.matrix3.x_axis,
+        y: full.matrix3.y_axis,
+    };
+    skeleton.joints().iter().zip(full).map(place).collect()
+}
+
+/// Along the Root's +x, its hinge facing as in a Socket that is not turned.
+fn straight_arm(document: &Document) -> Vec<Placed> {
+    limbs(document, [DMat3::IDENTITY; 2])
+}
+
+fn posed_arm(document: &Document) -> Vec<Placed> {
+    let rig: ArmRig = document.arm.rig(&document.arm.pose());
+    let socket = rig.local(Part::Limb) * rig.local(Part::Socket);
+    let turn = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
+    limbs(document, [turn(Part::UpperLimb), turn(Part::LowerLimb)])
+}
+
+/// The limbs by how each is turned: it lies along x, and bends about z.
+fn limbs(document: &Document, turns: [DMat3; 2]) -> Vec<Placed> {
+    let arm = &document.arm;
+    let lengths = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
+    let mut base = arm.root.as_dvec3();
+    let limb = |(turn, length): (DMat3, f64)| {
+        let along = turn.x_axis.normalize_or(DVec3::X) * length;
+        let limb = Placed { base, along, x: turn.z_axis, y: turn.x_axis };
+        base += along;
+        limb
+    };
+    turns.into_iter().zip(lengths).map(limb).collect()
+}

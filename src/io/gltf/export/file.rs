@@ -1,0 +1,237 @@
+use std::collections::BTreeMap;
+
+use ::gltf::binary::{Glb, Header};
+use ::gltf::json::animation::{Channel, Interpolation, Property, Sampler, Target};
+use ::gltf::json::buffer::Target::{ArrayBuffer, ElementArrayBuffer};
+use ::gltf::json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
+use ::gltf::json::mesh::{Mode, Primitive, Semantic};
+use ::gltf::json::scene::UnitQuaternion;
+use ::gltf::json::validation::Checked::Valid;
+use ::gltf::json::{
+    Accessor, Animation, Asset, Buffer, Extras, Index, Material, Mesh, Node, Scene, Skin, buffer,
+};
+use glam::{DAffine3, DMat4};
+
+use super::GlbError;
+use super::bones::Bones;
+use super::limbs::{Limbs, Part};
+use super::motion::{Motion, Track};
+use super::writer::{Kind, Writer, floats};
+
+/// The two limbs' colours, as a dark screen has them: sRGB.
+const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
+
+pub fn write(bones: &Bones, motion: &Motion, limbs: &Limbs) -> Result<Vec<u8>, GlbError> {
+    let mut writer = Writer::default();
+    writer.root.asset = Asset {
+        generator: Some(concat!("ik-arm ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ..Asset::default()
+    };
+    let [armature, figure] = add_nodes(&mut writer, bones);
+    let mesh = add_mesh(&mut writer, limbs);
+    let skin = add_skin(&mut writer, bones, armature);
+    if let Some(node) = writer.root.nodes.get_mut(figure.value()) {
+        (node.mesh, node.skin) = (Some(mesh), Some(skin));
+    }
+    add_animation(&mut writer, motion);
+    writer.root.scenes = vec![Scene {
+        name: None,
+        nodes: vec![armature, figure],
+        extensions: None,
+        extras: Extras::default(),
+    }];
+    writer.root.scene = Some(Index::new(0));
+    packed(writer)
+}
+
+fn packed(mut writer: Writer) -> Result<Vec<u8>, GlbError> {
+    writer.root.buffers = vec![Buffer {
+        byte_length: writer.bytes.len().into(),
+        name: None,
+        uri: None,
+        extensions: None,
+        extras: Extras::default(),
+    }];
+    let json = serde_json::to_vec(&writer.root)?;
+    // The length is counted again as it is written.
+    let header = Header { magic: *b"glTF", version: 2, length: 0 };
+    Ok(Glb { header, json: json.into(), bin: Some(writer.bytes.into()) }.to_vec()?)
+}
+
+/// The joints have the same numbers as in `bones`; then come the node above them, and that of the
+/// mesh, which are returned.
+fn add_nodes(writer: &mut Writer, bones: &Bones) -> [Index<Node>; 2] {
+    let mut children = vec![Vec::new(); bones.nodes.len()];
+    let mut roots = Vec::new();
+    for (index, node) in bones.nodes.iter().enumerate() {
+        node.parent.map_or(&mut roots, |parent| &mut children[parent]).push(node_index(index));
+    }
+    let some = |children: Vec<Index<Node>>| (!children.is_empty()).then_some(children);
+    for ((node, rest), children) in bones.nodes.iter().zip(&bones.rest).zip(children) {
+        writer.root.push(Node {
+            name: Some(node.name.clone()),
+            children: some(children),
+            translation: Some(rest.translation.as_vec3().to_array()),
+            rotation: Some(UnitQuaternion(rest.rotation.as_quat().to_array())),
+            ..Node::default()
+        });
+    }
+    let armature =
+        Node { name: Some(Bones::ARMATURE.to_owned()), children: some(roots), ..Node::default() };
+    let figure = Node { name: Some(Bones::MESH.to_owned()), ..Node::default() };
+    [armature, figure].map(|node| writer.root.push(node))
+}
+
+fn node_index(node: usize) -> Index<Node> {
+    Index::new(u32::try_from(node).unwrap_or(u32::MAX))
+}
+
+fn add_mesh(writer: &mut Writer, limbs: &Limbs) -> Index<Mesh> {
+    let mut primitives = Vec::new();
+    for (part, colour) in limbs.parts.iter().zip(COLOURS) {
+        if !part.indices.is_empty() {
+            primitives.push(primitive(writer, part, colour));
+        }
+    }
+    writer.root.push(Mesh {
+        name: Some(Bones::MESH.to_owned()),
+        primitives,
+        weights: None,
+        extensions: None,
+        extras: Extras::default(),
+    })
+}
+
+fn primitive(writer: &mut Writer, part: &Part, colour: [u8; 3]) -> Primitive {
+    const NONE: [u8; 6] = [0; 6];
+    let vertices = part.positions.len();
+    let array = Some(ArrayBuffer);
+    let joints = part.joints.iter().flat_map(|joint| joint.to_le_bytes().into_iter().chain(NONE));
+    let weights = part.joints.iter().flat_map(|_| [255, 0, 0, 0]);
+    let attributes = BTreeMap::from([
+        (Valid(Semantic::Positions), writer.bounded(&part.positions, array, Kind::POINT)),
+        (
+            Valid(Semantic::Normals),
+            writer.array(floats(&part.normals), array, vertices, Kind::POINT),
+        ),
+        (Valid(Semantic::Joints(0)), writer.array(joints, array, vertices, Kind::JOINTS)),
+        (Valid(Semantic::Weights(0)), writer.array(weights, array, vertices, Kind::WEIGHTS)),
+    ]);
+    let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
+    let target = Some(ElementArrayBuffer);
+    let indices = writer.array(indices, target, part.indices.len(), Kind::INDEX);
+    Primitive {
+        attributes,
+        indices: Some(indices),
+        material: Some(writer.root.push(matte(colour))),
+        mode: Valid(Mode::Triangles),
+        targets: None,
+        extensions: None,
+        extras: Extras::default(),
+    }
+}
+
+fn matte(colour: [u8; 3]) -> Material {
+    let [red, green, blue] = colour.map(linear);
+    Material {
+        pbr_metallic_roughness: PbrMetallicRoughness {
+            base_color_factor: PbrBaseColorFactor([red, green, blue, 1.0]),
+            metallic_factor: StrengthFactor(0.0),
+            roughness_factor: StrengthFactor(1.0),
+            ..PbrMetallicRoughness::default()
+        },
+        ..Material::default()
+    }
+}
+
+/// What a screen shows for a number, as a part of white.
+fn linear(srgb: u8) -> f32 {
+    let part = f32::from(srgb) / 255.0;
+    if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+}
+
+fn add_skin(writer: &mut Writer, bones: &Bones, armature: Index<Node>) -> Index<Skin> {
+    let mut worlds: Vec<DAffine3> = Vec::with_capacity(bones.nodes.len());
+    for (node, rest) in bones.nodes.iter().zip(&bones.rest) {
+        let local = DAffine3::from_rotation_translation(rest.rotation, rest.translation);
+        worlds.push(node.parent.map_or(local, |parent| worlds[parent] * local));
+    }
+    let inverse = |world: &DAffine3| DMat4::from(world.inverse()).as_mat4().to_cols_array();
+    let matrices: Vec<[f32; 16]> = worlds.iter().map(inverse).collect();
+    let accessor = writer.array(floats(&matrices), None, matrices.len(), Kind::MATRIX);
+    writer.root.push(Skin {
+        name: Some(Bones::ARMATURE.to_owned()),
+        inverse_bind_matrices: Some(accessor),
+        joints: (0..bones.nodes.len()).map(node_index).collect(),
+        skeleton: Some(armature),
+        extensions: None,
+        extras: Extras::default(),
+    })
+}
+
+/// Nothing where nothing leaves its rest.
+fn add_animation(writer: &mut Writer, motion: &Motion) {
+    if motion.is_empty() {
+        return;
+    }
+    let times: Vec<[f32; 1]> = motion.times.iter().map(|time| [*time]).collect();
+    let input = writer.bounded(&times, None, Kind::NUMBER);
+    let start = writer.bytes.len();
+    let view = Index::new(u32::try_from(writer.root.buffer_views.len()).unwrap_or(u32::MAX));
+    let mut animation = Animation {
+        channels: Vec::new(),
+        samplers: Vec::new(),
+        name: None,
+        extensions: None,
+        extras: Extras::default(),
+    };
+    let mut recorder = Recorder { writer, animation: &mut animation, input, view, start };
+    for track in &motion.rotations {
+        recorder.add(track, Property::Rotation, Kind::QUATERNION);
+    }
+    for track in &motion.translations {
+        recorder.add(track, Property::Translation, Kind::POINT);
+    }
+    writer.view(start, None);
+    writer.root.push(animation);
+}
+
+/// Writes tracks one after the other into one view, which is made when all are there.
+struct Recorder<'a> {
+    writer: &'a mut Writer,
+    animation: &'a mut Animation,
+    input: Index<Accessor>,
+    view: Index<buffer::View>,
+    /// The byte that the view begins at.
+    start: usize,
+}
+
+impl Recorder<'_> {
+    fn add<const N: usize>(&mut self, track: &Track<N>, path: Property, kind: Kind) {
+        let offset = self.writer.bytes.len() - self.start;
+        self.writer.bytes.extend(floats(&track.values));
+        let output = self.writer.accessor(self.view, offset, track.values.len(), kind);
+        let sampler = Index::push(
+            &mut self.animation.samplers,
+            Sampler {
+                input: self.input,
+                output,
+                interpolation: Valid(Interpolation::Linear),
+                extensions: None,
+                extras: Extras::default(),
+            },
+        );
+        let target = Target {
+            node: node_index(track.node),
+            path: Valid(path),
+            extensions: None,
+            extras: Extras::default(),
+        };
+        self.animation.channels.push(Channel {
+            sampler,
+            target,
+            extensions: None,
+            extras: Extras::default(),
+        });
+    }
+}

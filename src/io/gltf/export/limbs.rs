@@ -1,0 +1,128 @@
+use core::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec3};
+
+use super::GlbError;
+use super::bones::Bones;
+use super::figure::Figure;
+
+/// The mesh in the bind pose: a cone for every bone, balls where they begin and end. Of each of the
+/// two colours one part.
+#[derive(Default)]
+pub struct Limbs {
+    pub parts: [Part; 2],
+}
+
+#[derive(Default)]
+pub struct Part {
+    /// In the world, in metres.
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    /// The joint that each vertex goes with.
+    pub joints: Vec<u16>,
+    /// Three for each triangle, counter-clockwise seen from outside.
+    pub indices: Vec<u32>,
+}
+
+/// A ball is so much thicker than the bone that it covers the end of.
+const BALL: f64 = 1.1;
+
+impl Limbs {
+    pub fn new(figure: &Figure, bones: &Bones) -> Result<Self, GlbError> {
+        let mut limbs = Self::default();
+        let tips = bones.tips();
+        for (index, (bone, placed)) in figure.bones.iter().zip(&figure.rest).enumerate() {
+            let part = &mut limbs.parts[bone.shade];
+            let turn = placed.frame();
+            let length = placed.along.length();
+            let tip = tips[index].unwrap_or(index);
+            let [thick, thin] = bone.radii;
+            part.add_ball(placed.base, turn, thick * BALL, index);
+            if length > 0.0 {
+                part.add_cone(placed.base, turn, length, bone.radii, [index, tip]);
+                if bone.is_leaf {
+                    part.add_ball(placed.base + placed.along, turn, thin * BALL, tip);
+                }
+            }
+            if !part.is_finite() {
+                let joint = bones.nodes[index].name.clone();
+                return Err(GlbError::TooFar { joint, time: None });
+            }
+        }
+        Ok(limbs)
+    }
+}
+
+impl Part {
+    /// A tapered cylinder along its frame's y, open at both ends.
+    fn add_cone(
+        &mut self,
+        base: DVec3,
+        turn: DMat3,
+        length: f64,
+        radii: [f64; 2],
+        joints: [usize; 2],
+    ) {
+        const SIDES: u32 = 12;
+        let first = self.first();
+        let slope = (radii[0] - radii[1]) / length;
+        for side in 0..SIDES {
+            let (sin, cos) = (f64::from(side) / f64::from(SIDES) * TAU).sin_cos();
+            let out = DVec3::new(cos, 0.0, sin);
+            let normal = turn * (out + DVec3::Y * slope).normalize();
+            for (end, height) in [0.0, length].into_iter().enumerate() {
+                let at = base + turn * (out * radii[end] + DVec3::Y * height);
+                self.add_vertex(at, normal, joints[end]);
+            }
+            let [low, next] = [2 * side, 2 * ((side + 1) % SIDES)].map(|vertex| first + vertex);
+            self.indices.extend([low, low + 1, next, next, low + 1, next + 1]);
+        }
+    }
+
+    /// Poles on its frame's y.
+    fn add_ball(&mut self, centre: DVec3, turn: DMat3, radius: f64, joint: usize) {
+        const SIDES: u32 = 8;
+        const RINGS: u32 = 3;
+        let first = self.first();
+        let mut add = |height: f64, out: f64, angle: f64| {
+            let normal = turn * DVec3::new(out * angle.cos(), height, out * angle.sin());
+            self.add_vertex(centre + normal * radius, normal, joint);
+        };
+        add(1.0, 0.0, 0.0);
+        add(-1.0, 0.0, 0.0);
+        for ring in 1..=RINGS {
+            let (out, height) = (f64::from(ring) / f64::from(RINGS + 1) * PI).sin_cos();
+            for side in 0..SIDES {
+                add(height, out, f64::from(side) / f64::from(SIDES) * TAU);
+            }
+        }
+        let at = |ring: u32, side: u32| first + 2 + ring * SIDES + side % SIDES;
+        for side in 0..SIDES {
+            self.indices.extend([first, at(0, side + 1), at(0, side)]);
+            self.indices.extend([first + 1, at(RINGS - 1, side), at(RINGS - 1, side + 1)]);
+            for ring in 1..RINGS {
+                let [above, next] = [at(ring - 1, side), at(ring - 1, side + 1)];
+                let [below, last] = [at(ring, side), at(ring, side + 1)];
+                self.indices.extend([below, above, last, last, above, next]);
+            }
+        }
+    }
+
+    fn add_vertex(&mut self, at: DVec3, normal: DVec3, joint: usize) {
+        self.positions.push(at.as_vec3().to_array());
+        self.normals.push(normal.as_vec3().to_array());
+        self.joints.push(u16::try_from(joint).unwrap_or_default());
+    }
+
+    /// What the next vertex is numbered.
+    fn first(&self) -> u32 {
+        u32::try_from(self.positions.len()).unwrap_or_default()
+    }
+
+    /// Whether the last vertices are somewhere.
+    fn is_finite(&self) -> bool {
+        const MOST_OF_A_BONE: usize = 76;
+        let last = self.positions.iter().rev().take(MOST_OF_A_BONE);
+        last.flatten().all(|number| number.is_finite())
+    }
+}

@@ -1,0 +1,39 @@
+use super::sampler::tolerance;
+use super::tracks::Tracks;
+use crate::document::Timeline;
+use crate::io::field::Field;
+use crate::io::source::Wrong;
+
+/// Frames in a second that motions usually have, the fewest first.
+const USUAL: [u32; 8] = [24, 25, 30, 48, 50, 60, 100, 120];
+/// For motions whose keys are at other times.
+const OTHERWISE: u32 = 60;
+
+/// From when to when a motion goes: from its first key to its last, in as few frames in a second as
+/// there is one at every key. None if that takes no time. `at` is where its animation stands.
+pub fn timeline(tracks: &Tracks<'_>, at: &Field) -> Result<Option<Timeline>, Wrong> {
+    let Some((start, last)) = ends(tracks) else { return Ok(None) };
+    let frames_at = |rate: u32| {
+        tracks.times().all(|time| {
+            let frame = (time - start) * f64::from(rate);
+            (frame - frame.round()).abs() <= tolerance(time) * f64::from(rate)
+        })
+    };
+    let fitting = USUAL.into_iter().find(|rate| frames_at(*rate));
+    let frame_rate = fitting.unwrap_or(OTHERWISE);
+    let rate = f64::from(frame_rate);
+    let frames = (last - start) * rate;
+    let frames = if fitting.is_some() { frames.round() } else { frames.ceil() };
+    let timeline = Timeline { start, end: start + frames / rate, frame_rate };
+    if frames > 0.0 && !timeline.is_valid() {
+        let most = Timeline::FARTHEST;
+        let reason = format!("goes from {start} to {last} s; it must be within ±{most} s");
+        return Err(Wrong::new(at.clone(), reason));
+    }
+    Ok((frames > 0.0).then_some(timeline))
+}
+
+/// When the first key is, and the last.
+pub fn ends(tracks: &Tracks<'_>) -> Option<(f64, f64)> {
+    tracks.times().map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+}

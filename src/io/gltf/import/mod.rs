@@ -1,0 +1,129 @@
+//! The skeleton of a skin, with its motion.
+
+mod base64;
+mod buffers;
+mod clip;
+mod file;
+mod motion;
+mod nodes;
+mod rig;
+mod rows;
+mod sampler;
+mod skins;
+mod tracks;
+
+use crate::document::Timeline;
+use crate::io::error::OpenError;
+use crate::io::field::Field;
+use crate::io::open::Opened;
+use crate::io::source::{Odd, Source, Wrong};
+use crate::io::value::Object;
+use crate::kinematics::skeleton::Joint;
+use file::{Animation, File, Skin};
+use motion::{Motion, Placed, Stage};
+use nodes::Nodes;
+use rig::Built;
+use skins::{Joints, at_skin};
+use tracks::Tracks;
+
+/// So many times a node can be somewhere.
+const MOST_SAMPLES: usize = 4_000_000;
+
+/// Reads the skeleton of the skin of that name, or of the first.
+pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
+    let Object(file) = source.parse::<Object<File>>(|_| {})?;
+    check(&file).map_err(|wrong| source.wrong(&wrong))?;
+    let names = skins::names(&file);
+    let chosen = match name {
+        Some(name) => names.iter().position(|other| other == name),
+        None => Some(0),
+    };
+    let Some((index, skin)) = chosen.and_then(|skin| Some((skin, file.skins.0.get(skin)?))) else {
+        return Err(OpenError::NoSkeleton {
+            file: source.name().to_owned(),
+            name: name.unwrap_or_default().to_owned(),
+            names,
+        });
+    };
+    let mut odd = Odd::default();
+    let opened = opened(source, &file, index, skin, &mut odd);
+    let (Built { document, kept }, order) = opened.map_err(|wrong| source.wrong(&wrong))?;
+    Ok(Opened {
+        document,
+        warnings: source.remarks(&odd),
+        order: order.into_iter().filter_map(|joint| kept[joint]).collect(),
+        skeletons: names,
+    })
+}
+
+fn check(file: &File) -> Result<(), Wrong> {
+    let Object(asset) = &file.asset;
+    if asset.version.split('.').next() != Some("2") {
+        let reason = format!("is {:?}; only glTF 2 is known", asset.version);
+        return Err(Wrong::new(Field::root().key("asset").key("version"), reason));
+    }
+    if file.skins.0.is_empty() {
+        let reason = "there is none; joints are those of a skin";
+        return Err(Wrong::new(Field::root().key("skins"), reason));
+    }
+    Ok(())
+}
+
+fn opened(
+    source: &Source,
+    file: &File,
+    index: usize,
+    skin: &Skin,
+    odd: &mut Odd,
+) -> Result<(Built, Vec<usize>), Wrong> {
+    let nodes = Nodes::new(file)?;
+    let joints = Joints::new(file, &nodes, index, skin)?;
+    let mut stage = Stage::new(&nodes, &joints);
+    let rest = stage.rest()?;
+    let mut list = rig::joints(file, &joints, &rest);
+    let at = Field::root().key("animations");
+    if file.animations.0.len() > 1 {
+        let reason = "the first animation is read, the others are not";
+        odd.push(at.clone().index(1), reason);
+    }
+    let (motions, timeline) = match file.animations.0.first() {
+        None => (Vec::new(), None),
+        Some(first) => {
+            let at = at.index(0);
+            animate(source, file, &nodes, (first, &at), &mut stage, &mut list, &rest)?
+        }
+    };
+    let built = rig::build(list, &motions, timeline);
+    let built = built.map_err(|error| Wrong::new(at_skin(index), error.to_string()))?;
+    Ok((built, joints.order))
+}
+
+fn animate(
+    source: &Source,
+    file: &File,
+    nodes: &Nodes,
+    (animation, at): (&Animation, &Field),
+    stage: &mut Stage<'_>,
+    joints: &mut [Joint],
+    rest: &[Placed],
+) -> Result<(Vec<Motion>, Option<Timeline>), Wrong> {
+    let chosen = tracks::chosen(animation, at, nodes, &stage.is_needed())?;
+    let buffers = tracks::buffers(source, file, &chosen)?;
+    let tracks = Tracks::new(file, &buffers, &chosen)?;
+    let Some((start, _)) = clip::ends(&tracks) else {
+        return Ok((Vec::new(), None));
+    };
+    let timeline = clip::timeline(&tracks, at)?;
+    let frames = timeline.map_or(1, |timeline| timeline.frames());
+    if frames.saturating_mul(stage.len()) > MOST_SAMPLES {
+        let nodes = stage.len();
+        let reason = format!(
+            "moves {nodes} nodes in {frames} frames; at most {} frames are possible",
+            MOST_SAMPLES / nodes
+        );
+        return Err(Wrong::new(at.clone(), reason));
+    }
+    let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
+    let motions = motion::sample(stage, &tracks, sampled, frames, joints, rest)?;
+    Ok((motions, timeline))
+}

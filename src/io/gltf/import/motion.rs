@@ -1,0 +1,128 @@
+use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3};
+
+use super::nodes::{Local, Nodes, at_node};
+use super::skins::Joints;
+use super::tracks::Tracks;
+use crate::document::Timeline;
+use crate::io::gltf::frame::frame;
+use crate::io::source::Wrong;
+use crate::kinematics::skeleton::Joint;
+
+/// Where a joint is in the world.
+#[derive(Clone, Copy)]
+pub struct Placed {
+    pub base: DVec3,
+    /// Its axes, made rigid.
+    pub frame: DMat3,
+}
+
+/// The nodes that joints hang from, and the joints: all that is to be posed.
+pub struct Stage<'a> {
+    nodes: &'a Nodes,
+    joints: &'a Joints,
+    /// Parents before their children.
+    needed: Vec<usize>,
+    locals: Vec<Local>,
+    worlds: Vec<DAffine3>,
+}
+
+/// What a joint of our skeleton does, frame by frame.
+#[derive(Default)]
+pub struct Motion {
+    /// Unwrapped angles.
+    pub rotations: Vec<Vec3>,
+    pub offsets: Vec<Vec3>,
+}
+
+impl<'a> Stage<'a> {
+    pub fn new(nodes: &'a Nodes, joints: &'a Joints) -> Self {
+        let mut is_needed = vec![false; nodes.parents.len()];
+        joints.nodes.iter().for_each(|node| is_needed[*node] = true);
+        for node in nodes.order.iter().rev().copied() {
+            if let Some(parent) = nodes.parents[node].filter(|_| is_needed[node]) {
+                is_needed[parent] = true;
+            }
+        }
+        Self {
+            nodes,
+            joints,
+            needed: nodes.order.iter().copied().filter(|node| is_needed[*node]).collect(),
+            locals: nodes.locals.clone(),
+            worlds: vec![DAffine3::IDENTITY; nodes.parents.len()],
+        }
+    }
+
+    /// How many nodes are posed.
+    pub fn len(&self) -> usize {
+        self.needed.len()
+    }
+
+    /// For every node whether it is posed.
+    pub fn is_needed(&self) -> Vec<bool> {
+        let mut is_needed = vec![false; self.nodes.parents.len()];
+        self.needed.iter().for_each(|node| is_needed[*node] = true);
+        is_needed
+    }
+
+    /// Where the joints are without an animation.
+    pub fn rest(&mut self) -> Result<Vec<Placed>, Wrong> {
+        self.placed()
+    }
+
+    /// Where an animation has the joints at a time, in seconds.
+    pub fn at(&mut self, tracks: &Tracks<'_>, time: f64) -> Result<Vec<Placed>, Wrong> {
+        tracks.pose(time, &mut self.locals);
+        self.placed()
+    }
+
+    fn placed(&mut self) -> Result<Vec<Placed>, Wrong> {
+        for &node in &self.needed {
+            let above = self.nodes.parents[node];
+            let above = above.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
+            self.worlds[node] = above * self.locals[node].affine();
+        }
+        let place = |node: &usize| {
+            let DAffine3 { matrix3, translation: base } = self.worlds[*node];
+            if !base.as_vec3().is_finite() {
+                let reason = "is beyond 3.4028235e38 m in the world; bring it nearer to 0";
+                return Err(Wrong::new(at_node(*node), reason));
+            }
+            Ok(Placed { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
+        };
+        self.joints.nodes.iter().map(place).collect()
+    }
+}
+
+/// Poses the joints frame by frame; at a single time without a timeline.
+pub fn sample(
+    stage: &mut Stage<'_>,
+    tracks: &Tracks<'_>,
+    timeline: Timeline,
+    frames: usize,
+    joints: &mut [Joint],
+    rest: &[Placed],
+) -> Result<Vec<Motion>, Wrong> {
+    let mut motions: Vec<Motion> = joints.iter().map(|_| Motion::default()).collect();
+    for frame in 0..frames {
+        let placed = stage.at(tracks, timeline.time(frame))?;
+        let turns: Vec<DMat3> =
+            placed.iter().zip(rest).map(|(now, rest)| now.frame * rest.frame.transpose()).collect();
+        for (index, motion) in motions.iter_mut().enumerate() {
+            let joint = &mut joints[index];
+            let (above, origin) = match joint.parent {
+                Some(parent) => (turns[parent].transpose(), placed[parent].base),
+                None => (DMat3::IDENTITY, DVec3::ZERO),
+            };
+            let offset = (above * (placed[index].base - origin)).as_vec3();
+            if !offset.is_finite() {
+                let reason = "is beyond 3.4028235e38 m from its parent; bring it nearer";
+                return Err(Wrong::new(at_node(stage.joints.nodes[index]), reason));
+            }
+            // The angles nearest to those of the frame before.
+            joint.rotation = joint.angles_of(Mat3A::from((above * turns[index]).as_mat3()));
+            motion.rotations.push(joint.rotation);
+            motion.offsets.push(offset);
+        }
+    }
+    Ok(motions)
+}

@@ -1,0 +1,154 @@
+use glam::Vec3;
+
+use super::file::File;
+use super::motion::{Motion, Placed};
+use super::skins::Joints;
+use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use crate::io::gltf::names::Names;
+use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
+
+/// Every joint at rest: as it stands in the world, without rotations. None has a bone yet.
+pub fn joints(file: &File, joints: &Joints, rest: &[Placed]) -> Vec<Joint> {
+    let mut names = Names::default();
+    let joint = |(index, node): (usize, &usize)| {
+        let name = file.nodes.0.get(*node).and_then(|node| node.name.as_deref());
+        let name = name.filter(|name| !name.trim().is_empty());
+        let name = names.free(name.unwrap_or(&format!("joint_{index}")));
+        let parent = joints.parents[index];
+        let origin = parent.map_or(glam::DVec3::ZERO, |parent| rest[parent].base);
+        Joint {
+            offset: (rest[index].base - origin).as_vec3(),
+            frame: rest[index].frame.as_mat3(),
+            ..Joint::new(&name, parent, Vec3::ZERO)
+        }
+    };
+    joints.nodes.iter().enumerate().map(joint).collect()
+}
+
+/// What is less is rounding: a part of an angle, or of an offset's length.
+const LEAST: f32 = 1e-6;
+
+impl Motion {
+    fn turns(&self) -> bool {
+        let first = self.rotations.first().copied().unwrap_or_default();
+        self.rotations.iter().any(|angles| (*angles - first).abs().max_element() > 2.0 * LEAST)
+    }
+
+    /// Whether the joint moves in its parent, on a skeleton of such a size.
+    fn moves(&self, size: f32) -> bool {
+        let first = self.offsets.first().copied().unwrap_or_default();
+        let least = LEAST * first.length().max(1e-3 * size);
+        self.offsets.iter().any(|offset| offset.distance(first) > least)
+    }
+}
+
+/// A document with the joints, posed as in the first frame, and keys for what moves. `kept` has the
+/// place of every joint, or none for one that was the tip of its parent's bone.
+pub struct Built {
+    pub document: Document,
+    pub kept: Vec<Option<usize>>,
+}
+
+pub fn build(
+    mut joints: Vec<Joint>,
+    motions: &[Motion],
+    timeline: Option<Timeline>,
+) -> Result<Built, SkeletonError> {
+    let rest: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
+    let size = rest.iter().map(|offset| offset.length()).fold(0.0, f32::max);
+    for (joint, motion) in joints.iter_mut().zip(motions) {
+        joint.offset = motion.offsets.first().copied().unwrap_or(joint.offset);
+        joint.rotation = motion.rotations.first().copied().unwrap_or(joint.rotation);
+    }
+    let moves: Vec<bool> = joints
+        .iter()
+        .enumerate()
+        .map(|(index, _)| motions.get(index).is_some_and(|motion| motion.moves(size)))
+        .collect();
+    let are_tips = tips(&joints, &moves);
+    give_bones(&mut joints, &rest, &are_tips);
+    let mut kept = Vec::with_capacity(joints.len());
+    let mut next = 0;
+    for is_tip in &are_tips {
+        kept.push((!is_tip).then_some(next));
+        next += usize::from(!is_tip);
+    }
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    if let Some(timeline) = timeline {
+        document.timeline = timeline;
+        add_keys(&mut document, motions, &moves, &kept);
+    }
+    let mut left = Vec::with_capacity(next);
+    for (mut joint, is_tip) in joints.into_iter().zip(are_tips) {
+        joint.parent = joint.parent.and_then(|parent| kept[parent]);
+        left.extend((!is_tip).then_some(joint));
+    }
+    document.skeleton = SkeletonRig::new(Skeleton::from_joints(left)?);
+    document.camera = document.skeleton.first_view();
+    Ok(Built { document, kept })
+}
+
+/// Which joints only say where their parents' bones end: they are called so, nothing hangs from
+/// them, and they stay.
+fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
+    let mut are_leaves = vec![true; joints.len()];
+    for parent in joints.iter().filter_map(|joint| joint.parent) {
+        are_leaves[parent] = false;
+    }
+    let is_tip = |(index, joint): (usize, &Joint)| {
+        let parent = joint.parent.map(|parent| joints[parent].name.as_str());
+        let is_named = parent.is_some() && joint.name.strip_suffix("_tip") == parent;
+        is_named && are_leaves[index] && !moves[index]
+    };
+    joints.iter().enumerate().map(is_tip).collect()
+}
+
+/// Bones to the tips that joints have; without one to the only child, to that which is where the
+/// joint's own y points, or to the middle of the children.
+fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
+    const ALONG: f32 = 0.999;
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            children[parent].push(index);
+        }
+    }
+    for (index, children) in children.into_iter().enumerate() {
+        let y = joints[index].frame.y_axis;
+        let is_along = |child: &&usize| rest[**child].normalize_or_zero().dot(y) > ALONG;
+        let tip = children.iter().find(|child| are_tips[**child]);
+        let axis = match tip.or_else(|| children.iter().find(is_along)) {
+            Some(child) if are_tips[*child] => joints[*child].offset,
+            Some(child) => rest[*child],
+            None => middle(children.iter().map(|child| rest[*child])),
+        };
+        let joint = &mut joints[index];
+        joint.radius = Joint::new("", None, axis).radius;
+        joint.axis = axis;
+    }
+}
+
+/// The mean of those that are not zero.
+fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
+    let offsets: Vec<Vec3> = offsets.filter(|offset| *offset != Vec3::ZERO).collect();
+    let part = 1.0 / offsets.len().max(1) as f32;
+    offsets.into_iter().map(|offset| offset * part).sum()
+}
+
+fn add_keys(document: &mut Document, motions: &[Motion], moves: &[bool], kept: &[Option<usize>]) {
+    let timeline = document.timeline;
+    let mut add = |channel, values: &[Vec3]| {
+        for (frame, value) in values.iter().enumerate() {
+            document.keys.insert(channel, timeline.time(frame), *value);
+        }
+    };
+    for ((motion, moves), joint) in motions.iter().zip(moves).zip(kept) {
+        let Some(joint) = *joint else { continue };
+        if motion.turns() {
+            add(Channel::Rotation(joint), &motion.rotations);
+        }
+        if *moves {
+            add(Channel::Offset(joint), &motion.offsets);
+        }
+    }
+}

@@ -1,0 +1,196 @@
+use super::buffers::Buffers;
+use super::file::{Accessor, File, View};
+use crate::io::field::Field;
+use crate::io::source::Wrong;
+
+/// The numbers of an accessor, row by row, as they stand in a buffer: each was checked to be in it.
+#[derive(Clone, Copy)]
+pub struct Rows<'a> {
+    bytes: &'a [u8],
+    /// From one row to the next, in bytes.
+    stride: usize,
+    count: usize,
+    component: Component,
+    is_normalized: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn new(code: u32) -> Option<Self> {
+        Some(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+pub fn at_accessor(index: usize) -> Field {
+    Field::root().key("accessors").index(index)
+}
+
+fn at_view(index: usize) -> Field {
+    Field::root().key("bufferViews").index(index)
+}
+
+/// An accessor and its buffer view.
+fn found(file: &File, index: usize) -> Result<(&Accessor, &View, usize), Wrong> {
+    let accessor = file.accessors.0.get(index);
+    let accessor =
+        accessor.ok_or_else(|| Wrong::new(at_accessor(index), "there is no such accessor"))?;
+    let at = at_accessor(index).key("bufferView");
+    let Some(view) = accessor.view.filter(|_| accessor.sparse.is_none()) else {
+        let reason = "is sparse or without a buffer view; only plain accessors are known";
+        return Err(Wrong::new(at_accessor(index), reason));
+    };
+    let place = view.0 as usize;
+    let view = file.views.0.get(place);
+    let view = view.ok_or_else(|| Wrong::new(at, format!("there is no buffer view {place}")))?;
+    Ok((accessor, view, place))
+}
+
+/// Which buffer an accessor reads.
+pub fn buffer_of(file: &File, index: usize) -> Result<usize, Wrong> {
+    let (_, View { buffer, .. }, view) = found(file, index)?;
+    let buffer = buffer.0 as usize;
+    if buffer >= file.buffers.0.len() {
+        let reason = format!("there is no buffer {buffer}");
+        return Err(Wrong::new(at_view(view).key("buffer"), reason));
+    }
+    Ok(buffer)
+}
+
+impl<'a> Rows<'a> {
+    /// The accessor's rows of numbers, if they are of that `shape` and all of them are there.
+    pub fn new(
+        file: &File,
+        buffers: &'a Buffers<'_>,
+        index: usize,
+        shape: &str,
+    ) -> Result<Self, Wrong> {
+        let (accessor, view, view_index) = found(file, index)?;
+        let at = || at_accessor(index);
+        let component = Component::new(accessor.component.0).ok_or_else(|| {
+            let code = accessor.component.0;
+            let reason = format!("is {code}; it must be 5120 to 5123, 5125 or 5126");
+            Wrong::new(at().key("componentType"), reason)
+        })?;
+        if accessor.shape != shape {
+            let reason = format!("is {:?}; it must be {shape:?} there", accessor.shape);
+            return Err(Wrong::new(at().key("type"), reason));
+        }
+        let row = width(shape) * component.size();
+        let viewed = viewed(buffers, view, view_index)?;
+        let stride = stride(view, view_index, row)?;
+        let offset = accessor.offset.map_or(0, |offset| offset.0 as usize);
+        let count = accessor.count.0 as usize;
+        let end = match count.checked_sub(1) {
+            Some(before) => before.checked_mul(stride).and_then(|n| n.checked_add(row)),
+            None => Some(0),
+        };
+        let bytes = end
+            .and_then(|end| Some(offset..end.checked_add(offset)?))
+            .and_then(|range| viewed.get(range));
+        let bytes = bytes.ok_or_else(|| {
+            let reason = format!(
+                "is {count}, of {stride} bytes each, from byte {offset} on; bufferViews[{view_index}] \
+                 has only {} bytes",
+                viewed.len()
+            );
+            Wrong::new(at().key("count"), reason)
+        })?;
+        let is_normalized = accessor.normalized.unwrap_or(false);
+        Ok(Self { bytes, stride, count, component, is_normalized })
+    }
+
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the numbers are floats, or integers that stand for parts of 1.
+    pub fn is_float(&self) -> bool {
+        self.component == Component::F32
+    }
+
+    pub fn is_normalized(&self) -> bool {
+        self.is_normalized && self.component != Component::U32
+    }
+
+    /// The numbers of a row; 0 where there are none.
+    pub fn row<const N: usize>(&self, index: usize) -> [f64; N] {
+        let size = self.component.size();
+        std::array::from_fn(|column| {
+            let start = index * self.stride + column * size;
+            self.bytes.get(start..start + size).map_or(0.0, |bytes| self.number(bytes))
+        })
+    }
+
+    fn number(&self, bytes: &[u8]) -> f64 {
+        let mut four = [0; 4];
+        four.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
+        let [a, b, ..] = four;
+        let (value, largest) = match self.component {
+            Component::I8 => (f64::from(i8::from_le_bytes([a])), 127.0),
+            Component::U8 => (f64::from(a), 255.0),
+            Component::I16 => (f64::from(i16::from_le_bytes([a, b])), 32767.0),
+            Component::U16 => (f64::from(u16::from_le_bytes([a, b])), 65535.0),
+            Component::U32 => (f64::from(u32::from_le_bytes(four)), 4_294_967_295.0),
+            Component::F32 => return f64::from(f32::from_le_bytes(four)),
+        };
+        if self.is_normalized { (value / largest).max(-1.0) } else { value }
+    }
+}
+
+fn width(shape: &str) -> usize {
+    match shape {
+        "VEC3" => 3,
+        "VEC4" => 4,
+        _ => 1,
+    }
+}
+
+/// The bytes of a view, if its buffer has them.
+fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a [u8], Wrong> {
+    let buffer = buffers.get(view.buffer.0 as usize).unwrap_or_default();
+    let offset = view.offset.map_or(0, |offset| offset.0 as usize);
+    let length = view.length.0 as usize;
+    offset.checked_add(length).and_then(|end| buffer.get(offset..end)).ok_or_else(|| {
+        let reason = format!(
+            "is {length}, from byte {offset} on; buffers[{}] has only {} bytes",
+            view.buffer.0,
+            buffer.len()
+        );
+        Wrong::new(at_view(index).key("byteLength"), reason)
+    })
+}
+
+fn stride(view: &View, index: usize, row: usize) -> Result<usize, Wrong> {
+    let Some(stride) = view.stride else { return Ok(row) };
+    let stride = stride.0 as usize;
+    if !(4..=252).contains(&stride) || stride < row {
+        let reason = format!("is {stride}; it must be 4 to 252, and {row} or more for its values");
+        return Err(Wrong::new(at_view(index).key("byteStride"), reason));
+    }
+    Ok(stride)
+}

@@ -1,0 +1,195 @@
+use glam::{DQuat, DVec3, DVec4};
+
+use super::buffers::Buffers;
+use super::file::File;
+use super::nodes::unit;
+use super::rows::{Rows, at_accessor};
+use super::tracks::Part;
+use crate::io::source::Wrong;
+
+/// Values at times, and what is between them.
+#[derive(Clone, Copy)]
+pub struct Sampler<'a> {
+    times: Rows<'a>,
+    /// As many as there are times; thrice as many for cubic splines: at each time the slope that
+    /// arrives, the value, and the slope that leaves.
+    values: Rows<'a>,
+    part: Part,
+    interpolation: Interpolation,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    Linear,
+    Step,
+    CubicSpline,
+}
+
+impl Interpolation {
+    pub fn new(name: &str) -> Option<Self> {
+        Some(match name {
+            "LINEAR" => Self::Linear,
+            "STEP" => Self::Step,
+            "CUBICSPLINE" => Self::CubicSpline,
+            _ => return None,
+        })
+    }
+}
+
+/// A time that is so near to a key's is that key's, in seconds: files have times in 32 bits, some
+/// with few decimals.
+pub fn tolerance(time: f64) -> f64 {
+    const LEAST: f64 = 1e-4;
+    const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
+    (time.abs() * ROUNDING).max(LEAST)
+}
+
+/// Which of a cubic spline's three rows at a time.
+const ARRIVING: usize = 0;
+const VALUE: usize = 1;
+const LEAVING: usize = 2;
+
+impl<'a> Sampler<'a> {
+    pub fn new(
+        file: &File,
+        buffers: &'a Buffers<'_>,
+        [input, output]: [usize; 2],
+        part: Part,
+        interpolation: Interpolation,
+    ) -> Result<Self, Wrong> {
+        let times = Rows::new(file, buffers, input, "SCALAR")?;
+        let shape = if part == Part::Rotation { "VEC4" } else { "VEC3" };
+        let values = Rows::new(file, buffers, output, shape)?;
+        if !times.is_float() {
+            let reason = "times must be floats: 5126";
+            return Err(Wrong::new(at_accessor(input).key("componentType"), reason));
+        }
+        if !(values.is_float() || part == Part::Rotation && values.is_normalized()) {
+            let reason =
+                "values must be floats, 5126; rotations can be normalized integers as well";
+            return Err(Wrong::new(at_accessor(output).key("componentType"), reason));
+        }
+        if times.len() == 0 {
+            return Err(Wrong::new(at_accessor(input).key("count"), "is 0; there must be a time"));
+        }
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        if values.len() != each * times.len() {
+            let (count, times) = (values.len(), times.len());
+            let reason = format!("is {count}; it must be {each} for each of the {times} times");
+            return Err(Wrong::new(at_accessor(output).key("count"), reason));
+        }
+        Ok(Self { times, values, part, interpolation })
+    }
+
+    /// Refuses times that do not follow each other, values that are no numbers, and rotations that
+    /// are none.
+    pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), Wrong> {
+        for key in 0..self.len() {
+            let time = self.time(key);
+            let follows = key == 0 || self.time(key - 1) < time;
+            if !(time.is_finite() && follows) {
+                let reason =
+                    format!("time {key} is {time}; times must be finite and above those before");
+                return Err(Wrong::new(at_accessor(input), reason));
+            }
+        }
+        for row in 0..self.values.len() {
+            let value: [f64; 4] = self.values.row(row);
+            if !value.into_iter().take(self.width()).all(f64::is_finite) {
+                let reason = format!("value {row} has a number that is not finite");
+                return Err(Wrong::new(at_accessor(output), reason));
+            }
+        }
+        if self.part == Part::Rotation {
+            for key in 0..self.len() {
+                if unit(self.row(key, VALUE)).is_none() {
+                    let reason = format!("rotation {key} is four zeros, which turn nothing");
+                    return Err(Wrong::new(at_accessor(output), reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// How many keys there are.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// When a key is, in seconds.
+    pub fn time(&self, key: usize) -> f64 {
+        let [time] = self.times.row(key);
+        time
+    }
+
+    pub fn point(&self, time: f64) -> DVec3 {
+        let (key, part) = self.place(time);
+        let at = |key| DVec3::from_array(self.row(key, VALUE));
+        match part {
+            None => at(key),
+            Some(part) if self.interpolation == Interpolation::CubicSpline => {
+                self.cubic(key, part).truncate()
+            }
+            Some(part) => at(key).lerp(at(key + 1), part),
+        }
+    }
+
+    pub fn rotation(&self, time: f64) -> DQuat {
+        let (key, part) = self.place(time);
+        let at = |key| unit(self.row(key, VALUE)).unwrap_or_default();
+        match part {
+            None => at(key),
+            Some(part) if self.interpolation == Interpolation::CubicSpline => {
+                unit(self.cubic(key, part).to_array()).unwrap_or_else(|| at(key))
+            }
+            Some(part) => at(key).slerp(at(key + 1), part).normalize(),
+        }
+    }
+
+    /// The key at or before a time, and how far on the way to the next the time is, if it is.
+    fn place(&self, time: f64) -> (usize, Option<f64>) {
+        let near = tolerance(time);
+        let (mut until, mut after) = (0, self.len());
+        while until < after {
+            let middle = until + (after - until) / 2;
+            if self.time(middle) <= time + near {
+                until = middle + 1;
+            } else {
+                after = middle;
+            }
+        }
+        let Some(key) = until.checked_sub(1) else { return (0, None) };
+        let start = self.time(key);
+        let is_between = key + 1 < self.len() && time - start > near;
+        if !is_between || self.interpolation == Interpolation::Step {
+            return (key, None);
+        }
+        (key, Some((time - start) / (self.time(key + 1) - start)))
+    }
+
+    /// Between a key and the next: the cubic Hermite polynomial of the standard's appendix C.
+    fn cubic(&self, key: usize, s: f64) -> DVec4 {
+        let span = self.time(key + 1) - self.time(key);
+        let row = |key, which| {
+            let value: [f64; 4] = self.row(key, which);
+            DVec4::from_array(value)
+        };
+        let (s2, s3) = (s * s, s * s * s);
+        row(key, VALUE) * (2.0 * s3 - 3.0 * s2 + 1.0)
+            + row(key, LEAVING) * (span * (s3 - 2.0 * s2 + s))
+            + row(key + 1, VALUE) * (3.0 * s2 - 2.0 * s3)
+            + row(key + 1, ARRIVING) * (span * (s3 - s2))
+    }
+
+    /// The numbers of a key.
+    fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
+        self.values.row(match self.interpolation {
+            Interpolation::CubicSpline => 3 * key + which,
+            Interpolation::Linear | Interpolation::Step => key,
+        })
+    }
+
+    fn width(&self) -> usize {
+        if self.part == Part::Rotation { 4 } else { 3 }
+    }
+}

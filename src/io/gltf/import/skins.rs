@@ -1,0 +1,95 @@
+use std::collections::HashSet;
+
+use super::file::{File, Skin};
+use super::nodes::Nodes;
+use crate::io::field::Field;
+use crate::io::gltf::names::Names;
+use crate::io::source::Wrong;
+use crate::kinematics::skeleton::{Skeleton, SkeletonError};
+
+/// The joints of a skin, parents before their children.
+pub struct Joints {
+    /// Their nodes.
+    pub nodes: Vec<usize>,
+    /// The joint that each hangs from, nodes between the two left out.
+    pub parents: Vec<Option<usize>>,
+    /// For every joint of the skin in the file's order, which joint it is.
+    pub order: Vec<usize>,
+}
+
+/// What the skins are called: by their own name, else by that of the first node with the skin, else
+/// by their number. No two are called the same.
+pub fn names(file: &File) -> Vec<String> {
+    let mut users = vec![None; file.skins.0.len()];
+    for node in &file.nodes.0 {
+        let user = node.skin.and_then(|skin| users.get_mut(skin.0 as usize));
+        if let Some(user) = user {
+            *user = user.or(node.name.as_deref());
+        }
+    }
+    let mut names = Names::default();
+    let name = |(index, (skin, user)): (usize, (&Skin, Option<&str>))| {
+        let name = skin.name.as_deref().or(user).filter(|name| !name.trim().is_empty());
+        names.free(name.unwrap_or(&format!("skin_{index}")))
+    };
+    file.skins.0.iter().zip(users).enumerate().map(name).collect()
+}
+
+pub fn at_skin(skin: usize) -> Field {
+    Field::root().key("skins").index(skin)
+}
+
+impl Joints {
+    pub fn new(file: &File, nodes: &Nodes, index: usize, skin: &Skin) -> Result<Self, Wrong> {
+        let at = at_skin(index).key("joints");
+        if skin.joints.is_empty() {
+            return Err(Wrong::new(at, "there is none; a skin needs a joint"));
+        }
+        if skin.joints.len() > Skeleton::MOST_JOINTS {
+            return Err(Wrong::new(at, SkeletonError::TooMany.to_string()));
+        }
+        let mut seen = HashSet::new();
+        for (place, joint) in skin.joints.iter().enumerate() {
+            let joint = joint.0 as usize;
+            let wrong = |reason| Wrong::new(at.clone().index(place), reason);
+            if joint >= file.nodes.0.len() {
+                return Err(wrong(format!("there is no node {joint}")));
+            }
+            if !seen.insert(joint) {
+                return Err(wrong(format!("node {joint} is already a joint")));
+            }
+        }
+        let listed: Vec<usize> = skin.joints.iter().map(|joint| joint.0 as usize).collect();
+        Ok(Self::sorted(nodes, &listed))
+    }
+
+    /// Joints in an order in which parents come before their children, and otherwise as it was.
+    fn sorted(nodes: &Nodes, listed: &[usize]) -> Self {
+        let above = nearest_above(nodes, listed);
+        let mut joint_of = vec![None; nodes.parents.len()];
+        let mut joints = Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new() };
+        for &node in listed {
+            let unplaced = |node: &usize| joint_of[*node].is_none();
+            let path = std::iter::successors(Some(node), |node| above[*node]).take_while(unplaced);
+            for node in path.collect::<Vec<_>>().into_iter().rev() {
+                joint_of[node] = Some(joints.nodes.len());
+                joints.parents.push(above[node].and_then(|above| joint_of[above]));
+                joints.nodes.push(node);
+            }
+        }
+        joints.order = listed.iter().filter_map(|node| joint_of[*node]).collect();
+        joints
+    }
+}
+
+/// For every node, the nearest of the listed ones that it hangs from.
+fn nearest_above(nodes: &Nodes, listed: &[usize]) -> Vec<Option<usize>> {
+    let mut is_listed = vec![false; nodes.parents.len()];
+    listed.iter().for_each(|node| is_listed[*node] = true);
+    let mut above = vec![None; nodes.parents.len()];
+    for &node in &nodes.order {
+        above[node] = nodes.parents[node]
+            .and_then(|parent| if is_listed[parent] { Some(parent) } else { above[parent] });
+    }
+    above
+}

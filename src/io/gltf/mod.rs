@@ -1,0 +1,37 @@
+//! glTF 2.0: the shown rig out, as a `.glb` file; skeletons of `.glb` and `.gltf` files in.
+//!
+//! # Out
+//!
+//! Lengths are metres, times seconds from 0. No node has a scale.
+//!
+//! ```text
+//! Armature             identity; skin.skeleton
+//!  └ joints…           as in the document, or the arm's `upper` and `lower`: at the bone's base, +y
+//!                      along the bone, x as near to the joint's own as can be
+//!     └ NAME_tip       at the tip of a bone without children, or of a keyed length
+//! Limbs                the mesh: a cone for every bone, balls at joints; skinned
+//! ```
+//!
+//! The joints stand in the bind pose: a skeleton without rotations, the arm straight along the Root's
+//! +x. The document's pose is in the animation, with a key in every frame; what a skeleton's
+//! transform mirrors, stretches or shears is in it as rotations and translations.
+//!
+//! # In
+//!
+//! A skin's joints, parents before their children, in the world, in metres. At rest, as the nodes
+//! stand, none is turned: a joint's frame is its node's rotation. Keys are at every frame of the first
+//! animation; where lengths or scales change, a joint's offset has keys. `NAME_tip` without children
+//! is the tip of NAME's bone. Meshes, materials, cameras and the like are passed over.
+//!
+//! # Source
+//!
+//! *glTF 2.0 Specification*, The Khronos Group, 2021.
+
+pub(super) mod chunks;
+mod export;
+mod frame;
+mod import;
+mod names;
+
+pub use export::{GlbError, glb};
+pub use import::read;

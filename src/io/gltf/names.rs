@@ -1,0 +1,42 @@
+use std::collections::HashMap;
+
+/// Names that are taken, each with the number that may make the next one of it.
+#[derive(Default)]
+pub struct Names(HashMap<String, usize>);
+
+impl<const N: usize> From<[&str; N]> for Names {
+    fn from(taken: [&str; N]) -> Self {
+        Self(taken.map(|name| (name.to_owned(), FIRST)).into())
+    }
+}
+
+const FIRST: usize = 2;
+
+impl Names {
+    /// The name itself or, where it is taken, one with a number. It is then taken.
+    pub fn free(&mut self, name: &str) -> String {
+        let mut free = name.to_owned();
+        let mut number = self.0.get(name).copied();
+        while let Some(next) = number.filter(|_| self.0.contains_key(&free)) {
+            free = format!("{name}_{next}");
+            number = Some(next + 1);
+        }
+        if let Some(number) = number {
+            self.0.insert(name.to_owned(), number);
+        }
+        self.0.insert(free.clone(), FIRST);
+        free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_free() {
+        let mut names = Names::from(["a", "a_3"]);
+        let all = ["a", "b", "a", "a_2", "b", "a"].map(|name| names.free(name));
+        assert_eq!(all, ["a_2", "b", "a_4", "a_2_2", "b_2", "a_5"]);
+    }
+}

@@ -1,0 +1,111 @@
+//! What is exported: every example, as it is and with keys.
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::io::{self, Example, Progress};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+
+use crate::rigs::{Random, transform};
+
+pub fn example(name: &str) -> Document {
+    Example::find(name).expect("an example").open().expect("it opens").document
+}
+
+pub fn glb(document: &Document) -> Vec<u8> {
+    io::glb(document, None, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Every example, and what keys and transforms can make of it.
+pub fn all() -> Vec<(String, Document)> {
+    let mut random = Random(20);
+    let mut all = vec![("keyed-lengths".to_owned(), keyed_arm(&mut random))];
+    for Example { name, .. } in Example::ALL {
+        let document = example(name);
+        if document.rig == RigKind::Skeleton {
+            for variant in 0..4 {
+                let mut keyed = keyed_skeleton(document.clone(), &mut random);
+                let place = transform(&mut random);
+                keyed.skeleton.skeleton.set_transform(place).expect("finite");
+                all.push((format!("{name}-keyed-{variant}"), keyed));
+            }
+            all.push((format!("{name}-flat"), flat(document.clone())));
+        }
+        all.push((name.to_owned(), document));
+    }
+    all.push(("points".to_owned(), points()));
+    all.push(("names".to_owned(), names()));
+    all
+}
+
+/// An arm all of whose channels have keys.
+pub fn keyed_arm(random: &mut Random) -> Document {
+    let mut document = Document { timeline: short(), ..Document::default() };
+    for time in times() {
+        let mut key = |channel, value| document.keys.insert(channel, time, value);
+        key(Channel::Hand, random.vector(450.0));
+        key(Channel::Root, random.vector(100.0));
+        for (channel, low, high) in [
+            (Channel::ElbowSpin, -9.0, 9.0),
+            (Channel::Upper, 50.0, 400.0),
+            (Channel::Lower, 50.0, 400.0),
+        ] {
+            key(channel, Vec3::X * random.within(low..high));
+        }
+    }
+    document
+}
+
+fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
+    document.timeline = short();
+    let size = document.skeleton.reach();
+    for joint in 0..document.skeleton.skeleton.joints().len() {
+        let offset = document.skeleton.skeleton.joints()[joint].offset;
+        let (turns, moves) = (random.chance(0.7), random.chance(0.2));
+        for time in times() {
+            if turns {
+                document.keys.insert(Channel::Rotation(joint), time, random.angles());
+            }
+            if moves {
+                let offset = offset + random.vector(0.1 * size);
+                document.keys.insert(Channel::Offset(joint), time, offset);
+            }
+        }
+    }
+    for time in times() {
+        document.keys.insert(Channel::Translation, time, random.vector(size));
+    }
+    document
+}
+
+fn flat(mut document: Document) -> Document {
+    let mut place = document.skeleton.skeleton.transform();
+    place.matrix3.z_axis = glam::Vec3A::ZERO;
+    document.skeleton.skeleton.set_transform(place).expect("finite");
+    document
+}
+
+/// Nothing but points, one on the other.
+fn points() -> Document {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let joint = |name, parent| Joint::new(name, parent, Vec3::ZERO);
+    let joints = vec![joint("one", None), joint("two", Some(0)), joint("three", None)];
+    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    document
+}
+
+/// Names that the file has already, and that tips would have.
+fn names() -> Document {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let joint = |name, parent| Joint::new(name, parent, Vec3::Y);
+    let joints = vec![joint("Armature", None), joint("a", Some(0)), joint("a_tip", Some(0))];
+    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    document
+}
+
+fn short() -> Timeline {
+    Timeline { start: -0.5, end: 1.5, frame_rate: 24 }
+}
+
+fn times() -> [f64; 4] {
+    [-0.5, 0.1, 0.75, 1.5]
+}

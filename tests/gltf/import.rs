@@ -1,0 +1,564 @@
+//! Files of other programs.
+
+use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
+use glam::{Quat, Vec3};
+use ik_arm::document::{Channel, RigKind};
+use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::skeleton::Skeleton;
+use serde_json::{Value, json};
+
+use crate::files::message;
+use crate::text::{Text, base64, glb};
+
+fn open(text: &Text) -> Opened {
+    io::parse("test.gltf", &text.embedded(), None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn skeleton(text: &Text) -> Skeleton {
+    open(text).document.skeleton.skeleton
+}
+
+fn refusal(text: &str) -> String {
+    message(io::parse("x.gltf", text, None).expect_err("it is refused"))
+}
+
+/// Where a joint begins at a time, by its name.
+fn base(opened: &Opened, time: f64, name: &str) -> Vec3 {
+    let document = opened.document.at(time);
+    let skeleton = &document.skeleton.skeleton;
+    skeleton.base(skeleton.find(name).expect("a joint"))
+}
+
+#[track_caller]
+fn assert_near(found: Vec3, expected: Vec3) {
+    assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
+}
+
+/// Quaternions about z by quarter turns.
+fn quarters(turns: &[f32]) -> Vec<f32> {
+    turns.iter().flat_map(|turn| Quat::from_rotation_z(turn * FRAC_PI_2).to_array()).collect()
+}
+
+// Joints
+
+#[test]
+fn a_text_and_a_binary_file_give_the_same_joints() {
+    let text = Text::chain();
+    let opened = open(&text);
+    assert_eq!(opened.document.rig, RigKind::Skeleton);
+    let joints = opened.document.skeleton.skeleton.joints();
+    let told: Vec<_> = joints.iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
+    assert_eq!(told, [("a", None), ("b", Some(0)), ("c", Some(1))]);
+    assert_eq!(
+        joints.iter().map(|joint| joint.axis).collect::<Vec<_>>(),
+        [Vec3::Y, Vec3::Y, Vec3::ZERO]
+    );
+    assert_eq!(
+        (opened.skeletons.as_slice(), opened.order.as_slice()),
+        (&["skin".to_owned()][..], &[0, 1, 2][..])
+    );
+    assert_eq!(io::read("x.glb", &text.binary()[..], None).expect("it opens"), opened);
+}
+
+#[test]
+fn nodes_between_joints_and_scaled_ones_above_are_in_the_offsets() {
+    let text = Text::new(
+        json!([
+            { "children": [1], "scale": [2, 2, 2], "translation": [0, 0, 7] },
+            { "name": "hip", "children": [2], "translation": [1, 0, 0] },
+            { "children": [3], "rotation": [0, 0, FRAC_1_SQRT_2, FRAC_1_SQRT_2] },
+            { "name": "knee", "translation": [0, 1, 0] },
+        ]),
+        &[3, 1],
+    );
+    let opened = open(&text);
+    let joints = opened.document.skeleton.skeleton.joints();
+    assert_eq!((joints[0].name.as_str(), joints[1].name.as_str()), ("hip", "knee"));
+    assert_eq!((joints[1].parent, opened.order.as_slice()), (Some(0), &[1, 0][..]));
+    assert_near(joints[0].offset, Vec3::new(2.0, 0.0, 7.0));
+    assert_near(joints[1].offset, Vec3::new(-2.0, 0.0, 0.0));
+    assert_near(joints[0].axis, joints[1].offset);
+    assert!(joints.iter().all(|joint| joint.rotation == Vec3::ZERO));
+    assert_near(joints[1].frame.y_axis, Vec3::NEG_X);
+}
+
+#[test]
+fn a_matrix_stands_for_translation_rotation_and_scale() {
+    let matrix = [0, 3, 0, 0, -3, 0, 0, 0, 0, 0, 3, 0, 1, 2, 3, 1];
+    let text = Text::new(
+        json!([{ "matrix": matrix, "children": [1] }, { "translation": [1, 0, 0] }]),
+        &[0, 1],
+    );
+    let skeleton = skeleton(&text);
+    assert_near(skeleton.base(0), Vec3::new(1.0, 2.0, 3.0));
+    assert_near(skeleton.base(1), Vec3::new(1.0, 5.0, 3.0));
+}
+
+#[test]
+fn names_are_made_unique_and_the_nameless_get_one() {
+    let text =
+        Text::new(json!([{ "name": "a" }, { "name": "a" }, {}, { "name": " " }]), &[0, 1, 2, 3]);
+    let skeleton = skeleton(&text);
+    let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(names, ["a", "a_2", "joint_2", "joint_3"]);
+    assert!(skeleton.joints().iter().all(|joint| joint.parent.is_none()));
+}
+
+#[test]
+fn a_bone_ends_at_the_only_child_at_that_along_y_or_amid_them() {
+    let with = |children: Value| {
+        let mut nodes = vec![json!({ "name": "a", "children": [] })];
+        for (index, child) in children.as_array().expect("children").iter().enumerate() {
+            nodes[0]["children"].as_array_mut().expect("a list").push(json!(index + 1));
+            nodes.push(json!({ "translation": child }));
+        }
+        let all: Vec<usize> = (0..nodes.len()).collect();
+        skeleton(&Text::new(Value::from(nodes), &all)).joints()[0].axis
+    };
+    assert_eq!(with(json!([[1, 2, 3]])), Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(with(json!([[9, 0, 0], [0, 2, 0]])), Vec3::Y * 2.0);
+    assert_eq!(with(json!([[4, 1, 0], [-4, 1, 0], [0, 0, 0]])), Vec3::Y);
+}
+
+#[test]
+fn a_leaf_called_the_tip_of_its_parent_ends_the_bone() {
+    let text = Text::new(
+        json!([
+            { "name": "a", "children": [1, 2] },
+            { "name": "a_tip", "translation": [0, 3, 0] },
+            { "name": "b", "translation": [1, 0, 0] },
+        ]),
+        &[0, 1, 2],
+    );
+    let opened = open(&text);
+    let joints = opened.document.skeleton.skeleton.joints();
+    assert_eq!((joints.len(), joints[0].axis, joints[1].parent), (2, Vec3::Y * 3.0, Some(0)));
+    assert_eq!(opened.order, [0, 1]);
+}
+
+#[test]
+fn of_several_skins_the_first_is_read_or_the_one_that_is_named() {
+    let mut text = Text::chain();
+    text.json["skins"] = json!([
+        { "joints": [0, 1] }, { "name": "b", "joints": [1, 2] }, { "name": "b", "joints": [2] },
+    ]);
+    text.json["nodes"][3]["skin"] = json!(0);
+    let named = |name| io::parse("x.gltf", &text.embedded(), name);
+    let count = |name| {
+        let opened = named(name).expect("it opens");
+        assert_eq!(opened.skeletons, ["lamp", "b", "b_2"]);
+        let joints = opened.document.skeleton.skeleton.joints().to_vec();
+        (joints.len(), joints[0].name.clone())
+    };
+    assert_eq!(count(None), (2, "a".to_owned()));
+    assert_eq!(count(Some("b")), (2, "b".to_owned()));
+    assert_eq!(count(Some("b_2")), (1, "c".to_owned()));
+    let error = named(Some("d")).expect_err("there is none").to_string();
+    assert_eq!(error, "x.gltf has no skeleton called \"d\"; it has \"lamp\", \"b\", \"b_2\"");
+}
+
+// Motions
+
+#[test]
+fn rotations_turn_the_shorter_way_and_steps_stay() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[1.0, 2.0]);
+    let mut turned = quarters(&[0.0, 1.0]);
+    turned[4..].iter_mut().for_each(|number| *number = -*number);
+    let turned = text.floats(4, &turned);
+    let moved = text.floats(3, &[0.0, 1.0, 0.0, 0.0, 2.0, 0.0]);
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    text.animate(2, "translation", "STEP", times, moved);
+    let opened = open(&text);
+    let timeline = opened.document.timeline;
+    assert_eq!((timeline.start, timeline.end, timeline.frame_rate), (1.0, 2.0, 24));
+    let tracks: Vec<Channel> = opened.document.keys.tracks().map(|(channel, _)| channel).collect();
+    assert_eq!(tracks, [Channel::Rotation(0), Channel::Offset(2)]);
+    let eighth = Quat::from_rotation_z(FRAC_PI_2 / 2.0) * Vec3::Y;
+    assert_near(base(&opened, 1.5, "b"), eighth);
+    assert_near(base(&opened, 1.5, "c"), eighth * 2.0);
+    assert_near(base(&opened, 2.0, "c"), Vec3::NEG_X * 3.0);
+}
+
+#[test]
+fn cubic_splines_have_the_slopes_of_their_keys() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 2.0]);
+    let rows = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, 0.0, 0.0]];
+    let last = [[0.0, 5.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
+    let values = text.floats(3, &[rows, last].concat().concat());
+    text.animate(1, "translation", "CUBICSPLINE", times, values);
+    let opened = open(&text);
+    for s in [0.0_f32, 0.25, 0.5, 0.75, 1.0] {
+        let (leaving, arriving) = (s.powi(3) - 2.0 * s * s + s, s.powi(3) - s * s);
+        let expected = Vec3::new(2.0 * leaving * 3.0, 1.0 + 2.0 * arriving * 5.0, 0.0);
+        assert_near(base(&opened, 2.0 * f64::from(s), "b"), expected);
+    }
+}
+
+#[test]
+fn normalized_integers_are_rotations() {
+    let turn = |text: &mut Text, bytes: &[u8], component| {
+        let times = text.floats(1, &[0.0, 1.0]);
+        let values = text.accessor(bytes, component, 2, "VEC4");
+        text.animate(0, "rotation", "LINEAR", times, values);
+        base(&open(text), 1.0, "b")
+    };
+    let none_then_quarter = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
+    let scaled = |largest: f32| none_then_quarter.map(|number| (number * largest).round());
+    let words = |largest: f32| -> Vec<u8> {
+        scaled(largest).iter().flat_map(|number| (*number as u16).to_le_bytes()).collect()
+    };
+    let bytes = |largest| scaled(largest).map(|number| number as u8).to_vec();
+    for (values, component) in
+        [(bytes(127.0), 5120), (bytes(255.0), 5121), (words(32767.0), 5122), (words(65535.0), 5123)]
+    {
+        assert_near(turn(&mut Text::chain(), &values, component), Vec3::NEG_X);
+    }
+}
+
+#[test]
+fn what_lies_between_other_numbers_is_read_by_its_stride() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 1.0]);
+    let rows = [[9.0, 0.0, 1.0, 0.0, 9.0], [9.0, 1.0, 1.0, 0.0, 9.0]].concat();
+    let values = text.floats(1, &rows);
+    text.json["bufferViews"][values]["byteStride"] = json!(20);
+    let moved = json!({ "bufferView": values, "byteOffset": 4, "componentType": 5126, "count": 2,
+                        "type": "VEC3" });
+    text.json["accessors"][values] = moved;
+    text.animate(1, "translation", "LINEAR", times, values);
+    assert_near(base(&open(&text), 1.0, "b"), Vec3::new(1.0, 1.0, 0.0));
+}
+
+#[test]
+fn a_scale_that_changes_moves_what_hangs_below() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 1.0]);
+    let scales = text.floats(3, &[1.0, 1.0, 1.0, 2.0, 3.0, 2.0]);
+    text.animate(0, "scale", "LINEAR", times, scales);
+    let opened = open(&text);
+    assert_near(base(&opened, 1.0, "b"), Vec3::Y * 3.0);
+    assert_near(base(&opened, 1.0, "c"), Vec3::Y * 6.0);
+}
+
+#[test]
+fn what_is_constant_has_no_keys_but_is_posed() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[1.0, 1.0]));
+    let also = text.floats(4, &quarters(&[0.0, 1.0]));
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    text.animate(1, "rotation", "LINEAR", times, also);
+    let opened = open(&text);
+    let tracks: Vec<Channel> = opened.document.keys.tracks().map(|(channel, _)| channel).collect();
+    assert_eq!(tracks, [Channel::Rotation(1)]);
+    assert_near(opened.document.skeleton.skeleton.base(2), Vec3::NEG_X * 2.0);
+}
+
+#[test]
+fn angles_go_on_beyond_half_a_turn() {
+    let mut text = Text::chain();
+    let times: Vec<f32> = (0..=12).map(|key| key as f32 * 0.25).collect();
+    let turns: Vec<f32> = (0..=12).map(|key| key as f32 * 0.5).collect();
+    let times = text.floats(1, &times);
+    let turned = text.floats(4, &quarters(&turns));
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    let document = open(&text).document;
+    let last = document.keys.value(Channel::Rotation(0), 3.0).expect("keyed");
+    assert!((last.z - 6.0 * FRAC_PI_2).abs() < 1e-4, "{last}");
+}
+
+#[test]
+fn the_frame_rate_is_the_lowest_that_has_every_key() {
+    for (rate, expected) in
+        [(24.0, 24), (25.0, 25), (30.0, 30), (60.0, 60), (100.0, 100), (120.0, 120), (29.97, 60)]
+    {
+        let mut text = Text::chain();
+        let times: Vec<f32> = (3..40).map(|key| key as f32 / rate).collect();
+        let moved: Vec<f32> = (3..40).flat_map(|key| [0.0, key as f32, 0.0]).collect();
+        let (times, moved) = (text.floats(1, &times), text.floats(3, &moved));
+        text.animate(1, "translation", "LINEAR", times, moved);
+        let timeline = open(&text).document.timeline;
+        assert_eq!(timeline.frame_rate, expected);
+        assert!((timeline.duration() - 36.0 / f64::from(rate)).abs() < 0.02, "{timeline:?}");
+    }
+}
+
+#[test]
+fn only_the_first_animation_is_read_and_that_is_said() {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    let mut first = text.json["animations"][0].clone();
+    first["channels"][0]["target"]["path"] = json!("weights");
+    let second = text.json["animations"][0].clone();
+    text.json["animations"] = json!([first, second]);
+    let opened = open(&text);
+    assert!(opened.document.keys.is_empty());
+    assert_eq!(opened.warnings.len(), 1);
+    assert_eq!(opened.warnings[0].field, "animations[1]");
+    assert_eq!(opened.warnings[0].reason, "the first animation is read, the others are not");
+    let binary = io::read("x.glb", &text.binary()[..], None).expect("it opens");
+    let remark = binary.warnings[0].to_string();
+    assert_eq!(remark, "animations[1]: the first animation is read, the others are not");
+}
+
+// Other files
+
+fn moving() -> Text {
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    text
+}
+
+#[test]
+fn a_buffer_can_be_a_file_beside() {
+    let text = moving();
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a b.bin"), text.bytes()).expect("written");
+    let path = folder.path().join("x.gltf");
+    std::fs::write(&path, text.with_uri("./a%20b.bin")).expect("written");
+    let opened = io::open(&path, None).expect("it opens");
+    assert_near(base(&opened, 1.0, "c"), Vec3::NEG_X * 2.0);
+}
+
+#[test]
+fn a_buffer_that_is_not_in_the_files_own_folder_is_refused() {
+    let text = moving();
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.bin"), text.bytes()).expect("written");
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("made");
+    let path = inner.join("x.gltf");
+    let absolute = folder.path().join("a.bin");
+    for uri in [
+        "../a.bin",
+        "b/../../a.bin",
+        "%2e%2e/a.bin",
+        "file:///a.bin",
+        "http://a/a.bin",
+        "a\\b.bin",
+        "%zz",
+        "",
+        ".",
+        absolute.to_str().expect("a name"),
+        "none.bin",
+    ] {
+        std::fs::write(&path, text.with_uri(uri)).expect("written");
+        let error = message(io::open(&path, None).expect_err(uri));
+        assert!(error.contains("buffers[0].uri: "), "{error}");
+    }
+    let error = refusal(&text.with_uri("a.bin"));
+    assert!(error.contains("buffers[0].uri: \"a.bin\" is another file"), "{error}");
+}
+
+#[test]
+fn a_file_of_200_mb_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("large.glb");
+    let file = std::fs::File::create(&path).expect("made");
+    file.set_len(200 << 20).expect("made long");
+    let error = io::open(&path, None).expect_err("it is refused").to_string();
+    assert!(error.ends_with("is larger than 64 MB, and no document is"), "{error}");
+}
+
+#[test]
+fn buffers_that_are_larger_than_64_mb_together_are_refused() {
+    let mut text = moving();
+    text.json["buffers"] = json!([null, { "byteLength": 67_108_860, "uri": "data:;base64," }]);
+    text.json["bufferViews"][1]["buffer"] = json!(1);
+    let error = refusal(&text.embedded());
+    assert!(error.ends_with("buffers[1].byteLength: makes more than 64 MB with those before it"));
+}
+
+// What is wrong
+
+/// What is said about a file with one value that is not right.
+fn wrong(pointer: &str, value: Value) -> String {
+    let mut text = moving();
+    let embedded = text.embedded();
+    text.json = serde_json::from_str(&embedded).expect("JSON");
+    let (path, key) = pointer.rsplit_once('/').expect("a pointer");
+    match text.json.pointer_mut(path).expect("there") {
+        Value::Array(list) => list[key.parse::<usize>().expect("an index")] = value,
+        parent => parent[key] = value,
+    }
+    let error = refusal(&text.json.to_string());
+    let (_, said) = error.split_once(": ").expect("a place");
+    said.to_owned()
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_field() {
+    let infinite = base64(&f32::INFINITY.to_le_bytes());
+    for (pointer, value, said) in [
+        ("/asset/version", json!("1.0"), "asset.version: is \"1.0\"; only glTF 2 is known"),
+        ("/skins", json!([]), "skins: there is none; joints are those of a skin"),
+        ("/skins/0/joints", json!([]), "skins[0].joints: there is none; a skin needs a joint"),
+        ("/skins/0/joints/1", json!(9), "skins[0].joints[1]: there is no node 9"),
+        ("/skins/0/joints/1", json!(0), "skins[0].joints[1]: node 0 is already a joint"),
+        ("/skins/0/joints/1", json!(-1), "skins[0].joints[1]: invalid type: integer `-1`"),
+        ("/nodes/1/children/0", json!(9), "nodes[1].children[0]: there is no node 9"),
+        ("/nodes/1/children/0", json!(3), "nodes[1].children[0]: node 3 already hangs from node 0"),
+        ("/nodes/2/children", json!([0]), "nodes[0]: hangs from itself"),
+        ("/nodes/1/rotation", json!([0, 0, 0, 0]), "nodes[1].rotation: four zeros turn nothing"),
+        ("/nodes/1/rotation", json!([0, 0, 1]), "nodes[1].rotation: found 3 numbers"),
+        ("/nodes/1/scale", json!([1, 1e39, 1]), "nodes[1].scale[1]: number out of range"),
+        ("/nodes/1/translation", json!([3e38, 3e38, "1"]), "nodes[1].translation[2]: invalid type"),
+        ("/nodes/0/scale", json!([1, 3.4e38, 1]), "nodes[2]: is beyond 3.4028235e38 m"),
+        ("/nodes/0/matrix", json!(vec![1; 16]), "nodes[0].matrix: the last number of its first"),
+        (
+            "/animations/0/channels/0/sampler",
+            json!(4),
+            "animations[0].channels[0].sampler: there is",
+        ),
+        (
+            "/animations/0/channels/0/target/node",
+            json!(4),
+            "animations[0].channels[0].target.node: t",
+        ),
+        ("/animations/0/samplers/0/input", json!(7), "accessors[7]: there is no such accessor"),
+        (
+            "/animations/0/samplers/0/interpolation",
+            json!("CUBIC"),
+            "animations[0].samplers[0].inter",
+        ),
+        (
+            "/animations/0/samplers/0/output",
+            json!(0),
+            "accessors[0].type: is \"SCALAR\"; it must be",
+        ),
+        ("/accessors/0/componentType", json!(5124), "accessors[0].componentType: is 5124; it must"),
+        (
+            "/accessors/0/componentType",
+            json!(5123),
+            "accessors[0].componentType: times must be floa",
+        ),
+        (
+            "/accessors/1/componentType",
+            json!(5125),
+            "accessors[1].componentType: values must be flo",
+        ),
+        ("/accessors/0/count", json!(0), "accessors[0].count: is 0; there must be a time"),
+        (
+            "/accessors/1/count",
+            json!(1),
+            "accessors[1].count: is 1; it must be 1 for each of the 2",
+        ),
+        ("/accessors/1/count", json!(3), "accessors[1].count: is 3, of 16 bytes each, from byte 0"),
+        ("/accessors/1/count", json!(4294967295_u32), "accessors[1].count: is 4294967295, of 16"),
+        ("/accessors/1/byteOffset", json!(4294967295_u32), "accessors[1].count: is 2, of 16 bytes"),
+        ("/accessors/1/byteOffset", json!(1e300), "accessors[1].byteOffset: invalid type"),
+        ("/accessors/1/sparse", json!({}), "accessors[1]: is sparse or without a buffer view"),
+        (
+            "/accessors/1/bufferView",
+            Value::Null,
+            "accessors[1]: is sparse or without a buffer view",
+        ),
+        ("/accessors/1/bufferView", json!(5), "accessors[1].bufferView: there is no buffer view 5"),
+        ("/bufferViews/1/buffer", json!(5), "bufferViews[1].buffer: there is no buffer 5"),
+        ("/bufferViews/1/byteLength", json!(999), "bufferViews[1].byteLength: is 999, from byte 8"),
+        (
+            "/bufferViews/1/byteOffset",
+            json!(4294967295_u32),
+            "bufferViews[1].byteLength: is 32, fr",
+        ),
+        (
+            "/bufferViews/1/byteStride",
+            json!(12),
+            "bufferViews[1].byteStride: is 12; it must be 4 to",
+        ),
+        (
+            "/buffers/0/byteLength",
+            json!(999),
+            "buffers[0].byteLength: is 999, but the buffer has 40",
+        ),
+        ("/buffers/0/uri", Value::Null, "buffers[0].uri: is not there; only the first buffer of a"),
+        (
+            "/buffers/0/uri",
+            json!("data:;base64,!"),
+            "buffers[0].uri: character 1 of its data is '!'",
+        ),
+        ("/buffers/0/uri", json!("data:,abc"), "buffers[0].uri: is data that is not in base64"),
+        (
+            "/buffers/0/uri",
+            json!(format!("data:;base64,{}", infinite.trim_end_matches('=').repeat(40))),
+            "accessors[0]: time 0 is",
+        ),
+    ] {
+        let found = wrong(pointer, value);
+        assert!(found.starts_with(said), "{pointer}: {found}");
+    }
+}
+
+#[test]
+fn values_that_are_no_rotations_or_no_times_are_refused() {
+    let with = |times: [f32; 2], turned: [f32; 8]| {
+        let mut text = Text::chain();
+        let (times, turned) = (text.floats(1, &times), text.floats(4, &turned));
+        text.animate(0, "rotation", "LINEAR", times, turned);
+        refusal(&text.embedded())
+    };
+    let none = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    assert!(with([0.0, 0.0], none).contains("accessors[0]: time 1 is 0"));
+    assert!(with([1.0, f32::NAN], none).contains("accessors[0]: time 1 is NaN"));
+    assert!(with([0.0, 1e9], none).contains("animations[0]: goes from 0 to 1000000000 s"));
+    let mut zero = none;
+    zero[7] = 0.0;
+    assert!(with([0.0, 1.0], zero).contains("accessors[1]: rotation 1 is four zeros"));
+    zero[7] = f32::NAN;
+    assert!(with([0.0, 1.0], zero).contains("accessors[1]: value 1 has a number that is not"));
+}
+
+#[test]
+fn too_many_joints_nodes_and_frames_are_refused() {
+    let mut text = Text::chain();
+    let nodes = vec![json!({}); 10_001];
+    text.json["nodes"] = Value::from(nodes);
+    text.json["skins"][0]["joints"] = Value::from((0..10_001).collect::<Vec<_>>());
+    assert!(refusal(&text.embedded()).ends_with("a skeleton has at most 10000 joints"));
+
+    let many =
+        format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}", "{},".repeat(200_000));
+    assert!(refusal(&many).contains("at most 200000 are possible"));
+
+    let mut text = Text::chain();
+    let times = text.floats(1, &[0.0, 80_000.03]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    text.animate(0, "rotation", "LINEAR", times, turned);
+    let error = refusal(&text.embedded());
+    assert!(error.contains("animations[0]: moves 3 nodes in "), "{error}");
+}
+
+#[test]
+fn what_is_wrong_with_a_binary_file_has_no_line() {
+    let json = br#"{"asset":{"version":"2.0"},"skins":[{"joints":[0]}]}"#;
+    let said = |bytes: &[u8]| message(io::read("x.glb", bytes, None).expect_err("it is refused"));
+    assert_eq!(said(&glb(json, b"")), "x.glb, skins[0].joints[0]: there is no node 0");
+    let whole = moving().binary();
+    let changed = |at: usize, byte: u8| {
+        let mut bytes = whole.clone();
+        bytes[at] = byte;
+        bytes
+    };
+    for (bytes, expected) in [
+        (
+            &b"glTF\x02"[..],
+            "x.glb, the file ends within its first 12 bytes, the header of a .glb file",
+        ),
+        (&changed(4, 1), "x.glb, the file is of glTF 1; only glTF 2 is known"),
+        (&changed(11, 1), "it is cut"),
+        (&changed(16, b'X'), "x.glb, its first chunk is not of the type JSON"),
+        (&changed(15, 1), "but only"),
+        (&changed(20, 0xff), "x.glb, its JSON is not UTF-8"),
+        (&changed(20, b'x'), "x.glb, not JSON: expected value"),
+        (&whole[..whole.len() - 1], "it is cut"),
+    ] {
+        assert!(said(bytes).contains(expected), "{}", said(bytes));
+    }
+}

@@ -1,0 +1,15 @@
+//! glTF: what is written is what the document shows, and reads back; what is wrong is refused.
+#![cfg(feature = "document")]
+
+#[path = "../files/mod.rs"]
+mod files;
+#[path = "../common/rigs.rs"]
+mod rigs;
+
+mod damage;
+mod documents;
+mod export;
+mod glb;
+mod import;
+mod round_trip;
+mod text;

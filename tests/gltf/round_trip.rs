@@ -1,0 +1,130 @@
+//! What is exported and imported again stands where it stood.
+
+use glam::Vec3;
+use ik_arm::document::{Document, RigKind};
+use ik_arm::io::{self, Opened};
+use ik_arm::rig::Part;
+
+use crate::documents::{all, example, glb, keyed_arm};
+use crate::rigs::Random;
+
+fn reopened(document: &Document) -> Opened {
+    let bytes = glb(document);
+    io::read("test.glb", &bytes[..], None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Where the bones begin, and where the arm's hand is, in metres.
+fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
+    let document = document.at(time);
+    let named = match document.rig {
+        RigKind::Skeleton => {
+            let skeleton = document.skeleton.at(time);
+            let pose = skeleton.pose();
+            let joints = skeleton.joints().iter().enumerate();
+            joints.map(|(index, joint)| (joint.name.clone(), pose.base(index))).collect()
+        }
+        RigKind::Arm => {
+            let rig = document.arm.rig(&document.arm.pose());
+            let parts = [("upper", Part::Root), ("lower", Part::Elbow), ("hand", Part::Hand)];
+            parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()
+        }
+    };
+    let metres = document.metres_per_unit();
+    named.into_iter().map(|(name, point): (String, Vec3)| (name, point * metres)).collect()
+}
+
+/// The same of an imported document, whose hand is a joint where its bone's length has keys.
+fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
+    let document = document.at(time);
+    let skeleton = &document.skeleton.skeleton;
+    let pose = skeleton.pose();
+    let joint = |name| skeleton.find(name).map(|joint| pose.base(joint));
+    match name {
+        "hand" => {
+            joint("lower_tip").or_else(|| skeleton.find("lower").map(|lower| pose.tip(lower)))
+        }
+        name => joint(name),
+    }
+}
+
+fn largest(points: &[(String, Vec3)]) -> f32 {
+    let centre = points.iter().map(|(_, point)| *point).sum::<Vec3>() / points.len() as f32;
+    points.iter().map(|(_, point)| point.distance(centre)).fold(0.0, f32::max)
+}
+
+fn check(name: &str, document: &Document, opened: &Opened) {
+    let timeline = document.timeline;
+    let frames = if opened.document.keys.is_empty() { 1 } else { timeline.frames() };
+    for frame in 0..frames {
+        let expected = bases(document, timeline.time(frame));
+        let size = largest(&expected).max(0.25 * document.metres_per_unit());
+        let time = frame as f64 / f64::from(timeline.frame_rate);
+        for (joint, expected) in &expected {
+            let found = imported(&opened.document, time, joint);
+            let Some(found) = found else { panic!("{name} has no joint {joint}") };
+            let gap = found.distance(*expected);
+            assert!(
+                gap <= 1e-4 * size,
+                "{name}, {joint} at frame {frame}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_joint_is_where_it_was_in_every_frame() {
+    for (name, document) in all().into_iter().filter(|(name, _)| name != "names") {
+        let opened = reopened(&document);
+        let Opened { document: read, warnings, order, skeletons } = &opened;
+        assert_eq!(read.rig, RigKind::Skeleton);
+        assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
+        assert_eq!(order.len(), read.skeleton.skeleton.joints().len());
+        let moves = document.is_posed_by_time();
+        assert_eq!(moves, !read.keys.is_empty(), "{name}");
+        check(&name, &document, &opened);
+    }
+}
+
+#[test]
+fn what_moves_has_the_length_and_the_frames_that_it_had() {
+    for name in ["snake", "human-keyed-0", "keyed-lengths"] {
+        let (_, document) = all().into_iter().find(|(other, _)| other == name).expect(name);
+        let (was, is) = (document.timeline, reopened(&document).document.timeline);
+        assert_eq!((is.start, is.frame_rate, is.frames()), (0.0, was.frame_rate, was.frames()));
+    }
+}
+
+#[test]
+fn what_stands_still_has_no_keys_and_its_pose() {
+    for name in ["human", "arm", "degenerate"] {
+        let document = example(name);
+        let opened = reopened(&document);
+        assert!(opened.document.keys.is_empty(), "{name}");
+        check(name, &document, &opened);
+    }
+}
+
+#[test]
+fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
+    let document = example("human");
+    let (was, is) = (&document.skeleton.skeleton, reopened(&document).document);
+    let is = &is.skeleton.skeleton;
+    let names = |skeleton: &ik_arm::kinematics::skeleton::Skeleton| -> Vec<String> {
+        skeleton.joints().iter().map(|joint| joint.name.clone()).collect()
+    };
+    assert_eq!(names(is), names(was));
+    for (index, joint) in was.joints().iter().enumerate() {
+        assert_eq!(is.joints()[index].parent, joint.parent);
+        if was.children(index).next().is_none() {
+            assert!(is.tip(index).distance(was.tip(index)) < 1e-4, "{}", joint.name);
+        }
+    }
+}
+
+#[test]
+fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
+    let read = reopened(&keyed_arm(&mut Random(1))).document;
+    let skeleton = &read.skeleton.skeleton;
+    let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
+}
