@@ -24,13 +24,14 @@
 //! | [`kinematics`] | pure numbers: two bones, skeletons, solvers, following a path, splines | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
 //! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
-//! | `io` | files: documents, Scotty3D's skeletons and glTF in; documents and glTF out | `document` |
+//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out | `document` |
 //! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
 //! | `scene` | what to draw: plain lists | `document` |
 //! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |
+//! | `export` | files for other programs: motions, tables, pictures | `render` |
 //! | `ui` | egui panels: read a session, push actions | `app` |
 //! | `app` | winit: window, surface, frame loop | `app` |
-//! | `cli` | solve, pose, render, examples, gui | `app` |
+//! | `cli` | solve, pose, render, export, examples, gui | `app` |
 //!
 //! # One frame
 //!
@@ -56,6 +57,8 @@ pub mod app;
 pub mod cli;
 #[cfg(feature = "document")]
 pub mod document;
+#[cfg(feature = "render")]
+pub mod export;
 #[cfg(feature = "document")]
 pub mod io;
 pub mod kinematics;

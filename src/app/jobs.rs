@@ -1,17 +1,19 @@
 //! What runs beside the window, on threads of its own, and reports when it is done.
 
 use std::path::{Path, PathBuf};
-use std::thread;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
 
 use super::UserEvent;
 use crate::document::{Document, Theme};
-use crate::io::{self, OpenError, Opened};
+use crate::export::{self, ExportError, Options};
+use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, Picture};
 use crate::scene::Scene;
-use crate::session::{Action, Dialog, Staging};
+use crate::session::{Action, Dialog, Export, Job, Staging};
 
 /// What a picture shows and how large it is, in pixels and pixels a point.
 pub(super) struct Shot {
@@ -39,6 +41,43 @@ fn draw(shot: &Shot, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let (width, height) = shot.size;
     let image = Picture::new(&gpu, width, height, shot.scale).draw(&scene)?;
     Ok(render::save(&image, path)?)
+}
+
+/// Exports beside the window, which shows how far it is.
+pub(super) fn export(
+    export: Export,
+    document: Document,
+    shot: &Shot,
+    proxy: EventLoopProxy<UserEvent>,
+) -> (Job, JoinHandle<()>) {
+    let progress = Arc::new(Progress::default());
+    let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
+    let options = Options {
+        fps: Some(export.frame_rate),
+        size: export.size,
+        theme: shot.theme,
+        time: Some(shot.staging.time),
+        ..Options::default()
+    };
+    let thread = thread::spawn(move || {
+        let exported = export::export(&document, &export.path, &options, &progress);
+        report(&proxy, UserEvent::Exported(say_exported(&export.path, exported)));
+    });
+    (job, thread)
+}
+
+fn say_exported(path: &Path, exported: Result<Vec<String>, ExportError>) -> String {
+    match exported {
+        Ok(notes) => match &notes[..] {
+            [] => format!("Exported {}", path.display()),
+            [note] => format!("Exported {}; {note}", path.display()),
+            [first, rest @ ..] => {
+                format!("Exported {}; {first}, and {} more notes", path.display(), rest.len())
+            }
+        },
+        Err(ExportError::Cancelled(_)) => "Export cancelled; no file was left".to_owned(),
+        Err(error) => format!("Not exported: {error}"),
+    }
 }
 
 /// Reads a file: a large one takes a while.
@@ -90,6 +129,7 @@ pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
         Dialog::SavePicture { path } => (path, "PNG", &["png"]),
         Dialog::Open { path } => (path, "Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
         Dialog::SaveAs { path } => (path, "Scene", &["json"]),
+        Dialog::Export { path, .. } => (path, "Export", &["glb", "bvh", "csv", "png", "apng"]),
         _ => return,
     };
     let path = Path::new(path);
@@ -128,6 +168,10 @@ pub(super) fn chosen(dialog: Dialog, choice: Choice) -> Option<Action> {
         (Choice::Path(path), Dialog::SaveAs { .. }) => Some(Action::SaveAs(path)),
         (Choice::Path(path), Dialog::SavePicture { .. }) => {
             Some(Action::SavePicture(path.display().to_string()))
+        }
+        (Choice::Path(path), Dialog::Export { frame_rate, size, .. }) => {
+            let path = path.display().to_string();
+            Some(Action::OpenDialog(Dialog::Export { path, frame_rate, size }))
         }
         (Choice::Path(_), _) => None,
         (Choice::Cancelled, _) => Some(Action::NotSaved("No file was chosen".to_owned())),

@@ -1,5 +1,6 @@
 //! The window: winit's event loop, the surface, and the frames drawn on it.
 
+mod effects;
 mod jobs;
 mod present;
 mod recovery;
@@ -64,6 +65,8 @@ enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Something that ran beside the window says how it ended.
     Report(String),
+    /// An export says how it ended.
+    Exported(String),
     /// The document is safe, as far as it was changed by then.
     Kept,
     /// The path that a dialog asked the system for.
@@ -232,6 +235,9 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Report(message) => {
                 self.session.apply(Action::Report(message));
             }
+            UserEvent::Exported(how) => {
+                self.session.apply(Action::Exported(how));
+            }
             UserEvent::Opened { path, chosen, read } => {
                 for action in jobs::opened(path, chosen, *read) {
                     self.session.apply(action);
@@ -248,6 +254,10 @@ impl ApplicationHandler<UserEvent> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.recovery.end();
+        self.session.apply(Action::CancelExport);
+        if let State::Active(window) = &mut self.state {
+            window.await_export();
+        }
         if let State::Active(window) = &self.state {
             log::info!("{} frames drawn", window.frames());
             window.settings(&self.session).save();

@@ -1,6 +1,7 @@
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 use egui::{FullOutput, RawInput, Rect, TextureId, ViewportId};
@@ -10,13 +11,11 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{Icon, Window, WindowAttributes};
 
-use super::jobs::{self, Shot};
 use super::settings::Settings;
 use super::{AppError, UserEvent};
-use crate::io;
 use crate::render::{Canvas, Gpu, Renderer};
 use crate::scene::Scene;
-use crate::session::{Action, Effect, Session};
+use crate::session::{Effect, Session};
 use crate::ui::{self, Machine, style};
 
 const TITLE: &str = "ik-arm";
@@ -48,9 +47,10 @@ pub(super) struct AppWindow {
     pub(super) frames: u64,
     title: String,
     /// Where the scene is, in points.
-    viewport: Rect,
+    pub(super) viewport: Rect,
     /// Whether the program is to end at the next frame.
-    ends: bool,
+    pub(super) ends: bool,
+    pub(super) exporting: Option<JoinHandle<()>>,
 }
 
 /// The scene as it was last drawn, for the panels to show.
@@ -112,6 +112,7 @@ impl AppWindow {
             title: TITLE.to_owned(),
             viewport: Rect::ZERO,
             ends: false,
+            exporting: None,
         })
     }
 
@@ -221,56 +222,6 @@ impl AppWindow {
         }
     }
 
-    /// Does what the session is told from elsewhere than the panels.
-    pub fn act(
-        &mut self,
-        action: Action,
-        session: &mut Session,
-        proxy: &EventLoopProxy<UserEvent>,
-    ) {
-        if let Some(effect) = session.apply(action)
-            && self.carry_out(effect, session, proxy)
-        {
-            self.ends = true;
-        }
-    }
-
-    /// Whether the program is to end.
-    fn carry_out(
-        &self,
-        effect: Effect,
-        session: &mut Session,
-        proxy: &EventLoopProxy<UserEvent>,
-    ) -> bool {
-        match effect {
-            Effect::CopyText(text) => self.egui.egui_ctx().copy_text(text),
-            Effect::SavePicture(path) => {
-                let scale = self.egui.egui_ctx().pixels_per_point();
-                let shot = Shot {
-                    document: session.shown().clone(),
-                    staging: session.staging(),
-                    theme: session.preferences().theme,
-                    size: pixels(self.viewport, scale),
-                    scale,
-                };
-                jobs::save_picture(shot, PathBuf::from(path), proxy.clone());
-            }
-            Effect::Export(_) => {}
-            Effect::ChoosePath(dialog) => jobs::choose_path(dialog, proxy.clone()),
-            Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
-            Effect::Save(path) => {
-                let saved = match io::save(session.document(), &path) {
-                    Ok(()) => Action::Saved(path),
-                    Err(error) => Action::NotSaved(format!("Not saved: {error}")),
-                };
-                let next = session.apply(saved);
-                return next.is_some_and(|effect| self.carry_out(effect, session, proxy));
-            }
-            Effect::Quit => return true,
-        }
-        false
-    }
-
     /// Draws the scene for the panels to show, if it is not what they show already.
     fn draw_scene(&mut self, session: &Session, viewport: Rect, scale: f32) {
         let (width, height) = pixels(viewport, scale);
@@ -355,7 +306,7 @@ fn configuration(
     Ok(config)
 }
 
-fn pixels(viewport: Rect, scale: f32) -> (u32, u32) {
+pub(super) fn pixels(viewport: Rect, scale: f32) -> (u32, u32) {
     let side = |length: f32| (length * scale).round().max(1.0) as u32;
     (side(viewport.width()), side(viewport.height()))
 }

@@ -1,6 +1,8 @@
-//! The command line: solve, pose, render, examples, gui.
+//! The command line: solve, pose, render, export, examples, gui.
 
+mod argument;
 mod examples;
+mod export;
 mod open;
 mod pose;
 mod render;
@@ -28,10 +30,12 @@ struct Cli {
 enum Command {
     /// Solve poses, one JSON object per line in, one per line out
     Solve(solve::Args),
-    /// Pose a file's skeleton, solved or as it stands, and print it as JSON
+    /// Pose a file's skeleton at a time, solved or as it stands, and print it as JSON
     Pose(pose::Args),
     /// Draw the arm or a file to a picture, without a window
     Render(render::Args),
+    /// Write a file's motion or pictures for other programs: .bvh, .csv, .png, .apng
+    Export(export::Args),
     /// List the scenes that come with the program, or print one
     Examples(examples::Args),
     /// Open the window (also without a command)
@@ -45,6 +49,7 @@ pub fn run() -> ExitCode {
         Some(Command::Solve(args)) => solve::run(&args),
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Gui(args)) => gui(&args),
         None => gui(&GuiArgs::default()),
@@ -53,7 +58,7 @@ pub fn run() -> ExitCode {
 
 #[derive(clap::Args, Default)]
 struct GuiArgs {
-    /// Document, or .js3d scene of Scotty3D, to open in it
+    /// Document, .js3d scene of Scotty3D, or .bvh motion, to open in it
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Which of a scene's skeletons
@@ -65,7 +70,7 @@ fn gui(args: &GuiArgs) -> ExitCode {
     let mut document = None;
     if let Some(path) = &args.file {
         match open::open(path, args.skeleton.as_deref()) {
-            // A scene of another program is opened, not saved over.
+            // A file of another program is opened, not saved over.
             Ok(opened) => {
                 let file = opened.skeletons.is_empty().then(|| path.clone());
                 document = Some((opened.document, file));
@@ -80,7 +85,11 @@ fn gui(args: &GuiArgs) -> ExitCode {
 }
 
 fn fail(error: &dyn std::error::Error) -> ExitCode {
-    // Not eprintln!, which panics where stderr cannot be written.
-    let _ = writeln!(io::stderr(), "ik-arm: {error}");
+    say(error);
     ExitCode::FAILURE
+}
+
+fn say(what: &dyn std::fmt::Display) {
+    // Not eprintln!, which panics where stderr cannot be written.
+    let _ = writeln!(io::stderr(), "ik-arm: {what}");
 }

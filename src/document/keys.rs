@@ -1,6 +1,7 @@
 use core::f32::consts::TAU;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -11,8 +12,9 @@ use crate::kinematics::spline::Spline;
 /// What changes in time: for every keyed channel, the knots that it goes through.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keys {
-    /// None is empty.
-    tracks: BTreeMap<Channel, Spline<Vec3>>,
+    /// None is empty. Copies share those that neither changes: documents are copied for every picture
+    /// and every step that can be undone.
+    tracks: BTreeMap<Channel, Arc<Spline<Vec3>>>,
 }
 
 impl Keys {
@@ -22,11 +24,11 @@ impl Keys {
 
     /// Every channel that has a key, with all its keys.
     pub fn tracks(&self) -> impl Iterator<Item = (Channel, &Spline<Vec3>)> {
-        self.tracks.iter().map(|(channel, track)| (*channel, track))
+        self.tracks.iter().map(|(channel, track)| (*channel, &**track))
     }
 
     pub fn track(&self, channel: Channel) -> Option<&Spline<Vec3>> {
-        self.tracks.get(&channel)
+        self.tracks.get(&channel).map(|track| &**track)
     }
 
     pub fn has(&self, channel: Channel) -> bool {
@@ -41,13 +43,13 @@ impl Keys {
     /// Puts a key, in the place of one that is there. Numbers that are not finite are refused.
     pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
         if time.is_finite() && value.is_finite() {
-            self.tracks.entry(channel).or_default().insert(time, value);
+            Arc::make_mut(self.tracks.entry(channel).or_default()).insert(time, value);
         }
     }
 
     /// Takes a key away, and gives its value.
     pub fn remove(&mut self, channel: Channel, time: f64) -> Option<Vec3> {
-        let track = self.tracks.get_mut(&channel)?;
+        let track = Arc::make_mut(self.tracks.get_mut(&channel)?);
         let value = track.remove(time);
         if track.is_empty() {
             self.tracks.remove(&channel);
@@ -73,7 +75,7 @@ impl Keys {
 
     /// Every time at which there is a key, in order.
     pub fn times(&self) -> Vec<f64> {
-        let knots = self.tracks.values().flat_map(Spline::knots);
+        let knots = self.tracks.values().flat_map(|track| track.knots());
         let mut times: Vec<f64> = knots.map(|knot| knot.time).collect();
         times.sort_unstable_by(f64::total_cmp);
         times.dedup();

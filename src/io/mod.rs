@@ -1,26 +1,41 @@
 //! Files: documents in the program's own format, Scotty3D's skeletons, and skeletons with their
-//! motions in glTF (`.gltf`, `.glb`) in; documents, and the shown rig as [glTF](glb) out.
+//! motions in glTF (`.gltf`, `.glb`) and BVH in; documents, [glTF](glb), [BVH](to_bvh) and
+//! [tables](to_csv) out.
 //!
 //! What is wrong in a file is said with its line, its column (of a text), the path of the field, and
-//! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document.
+//! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document. What
+//! a file made of a document cannot say is in the notes of [`Exported`].
+//!
+//! Files are written whole or not at all, by [`write`], [`write_with`] and [`Batch`]; nothing else
+//! writes to the disk.
 
+mod batch;
+mod bvh;
 pub(crate) mod error;
 mod examples;
 mod field;
 mod format;
+mod frames;
 mod gltf;
 mod js3d;
 mod layout;
+mod motion;
 mod open;
 mod progress;
 mod source;
+mod table;
 pub(crate) mod value;
 mod write;
 
+pub use batch::Batch;
+pub use bvh::{BvhUnit, to_bvh};
 pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::Example;
 pub use format::{save, to_json};
+pub use frames::{Frames, Playback};
 pub use gltf::{GlbError, glb};
+pub use motion::{Exported, MotionError};
 pub use open::{Opened, open, parse, read};
 pub use progress::{Cancelled, Progress};
-pub use write::write;
+pub use table::to_csv;
+pub use write::{write, write_with};

@@ -9,7 +9,7 @@ use super::error::{OpenError, Remark};
 use super::field::Field;
 use super::source::{Source, Wrong};
 use super::value::Whole;
-use super::{format, gltf, js3d};
+use super::{bvh, format, gltf, js3d};
 use crate::document::Document;
 
 /// A document from a file.
@@ -25,8 +25,8 @@ pub struct Opened {
     pub skeletons: Vec<String>,
 }
 
-/// Opens a document, a scene of Scotty3D or glTF (text or binary), whichever the file has; of a scene
-/// and of glTF the skeleton of that name, or the first.
+/// Opens a document, a scene of Scotty3D, glTF (text or binary) or a motion in BVH, whichever the file
+/// has; of a scene and of glTF the skeleton of that name, or the first.
 ///
 /// # Errors
 ///
@@ -57,6 +57,7 @@ fn opened(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> 
     match (kind(source)?, skeleton) {
         (Kind::Scene, skeleton) => js3d::read(source, skeleton),
         (Kind::Gltf, skeleton) => gltf::read(source, skeleton),
+        (Kind::Motion, skeleton) => bvh::read(source, skeleton),
         (Kind::Document, None) => format::read(source),
         (Kind::Document, Some(name)) => Err(OpenError::NoSkeleton {
             file: source.name().to_owned(),
@@ -71,12 +72,16 @@ enum Kind {
     Document,
     Scene,
     Gltf,
+    Motion,
 }
 
-/// What the first key that tells says; the rest is not read for it.
+/// What the first word or the first key that tells says; the rest is not read for it.
 fn kind(source: &Source) -> Result<Kind, OpenError> {
     if source.binary().is_some() {
         return Ok(Kind::Gltf);
+    }
+    if bvh::is_bvh(source.text()) {
+        return Ok(Kind::Motion);
     }
     let mut kind = None;
     let mut json = serde_json::Deserializer::from_str(source.text());

@@ -159,6 +159,12 @@ impl Source {
         OpenError::Content { file: self.name.clone(), remark }
     }
 
+    /// What there is to say about a byte, and about which of the things there; empty for none.
+    pub fn remark_about(&self, byte: usize, thing: &str, reason: &str) -> Remark {
+        let field = if thing.is_empty() { Field::root() } else { Field::root().key(thing) };
+        self.remark_at(byte, &field, reason)
+    }
+
     fn remark(&self, Wrong { field, reason }: &Wrong) -> Remark {
         self.remark_at(field.find(&self.text), field, reason)
     }

@@ -1,6 +1,6 @@
 use std::fs;
-use std::io::{self, Write as _};
-use std::path::Path;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
@@ -12,18 +12,44 @@ use super::WriteError;
 ///
 /// If the folder or the file cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let failed = |source| WriteError::Write { path: path.display().to_string(), source };
+    write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
+}
+
+/// As [`write`], what `write` writes, bit by bit. If that fails, there is no file.
+///
+/// # Errors
+///
+/// If the folder or the file cannot be written, or `write` fails.
+pub fn write_with<E: From<WriteError>>(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed = |source| failed(path, source);
     let there = fs::metadata(path).ok();
     match &there {
-        Some(there) if there.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
+        Some(there) if there.is_dir() => {
+            return Err(failed(io::ErrorKind::IsADirectory.into()).into());
+        }
         Some(there) if !there.is_file() => {
-            let opened = fs::OpenOptions::new().write(true).open(path);
-            return opened.and_then(|mut file| file.write_all(bytes)).map_err(failed);
+            let mut file = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
+            return write(&mut file);
         }
         _ => {}
     }
     // Where a link leads, so that it stays a link.
     let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let rights = there.map(|there| there.permissions());
+    let mut file = temporary_file(&folder_of(path)?).map_err(failed)?;
+    let mut buffered = BufWriter::new(&mut file);
+    write(&mut buffered)?;
+    buffered.flush().map_err(failed)?;
+    drop(buffered);
+    keep(file, path, rights).map_err(failed)?;
+    Ok(())
+}
+
+/// The folder that a file is in, which must be there.
+pub(super) fn folder_of(path: &Path) -> Result<PathBuf, WriteError> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -34,18 +60,18 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
             folder: folder.display().to_string(),
         });
     }
-    let rights = there.map(|there| there.permissions());
-    replace(path, folder, rights, bytes).map_err(failed)
+    Ok(folder.to_owned())
 }
 
-fn replace(
+pub(super) fn failed(path: &Path, source: io::Error) -> WriteError {
+    WriteError::Write { path: path.display().to_string(), source }
+}
+
+fn keep(
+    file: tempfile::NamedTempFile,
     path: &Path,
-    folder: &Path,
     rights: Option<fs::Permissions>,
-    bytes: &[u8],
 ) -> io::Result<()> {
-    let mut file = temporary_file(folder)?;
-    file.write_all(bytes)?;
     if let Some(rights) = rights {
         file.as_file().set_permissions(rights)?;
     }

@@ -24,6 +24,11 @@ pub enum GpuError {
     NoDevice { adapter: String, source: wgpu::RequestDeviceError },
 }
 
+/// The device could not do what it was told.
+#[derive(Debug, Error)]
+#[error("the device could not draw the picture: {0}")]
+pub struct DeviceError(String);
+
 impl Gpu {
     /// A device that draws pictures without a window.
     ///
@@ -72,5 +77,26 @@ impl Gpu {
     /// The longest side that a picture can have here.
     pub fn longest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
+    }
+
+    /// Does what tells the device something, and says if it could not do it.
+    ///
+    /// # Errors
+    ///
+    /// If the device finds fault with it.
+    pub fn watched<T>(&self, telling: impl FnOnce() -> T) -> Result<T, DeviceError> {
+        let faults = [
+            wgpu::ErrorFilter::Internal,
+            wgpu::ErrorFilter::Validation,
+            wgpu::ErrorFilter::OutOfMemory,
+        ]
+        .map(|kind| self.device.push_error_scope(kind));
+        let told = telling();
+        // Every scope is closed, whatever the others have found.
+        let found = faults.into_iter().rev().filter_map(|fault| pollster::block_on(fault.pop()));
+        match found.collect::<Vec<_>>().first() {
+            Some(error) => Err(DeviceError(error.to_string())),
+            None => Ok(told),
+        }
     }
 }

@@ -21,8 +21,8 @@ mod solid;
 mod view;
 
 pub use canvas::{Canvas, ReadError};
-pub use gpu::{Gpu, GpuError};
-pub use picture::{Picture, SaveError, Timings, save};
+pub use gpu::{DeviceError, Gpu, GpuError};
+pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::Renderer;
 
 /// Every shader with the name of its file, whole as it is compiled.

@@ -6,6 +6,7 @@ use image::RgbaImage;
 use thiserror::Error;
 
 use super::canvas::ReadError;
+use super::gpu::DeviceError;
 use super::{Canvas, Gpu, Renderer};
 use crate::io::{self, WriteError};
 use crate::scene::Scene;
@@ -29,11 +30,22 @@ pub struct Timings {
     pub frame: Duration,
 }
 
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum DrawError {
+    #[error("a picture of {width}x{height} is larger than this device draws: {longest} at most")]
+    TooLarge { width: u32, height: u32, longest: u32 },
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    #[error(transparent)]
+    Read(#[from] ReadError),
+}
+
 /// Why a picture is not on the disk.
 #[derive(Debug, Error)]
 pub enum SaveError {
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Draw(#[from] DrawError),
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("{path} could not be written: {source}")]
@@ -45,12 +57,31 @@ impl<'a> Picture<'a> {
         Self { gpu, renderer: Renderer::new(gpu), canvas: Canvas::new(gpu, width, height), scale }
     }
 
+    /// Lines and letters are as large as in a window of 1280×800, in larger pictures larger.
+    ///
+    /// # Errors
+    ///
+    /// If the device cannot draw one so large.
+    pub fn of_size(gpu: &'a Gpu, width: u32, height: u32) -> Result<Self, DrawError> {
+        const WINDOW: f32 = 800.0;
+        let longest = gpu.longest_side();
+        if width.max(height) > longest {
+            return Err(DrawError::TooLarge { width, height, longest });
+        }
+        let scale = (width.min(height) as f32 / WINDOW).max(1.0);
+        Ok(gpu.watched(|| Self::new(gpu, width, height, scale))?)
+    }
+
     /// # Errors
     ///
     /// If the device fails meanwhile.
-    pub fn draw(&mut self, scene: &Scene) -> Result<RgbaImage, ReadError> {
-        self.renderer.draw(self.gpu, scene, &self.canvas, self.scale);
-        self.canvas.read(self.gpu)
+    pub fn draw(&mut self, scene: &Scene) -> Result<RgbaImage, DrawError> {
+        let (gpu, renderer, canvas) = (self.gpu, &mut self.renderer, &self.canvas);
+        let image = gpu.watched(|| {
+            renderer.draw(gpu, scene, canvas, self.scale);
+            canvas.read(gpu)
+        })?;
+        Ok(image?)
     }
 
     /// Draws the scene that `scene` makes anew `frames` times, waiting for the device each time.

@@ -298,7 +298,6 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.is_gliding()
             || self.clock.playing
-            || self.job.is_some()
             || self.is_running()
             || self.race.as_ref().is_some_and(Race::is_running)
     }

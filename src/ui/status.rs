@@ -25,6 +25,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mu
 
 /// How far an export is; a press stops it.
 fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
+    ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Stops the export; no file is left").clicked() {
         actions.push(Action::CancelExport);
     }

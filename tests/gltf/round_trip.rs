@@ -1,8 +1,9 @@
 //! What is exported and imported again stands where it stood.
 
 use glam::Vec3;
-use ik_arm::document::{Document, RigKind};
+use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::rig::Part;
 
 use crate::documents::{all, example, glb, keyed_arm};
@@ -109,7 +110,7 @@ fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
     let document = example("human");
     let (was, is) = (&document.skeleton.skeleton, reopened(&document).document);
     let is = &is.skeleton.skeleton;
-    let names = |skeleton: &ik_arm::kinematics::skeleton::Skeleton| -> Vec<String> {
+    let names = |skeleton: &Skeleton| -> Vec<String> {
         skeleton.joints().iter().map(|joint| joint.name.clone()).collect()
     };
     assert_eq!(names(is), names(was));
@@ -127,4 +128,33 @@ fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
     let skeleton = &read.skeleton.skeleton;
     let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
+}
+
+#[test]
+fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24 };
+    let joint = |index: usize| {
+        let parent = index.checked_sub(1);
+        let offset = parent.map_or(Vec3::ZERO, |_| Vec3::Y);
+        Joint { offset, ..Joint::new(&format!("j{index}"), parent, Vec3::Y) }
+    };
+    let joints = (0..Skeleton::MOST_JOINTS).map(joint).collect();
+    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    for joint in 0..Skeleton::MOST_JOINTS {
+        for (time, angle) in [(0.0, 0.0), (0.125, 0.002)] {
+            let angles = Vec3::splat(angle * (joint % 7) as f32);
+            document.keys.insert(Channel::Rotation(joint), time, angles);
+        }
+    }
+    let opened = reopened(&document);
+    let joints = opened.document.skeleton.skeleton.joints();
+    assert_eq!(joints.len(), Skeleton::MOST_JOINTS);
+    assert!(
+        opened.document.keys.tracks().all(|(channel, _)| matches!(channel, Channel::Rotation(_)))
+    );
+    let (was, is) = (document.at(0.125), opened.document.at(0.125));
+    let (was, is) = (was.skeleton.skeleton.pose(), is.skeleton.skeleton.pose());
+    let gap = (0..was.len()).map(|joint| was.base(joint).distance(is.base(joint)));
+    assert!(gap.fold(0.0, f32::max) < 1e-2);
 }

@@ -44,6 +44,7 @@ impl<'a> Line<'a> {
     pub fn new(
         rig: &'a SkeletonRig,
         order: &[usize],
+        time: f64,
         report: Option<Report>,
     ) -> Result<Self, &'a str> {
         let mut index_of = vec![0; order.len()];
@@ -68,7 +69,7 @@ impl<'a> Line<'a> {
             })
         });
         let joints = joints.collect::<Result<_, _>>()?;
-        let targets = rig.goals(0.0).into_iter().map(|goal| {
+        let targets = rig.goals(time).into_iter().map(|goal| {
             let tip = pose.tip(goal.joint);
             let error = goal.point.as_dvec3().distance(tip.as_dvec3());
             TargetLine {

@@ -1,4 +1,4 @@
-//! `ik-arm pose`: a file's skeleton, as it stands or solved, as one line of JSON.
+//! `ik-arm pose`: a file's skeleton at a time, as it stands or solved, as one line of JSON.
 
 mod line;
 
@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use thiserror::Error;
 
+use super::argument::Time;
 use super::open;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
@@ -22,15 +23,18 @@ use line::Line;
    "targets":[{"joint":N,"target":[x,y,z],"tip":[x,y,z],"error":E}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false}}
 Joints have the order and the numbers of the file; the targets are those that are enabled.
-Without --solver nothing moves and the report is null. A solve that does not converge is no failure.
+Without --solver no tip is brought anywhere and the report is null. A solve that does not converge is no failure.
 A file that shows the arm has no pose here: `ik-arm solve` poses arms."#)]
 pub struct Args {
-    /// Document of ik-arm or scene of Scotty3D (.js3d), or - for standard input
+    /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Which skeleton of a scene; the first if nothing is said
     #[arg(long, value_name = "NAME")]
     skeleton: Option<String>,
+    /// When, in seconds: where keys, targets and what moves by itself are then
+    #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
+    time: Time,
     /// Bring the tips to the targets
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
@@ -95,14 +99,15 @@ fn pose(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Arm(file));
     }
     let Opened { document, order, .. } = opened;
-    let mut rig = document.skeleton;
-    // As it stands at the beginning, where it moves by itself.
-    rig.skeleton = rig.at(0.0).into_owned();
+    let Time(time) = args.time;
+    let mut rig = document.at(time).into_owned().skeleton;
+    // As it stands then, where it moves by itself.
+    rig.skeleton = rig.at(time).into_owned();
     let report = match args.solver {
         Some(method) => Some(solved(&mut rig, args, method, &order, &file)?),
         None => None,
     };
-    let line = Line::new(&rig, &order, report)
+    let line = Line::new(&rig, &order, time, report)
         .map_err(|name| Failure::TooFar { file, name: name.to_owned() })?;
     let line = serde_json::to_string(&line).map_err(io::Error::from)?;
     Ok(writeln!(io::stdout(), "{line}")?)
@@ -121,7 +126,7 @@ fn solved(
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
-    let targets = rig.goals(0.0);
+    let targets = rig.goals(args.time.0);
     solve::solve(&mut rig.skeleton, &targets, &options).map_err(|error| {
         let file = file.to_owned();
         Failure::Solve { file, error: numbered_as_in_file(error, order) }

@@ -1,7 +1,5 @@
 //! `ik-arm render`: the arm or a file as a picture.
 
-mod argument;
-
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,14 +9,14 @@ use glam::Vec3;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::argument::{Guides, Length, Number, Point, Size, ThemeName, Time};
 use super::open;
-use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, RigKind, Theme};
+use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, RigKind};
 use crate::io::OpenError;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
-use crate::render::{self, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
+use crate::render::{self, DrawError, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
 use crate::scene::Scene;
 use crate::session::Staging;
-use argument::{Guides, Length, Number, Point, Size};
 
 #[derive(clap::Args)]
 #[command(after_help = "Without FILE the arm is drawn as --hand and the like have it:
@@ -26,7 +24,7 @@ use argument::{Guides, Length, Number, Point, Size};
 With FILE what it shows, from where it is looked at there, unless --view says otherwise:
   ik-arm render human.json -o human.png --view front")]
 pub struct Args {
-    /// Document of ik-arm or scene of Scotty3D (.js3d), or - for standard input
+    /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
     #[arg(
         value_name = "FILE",
         conflicts_with_all = ["hand", "elbow_spin", "root", "upper", "lower"]
@@ -35,6 +33,9 @@ pub struct Args {
     /// Which skeleton of a scene; the first if nothing is said
     #[arg(long, value_name = "NAME", requires = "file")]
     skeleton: Option<String>,
+    /// When the picture is taken, in seconds: where keys, targets and what moves by itself are then
+    #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
+    time: Time,
     /// Where the picture goes, as PNG
     #[arg(short, long, value_name = "OUT.png", required_unless_present = "timings")]
     output: Option<PathBuf>,
@@ -87,12 +88,6 @@ enum View {
     Perspective,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum ThemeName {
-    Dark,
-    Light,
-}
-
 /// Why there is no picture.
 #[derive(Debug, Error)]
 enum RenderError {
@@ -102,10 +97,8 @@ enum RenderError {
     Open(#[from] OpenError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    #[error("a picture of {width}x{height} is larger than this device draws: {longest} at most")]
-    TooLarge { width: u32, height: u32, longest: u32 },
-    #[error("the device could not draw the picture: {0}")]
-    Device(String),
+    #[error(transparent)]
+    Draw(#[from] DrawError),
     #[error(transparent)]
     Read(#[from] ReadError),
     #[error(transparent)]
@@ -135,28 +128,12 @@ pub fn run(args: &Args) -> ExitCode {
 fn render(args: &Args) -> Result<(), RenderError> {
     let document = args.document()?;
     let theme = args.theme.into();
-    let Size { width, height } = args.size;
+    let staging = Staging { time: args.time.0, ..Staging::default() };
     let gpu = Gpu::headless()?;
-    let longest = gpu.longest_side();
-    if width.max(height) > longest {
-        return Err(RenderError::TooLarge { width, height, longest });
-    }
-
-    let faults = [
-        wgpu::ErrorFilter::Internal,
-        wgpu::ErrorFilter::Validation,
-        wgpu::ErrorFilter::OutOfMemory,
-    ]
-    .map(|kind| gpu.device.push_error_scope(kind));
-    let mut picture = Picture::new(&gpu, width, height, args.size.scale());
-    let scene = || Scene::new(&document, &Staging::default(), theme);
-    let image = args.output.is_some().then(|| picture.draw(&scene())).transpose();
-    for fault in faults.into_iter().rev() {
-        if let Some(error) = pollster::block_on(fault.pop()) {
-            return Err(RenderError::Device(error.to_string()));
-        }
-    }
-    if let (Some(image), Some(path)) = (image?, &args.output) {
+    let mut picture = Picture::of_size(&gpu, args.size.width, args.size.height)?;
+    let scene = || Scene::new(&document, &staging, theme);
+    let image = args.output.is_some().then(|| picture.draw(&scene())).transpose()?;
+    if let (Some(image), Some(path)) = (image, &args.output) {
         render::save(&image, path)?;
     }
     if args.timings {
@@ -178,8 +155,12 @@ fn print(timings: Timings, adapter: &str) -> Result<(), io::Error> {
 
 impl Args {
     fn document(&self) -> Result<Document, RenderError> {
+        let time = self.time.0;
         let mut document = match &self.file {
-            Some(file) => open::open(file, self.skeleton.as_deref())?.document,
+            Some(file) => {
+                let opened = open::open(file, self.skeleton.as_deref())?;
+                opened.document.at(time).into_owned()
+            }
             None => Document { arm: self.arm()?, ..Document::default() },
         };
         if let Some(guides) = &self.guides {
@@ -187,7 +168,7 @@ impl Args {
         }
         let view = self.view.or(self.file.is_none().then_some(View::Perspective));
         if let Some(view) = view {
-            let (centre, radius) = bounds(&document);
+            let (centre, radius) = bounds(&document, time);
             let aspect = self.size.width as f32 / self.size.height as f32;
             document.camera = view.camera().framing(centre, radius, aspect);
         }
@@ -205,12 +186,12 @@ impl Args {
 }
 
 /// A sphere around all that is to be seen.
-fn bounds(document: &Document) -> (Vec3, f32) {
+fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
     match document.rig {
         RigKind::Arm => framed(&document.arm, document.display),
         RigKind::Skeleton => {
             let rig = &document.skeleton;
-            rig.bounds(&rig.at(0.0).pose(), 0.0)
+            rig.bounds(&rig.at(time).pose(), time)
         }
     }
 }
@@ -239,15 +220,6 @@ impl View {
             Self::Right => camera.along(AxisView::Right),
             Self::Top => camera.along(AxisView::Top),
             Self::Perspective => camera,
-        }
-    }
-}
-
-impl From<ThemeName> for Theme {
-    fn from(name: ThemeName) -> Self {
-        match name {
-            ThemeName::Dark => Self::Dark,
-            ThemeName::Light => Self::Light,
         }
     }
 }

@@ -1,4 +1,4 @@
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::GlbError;
 use crate::document::{Channel, Document, RigKind};
@@ -80,10 +80,7 @@ impl Figure {
         let document = &self.document;
         self.metric(match document.rig {
             RigKind::Arm => posed_arm(document),
-            RigKind::Skeleton => {
-                let turned = |joint: &Joint| joint.local_rotation().as_dmat3();
-                placed(&document.skeleton.at(time), turned)
-            }
+            RigKind::Skeleton => placed(&document.skeleton.at(time), turned),
         })
     }
 
@@ -164,6 +161,12 @@ fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
     };
     let radius = own.min(thickest).max(0.25 * thickest);
     [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
+}
+
+/// R, rigid in f64: what it is off in f32 would add up along a long chain.
+fn turned(joint: &Joint) -> DMat3 {
+    let rotation = joint.local_rotation().as_dmat3();
+    DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
 }
 
 fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed> {

@@ -45,7 +45,8 @@ impl Joints {
         if skin.joints.is_empty() {
             return Err(Wrong::new(at, "there is none; a skin needs a joint"));
         }
-        if skin.joints.len() > Skeleton::MOST_JOINTS {
+        // Each joint may have another one at its tip, which becomes none.
+        if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
             return Err(Wrong::new(at, SkeletonError::TooMany.to_string()));
         }
         let mut seen = HashSet::new();

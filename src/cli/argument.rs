@@ -1,11 +1,12 @@
-//! What the arguments of `ik-arm render` stand for.
+//! What arguments stand for.
 
 use std::str::FromStr;
 
+use clap::ValueEnum;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Display, Layer};
+use crate::document::{Display, Layer, Theme};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 
 /// Why an argument is not what it stands for.
@@ -17,6 +18,8 @@ pub enum ArgumentError {
     Point(String),
     #[error("{0:?} is not a number that a 32-bit float can hold")]
     Number(String),
+    #[error("{0:?} is not a finite number of seconds")]
+    Time(String),
     #[error(transparent)]
     Length(#[from] LengthError),
     #[error("{0:?} is not a guide; they are cursor, pointer, inner, outer, or none alone")]
@@ -32,22 +35,27 @@ pub struct Size {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number(pub f32);
 
+/// Seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time(pub f64);
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Length(pub f32);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point(pub Vec3);
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ThemeName {
+    Dark,
+    Light,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guides(Vec<Layer>);
 
 impl Size {
     const MAX: u32 = 8192;
-
-    /// Lines and letters are as large as in a window of 1280×800, in larger pictures larger.
-    pub fn scale(self) -> f32 {
-        (self.width.min(self.height) as f32 / 800.0).max(1.0)
-    }
 }
 
 impl FromStr for Size {
@@ -71,6 +79,15 @@ impl FromStr for Number {
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let number = text.trim().parse().ok().filter(|number: &f32| number.is_finite());
         number.map(Self).ok_or_else(|| ArgumentError::Number(text.to_owned()))
+    }
+}
+
+impl FromStr for Time {
+    type Err = ArgumentError;
+
+    fn from_str(text: &str) -> Result<Self, ArgumentError> {
+        let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite());
+        time.map(Self).ok_or_else(|| ArgumentError::Time(text.to_owned()))
     }
 }
 
@@ -119,5 +136,14 @@ impl FromStr for Guides {
             _ => Err(ArgumentError::Guide(name.to_owned())),
         };
         text.split(',').map(guide).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl From<ThemeName> for Theme {
+    fn from(name: ThemeName) -> Self {
+        match name {
+            ThemeName::Dark => Self::Dark,
+            ThemeName::Light => Self::Light,
+        }
     }
 }

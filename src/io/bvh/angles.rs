@@ -1,0 +1,53 @@
+use core::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec3};
+
+/// The angles about x, y and z of a rotation R_z · R_y · R_x, in radians, that are nearest to given
+/// ones: every rotation has two triples, each up to whole turns. At y = ±90°, where x and z turn
+/// about one axis, z stays.
+///
+/// As [`nearest_angles`](crate::kinematics::skeleton::nearest_angles), and in f64, so that a
+/// chain of many joints ends where it does.
+pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
+    const GIMBAL: f64 = 1e-9;
+    let DMat3 { x_axis, y_axis, z_axis } = rotation;
+    let cos_y = x_axis.x.hypot(x_axis.y);
+    let y = (-x_axis.z).atan2(cos_y);
+    let z = if cos_y > GIMBAL { x_axis.y.atan2(x_axis.x) } else { near.z };
+    let (sin_z, cos_z) = z.sin_cos();
+    let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
+
+    let beside = |angles: DVec3| angles + ((near - angles) / TAU).round() * TAU;
+    let one = beside(DVec3::new(x, y, z));
+    let other = beside(DVec3::new(x + PI, PI - y, z + PI));
+    if one.distance_squared(near) <= other.distance_squared(near) { one } else { other }
+}
+
+/// R_z · R_y · R_x of angles about x, y and z in radians.
+pub fn matrix(angles: DVec3) -> DMat3 {
+    DMat3::from_rotation_z(angles.z)
+        * DMat3::from_rotation_y(angles.y)
+        * DMat3::from_rotation_x(angles.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_read_from_a_rotation_make_that_rotation_and_are_near() {
+        let steps = || (-7..=7).map(|step| f64::from(step) * PI / 6.0);
+        for x in steps() {
+            for y in steps() {
+                for z in steps() {
+                    let angles = DVec3::new(x, y, z);
+                    for near in [DVec3::ZERO, angles, DVec3::new(40.0, -3.0, 9.0)] {
+                        let read = nearest(matrix(angles), near);
+                        assert!(matrix(read).abs_diff_eq(matrix(angles), 1e-8), "{angles} {read}");
+                        assert!((read - near).abs().max_element() < 1.5 * PI + 1e-6);
+                    }
+                }
+            }
+        }
+    }
+}

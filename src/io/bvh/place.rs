@@ -1,0 +1,109 @@
+use glam::{Affine3A, DMat3, DVec3, Mat3};
+use nalgebra::Matrix3;
+
+/// Where a skeleton stands in the world, M · p + t, taken apart for a format that can only turn.
+///
+/// Where M = s·Q, with Q at right angles (and maybe a mirror), a turn R in the skeleton is the turn
+/// Q·R·Qᵀ in the world. Where M stretches unevenly, shears or flattens, there is none: the joints
+/// are turned by the W that bring M nearest to M·G, where G is a joint's turn in the skeleton.
+pub struct Place {
+    matrix: DMat3,
+    translation: DVec3,
+    /// Q, where there is one.
+    turn: Option<DMat3>,
+}
+
+impl Place {
+    pub fn new(transform: Affine3A) -> Self {
+        let matrix = Mat3::from(transform.matrix3).as_dmat3();
+        let translation = transform.translation.as_dvec3();
+        Self { matrix, translation, turn: turn(matrix) }
+    }
+
+    /// Whether turns in the skeleton are turns in the world.
+    pub fn is_even(&self) -> bool {
+        self.turn.is_some()
+    }
+
+    pub fn origin(&self) -> DVec3 {
+        self.translation
+    }
+
+    pub fn vector(&self, vector: DVec3) -> DVec3 {
+        self.matrix * vector
+    }
+
+    /// What each joint is turned by in the world, against its parent, from what it is turned by in
+    /// the skeleton. Parents come first.
+    pub fn turns(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
+        if let Some(turn) = self.turn {
+            return locals.iter().map(|local| turn * *local * turn.transpose()).collect();
+        }
+        let (mut globals, mut worlds, mut turns) = (Vec::new(), Vec::new(), Vec::new());
+        for (local, parent) in locals.iter().zip(parents) {
+            let above = |of: &[DMat3]| parent.map_or(DMat3::IDENTITY, |parent| of[parent]);
+            let global = above(&globals) * *local;
+            let world = nearest(self.matrix * global * self.matrix.transpose());
+            turns.push(above(&worlds).transpose() * world);
+            globals.push(global);
+            worlds.push(world);
+        }
+        turns
+    }
+}
+
+/// Q of a matrix s·Q.
+fn turn(matrix: DMat3) -> Option<DMat3> {
+    /// How far a frame's axes may be from right angles and one length, as for frames of joints.
+    const EVEN: f64 = 1e-5;
+    let square = matrix.transpose() * matrix;
+    let size = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
+    let is_even = size > 0.0 && (square * size.recip()).abs_diff_eq(DMat3::IDENTITY, EVEN);
+    // As exactly at right angles as f64 is: the world's own f32 matrix is not.
+    let sign = matrix.determinant().signum();
+    is_even.then(|| nearest(matrix * (sign / size.sqrt())) * sign)
+}
+
+/// The rotation that is nearest to a matrix: of all W the one with the least ‖W − matrix‖.
+fn nearest(matrix: DMat3) -> DMat3 {
+    const PRECISION: f64 = 1e-15;
+    const STEPS: usize = 1000;
+    let size = matrix.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+    if !(size.is_normal() && size.recip().is_normal()) {
+        return DMat3::IDENTITY;
+    }
+    let unit = matrix * size.recip();
+    let decomposed = Matrix3::from_column_slice(&unit.to_cols_array())
+        .try_svd(true, true, PRECISION, STEPS)
+        .and_then(|svd| Some((svd.u?, svd.v_t?)));
+    let Some((u, v_t)) = decomposed else {
+        return DMat3::IDENTITY;
+    };
+    // Singular values come in order: if one must be mirrored, it is the least.
+    let mirror = (u * v_t).determinant().signum();
+    let rotation = u * Matrix3::from_diagonal(&[1.0, 1.0, mirror].into()) * v_t;
+    let rotation = DMat3::from_cols_slice(rotation.as_slice());
+    if rotation.is_finite() { rotation } else { DMat3::IDENTITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_rotation_to_a_rotation_is_itself() {
+        let rotation = DMat3::from_rotation_z(1.0) * DMat3::from_rotation_x(-2.0);
+        assert!(nearest(rotation * 7.0).abs_diff_eq(rotation, 1e-12));
+        assert_eq!(nearest(DMat3::ZERO), DMat3::IDENTITY);
+    }
+
+    #[test]
+    fn a_mirrored_and_scaled_place_is_even_and_a_stretched_one_is_not() {
+        let turned = Affine3A::from_rotation_x(0.7) * Affine3A::from_rotation_z(2.0);
+        let scaled = |x, y, z| Affine3A::from_scale((x, y, z).into()) * turned;
+        assert!(Place::new(scaled(-0.3, 0.3, 0.3)).is_even());
+        assert!(!Place::new(scaled(0.3, 0.3, 0.301)).is_even());
+        assert!(!Place::new(scaled(0.0, 1.0, 1.0)).is_even());
+        assert!(!Place::new(scaled(0.0, 0.0, 0.0)).is_even());
+    }
+}

@@ -1,0 +1,100 @@
+use glam::Vec3;
+
+use super::Progress;
+use super::frames::{Frames, Playback};
+use super::motion::{Exported, MotionError};
+use crate::document::{Document, RigKind};
+use crate::kinematics::skeleton::Skeleton;
+
+/// Where the shown rig's joints are in time, as a table of comma-separated values.
+///
+/// A row for each frame: its number from 0, its time in seconds from the first one, and for every
+/// joint where its base is in the world, then for every bone that nothing hangs from where it ends,
+/// in units of the scene. Of the arm: shoulder, elbow, hand.
+///
+/// # Errors
+///
+/// If it is to stop, or the rig or the time is more than a table holds.
+pub fn to_csv(
+    document: &Document,
+    fps: Option<u32>,
+    progress: &Progress,
+) -> Result<Exported, MotionError> {
+    let frames = Frames::of_pose(document, fps)?;
+    let columns = Columns::new(document);
+    MotionError::if_too_much(frames.count(), 2 + 3 * columns.names.len())?;
+    let mut playback = Playback::new(document);
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(columns.header())?;
+    for frame in 0..frames.count() {
+        progress.step(frame, frames.count())?;
+        let time = frames.time(frame);
+        table.write_field(frame.to_string())?;
+        table.write_field(frames.since_first(frame).to_string())?;
+        for (name, point) in columns.names.iter().zip(columns.points(playback.at(time), time)) {
+            if !point.is_finite() {
+                return Err(MotionError::TooFar { joint: name.clone() });
+            }
+            for number in point.to_array() {
+                // Never −0.
+                table.write_field((number + 0.0).to_string())?;
+            }
+        }
+        table.write_record(None::<&[u8]>)?;
+    }
+    progress.step(frames.count(), frames.count())?;
+    let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
+    Ok(Exported { bytes, notes: Vec::new() })
+}
+
+/// The points that have columns.
+struct Columns {
+    names: Vec<String>,
+    /// The joints whose tips have some.
+    ends: Vec<usize>,
+}
+
+impl Columns {
+    fn new(document: &Document) -> Self {
+        match document.rig {
+            RigKind::Arm => {
+                let names = ["shoulder", "elbow", "hand"].map(str::to_owned).into();
+                Self { names, ends: Vec::new() }
+            }
+            RigKind::Skeleton => Self::of_skeleton(&document.skeleton.skeleton),
+        }
+    }
+
+    fn of_skeleton(skeleton: &Skeleton) -> Self {
+        let joints = skeleton.joints();
+        let mut is_end: Vec<bool> = joints.iter().map(|joint| joint.axis != Vec3::ZERO).collect();
+        for parent in joints.iter().filter_map(|joint| joint.parent) {
+            is_end[parent] = false;
+        }
+        let ends: Vec<usize> = (0..joints.len()).filter(|joint| is_end[*joint]).collect();
+        let tips = ends.iter().map(|joint| format!("{}_tip", joints[*joint].name));
+        let names = joints.iter().map(|joint| joint.name.clone()).chain(tips).collect();
+        Self { names, ends }
+    }
+
+    fn header(&self) -> impl Iterator<Item = String> + '_ {
+        let points =
+            self.names.iter().flat_map(|name| ["x", "y", "z"].map(|axis| format!("{name}.{axis}")));
+        ["frame", "time"].map(str::to_owned).into_iter().chain(points)
+    }
+
+    fn points(&self, document: &Document, time: f64) -> Vec<Vec3> {
+        match document.rig {
+            RigKind::Arm => {
+                let arm = &document.arm;
+                let pose = arm.pose();
+                vec![arm.root, arm.root + pose.elbow, arm.root + pose.hand]
+            }
+            RigKind::Skeleton => {
+                let pose = document.skeleton.at(time).pose();
+                let bases = (0..pose.len()).map(|joint| pose.base(joint));
+                bases.chain(self.ends.iter().map(|joint| pose.tip(*joint))).collect()
+            }
+        }
+    }
+}
