@@ -583,7 +583,7 @@ fn more_frames_than_are_said_are_ignored_with_a_remark() {
     assert_eq!(opened.warnings.len(), 1);
     assert_eq!(
         opened.warnings[0].to_string(),
-        "line 19, column 1: 1 frames are said; what follows them is ignored"
+        "line 20, column 1: 1 frames are said; what follows them is ignored"
     );
     assert!(opened.document.keys.is_empty());
 }
@@ -629,7 +629,7 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
             "line 5, column 23: hip: found \"Wrotation\", expected a channel",
         ),
         ("Xrotation", "Zrotation", "line 5, column 23: hip: Zrotation stands twice in CHANNELS"),
-        ("End Site", "End", "line 11, column 3: knee: found \"\", expected Site after End"),
+        ("End Site", "End", "line 11, column 3: knee: Site must stand after End"),
         (
             "OFFSET 0 0 5",
             "",
@@ -641,39 +641,39 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
             "found \"MOTION\", expected } in the End Site",
         ),
         ("MOTION", "", "expected ROOT or MOTION"),
-        ("Frames: 2", "Frames 2", "line 16, column 1: found \"Frames\", expected Frames:"),
-        ("Frames: 2", "Frames: 2.5", "line 16, column 9: found \"2.5\", expected a whole number"),
-        ("Frames: 2", "Frames: 4", "line 16, column 9: 4 frames are said, and there are 2"),
+        ("Frames: 2", "Frames 2", "line 17, column 1: found \"Frames\", expected Frames:"),
+        ("Frames: 2", "Frames: 2.5", "line 17, column 9: found \"2.5\", expected a whole number"),
+        ("Frames: 2", "Frames: 4", "line 17, column 9: 4 frames are said, and there are 2"),
         ("Frames: 2", "Frames: 999999999999", "999999999999 frames are "),
         (
             "Frame Time: 0.04",
             "Frame: 0.04",
-            "line 17, column 1: found \"Frame:\", expected Frame Time:",
+            "line 18, column 1: found \"Frame:\", expected Frame Time:",
         ),
-        ("0.04", "0", "line 17, column 13: Frame Time is 0 s; it must be above 0"),
-        ("0.04", "-1", "line 17, column 13: Frame Time is -1 s; it must be above 0"),
-        ("0.04", "inf", "line 17, column 13: found \"inf\", expected a time in seconds"),
-        ("0.04", "1e5", "line 17, column 13: 2 frames of 100000 s are longer than 86400 s"),
+        ("0.04", "0", "line 18, column 13: Frame Time is 0 s; it must be above 0"),
+        ("0.04", "-1", "line 18, column 13: Frame Time is -1 s; it must be above 0"),
+        ("0.04", "inf", "line 18, column 13: found \"inf\", expected a time in seconds"),
+        ("0.04", "1e5", "line 18, column 13: 2 frames of 100000 s are longer than 86400 s"),
         (
             "10 20 40 7",
             "10 20",
-            "line 19, column 6: hip: frame 1 has 2 numbers; it must have 4, and the",
+            "line 20, column 6: hip: frame 1 has 2 numbers; it must have 4, and the",
         ),
         (
             "10 20 40 7",
             "10 20 40",
-            "line 19, column 9: knee: frame 1 has 3 numbers; it must have 4",
+            "line 20, column 9: knee: frame 1 has 3 numbers; it must have 4",
         ),
-        ("10 20 40 7", "10 20 40 7 8", "line 19, column 12: frame 1 has 5 numbers; it must have 4"),
+        ("10 20 40 7", "10 20 40 7 8", "line 20, column 12: frame 1 has 5 numbers; it must have 4"),
         (
             "10 20 40 7",
             "10 x 40 7",
-            "line 19, column 4: hip: Xrotation of frame 1: found \"x\", expected",
+            "line 20, column 4: hip: Xrotation of frame 1: found \"x\", expected",
         ),
         (
             "10 20 40 7",
             "10 20 40 inf",
-            "line 19, column 10: knee: Xposition of frame 1: inf is out of",
+            "line 20, column 10: knee: Xposition of frame 1: inf is out of",
         ),
     ] {
         let text = SMALL.replacen(right, wrong, 1);

@@ -318,3 +318,64 @@ fn a_usage_error_exits_with_2_and_prints_no_result() {
         assert!(complaint(&output).starts_with("error: "), "{output:?}");
     }
 }
+
+// Times
+
+fn keyed_chain() -> ik_arm::document::Document {
+    let mut document = Example::find("ten-joints").expect("there").open().expect("opens").document;
+    document.keys = Default::default();
+    let channel = ik_arm::document::Channel::Rotation(1);
+    for (time, z) in [(-1.0, 0.0), (0.0, 0.5), (2.0, -1.0), (3.0, 2.0)] {
+        document.keys.insert(channel, time, Vec3::new(0.0, 0.0, z));
+    }
+    document
+}
+
+#[test]
+fn a_time_moves_the_last_joint_where_the_spline_says() {
+    let document = keyed_chain();
+    let scene = Scene::new(&io::to_json(&document).expect("written"));
+    for time in ["-2", "-0.25", "0", "1.3", "2", "1e9"] {
+        let posed = document.at(time.parse().expect("a number"));
+        let pose = posed.skeleton.skeleton.pose();
+        let answer = scene.pose(&["--time", time]);
+        for (index, joint) in answer.joints.iter().enumerate() {
+            assert_eq!((joint.base, joint.tip), (pose.base(index), pose.tip(index)), "{time}");
+        }
+    }
+    assert_eq!(scene.pose(&[]), scene.pose(&["--time", "0"]));
+    assert_ne!(scene.pose(&[]), scene.pose(&["--time", "1"]));
+}
+
+#[test]
+fn a_time_moves_what_moves_by_itself_and_the_targets() {
+    let snake = Scene::example("snake");
+    let document = Example::find("snake").expect("there").open().expect("opens").document;
+    let pose = document.skeleton.at(2.5).pose();
+    assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(0));
+
+    let mut document = keyed_chain();
+    let target = &mut document.skeleton.targets[0];
+    target.motion.path = ik_arm::document::Path::Circle;
+    let expected = target.at(1.0);
+    let scene = Scene::new(&io::to_json(&document).expect("written"));
+    assert_eq!(scene.pose(&["--time", "1"]).targets[0].target, expected);
+    let solved = scene.pose(&["--time", "1", "--solver", "dls"]);
+    assert_eq!(solved.targets[0].target, expected);
+}
+
+#[test]
+fn a_time_that_is_no_time_is_a_usage_error() {
+    for time in ["inf", "nan", "soon", ""] {
+        let output = Scene::example("human").run(&["--time", time]);
+        assert_eq!(output.status.code(), Some(2), "{time}");
+    }
+}
+
+#[test]
+fn a_motion_in_bvh_is_posed_as_it_is() {
+    let text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 2 0\n}\n}\n\
+                MOTION\nFrames: 2\nFrame Time: 1\n0\n90\n";
+    let tip = Scene::new(text).pose(&["--time", "1"]).joints[0].tip;
+    assert!(tip.distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6, "{tip}");
+}

@@ -265,3 +265,39 @@ fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
     let output = render(&folder.path().join("out.png"), &["--skeleton", "thin"]);
     assert_eq!(output.status.code(), Some(2), "a skeleton of no file");
 }
+
+// Times
+
+#[test]
+fn a_time_moves_what_is_keyed() {
+    use ik_arm::document::{Channel, Document};
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut document = Document::default();
+    for (time, x) in [(-1.0, -100.0), (0.0, 100.0), (2.0, 300.0), (3.0, 0.0)] {
+        document.keys.insert(Channel::Hand, time, glam::Vec3::new(x, 200.0, 50.0));
+    }
+    let json = |document: &Document| ik_arm::io::to_json(document).expect("written");
+    let moving = file(&folder, "moving.json", &json(&document));
+    for time in [-0.5, 0.0, 1.0] {
+        let mut posed = document.at(time).into_owned();
+        posed.keys = Default::default();
+        let still = file(&folder, "still.json", &json(&posed));
+        assert_eq!(picture(&[&moving, "--time", &time.to_string()]), picture(&[&still]), "{time}");
+    }
+    assert_eq!(picture(&[&moving]), picture(&[&moving, "--time", "0"]));
+    assert_ne!(picture(&[&moving]), picture(&[&moving, "--time", "1"]));
+}
+
+#[test]
+fn a_time_moves_what_moves_by_itself_and_the_view_with_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let snake = ik_arm::io::Example::find("snake").expect("there").text;
+    let snake = file(&folder, "snake.json", snake);
+    assert_ne!(picture(&[&snake]), picture(&[&snake, "--time", "3"]));
+    assert_ne!(
+        picture(&[&snake, "--view", "top"]),
+        picture(&[&snake, "--view", "top", "--time", "3"])
+    );
+    let output = render(&folder.path().join("out.png"), &["--time", "inf"]);
+    assert_eq!(output.status.code(), Some(2));
+}

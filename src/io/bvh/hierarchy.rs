@@ -125,8 +125,7 @@ impl Hierarchy {
         } else if word.is("End") {
             let site = text.name();
             if !site.text.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("Site")) {
-                let reason = format!("{}, expected Site after End", site.found());
-                return Err(Fault::new(site.at, &node.name, reason));
+                return Err(Fault::new(site.at, &node.name, "Site must stand after End"));
             }
             brace(text, &node.name)?;
             self.open.push(Block::End { node: index, end: None });
