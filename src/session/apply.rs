@@ -98,7 +98,7 @@ impl Session {
             Action::DeleteKeys(keys) => self.delete_keys(&keys),
             Action::ClearChannels(channels) => self.clear_channels(&channels),
             Action::MoveKeys { keys, by } => self.move_keys(&keys, by),
-            Action::CopyKeys => self.copy_keys(),
+            Action::CopyKeys => return self.copy_keys(),
             Action::PasteKeys => self.paste_keys(),
             Action::SelectKeys(keys) => {
                 self.selected_keys = keys;

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::Session;
+use super::{Effect, Session};
 use crate::document::{Channel, Document, Keys, RigKind, Timeline};
 
 /// A key: its channel and its time, in seconds.
@@ -128,7 +128,8 @@ impl Session {
         if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
     }
 
-    pub(super) fn copy_keys(&mut self) {
+    /// They go as text to the clipboard too: without any there, no paste would be heard of.
+    pub(super) fn copy_keys(&mut self) -> Option<Effect> {
         let copied = |(channel, time): &Key| {
             Some((*channel, *time, self.document.keys.track(*channel)?.get(*time)?))
         };
@@ -140,9 +141,15 @@ impl Session {
             1 => "1 key copied".to_owned(),
             count => format!("{count} keys copied"),
         });
-        if !copies.is_empty() {
-            self.clipboard = copies;
+        if copies.is_empty() {
+            return None;
         }
+        let line = |(channel, time, value): &(Channel, f64, Vec3)| {
+            format!("{channel:?} {time} {} {} {}\n", value.x, value.y, value.z)
+        };
+        let text = copies.iter().map(line).collect();
+        self.clipboard = copies;
+        Some(Effect::CopyText(text))
     }
 
     /// Puts the copied keys to where the time is; those whose joints are gone are left out.

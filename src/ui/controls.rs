@@ -101,7 +101,8 @@ fn layers(ui: &mut Ui, session: &Session, layers: &[Layer], actions: &mut Vec<Ac
     });
 }
 
-fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static str) {
+/// What a layer is called, and what it is.
+pub(super) fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static str) {
     match (rig, layer) {
         (RigKind::Skeleton, Layer::Cursor) => {
             ("Targets", "Where tips are asked to be, with their ways and the gaps to them")

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use super::{keyboard, row, style};
+use super::{keyboard, row, style, timeline};
 use crate::session::{Action, Dialog, Session};
 
 const ROW: f32 = 20.0;
@@ -181,6 +181,7 @@ fn respond(
     if !response.has_focus() {
         return;
     }
+    timeline::leave_space(ui, response.id);
     let arrows = egui::EventFilter { vertical_arrows: true, ..Default::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
     keyboard::viewport(ui, session, actions);

@@ -3,7 +3,7 @@
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 use glam::Vec2;
 
-use super::{joints, menu};
+use super::{joints, menu, timeline};
 use crate::document::{AxisView, RigKind};
 use crate::session::{Action, Constraint, Dialog, PointDrag, Session};
 
@@ -47,7 +47,9 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(Action::OpenDialog(Dialog::Shortcuts));
     }
     if ui.input(|input| input.key_pressed(Key::Escape)) {
-        if session.is_editing() {
+        if timeline::holds(ui) && !session.is_editing() {
+            // It lets go of what it holds.
+        } else if session.is_editing() {
             actions.push(Action::CancelEdit);
         } else if session.view_drag().is_some() {
             actions.push(Action::CancelView);
@@ -61,11 +63,15 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             actions.push(Action::Race(false));
         } else if !session.selection().is_empty() {
             actions.push(Action::Select(Vec::new()));
+        } else if !session.selected_keys().is_empty() {
+            actions.push(Action::SelectKeys(Vec::new()));
         }
     }
+    timeline::everywhere(ui, session, actions);
     let copied = ui.input(|input| input.events.contains(&Event::Copy));
     if copied && !ui.text_edit_focused() {
-        actions.push(Action::CopyPose);
+        let is_of_keys = timeline::has_the_word(ui, session);
+        actions.push(if is_of_keys { Action::CopyKeys } else { Action::CopyPose });
     }
 }
 
@@ -119,9 +125,6 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     if pressed(Key::S) {
         actions.push(Action::Step);
-    }
-    if pressed(Key::Space) && (session.is_playing() || session.skeleton().is_moving()) {
-        actions.push(Action::Play(!session.is_playing()));
     }
 }
 

@@ -156,6 +156,14 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     if ui.checkbox(&mut explain, name).changed() {
         actions.push(Action::ShowExplain(explain));
     }
+    let mut timeline = session.preferences().timeline;
+    if ui.checkbox(&mut timeline, "Timeline").changed() {
+        actions.push(Action::ShowTimeline(timeline));
+    }
+    let mut curves = session.preferences().curves;
+    if ui.checkbox(&mut curves, "Curves").on_hover_text("In the timeline").changed() {
+        actions.push(Action::ShowCurves(curves));
+    }
 }
 
 pub(super) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [

@@ -25,6 +25,7 @@ mod status;
 pub mod style;
 mod symbol;
 mod targets;
+mod timeline;
 mod triangle;
 mod viewport;
 
@@ -54,6 +55,13 @@ pub fn show(
     keyboard::global(ui, session, actions);
     Panel::top("menu").show(ui, |ui| menu::ui(ui, session, actions));
     Panel::bottom("status").show(ui, |ui| status::ui(ui, session, machine, actions));
+    if session.preferences().timeline {
+        Panel::bottom("timeline")
+            .resizable(true)
+            .default_size(152.0)
+            .size_range(120.0..=360.0)
+            .show(ui, |ui| timeline::ui(ui, session, actions));
+    }
     Panel::left("controls")
         .resizable(true)
         .default_size(272.0)

@@ -1,33 +1,16 @@
-//! The time, and what moves with it.
+//! What moves with the time, beside what has keys.
 
 use egui::Ui;
 
-use super::row;
 use super::slider::Slider;
 use crate::document::Slither;
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    clock(ui, session, actions);
     slithers(ui, session, actions);
     if let Some(slither) = session.skeleton().slither {
         sliders(ui, session, slither, actions);
     }
-}
-
-fn clock(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    row::pair(ui, &format!("{:.1} s", session.time()), |ui| {
-        if ui.button("Rewind").on_hover_text("Back to 0 s").clicked() {
-            actions.push(Action::SetTime(0.0));
-        }
-        let playing = session.is_playing();
-        let name = if playing { "Pause" } else { "Play" };
-        let nothing = "Nothing moves by itself yet: let a target go around";
-        let disabled = (!playing && !session.skeleton().is_moving()).then_some(nothing);
-        if row::button(ui, name, "Let the time go on, or stand (Space)", disabled) {
-            actions.push(Action::Play(!playing));
-        }
-    });
 }
 
 fn slithers(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -1,5 +1,6 @@
 //! Numbers as panels show them, and as they are typed and dragged.
 
+use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
 use crate::session::Action;
@@ -19,10 +20,10 @@ pub(super) fn short(value: f32) -> String {
 }
 
 /// A number that is dragged or typed.
-pub(super) struct Number<'a> {
+pub(super) struct Number<'a, N = f32> {
     /// What it is called where there is nothing else to see.
     pub name: &'a str,
-    pub value: f32,
+    pub value: N,
     pub unit: &'a str,
     /// What a point of the pointer's way adds.
     pub speed: f32,
@@ -30,7 +31,7 @@ pub(super) struct Number<'a> {
     pub format: &'a dyn Fn(f64) -> String,
 }
 
-impl Number<'_> {
+impl<N: Numeric> Number<'_, N> {
     /// Shows it, always as wide. Pushes what `set` makes of a new value; a drag begins and commits
     /// an edit, and goes on only while there is one, so that it can be taken back.
     pub fn show(
@@ -38,7 +39,7 @@ impl Number<'_> {
         ui: &mut Ui,
         is_editing: bool,
         actions: &mut Vec<Action>,
-        set: impl Fn(f32) -> Action,
+        set: impl Fn(N) -> Action,
     ) -> Response {
         let mut value = self.value;
         let number = DragValue::new(&mut value)
@@ -83,8 +84,9 @@ impl Number<'_> {
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
         let text = text.replace('\u{2212}', "-");
-        if text == (self.format)(f64::from(self.value)) {
-            return Some(f64::from(self.value));
+        let value = self.value.to_f64();
+        if text == (self.format)(value) {
+            return Some(value);
         }
         text.parse().ok().filter(|value: &f64| value.is_finite())
     }

@@ -4,7 +4,7 @@ use egui::{
 };
 
 use super::number::Number;
-use super::{style, symbol};
+use super::{style, symbol, timeline};
 use crate::session::Action;
 
 /// A number that is shown and set: a name, a rail with a thumb, and the value, which can be typed.
@@ -192,6 +192,7 @@ impl Slider<'_> {
         if !rail.has_focus() {
             return 0.0;
         }
+        timeline::leave_space(ui, rail.id);
         let arrows =
             EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(rail.id, arrows));

@@ -7,7 +7,7 @@ use egui::{
 use glam::Vec3;
 
 use super::grips::Grips;
-use super::{compass, keyboard, menu, status};
+use super::{compass, keyboard, menu, status, timeline};
 use crate::document::{Camera, Projection, Ray, RigKind};
 use crate::session::{Action, Drag, DragInput, Grip, Motion, Navigation, Session};
 
@@ -354,6 +354,7 @@ fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Actio
         keyboard::viewport(ui, session, actions);
     }
     if response.has_focus() {
+        timeline::leave_space(ui, response.id);
         let arrows =
             EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));

@@ -8,7 +8,7 @@ use egui::{
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
-use ik_arm::session::{Action, Effect, Session};
+use ik_arm::session::{Action, Effect, Preferences, Session};
 use ik_arm::ui::{self, Machine, style};
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
@@ -36,9 +36,18 @@ impl Bench {
         Self::of_size(LARGE)
     }
 
+    /// Without the timeline.
     pub fn of_size(size: Vec2) -> Self {
+        Self::liking(size, Preferences { timeline: false, ..Preferences::default() })
+    }
+
+    pub fn with_timeline(size: Vec2) -> Self {
+        Self::liking(size, Preferences::default())
+    }
+
+    pub fn liking(size: Vec2, preferences: Preferences) -> Self {
         let app = App {
-            session: Session::default(),
+            session: Session::new(preferences),
             machine: Machine { adapter: "Test adapter".to_owned(), frame_ms: Some(12.0) },
             viewport: Rect::ZERO,
             actions: Vec::new(),

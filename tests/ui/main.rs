@@ -16,5 +16,8 @@ mod skeleton_keys;
 mod skeleton_panel;
 mod skeleton_view;
 mod sliders;
+mod timeline;
+mod timeline_keys;
+mod timeline_looks;
 mod view;
 mod view_keys;

@@ -53,6 +53,8 @@ pub const MENUS: [(&str, &[&str]); 4] = [
             "Light theme",
             "Dark theme",
             "Explain panel",
+            "Timeline",
+            "Curves",
         ],
     ),
     ("Help", &["Shortcuts", "About"]),

@@ -312,6 +312,7 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
 #[test]
 fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
     let mut bench = example("snake");
+    bench.apply([Action::ShowTimeline(true)]);
     let before = bench.session().skeleton_pose().clone();
     bench.click_at(bench.rect(Role::Button, "Play").center());
     bench.wait(1.0);
@@ -321,7 +322,7 @@ fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
     assert_eq!(bench.session().document(), &document, "playing writes nothing");
     bench.click_at(bench.rect(Role::Button, "Pause").center());
     bench.settle();
-    bench.click(Role::Button, "Rewind");
+    bench.click(Role::Button, "To start");
     assert_eq!(bench.session().skeleton_pose(), &before);
     select(&mut bench, "head");
     assert!(!is_enabled(&bench, Role::Slider, "Rotation x"));

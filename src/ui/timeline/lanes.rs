@@ -1,0 +1,261 @@
+//! A lane for all keys together and one for every keyed channel.
+
+use egui::containers::scroll_area::{DragScroll, ScrollSource};
+use egui::{
+    Color32, FontId, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, UiBuilder,
+    WidgetInfo, accesskit, pos2, vec2,
+};
+
+use super::icon::diamond;
+use super::pointer::Lanes;
+use super::rows::{Lane, Picked, channels};
+use super::scale::Scale;
+use super::{Areas, ROW, menu, names, pointer};
+use crate::document::Channel;
+use crate::session::{Action, Session};
+use crate::ui::style;
+
+const SIZE: f32 = 5.0;
+/// Nearer to each other, in points, keys cannot be told apart by their names.
+const NEAR: f32 = 5.0;
+
+pub(super) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    scale: Scale,
+    areas: &Areas,
+    ruler: &Response,
+    actions: &mut Vec<Action>,
+) {
+    let channels = channels(session);
+    if channels.is_empty() {
+        let sentence = "No keys yet: pose the rig and press K to key it where the time is";
+        say(ui, areas, sentence);
+        return;
+    }
+    let body = ui.interact(areas.lanes, Id::unique("timeline lanes"), Sense::click_and_drag());
+    body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Keys"));
+    let shown = Shown { session, scale, picked: Picked::new(session), areas, ruler };
+
+    let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
+    shown.lane(ui, Lane::All, first, actions);
+    let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
+    let offset = shown.scrolled(ui, &channels, rest, actions);
+
+    let lanes = Lanes { session, scale, channels: &channels, area: areas.lanes, offset };
+    pointer::press(ui, &lanes, &body, ruler, actions);
+    pointer::follow(ui, &lanes, actions);
+    menu::of_lanes(ui, &lanes, &body, actions);
+    pointer::paint_box(ui, &lanes);
+}
+
+/// A quiet sentence where nothing else is.
+pub(super) fn say(ui: &mut Ui, areas: &Areas, sentence: &str) {
+    let rect = Rect::from_center_size(
+        areas.lanes.center(),
+        vec2(areas.lanes.width(), ROW).min(areas.lanes.size()),
+    );
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        ui.centered_and_justified(|ui| {
+            let text = egui::RichText::new(sentence).weak();
+            ui.add(egui::Label::new(text).truncate().selectable(false));
+        });
+    });
+}
+
+struct Shown<'a> {
+    session: &'a Session,
+    scale: Scale,
+    picked: Picked,
+    areas: &'a Areas,
+    ruler: &'a Response,
+}
+
+impl Shown<'_> {
+    /// The channels' lanes, of which only those in sight are laid out. Returns how far they are
+    /// scrolled.
+    fn scrolled(
+        &self,
+        ui: &mut Ui,
+        channels: &[Channel],
+        rect: Rect,
+        actions: &mut Vec<Action>,
+    ) -> f32 {
+        // Over the lanes the wheel shows more or less of the time.
+        let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
+        let source = ScrollSource { scroll_bar: true, drag: DragScroll::Never, mouse_wheel };
+        let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            let area = ScrollArea::vertical().id_salt("lanes").auto_shrink(false);
+            area.scroll_source(source).show_viewport(ui, |ui, seen| {
+                ui.set_height(ROW * channels.len() as f32);
+                let (top, left) = (ui.max_rect().top(), rect.left());
+                let first = (seen.top() / ROW).floor().max(0.0) as usize;
+                let count = (seen.height() / ROW).ceil() as usize + 1;
+                for (row, channel) in channels.iter().enumerate().skip(first).take(count) {
+                    let at = pos2(left, top + ROW * row as f32);
+                    let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
+                    self.lane(ui, Lane::Channel(*channel), rect, actions);
+                }
+            })
+        });
+        scroll.inner.state.clamped_offset().y
+    }
+
+    fn lane(&self, ui: &Ui, lane: Lane, rect: Rect, actions: &mut Vec<Action>) {
+        let split = self.areas.lanes.left();
+        let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
+        let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
+        let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6);
+        ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
+        match lane {
+            Lane::All => {
+                text(ui, name, "All", ui.visuals().strong_text_color());
+            }
+            Lane::Channel(channel) => self.name(ui, channel, name, actions),
+        }
+        self.keys(ui, lane, keys, actions);
+        if let Lane::Channel(channel) = lane
+            && self.session.is_overridden(channel)
+        {
+            self.overridden(ui, channel, keys);
+        }
+    }
+
+    /// A channel's name; a click selects the channel, with Shift or Ctrl beside others.
+    fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Vec<Action>) {
+        let session = self.session;
+        let selected = session.selected_channels().contains(&channel);
+        let shown = names::channel(session, channel);
+        let id = Id::unique(("timeline channel", channel));
+        let response = ui.interact(rect, id, Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, true, selected, format!("Channel {shown}"))
+        });
+        let visuals = ui.visuals();
+        let inside = rect.shrink2(vec2(2.0, 1.0));
+        if selected {
+            ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
+        } else if response.hovered() {
+            ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
+        }
+        if response.has_focus() {
+            let kind = egui::StrokeKind::Inside;
+            ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, kind);
+        }
+        let is_of_rig = channel.rig().is_none_or(|rig| rig == session.rig());
+        let colour = match (selected || response.hovered(), is_of_rig) {
+            (true, _) => visuals.strong_text_color(),
+            (false, true) => visuals.text_color(),
+            (false, false) => visuals.weak_text_color(),
+        };
+        text(ui, rect, &shown, colour);
+        if response.clicked() {
+            self.ruler.request_focus();
+            let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+            let mut channels = match several {
+                true => session.selected_channels().clone(),
+                false => Default::default(),
+            };
+            if !(several && channels.remove(&channel)) {
+                channels.insert(channel);
+            }
+            let alone = selected && session.selected_channels().len() == 1;
+            if alone && !several {
+                channels.clear();
+            }
+            actions.push(Action::SelectChannels(channels.into_iter().collect()));
+        }
+        menu::of_channel(&response, session, channel, actions);
+        response.on_hover_text(shown);
+    }
+
+    fn keys(&self, ui: &Ui, lane: Lane, rect: Rect, actions: &mut Vec<Action>) {
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        let (from, to) = self.scale.range();
+        let mut last = f32::NEG_INFINITY;
+        for time in lane.times(self.session, from, to) {
+            let x = self.scale.x(time);
+            let picked = self.picked.has(lane, time);
+            if x - last < 1.0 && !picked {
+                continue;
+            }
+            let at = pos2(x, rect.center().y);
+            let hovered = x - last >= NEAR && self.key(ui, lane, time, at, rect, actions);
+            last = x;
+            let visuals = ui.visuals();
+            let plain =
+                if lane == Lane::All { visuals.weak_text_color() } else { visuals.text_color() };
+            let (size, fill, rim) = match picked {
+                true => {
+                    (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
+                }
+                false => (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color)),
+            };
+            let size = if hovered { size + 1.0 } else { size };
+            painter.add(diamond(at, size, fill, rim));
+        }
+    }
+
+    /// What is to be known of a key, and acted on without a pointer. Whether the pointer is on it.
+    fn key(
+        &self,
+        ui: &Ui,
+        lane: Lane,
+        time: f64,
+        at: egui::Pos2,
+        lane_rect: Rect,
+        actions: &mut Vec<Action>,
+    ) -> bool {
+        let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
+        let (id, said) = match lane {
+            Lane::All => {
+                (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
+            }
+            Lane::Channel(channel) => (
+                Id::unique(("timeline key", channel, time.to_bits())),
+                format!("Key of {} at {time:.2} s", names::channel(self.session, channel)),
+            ),
+        };
+        // Presses are the lanes'.
+        let response = ui.interact(rect.intersect(lane_rect), id, Sense::hover());
+        let picked = self.picked.has(lane, time);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
+        ui.ctx().accesskit_node_builder(id, |node| node.add_action(accesskit::Action::Click));
+        if ui.input(|input| input.has_accesskit_action_request(id, accesskit::Action::Click)) {
+            actions.push(Action::SelectKeys(lane.keys(self.session, time)));
+        }
+        let hovered = response.hovered();
+        response.on_hover_text(said);
+        hovered
+    }
+
+    /// A channel that is not shown as its keys have it.
+    fn overridden(&self, ui: &Ui, channel: Channel, rect: Rect) {
+        let at = pos2(self.scale.x(self.session.time()), rect.center().y);
+        let id = Id::unique(("timeline override", channel));
+        let size = vec2(4.0 * SIZE, ROW);
+        let response =
+            ui.interact(Rect::from_center_size(at, size).intersect(rect), id, Sense::hover());
+        let key = match self.session.channels_to_key().contains(&channel) {
+            true => "K",
+            false => "Shift+K",
+        };
+        let name = names::channel(self.session, channel);
+        let said = format!("{name} is changed here, not keyed: press {key} to keep it");
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+        let rim = Stroke::new(2.0, style::accent(ui));
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        painter.add(diamond(at, SIZE + 2.0, Color32::TRANSPARENT, rim));
+        response.on_hover_text(said);
+    }
+}
+
+/// In one line, cut where the column ends.
+pub(super) fn text(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
+    let font: FontId = TextStyle::Body.resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
+    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.width() - 18.0).max(8.0));
+    let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
+    let at = pos2(rect.left() + 10.0, rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley(at, galley, colour);
+}

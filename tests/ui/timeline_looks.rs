@@ -1,0 +1,160 @@
+//! The timeline as it is seen: in both themes and in windows of all sizes.
+
+use egui::accesskit::Role;
+use egui::{Rect, Vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::{SnapshotOptions, SnapshotResults};
+use glam::Vec3;
+use ik_arm::document::{Channel, Theme};
+use ik_arm::session::Action;
+
+use crate::bench::{Bench, LARGE, SMALL};
+
+/// An arm that is keyed at three times, in the middle of it.
+pub fn animated() -> Vec<Action> {
+    let keyed = |time, hand, spin: f32| {
+        [
+            Action::SetTime(time),
+            Action::SetHand(hand),
+            Action::SetElbowSpin(spin.to_radians()),
+            Action::Key(vec![Channel::Hand, Channel::ElbowSpin]),
+        ]
+    };
+    let mut actions = Vec::new();
+    actions.extend(keyed(1.0, Vec3::new(250.0, 120.0, 60.0), 0.0));
+    actions.extend(keyed(3.5, Vec3::new(-100.0, 300.0, 160.0), 90.0));
+    actions.extend(keyed(6.0, Vec3::new(200.0, -50.0, -60.0), 30.0));
+    actions.extend([
+        Action::SetTime(2.0),
+        Action::SetUpper(220.0),
+        Action::Key(vec![Channel::Upper]),
+        Action::SetTime(5.0),
+        Action::SetUpper(180.0),
+        Action::Key(vec![Channel::Upper]),
+        Action::SelectKeys(vec![(Channel::Hand, 3.5), (Channel::ElbowSpin, 3.5)]),
+        Action::SetTime(4.5),
+        Action::SetHand(Vec3::new(100.0, 100.0, 100.0)),
+    ]);
+    actions
+}
+
+fn bench(size: Vec2, more: impl IntoIterator<Item = Action>) -> Bench {
+    let mut bench = Bench::with_timeline(size);
+    bench.apply(animated());
+    bench.apply(more);
+    bench
+}
+
+#[test]
+fn the_timeline_looks_as_it_did() {
+    let mut results = SnapshotResults::new();
+    for theme in [Theme::Dark, Theme::Light] {
+        for (name, size, curves) in
+            [("timeline", LARGE, false), ("timeline_small", SMALL, false), ("curves", LARGE, true)]
+        {
+            let mut bench = bench(size, [Action::SetTheme(theme), Action::ShowCurves(curves)]);
+            let options = SnapshotOptions::new()
+                .threshold(2.0)
+                .max_failed_pixels(600)
+                .output_path("tests/ui/snapshots");
+            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
+            bench.harness.snapshot_options(name, &options);
+            results.extend_harness(&mut bench.harness);
+        }
+    }
+}
+
+const CONTROLS: [(Role, &str); 17] = [
+    (Role::Button, "To start"),
+    (Role::Button, "Previous key"),
+    (Role::Button, "Play"),
+    (Role::Button, "Next key"),
+    (Role::Button, "To end"),
+    (Role::Button, "Loop"),
+    (Role::SpinButton, "Time"),
+    (Role::SpinButton, "Frame"),
+    (Role::Button, "Key"),
+    (Role::Button, "Key all"),
+    (Role::Button, "Auto-key"),
+    (Role::SpinButton, "Speed"),
+    (Role::ComboBox, "Frame rate"),
+    (Role::SpinButton, "Start"),
+    (Role::SpinButton, "End"),
+    (Role::Button, "Curves"),
+    (Role::Slider, "Timeline ruler"),
+];
+
+#[test]
+fn no_control_is_cut_and_none_overlaps_another_in_any_window() {
+    for size in [SMALL, LARGE, egui::vec2(2560.0, 1600.0)] {
+        for curves in [false, true] {
+            let bench = bench(size, [Action::ShowCurves(curves)]);
+            let window = Rect::from_min_size(egui::Pos2::ZERO, size);
+            let rects = CONTROLS.map(|(role, name)| (name, bench.rect(role, name)));
+            for (index, (name, rect)) in rects.iter().enumerate() {
+                assert!(window.contains_rect(*rect), "{size:?} {name}: {rect:?}");
+                assert!(rect.top() >= bench.viewport().bottom(), "{size:?} {name}: {rect:?}");
+                for (other, beside) in &rects[index + 1..] {
+                    let shared = rect.intersect(*beside);
+                    let apart = !shared.is_positive() || shared.area() < 1.0;
+                    assert!(apart, "{size:?}: {name} lies over {other}");
+                }
+            }
+            assert!(bench.viewport().height() > 280.0, "{size:?}: {:?}", bench.viewport());
+        }
+    }
+}
+
+#[test]
+fn nothing_in_the_timeline_moves_when_the_time_goes_on() {
+    let mut bench = bench(LARGE, []);
+    let places = |bench: &Bench| CONTROLS.map(|(role, name)| bench.rect(role, name));
+    let before = places(&bench);
+    for time in [0.0, 7.96, 123.456, -9999.5] {
+        bench.apply([Action::SetTime(time), Action::SetAutoKey(time > 5.0)]);
+        assert_eq!(places(&bench), before, "{time}");
+    }
+}
+
+#[test]
+fn everything_in_the_timeline_that_can_be_acted_on_has_a_name() {
+    for size in [SMALL, LARGE] {
+        for curves in [false, true] {
+            let mut bench = bench(size, [Action::ShowCurves(curves)]);
+            bench.harness.check_accessibility();
+        }
+    }
+}
+
+#[test]
+fn a_timeline_without_keys_says_how_to_set_the_first_one() {
+    let mut bench = Bench::with_timeline(SMALL);
+    assert!(bench.says("press K to key it"));
+    bench.apply([Action::ShowCurves(true)]);
+    assert!(bench.says("No curves"));
+    bench.apply([Action::ShowCurves(false), Action::Key(vec![Channel::Hand])]);
+    assert!(!bench.says("press K to key it"));
+}
+
+#[test]
+fn what_cannot_act_is_disabled() {
+    let disabled =
+        |bench: &Bench, name: &str| bench.node(Role::Button, name).accesskit_node().is_disabled();
+    let mut bench = Bench::with_timeline(LARGE);
+    for name in ["Play", "Previous key", "Next key"] {
+        assert!(disabled(&bench, name), "{name}");
+    }
+    bench.apply(animated());
+    for name in ["Play", "Previous key", "Next key"] {
+        assert!(!disabled(&bench, name), "{name}");
+    }
+}
+
+#[test]
+fn the_curves_are_those_of_the_selected_channels_or_of_the_whole_rig() {
+    let mut bench = bench(LARGE, [Action::ShowCurves(true)]);
+    assert!(bench.shows(Role::Image, "Curves of Hand, Elbow spin, Upper length"));
+    bench.apply([Action::SelectChannels(vec![Channel::Upper])]);
+    assert!(bench.shows(Role::Image, "Curves of Upper length"));
+    assert!(bench.harness.query_all_by_label_contains("Curve of Hand").next().is_none());
+}
