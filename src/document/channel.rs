@@ -97,15 +97,24 @@ impl Channel {
         channels
     }
 
-    /// The rig whose pose it changes, if any; targets pose nothing before a solver runs.
-    pub fn poses(self) -> Option<RigKind> {
+    /// The rig that it belongs to, if to one.
+    pub fn rig(self) -> Option<RigKind> {
         match self {
             Self::Hand | Self::ElbowSpin | Self::Root | Self::Upper | Self::Lower => {
                 Some(RigKind::Arm)
             }
-            Self::Translation | Self::Rotation(_) | Self::Offset(_) => Some(RigKind::Skeleton),
-            Self::Target(_) | Self::Enabled(_) | Self::Layer(_) => None,
+            Self::Translation
+            | Self::Rotation(_)
+            | Self::Offset(_)
+            | Self::Target(_)
+            | Self::Enabled(_) => Some(RigKind::Skeleton),
+            Self::Layer(_) => None,
         }
+    }
+
+    /// Whether it changes the pose of a rig; targets pose nothing before a solver runs.
+    pub fn poses(self, rig: RigKind) -> bool {
+        self.rig() == Some(rig) && !matches!(self, Self::Target(_) | Self::Enabled(_))
     }
 
     /// The joint that it belongs to.

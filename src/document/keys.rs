@@ -114,7 +114,7 @@ impl Document {
     /// Whether the pose of the rig that is shown changes in time.
     pub fn is_posed_by_time(&self) -> bool {
         let slithers = self.rig == RigKind::Skeleton && self.skeleton.slither.is_some();
-        slithers || self.keys.tracks().any(|(channel, _)| channel.poses() == Some(self.rig))
+        slithers || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
     }
 
     /// Keys a channel as it is now, at a time; an angle unwrapped to be near the keys that it has.

@@ -51,8 +51,9 @@ fn at(time: Option<f64>) -> String {
     time.map_or_else(|| " without rotations".to_owned(), |time| format!(" at {time} s"))
 }
 
-/// The shown rig as a `.glb` file, with its motion at so many frames in a second, or as many as the
-/// timeline has: see the [module](super).
+/// The shown rig as a `.glb` file: joints, a mesh that goes with them, and its motion at so many
+/// frames in a second (1 to 1000), or as many as the timeline has. Lengths are metres, and no node
+/// has a scale.
 ///
 /// # Errors
 ///
