@@ -1,1 +1,516 @@
-//! The timeline by the pointer.
+//! The timeline by the pointer: times and keys are dragged where they are seen.
+
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::kittest::NodeT as _;
+use glam::Vec3;
+use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::Joint;
+use ik_arm::kinematics::spline::{Knot, Spline};
+use ik_arm::session::Action;
+
+use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
+
+pub const HAND: [(f64, Vec3); 3] = [
+    (1.0, Vec3::new(250.0, 120.0, 60.0)),
+    (2.0, Vec3::new(-100.0, 300.0, 160.0)),
+    (5.0, Vec3::new(200.0, -50.0, -60.0)),
+];
+
+/// A timeline in which the hand goes through three keys and the elbow has two.
+pub fn keyed() -> Bench {
+    let mut bench = Bench::with_timeline(LARGE);
+    for (time, hand) in HAND {
+        let key = Action::Key(vec![Channel::Hand]);
+        bench.apply([Action::SetTime(time), Action::SetHand(hand), key]);
+    }
+    for time in [1.0, 4.0] {
+        bench.apply([Action::SetTime(time), Action::Key(vec![Channel::ElbowSpin])]);
+    }
+    bench.apply([Action::SetTime(0.0)]);
+    bench
+}
+
+pub fn times(bench: &Bench, channel: Channel) -> Vec<f64> {
+    let track = bench.session().document().keys.track(channel);
+    track.map_or_else(Vec::new, |track| track.knots().iter().map(|knot| knot.time).collect())
+}
+
+pub fn key_of_hand(bench: &Bench, time: f64) -> Pos2 {
+    bench.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center()
+}
+
+/// Where a time is on the ruler, told from two keys of the hand.
+fn place(bench: &Bench, time: f64) -> Pos2 {
+    let (a, b) = (key_of_hand(bench, 1.0).x, key_of_hand(bench, 2.0).x);
+    pos2(a + (time - 1.0) as f32 * (b - a), bench.rect(Role::Slider, "Timeline ruler").center().y)
+}
+
+#[test]
+fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([Action::SetTime(1.5)]);
+    bench.click(Role::Button, "Key");
+    assert_eq!(times(&bench, Channel::Hand), [1.5]);
+    assert_eq!(times(&bench, Channel::ElbowSpin), [1.5]);
+    assert!(times(&bench, Channel::Upper).is_empty());
+    assert!(bench.shows(Role::Button, "Key of Hand at 1.50 s"));
+    assert!(bench.shows(Role::Button, "Channel Elbow spin"));
+    bench.click(Role::Button, "Key all");
+    for channel in Channel::OF_ARM {
+        assert_eq!(times(&bench, channel), [1.5], "{channel:?}");
+    }
+}
+
+#[test]
+fn the_time_follows_the_pointer_on_the_ruler_from_frame_to_frame() {
+    let mut bench = keyed();
+    let document = bench.session().document().clone();
+    let (from, to) = (place(&bench, 1.01), place(&bench, 3.495));
+    bench.drag(PointerButton::Primary, from, to);
+    assert_eq!(bench.session().time(), Timeline::default().snapped(3.495));
+    bench.hold(Modifiers::COMMAND);
+    bench.move_to(to);
+    assert!((bench.session().time() - 3.495).abs() < 2e-3, "{}", bench.session().time());
+    bench.hold(Modifiers::NONE);
+    bench.move_to(pos2(5000.0, to.y));
+    assert_eq!(bench.session().time(), 8.0, "not past the end");
+    bench.move_to(pos2(-5000.0, to.y));
+    assert_eq!(bench.session().time(), 0.0);
+    bench.release(PointerButton::Primary);
+    bench.move_to(place(&bench, 3.0));
+    assert_eq!(bench.session().time(), 0.0, "it is let go");
+    assert_eq!(bench.session().document(), &document);
+    assert_eq!(bench.session().undo_name(), Some("key elbow spin"), "it is no step");
+}
+
+#[test]
+fn esc_takes_the_time_back() {
+    let mut bench = keyed();
+    bench.apply([Action::SetTime(0.5)]);
+    bench.drag(PointerButton::Primary, place(&bench, 1.0), place(&bench, 4.0));
+    assert_eq!(bench.session().time(), 4.0);
+    bench.key(Key::Escape);
+    assert_eq!(bench.session().time(), 0.5);
+    bench.move_to(place(&bench, 2.0));
+    bench.release(PointerButton::Primary);
+    assert_eq!(bench.session().time(), 0.5);
+}
+
+#[test]
+fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
+    let mut bench = keyed();
+    let before = bench.session().document().clone();
+    let (from, to) = (key_of_hand(&bench, 2.0), key_of_hand(&bench, 2.0) + vec2(149.0, 3.0));
+    bench.drag(PointerButton::Primary, from, to);
+    assert!(bench.says("Move 1 key: +"));
+    let moved = times(&bench, Channel::Hand)[1];
+    assert!(moved > 2.5, "{moved}");
+    assert_eq!(moved, Timeline::default().snapped(moved), "on a frame");
+    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0], "others stay");
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
+    assert_eq!(bench.session().undo_name(), Some("move keys"));
+    bench.apply([Action::Undo]);
+    assert_eq!(bench.session().document(), &before);
+    bench.apply([Action::Redo]);
+    assert_eq!(times(&bench, Channel::Hand)[1], moved);
+}
+
+#[test]
+fn ctrl_lets_a_key_go_between_frames() {
+    let mut bench = keyed();
+    let (from, to) = (key_of_hand(&bench, 2.0), key_of_hand(&bench, 2.0) + vec2(7.0, 0.0));
+    bench.drag(PointerButton::Primary, from, to);
+    bench.hold(Modifiers::COMMAND);
+    bench.release(PointerButton::Primary);
+    bench.hold(Modifiers::NONE);
+    let moved = times(&bench, Channel::Hand)[1];
+    assert!(moved > 2.0 && moved != Timeline::default().snapped(moved), "{moved}");
+}
+
+#[test]
+fn esc_takes_a_drag_of_keys_back_and_they_stay_selected() {
+    let mut bench = keyed();
+    let before = bench.session().document().clone();
+    let from = key_of_hand(&bench, 2.0);
+    bench.drag(PointerButton::Primary, from, from + vec2(80.0, 0.0));
+    assert_ne!(bench.session().document(), &before);
+    bench.key(Key::Escape);
+    assert_eq!(bench.session().document(), &before);
+    bench.move_to(from + vec2(-60.0, 0.0));
+    bench.release(PointerButton::Primary);
+    assert_eq!(bench.session().document(), &before);
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 2.0)]);
+    assert!(!bench.session().is_editing());
+}
+
+#[test]
+fn a_click_selects_a_key_and_shift_adds_another_or_takes_it_out() {
+    let mut bench = keyed();
+    bench.click_at(key_of_hand(&bench, 1.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 1.0)]);
+    bench.hold(Modifiers::SHIFT);
+    bench.click_at(key_of_hand(&bench, 5.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 1.0), (Channel::Hand, 5.0)]);
+    bench.click_at(key_of_hand(&bench, 1.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 5.0)]);
+    bench.hold(Modifiers::NONE);
+    bench.click_at(key_of_hand(&bench, 1.0) + vec2(60.0, 0.0));
+    assert!(bench.session().selected_keys().is_empty(), "a click beside all selects none");
+    assert!(!bench.session().is_editing());
+}
+
+#[test]
+fn the_diamonds_on_top_select_and_move_all_keys_at_their_time() {
+    let mut bench = keyed();
+    let at = bench.rect(Role::Button, "Keys at 1.00 s").center();
+    bench.click_at(at);
+    let both = [(Channel::Hand, 1.0), (Channel::ElbowSpin, 1.0)];
+    assert_eq!(bench.session().selected_keys(), both);
+    bench.drag_and_drop(PointerButton::Primary, at, at - vec2(70.0, 0.0));
+    bench.settle();
+    let (hand, spin) = (times(&bench, Channel::Hand), times(&bench, Channel::ElbowSpin));
+    assert!(hand[0] < 0.8 && hand[0] == spin[0], "{hand:?} {spin:?}");
+    assert_eq!((hand[1], spin[1]), (2.0, 4.0));
+}
+
+#[test]
+fn a_box_selects_what_is_in_it() {
+    let mut bench = keyed();
+    let (first, last) = (key_of_hand(&bench, 1.0), key_of_hand(&bench, 2.0));
+    let (from, to) = (first - vec2(20.0, 8.0), last + vec2(20.0, 30.0));
+    bench.drag_and_drop(PointerButton::Primary, from, to);
+    let inside = [(Channel::Hand, 1.0), (Channel::Hand, 2.0), (Channel::ElbowSpin, 1.0)];
+    assert_eq!(bench.session().selected_keys(), inside);
+    bench.hold(Modifiers::SHIFT);
+    let at = key_of_hand(&bench, 5.0);
+    bench.drag_and_drop(PointerButton::Primary, at + vec2(20.0, 8.0), at - vec2(20.0, 8.0));
+    bench.hold(Modifiers::NONE);
+    assert_eq!(bench.session().selected_keys().len(), 4);
+    bench.drag(PointerButton::Primary, from, to);
+    bench.key(Key::Escape);
+    bench.release(PointerButton::Primary);
+    assert!(bench.session().selected_keys().is_empty());
+}
+
+#[test]
+fn a_double_click_on_a_lane_adds_a_key_on_the_curve() {
+    let mut bench = keyed();
+    let at = pos2(place(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
+    bench.double_click_at(at);
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    assert_eq!(bench.session().time(), 3.0);
+    let spline = spline();
+    let key = bench.session().document().keys.track(Channel::Hand).and_then(|it| it.get(3.0));
+    assert!(key.expect("there").distance(spline.at(3.0).expect("there")) < 1e-3);
+}
+
+fn spline() -> Spline<Vec3> {
+    HAND.into_iter().map(|(time, value)| Knot { time, value }).collect()
+}
+
+#[test]
+fn the_hand_goes_along_the_spline_while_it_is_played() {
+    let mut bench = keyed();
+    bench.apply([Action::SetTime(1.2)]);
+    bench.click_at(bench.rect(Role::Button, "Play").center());
+    assert!(bench.session().is_playing());
+    bench.frame([]);
+    let begun = bench.session().time();
+    for frame in 1..=60 {
+        bench.frame([]);
+        let time = bench.session().time();
+        assert!((time - begun - f64::from(frame) * SECONDS_PER_FRAME).abs() < 1e-6, "{time}");
+        let expected = spline().at(time).expect("keys");
+        assert!(bench.hand().distance(expected) < 1e-3, "{time}: {} {expected}", bench.hand());
+    }
+    bench.click_at(bench.rect(Role::Button, "Pause").center());
+    bench.settle();
+    let time = bench.session().time();
+    assert_eq!(time, Timeline::default().snapped(time), "it stands on a frame");
+}
+
+#[test]
+fn half_the_speed_goes_half_as_far() {
+    let mut bench = keyed();
+    bench.click(Role::SpinButton, "Speed");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.type_text("0.5");
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.session().speed(), 0.5);
+    bench.apply_moving([Action::Play(true)]);
+    let begun = bench.session().time();
+    bench.wait(1.0);
+    assert!((bench.session().time() - begun - 0.5).abs() < 0.02);
+}
+
+#[test]
+fn at_its_end_the_time_begins_again_or_stands() {
+    let mut bench = keyed();
+    bench.apply_moving([Action::SetTime(7.9), Action::Play(true)]);
+    bench.wait(0.5);
+    assert!(bench.session().is_playing() && bench.session().time() < 1.0);
+    bench.apply([Action::Play(false)]);
+    bench.click(Role::Button, "Loop");
+    assert!(!bench.session().is_looping());
+    bench.apply_moving([Action::SetTime(7.9), Action::Play(true)]);
+    bench.wait(0.5);
+    assert_eq!((bench.session().is_playing(), bench.session().time()), (false, 8.0));
+    bench.click_at(bench.rect(Role::Button, "Play").center());
+    bench.wait(0.2);
+    assert!(bench.session().is_playing() && bench.session().time() < 1.0, "from the start again");
+}
+
+#[test]
+fn buttons_lead_to_the_ends_and_from_key_to_key() {
+    let mut bench = keyed();
+    for (name, time) in [
+        ("Next key", 1.0),
+        ("Next key", 2.0),
+        ("Next key", 4.0),
+        ("To end", 8.0),
+        ("Previous key", 5.0),
+        ("Previous key", 4.0),
+        ("To start", 0.0),
+    ] {
+        bench.click(Role::Button, name);
+        assert_eq!(bench.session().time(), time, "{name}");
+    }
+}
+
+#[test]
+fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_changes() {
+    let mut bench = keyed();
+    bench.apply([Action::SetTime(3.0)]);
+    bench.enter("Hand x", "77");
+    assert_eq!(bench.hand().x, 77.0);
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
+    assert!(bench.says("Hand is changed here, not keyed: press K to keep it"));
+    bench.click(Role::Button, "Next key");
+    bench.click(Role::Button, "Previous key");
+    bench.apply([Action::SetTime(3.0)]);
+    assert!(bench.hand().distance(spline().at(3.0).expect("keys")) < 1e-3);
+    assert!(!bench.says("changed here"));
+
+    bench.click(Role::Button, "Auto-key");
+    assert!(bench.session().is_auto_key());
+    bench.enter("Hand x", "77");
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    bench.apply([Action::SetTime(0.0), Action::SetTime(3.0)]);
+    assert!((bench.hand().x - 77.0).abs() < 1e-4);
+}
+
+#[test]
+fn the_frame_rate_is_chosen_and_another_one_of_a_file_is_shown() {
+    let mut bench = keyed();
+    bench.click(Role::ComboBox, "Frame rate");
+    bench.click(Role::Button, "24 fps");
+    assert_eq!(bench.session().document().timeline.frame_rate, 24);
+    bench.drag_and_drop(PointerButton::Primary, place(&bench, 1.0), place(&bench, 1.5));
+    let frames = bench.session().time() * 24.0;
+    assert!((frames - frames.round()).abs() < 1e-9);
+    let timeline = Timeline { frame_rate: 25, ..Timeline::default() };
+    bench.apply([Action::SetTimeline(timeline)]);
+    bench.click(Role::ComboBox, "Frame rate");
+    assert!(bench.shows(Role::Button, "25 fps"));
+}
+
+fn type_into(bench: &mut Bench, field: &str, text: &str) {
+    bench.click(Role::SpinButton, field);
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text(text.to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+}
+
+#[test]
+fn start_and_end_are_typed_and_what_cannot_be_is_said() {
+    let mut bench = keyed();
+    type_into(&mut bench, "End", "5.1");
+    type_into(&mut bench, "Start", "-0.7 s");
+    let timeline = bench.session().document().timeline;
+    assert_eq!((timeline.start, timeline.end), (-0.7, 5.1), "exactly");
+    for (field, text) in [("Start", "5.1"), ("End", "-3"), ("End", "1e9")] {
+        type_into(&mut bench, field, text);
+        assert_eq!(bench.session().document().timeline, timeline, "{field} {text}");
+        assert!(bench.says("A timeline starts before it ends"), "{field} {text}");
+    }
+    type_into(&mut bench, "Time", "0.1");
+    assert_eq!(bench.session().time(), 0.1);
+    type_into(&mut bench, "Frame", "45");
+    assert_eq!(bench.session().time(), 1.5);
+}
+
+#[test]
+fn the_time_is_dragged_in_its_number_from_frame_to_frame() {
+    let mut bench = keyed();
+    let undo = bench.session().undo_name();
+    let at = bench.rect(Role::SpinButton, "Time").center();
+    bench.drag_and_drop(PointerButton::Primary, at, at + vec2(40.0, 0.0));
+    bench.settle();
+    let time = bench.session().time();
+    assert!(time > 0.1 && time == Timeline::default().snapped(time), "{time}");
+    assert!(!bench.session().is_editing() && bench.session().undo_name() == undo);
+}
+
+#[test]
+fn the_wheel_zooms_about_the_pointer_and_a_double_click_shows_all_again() {
+    let mut bench = keyed();
+    let before = key_of_hand(&bench, 2.0);
+    let gap = |bench: &Bench| key_of_hand(bench, 2.0).x - key_of_hand(bench, 1.0).x;
+    let was = gap(&bench);
+    bench.move_to(before + vec2(0.0, 12.0));
+    bench.wheel(3.0);
+    bench.settle();
+    assert!((key_of_hand(&bench, 2.0).x - before.x).abs() < 0.6, "what is pointed at stays");
+    assert!(gap(&bench) > 1.5 * was);
+    bench.wheel(-3.0);
+    bench.settle();
+    assert!((gap(&bench) - was).abs() < 0.6);
+    let wide = before + vec2(0.0, 12.0);
+    bench.drag_and_drop(PointerButton::Middle, wide, wide + vec2(90.0, 0.0));
+    bench.settle();
+    assert!((key_of_hand(&bench, 2.0).x - before.x - 90.0).abs() < 1.0, "moved with the pointer");
+    let ruler = bench.rect(Role::Slider, "Timeline ruler").center();
+    bench.double_click_at(ruler);
+    assert!((key_of_hand(&bench, 2.0).x - before.x).abs() < 0.6);
+}
+
+#[test]
+fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
+    let mut bench = keyed();
+    bench.click(Role::Button, "Channel Hand");
+    let selected =
+        |bench: &Bench| bench.session().selected_channels().iter().copied().collect::<Vec<_>>();
+    assert_eq!(selected(&bench), [Channel::Hand]);
+    bench.hold(Modifiers::SHIFT);
+    bench.click(Role::Button, "Channel Elbow spin");
+    bench.hold(Modifiers::NONE);
+    assert_eq!(selected(&bench), [Channel::Hand, Channel::ElbowSpin]);
+    bench.click(Role::Button, "Channel Elbow spin");
+    assert_eq!(selected(&bench), [Channel::ElbowSpin]);
+    bench.apply([Action::SetTime(7.0)]);
+    bench.click(Role::Button, "Key");
+    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0, 7.0]);
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
+}
+
+fn right_click(bench: &mut Bench, at: Pos2) {
+    bench.move_to(at);
+    bench.press(PointerButton::Secondary);
+    bench.release(PointerButton::Secondary);
+    bench.settle();
+}
+
+#[test]
+fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
+    let mut bench = keyed();
+    let key = key_of_hand(&bench, 2.0);
+    right_click(&mut bench, key);
+    bench.click(Role::Button, "Copy keys");
+    let empty = pos2(place(&bench, 3.0).x, key.y);
+    right_click(&mut bench, empty);
+    bench.click(Role::Button, "Paste here");
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    let key = key_of_hand(&bench, 1.0);
+    right_click(&mut bench, key);
+    bench.click(Role::Button, "Delete keys");
+    assert_eq!(times(&bench, Channel::Hand), [2.0, 3.0, 5.0]);
+    let name = bench.rect(Role::Button, "Channel Hand").center();
+    right_click(&mut bench, name);
+    bench.click(Role::Button, "Delete channel's keys");
+    assert!(times(&bench, Channel::Hand).is_empty());
+    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0]);
+}
+
+#[test]
+fn a_screen_reader_selects_keys_and_goes_through_the_time() {
+    let mut bench = keyed();
+    bench.node(Role::Button, "Key of Hand at 5.00 s").click_accesskit();
+    bench.settle();
+    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 5.0)]);
+    bench.node(Role::Slider, "Timeline ruler").increment_accesskit();
+    bench.frame([]);
+    assert_eq!(bench.session().time(), 1.0 / 30.0);
+    bench.node(Role::Slider, "Timeline ruler").set_value_accesskit(2.5);
+    bench.frame([]);
+    let value = bench.node(Role::Slider, "Timeline ruler").accesskit_node().numeric_value();
+    assert_eq!((bench.session().time(), value), (2.5, Some(2.5)));
+}
+
+#[test]
+fn the_curves_can_be_dragged_through_the_time() {
+    let mut bench = keyed();
+    let (from, to) = (place(&bench, 1.0), place(&bench, 4.0));
+    bench.click(Role::Button, "Curves");
+    assert!(bench.session().preferences().curves);
+    let middle = bench.rect(Role::Image, "Curves of Hand, Elbow spin").center().y;
+    bench.drag_and_drop(PointerButton::Primary, pos2(from.x, middle), pos2(to.x, middle));
+    assert_eq!(bench.session().time(), 4.0);
+    bench.click(Role::Button, "Curves");
+    assert!(bench.shows(Role::Button, "Channel Hand"));
+}
+
+#[test]
+fn the_view_menu_hides_the_timeline_and_shows_it() {
+    let mut bench = Bench::with_timeline(SMALL);
+    let low = bench.viewport().bottom();
+    bench.choose(&["View", "Timeline"]);
+    assert!(!bench.shows(Role::Slider, "Timeline ruler"));
+    assert!(bench.viewport().bottom() > low + 100.0);
+    bench.key(Key::Escape);
+    bench.settle();
+    bench.choose(&["View", "Timeline"]);
+    assert_eq!(bench.viewport().bottom(), low);
+}
+
+#[test]
+fn channels_of_a_skeleton_have_the_names_of_its_joints() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([Action::OpenExample(Example::find("human").expect("an example"))]);
+    let names = |joint: usize| bench.session().skeleton().skeleton.joints()[joint].name.clone();
+    let (turned, reached) = (names(1), names(8));
+    bench.apply([Action::Key(vec![Channel::Rotation(1), Channel::Target(8), Channel::Hand])]);
+    for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
+    {
+        assert!(bench.shows(Role::Button, &format!("Channel {name}")), "{name}");
+    }
+    let top = |name: &str| bench.rect(Role::Button, name).top();
+    assert!(top(&format!("Channel {turned} · rotation")) < top("Channel Hand"));
+}
+
+/// Only the lanes in sight are laid out.
+#[test]
+fn ten_thousand_channels_are_scrolled_in_no_time() {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    for joint in document.skeleton.skeleton.joints().len()..5_000 {
+        let joint = Joint::new(&format!("j{joint}"), Some(0), Vec3::ONE);
+        document.skeleton.skeleton.add(joint).expect("room");
+    }
+    for joint in 0..5_000 {
+        for frame in 0..3 {
+            let time = f64::from(frame) * 0.5 + joint as f64 * 1e-4;
+            document.keys.insert(Channel::Rotation(joint), time, Vec3::ZERO);
+            document.keys.insert(Channel::Offset(joint), time, Vec3::ONE);
+        }
+    }
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([Action::Opened { document: Box::new(document), file: None }]);
+    let frame = |bench: &mut Bench| {
+        let begun = Instant::now();
+        bench.frame([]);
+        begun.elapsed()
+    };
+    let with = (0..5).map(|_| frame(&mut bench)).min().expect("some");
+    bench.apply([Action::ShowTimeline(false)]);
+    let without = (0..5).map(|_| frame(&mut bench)).min().expect("some");
+    // In a build without optimisation.
+    assert!(with < without + Duration::from_millis(400), "{with:?}, without it {without:?}");
+    println!("{with:?}, without the timeline {without:?}");
+}

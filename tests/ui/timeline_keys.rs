@@ -1,1 +1,202 @@
 //! The timeline by the keyboard.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton};
+use ik_arm::document::Channel;
+use ik_arm::io::Example;
+use ik_arm::session::{Action, Effect};
+
+use crate::bench::{Bench, LARGE};
+use crate::timeline::{HAND, key_of_hand, keyed, times};
+
+fn is_keyed(bench: &Bench, channel: Channel) -> bool {
+    !times(bench, channel).is_empty()
+}
+
+#[test]
+fn k_keys_what_is_worked_on_and_shift_k_all() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.key(Key::K);
+    assert!(is_keyed(&bench, Channel::Hand) && is_keyed(&bench, Channel::ElbowSpin));
+    assert!(!is_keyed(&bench, Channel::Root));
+    bench.key_with(Modifiers::SHIFT, Key::K);
+    assert!(Channel::OF_ARM.into_iter().all(|channel| is_keyed(&bench, channel)));
+    let mut hidden = Bench::new();
+    hidden.key(Key::K);
+    assert!(is_keyed(&hidden, Channel::Hand), "without the panel too");
+}
+
+#[test]
+fn k_keys_after_a_slider_was_dragged_but_is_a_letter_in_a_text() {
+    let mut bench = Bench::with_timeline(LARGE);
+    let at = bench.rect(Role::Slider, "Hand x").center();
+    bench.drag_and_drop(PointerButton::Primary, at, at + egui::vec2(20.0, 0.0));
+    assert_eq!(bench.focused().map(|it| it.0), Some(Role::Slider));
+    bench.key(Key::K);
+    assert_eq!(times(&bench, Channel::Hand), [0.0]);
+    bench.apply([Action::SetTime(1.0)]);
+    bench.click(Role::SpinButton, "Hand x value");
+    bench.type_text("k");
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(times(&bench, Channel::Hand), [0.0]);
+}
+
+#[test]
+fn k_keys_the_selected_joints() {
+    let mut bench = Bench::with_timeline(LARGE);
+    let human = Example::find("human").expect("an example");
+    bench.apply([Action::OpenExample(human), Action::Select(vec![8])]);
+    bench.key(Key::K);
+    let keyed: Vec<_> = bench.session().document().keys.tracks().map(|it| it.0).collect();
+    assert_eq!(keyed, [Channel::Rotation(8), Channel::Target(8)]);
+}
+
+#[test]
+fn space_plays_and_pauses_the_arm_too() {
+    let mut bench = keyed();
+    bench.key(Key::Space);
+    assert!(bench.session().is_playing());
+    bench.key(Key::Space);
+    assert!(!bench.session().is_playing());
+    bench.click_at(bench.viewport().left_top() + egui::vec2(30.0, 30.0));
+    bench.key(Key::Space);
+    assert!(bench.session().is_playing(), "from the viewport");
+    bench.key(Key::Space);
+    bench.focus(Role::Slider, "Hand x");
+    bench.key(Key::Space);
+    assert!(bench.session().is_playing(), "from a slider");
+    bench.key(Key::Space);
+    bench.focus(Role::CheckBox, "Pointer");
+    bench.key(Key::Space);
+    assert!(!bench.session().is_playing(), "a checkbox has a use for it");
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.key(Key::Space);
+    assert!(!bench.session().is_playing() && bench.says("Nothing moves yet"));
+}
+
+#[test]
+fn arrows_go_from_frame_to_frame_and_from_key_to_key_once_the_timeline_was_clicked() {
+    let mut bench = keyed();
+    let camera = *bench.session().camera();
+    let ruler = bench.rect(Role::Slider, "Timeline ruler");
+    bench.click_at(ruler.center());
+    for (key, time) in [
+        (Key::Home, 0.0),
+        (Key::ArrowRight, 1.0 / 30.0),
+        (Key::ArrowRight, 2.0 / 30.0),
+        (Key::ArrowLeft, 1.0 / 30.0),
+        (Key::ArrowDown, 1.0),
+        (Key::ArrowDown, 2.0),
+        (Key::ArrowUp, 1.0),
+        (Key::End, 8.0),
+        (Key::ArrowUp, 5.0),
+        (Key::Home, 0.0),
+        (Key::ArrowLeft, 0.0),
+    ] {
+        bench.key(key);
+        bench.settle();
+        assert!((bench.session().time() - time).abs() < 1e-12, "{key:?} {time}");
+    }
+    assert_eq!(bench.session().camera(), &camera);
+    bench.click_at(bench.viewport().left_top() + egui::vec2(30.0, 30.0));
+    bench.key(Key::ArrowRight);
+    assert_eq!(bench.session().time(), 0.0);
+    assert_ne!(bench.session().camera(), &camera, "in the viewport they turn the view");
+}
+
+#[test]
+fn from_between_frames_the_arrows_lead_to_the_next_one() {
+    let mut bench = keyed();
+    bench.focus(Role::Slider, "Timeline ruler");
+    bench.apply([Action::SetTime(1.01)]);
+    bench.key(Key::ArrowRight);
+    assert_eq!(bench.session().time(), 31.0 / 30.0);
+    bench.apply([Action::SetTime(1.01)]);
+    bench.key(Key::ArrowLeft);
+    assert_eq!(bench.session().time(), 1.0);
+}
+
+#[test]
+fn delete_takes_the_selected_keys_away() {
+    for key in [Key::Delete, Key::Backspace] {
+        let mut bench = keyed();
+        bench.click_at(key_of_hand(&bench, 2.0));
+        bench.key(key);
+        bench.settle();
+        assert_eq!(times(&bench, Channel::Hand), [1.0, 5.0], "{key:?}");
+        assert!(bench.session().selected_keys().is_empty());
+        bench.apply([Action::Undo]);
+        assert_eq!(times(&bench, Channel::Hand), HAND.map(|it| it.0), "{key:?}");
+    }
+}
+
+#[test]
+fn delete_means_keys_or_joints_whatever_was_clicked_last() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.choose(&["File", "New skeleton"]);
+    bench.click(Role::Button, "Add child");
+    bench.click(Role::Button, "Add child");
+    bench.apply([Action::Key(vec![Channel::Rotation(1)])]);
+    let joints = |bench: &Bench| bench.session().skeleton_pose().len();
+    let key = |bench: &Bench| bench.rect(Role::Button, "Keys at 0.00 s").center();
+    bench.click_at(key(&bench));
+    bench.key(Key::Delete);
+    bench.settle();
+    assert_eq!(joints(&bench), 3, "the key went");
+    assert!(!is_keyed(&bench, Channel::Rotation(1)));
+    bench.key(Key::Delete);
+    bench.settle();
+    assert_eq!(joints(&bench), 3, "in the timeline it never means joints");
+    bench.apply([Action::Key(vec![Channel::Rotation(1)])]);
+    bench.click_at(key(&bench));
+    bench.click(Role::Button, "Joint joint_1");
+    bench.key(Key::Delete);
+    bench.settle();
+    assert_eq!(joints(&bench), 2, "the joint was clicked last");
+    assert!(is_keyed(&bench, Channel::Rotation(1)));
+}
+
+#[test]
+fn copied_keys_are_pasted_to_where_the_time_is() {
+    let mut bench = keyed();
+    bench.click_at(key_of_hand(&bench, 1.0));
+    bench.hold(Modifiers::SHIFT);
+    bench.click_at(key_of_hand(&bench, 2.0));
+    bench.hold(Modifiers::NONE);
+    bench.frame([Event::Copy]);
+    let effects = bench.effects();
+    assert!(
+        matches!(&effects[..], [Effect::CopyText(text)] if text.contains("Hand")),
+        "{effects:?}"
+    );
+    bench.apply([Action::SetTime(6.0)]);
+    bench.frame([Event::Paste("whatever".to_owned())]);
+    bench.settle();
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0, 6.0, 7.0]);
+    let track = bench.session().document().keys.track(Channel::Hand).expect("keys");
+    assert_eq!((track.get(6.0), track.get(7.0)), (Some(HAND[0].1), Some(HAND[1].1)));
+    assert_eq!(bench.session().selected_keys().len(), 2, "they are selected");
+    bench.apply([Action::Undo]);
+    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
+}
+
+#[test]
+fn without_selected_keys_the_pose_is_copied() {
+    let mut bench = keyed();
+    bench.frame([Event::Copy]);
+    let effects = bench.effects();
+    assert!(matches!(&effects[..], [Effect::CopyText(text)] if text.contains("elbow_spin_deg")));
+}
+
+#[test]
+fn ctrl_a_selects_all_keys_and_esc_none() {
+    let mut bench = keyed();
+    bench.focus(Role::Slider, "Timeline ruler");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.settle();
+    assert_eq!(bench.session().selected_keys().len(), 5);
+    bench.key(Key::Escape);
+    bench.settle();
+    assert!(bench.session().selected_keys().is_empty());
+}

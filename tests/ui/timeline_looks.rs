@@ -120,7 +120,7 @@ fn nothing_in_the_timeline_moves_when_the_time_goes_on() {
 fn everything_in_the_timeline_that_can_be_acted_on_has_a_name() {
     for size in [SMALL, LARGE] {
         for curves in [false, true] {
-            let mut bench = bench(size, [Action::ShowCurves(curves)]);
+            let bench = bench(size, [Action::ShowCurves(curves)]);
             bench.harness.check_accessibility();
         }
     }

@@ -54,8 +54,8 @@ pub(super) fn ui(
     let names: Vec<String> = channels.iter().map(|it| names::channel(session, *it)).collect();
     let said = format!("Curves of {}", names.join(", "));
     area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+    super::take_keyboard(ui, &area, ruler);
     if ruler::is_pressed(ui, &area) {
-        ruler.request_focus();
         held::grab_playhead(ui, session, actions);
         held::follow_playhead(ui, session, scale, actions);
     }

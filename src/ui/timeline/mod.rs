@@ -13,14 +13,14 @@ mod ruler;
 mod scale;
 mod transport;
 
-use egui::{Rect, Ui, pos2};
+use egui::{Rect, Response, Ui, pos2};
 
 use crate::session::{Action, Session};
 pub(super) use keys::{everywhere, has_the_word, holds, leave_space};
 use scale::Scale;
 
 /// Of the column with the names.
-const NAMES: f32 = 152.0;
+const NAMES: f32 = 164.0;
 const RULER: f32 = 24.0;
 const ROW: f32 = 20.0;
 
@@ -44,6 +44,15 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     ruler::playhead(ui, session, scale, areas.ruler, areas.lanes.bottom());
     keys::focused(ui, session, actions);
+}
+
+/// A press or a click in an area gives the ruler the keyboard for the whole timeline; a click beside
+/// the ruler has just taken it away.
+fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
+    let touched = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_click());
+    if touched && area.contains_pointer() {
+        ruler.request_focus();
+    }
 }
 
 /// What is where in the panel.

@@ -72,6 +72,7 @@ pub(super) fn press(
     ruler: &Response,
     actions: &mut Vec<Action>,
 ) {
+    super::take_keyboard(ui, body, ruler);
     if !body.contains_pointer() {
         return;
     }
@@ -79,7 +80,6 @@ pub(super) fn press(
         let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
             continue;
         };
-        ruler.request_focus();
         if lanes.session.is_editing() || held::get(ui).is_some() {
             continue;
         }
@@ -177,8 +177,8 @@ fn move_keys(
     actions: &mut Vec<Action>,
 ) {
     let session = lanes.session;
-    if drag.moved && !session.is_editing() {
-        // It was taken back.
+    let taken_back = ui.input(|input| input.key_pressed(Button::Escape));
+    if taken_back || drag.moved && !session.is_editing() {
         actions.push(Action::SelectKeys(drag.keys));
         held::clear(ui);
         return;

@@ -133,7 +133,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
         value: session.time(),
         unit: " s",
         speed: 0.25 / rate as f32,
-        width: 68.0,
+        width: 70.0,
         digits: 2,
         tooltip: "The time in seconds: drag, or click to type. Left and right arrow go a frame, in \
                   the timeline",
@@ -145,7 +145,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
         value: (session.time() * rate).round() + 0.0,
         unit: " f",
         speed: 0.25,
-        width: 62.0,
+        width: 74.0,
         digits: 0,
         tooltip: "The time in frames: drag, or click to type",
     };
@@ -231,7 +231,7 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
         value,
         unit: " s",
         speed: 0.02,
-        width: 66.0,
+        width: 70.0,
         digits: 2,
         tooltip,
     };
