@@ -6,7 +6,7 @@
 //! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document. What
 //! a file made of a document cannot say is in the notes of [`Exported`].
 //!
-//! Files are written whole or not at all, by [`write`], [`write_with`] and [`Batch`]; nothing else
+//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`Batch`]; nothing else
 //! writes to the disk.
 
 mod batch;

@@ -15,7 +15,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
 }
 
-/// As [`write`], what `write` writes, bit by bit. If that fails, there is no file.
+/// As [`write()`], what `write` writes, piece by piece. If that fails, there is no file.
 ///
 /// # Errors
 ///

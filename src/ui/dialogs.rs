@@ -172,7 +172,7 @@ const SAVE_PICTURE: Question = Question {
 };
 
 const OPEN: Question = Question {
-    prompt: "Open a document, or a .js3d scene of Scotty3D",
+    prompt: "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf",
     accept: "Open",
     dialog: |path| Dialog::Open { path },
     action: |path| Action::Open { path: path.into(), skeleton: None },

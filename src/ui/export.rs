@@ -6,22 +6,54 @@ use egui::{DragValue, Grid, Ui};
 
 use super::dialogs::ask;
 use super::row::Field;
+use crate::export::Format;
 use crate::session::{Action, Dialog, Export, Session};
 
-/// A format: its name, the ending of its files, what it is for.
-type Format = (&'static str, &'static str, &'static str);
+/// A format, what it is called and for, and the ending of its files.
+struct Choice {
+    format: Format,
+    name: &'static str,
+    ending: &'static str,
+    tooltip: &'static str,
+}
 
-const FORMATS: [Format; 6] = [
-    (
-        "GLB",
-        ".glb",
-        "glTF: a skinned, animated model, as Blender, Unity, Unreal and three.js read it",
-    ),
-    ("BVH", ".bvh", "Joints and their motion, as motion capture has it"),
-    ("CSV", ".csv", "The joints' positions at every frame, as a table"),
-    ("Animated PNG", ".apng", "The motion as a picture that moves"),
-    ("PNG sequence", "_####.png", "A picture of every frame"),
-    ("PNG", ".png", "A picture of this moment"),
+const CHOICES: [Choice; 6] = [
+    Choice {
+        format: Format::Glb,
+        name: "GLB",
+        ending: ".glb",
+        tooltip: "glTF: a skinned, animated model for Blender, Unity, Unreal, three.js",
+    },
+    Choice {
+        format: Format::Bvh,
+        name: "BVH",
+        ending: ".bvh",
+        tooltip: "Joints and their motion, as motion capture has it",
+    },
+    Choice {
+        format: Format::Csv,
+        name: "CSV",
+        ending: ".csv",
+        tooltip: "The joints' positions at every frame, as a table",
+    },
+    Choice {
+        format: Format::Apng,
+        name: "Animated PNG",
+        ending: ".apng",
+        tooltip: "The motion as a picture that moves",
+    },
+    Choice {
+        format: Format::PngSequence,
+        name: "PNG sequence",
+        ending: "_####.png",
+        tooltip: "A picture of every frame; # stand for its number",
+    },
+    Choice {
+        format: Format::Png,
+        name: "PNG",
+        ending: ".png",
+        tooltip: "A picture of this moment",
+    },
 ];
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut Vec<Action>) {
@@ -32,10 +64,9 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
         let path = path.to_string_lossy().into_owned();
         Action::OpenDialog(Dialog::Export { path, frame_rate, size })
     };
-    let chosen = format_of(&path);
+    let chosen = Format::of(&export.path).ok();
     ui.horizontal_wrapped(|ui| {
-        for format in FORMATS {
-            let (name, ending, tooltip) = format;
+        for Choice { format, name, ending, tooltip } in CHOICES {
             let is_chosen = chosen == Some(format);
             let button = egui::Button::selectable(is_chosen, name).frame_when_inactive(true);
             if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
@@ -44,14 +75,15 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
             }
         }
     });
-    ui.weak(chosen.map_or("The ending of the path says the format", |(_, _, tooltip)| tooltip));
+    let described = CHOICES.iter().find(|choice| chosen == Some(choice.format));
+    ui.weak(described.map_or("The ending of the path says the format", |choice| choice.tooltip));
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
         let name = ui.label("Frames a second");
         ui.add(DragValue::new(&mut changed.frame_rate).range(1..=240)).labelled_by(name.id);
         ui.end_row();
-        if chosen.is_some_and(|(_, ending, _)| ending.ends_with("png")) {
+        if chosen.is_some_and(Format::is_picture) {
             let name = ui.label("Size in pixels");
             ui.horizontal(|ui| {
                 ui.add(DragValue::new(&mut changed.size.0).range(16..=8192)).labelled_by(name.id);
@@ -60,7 +92,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
             });
             ui.end_row();
         }
-        if chosen.is_some_and(|(_, ending, _)| [".glb", ".bvh"].contains(&ending)) {
+        if matches!(chosen, Some(Format::Glb | Format::Bvh)) {
             ui.label("Metres in a unit");
             let tooltip = "How long a unit of the scene is for other programs";
             let value = session.document().metres_per_unit();
@@ -97,7 +129,7 @@ fn buttons(
 ) {
     let why_not = if session.job().is_some() {
         Some("Another export is under way")
-    } else if format_of(&export.path.to_string_lossy()).is_none() {
+    } else if Format::of(&export.path).is_err() {
         Some("The path's ending must be one of the formats'")
     } else {
         None
@@ -116,21 +148,6 @@ fn buttons(
             actions.push(Action::CloseDialog);
         }
     });
-}
-
-/// The format that a path's ending says.
-fn format_of(path: &str) -> Option<Format> {
-    let lower = path.to_lowercase();
-    let is_sequence = lower.ends_with(".png") && stem_name(&lower).contains('#');
-    FORMATS.into_iter().find(|(_, ending, _)| match *ending {
-        "_####.png" => is_sequence,
-        ".png" => lower.ends_with(".png") && !is_sequence,
-        ending => lower.ends_with(ending),
-    })
-}
-
-fn stem_name(path: &str) -> String {
-    Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// A path without its ending, and without the places for a frame's number.

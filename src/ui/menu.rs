@@ -2,8 +2,8 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use super::status;
-use crate::document::{AxisView, Camera, Layer, RigKind, Theme};
+use super::{status, timeline};
+use crate::document::{AxisView, Camera, Channel, Layer, RigKind, Theme};
 use crate::io::Example;
 use crate::session::{Action, Dialog, Navigation, Session};
 
@@ -87,6 +87,8 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     step(ui, "Undo", session.undo_name(), "Ctrl+Z", Action::Undo, actions);
     step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", Action::Redo, actions);
     ui.separator();
+    ui.menu_button("Key", |ui| key(ui, session, actions));
+    ui.separator();
     if item(ui, "Copy pose as JSON line", "Ctrl+C") {
         actions.push(Action::CopyPose);
     }
@@ -100,6 +102,41 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 actions.push(Action::SetNavigation(navigation));
             }
         }
+    });
+}
+
+/// Everything that can have keys, switches too.
+fn key(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    if item(ui, "Selected", "K") {
+        actions.push(Action::Key(session.channels_to_key()));
+    }
+    if item(ui, "All", "Shift+K") {
+        actions.push(Action::Key(session.all_channels()));
+    }
+    ui.separator();
+    let one = |ui: &mut Ui, channel: Channel, actions: &mut Vec<Action>| {
+        if ui.button(timeline::channel(session, channel)).clicked() {
+            actions.push(Action::Key(vec![channel]));
+        }
+    };
+    match session.rig() {
+        RigKind::Arm => Channel::OF_ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
+        RigKind::Skeleton => {
+            one(ui, Channel::Translation, actions);
+            for joint in session.selection() {
+                let of_joint = [
+                    Channel::Rotation(*joint),
+                    Channel::Offset(*joint),
+                    Channel::Target(*joint),
+                    Channel::Enabled(*joint),
+                ];
+                let there = of_joint.into_iter().filter(|it| it.value(session.shown()).is_some());
+                there.for_each(|channel| one(ui, channel, actions));
+            }
+        }
+    }
+    ui.menu_button("What is shown", |ui| {
+        Layer::all().map(Channel::Layer).for_each(|channel| one(ui, channel, actions));
     });
 }
 

@@ -17,7 +17,8 @@ use crate::io::{BvhUnit, OpenError, Progress};
 
 #[derive(clap::Args)]
 #[command(after_help = r#"The ending of OUT says what it is:
-  .bvh        the shown rig and its motion, for programs that animate
+  .glb        the shown rig as a skinned, animated model in metres: glTF in one file
+  .bvh        its joints and their motion, for programs that animate
   .csv        where every joint is, a row for each frame
   .png        a picture at --time
   .png with # in its name, as walk_####.png: a picture for each frame, walk_0000.png and on
@@ -25,7 +26,7 @@ use crate::io::{BvhUnit, OpenError, Progress};
 Frames go from the start of the file's timeline to its end; where nothing moves there is one.
 What OUT cannot say is told on stderr. Ctrl+C stops it: nothing is written then, and it exits with 130."#)]
 pub struct Args {
-    /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
+    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, or - for standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Where it goes

@@ -17,6 +17,7 @@ use egui::{Rect, Response, Ui, pos2};
 
 use crate::session::{Action, Session};
 pub(super) use keys::{everywhere, has_the_word, holds, leave_space};
+pub(super) use names::channel;
 use scale::Scale;
 
 /// Of the column with the names.

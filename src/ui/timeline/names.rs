@@ -5,7 +5,7 @@ use crate::session::Session;
 use crate::ui::controls;
 
 /// As in "Hand" or "left_1 · rotation".
-pub(super) fn channel(session: &Session, channel: Channel) -> String {
+pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     let of_joint = |joint: usize, what: &str| {
         let name = session.skeleton().skeleton.joint(joint).map_or("–", |joint| &joint.name);
         format!("{name} · {what}")
