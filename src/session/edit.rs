@@ -51,7 +51,7 @@ impl Session {
         }
         self.document = after;
         self.refresh();
-        self.refresh_trail();
+        self.forget_trail();
     }
 
     fn hold_changes(&mut self, after: &mut Document) {
@@ -96,7 +96,7 @@ impl Session {
         self.overrides.clone_from(&state.overrides);
         self.revision = state.revision;
         self.refresh();
-        self.refresh_trail();
+        self.forget_trail();
     }
 
     /// Does something that makes a step, unless it is part of a larger one.

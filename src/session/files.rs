@@ -65,7 +65,7 @@ impl Session {
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();
-        self.refresh_trail();
+        self.forget_trail();
         if let Some(file) = file {
             self.remember_file(file);
         }

@@ -24,8 +24,11 @@ mod trail;
 mod turn_drag;
 mod view_drag;
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+
+use glam::Vec3;
 
 pub use action::{Action, Effect};
 pub use drag::{Drag, Grip};
@@ -46,7 +49,6 @@ use clock::Clock;
 use edit::Edit;
 use history::{Overrides, State};
 use keys::Clipboard;
-use trail::Trail;
 use view_drag::Glide;
 
 /// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
@@ -64,7 +66,8 @@ pub struct Session {
     recent: Vec<PathBuf>,
     pose: Pose,
     skeleton_pose: SkeletonPose,
-    trail: Trail,
+    /// Walked when it is first shown.
+    trail: OnceCell<Vec<Vec3>>,
     preferences: Preferences,
     edit: Option<Edit>,
     history: history::History,
@@ -158,7 +161,7 @@ impl Session {
             document,
             file: None,
             recent: Vec::new(),
-            trail: Trail::default(),
+            trail: OnceCell::new(),
             preferences,
             edit: None,
             history: history::History::default(),
@@ -232,7 +235,7 @@ impl Session {
             selection: self.selection.clone(),
             pointed: self.pointed,
             ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
-            trail: self.trail.points().to_vec(),
+            trail: self.trail().to_vec(),
             onion_skins: self.onion_skins(),
         }
     }
@@ -346,7 +349,7 @@ impl Session {
     fn select(&mut self, joints: Vec<usize>) {
         self.selection = joints;
         self.selection.retain(|joint| *joint < self.skeleton_pose.len());
-        self.refresh_trail();
+        self.forget_trail();
     }
 
     pub fn dialog(&self) -> Option<&Dialog> {

@@ -85,7 +85,7 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
     let navigation = session.preferences().navigation;
     let [turn, pan, zoom] = navigation.help();
     let view = format!("View ({})", navigation.name());
-    let groups: [(&str, &[(&str, &str)]); 5] = [
+    let groups: [(&str, &[(&str, &str)]); 6] = [
         (&view, &[("Turn", turn), ("Move", pan), ("Zoom", zoom), ("Over handles too", "Alt+drag")]),
         (
             "Look",
@@ -105,7 +105,6 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
                 ("Add a child, at the pointer", "A, Ctrl+click"),
                 ("Add or remove a target, rename, delete", "T, F2, Delete"),
                 ("Run the solver, one iteration", "R, S"),
-                ("Let the time go on or stand", "Space"),
                 ("Select all, none", "Ctrl+A, Esc"),
             ],
         ),
@@ -126,15 +125,28 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
                 ("Take back a drag", "Esc"),
             ],
         ),
+        (
+            "Time and keys",
+            &[
+                ("Play or pause", "Space"),
+                ("Key what is selected, all", "K, Shift+K"),
+                ("Frame and key before, after", "arrows in the timeline"),
+                ("Start, end", "Home, End in the timeline"),
+                ("Select keys, more, all", "click or box, Shift, Ctrl+A"),
+                ("Delete, copy, paste keys", "Delete, Ctrl+C, Ctrl+V"),
+                ("Drag between frames", "Ctrl"),
+                ("Zoom the time, move it", "wheel, middle drag"),
+            ],
+        ),
     ];
     // Beside each other, so that all is seen at once; where the window is smaller still, it scrolls.
     let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
-    let size = vec2(900.0, 396.0).min(room);
+    let size = vec2(900.0, 484.0).min(room);
     ui.set_min_size(size);
     ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 24.0;
-            for column in [&[1, 2][..], &[0, 3, 4]] {
+            for column in [&[1, 2, 4][..], &[0, 3, 5]] {
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.x = 8.0;
                     column.iter().for_each(|group| group_of_keys(ui, groups[*group]));

@@ -21,7 +21,7 @@ pub(super) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) 
 pub(super) fn named_section(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
     let heading = cut(ui, title);
     CollapsingHeader::new(heading).id_salt(id).default_open(true).show_unindented(ui, contents);
-    ui.add_space(6.0);
+    ui.add_space(3.0);
 }
 
 /// A title in one line no wider than the panel, whatever a joint is called: a header would make the

@@ -16,12 +16,14 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Ac
         return;
     }
     let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
-    if consumed(Modifiers::SHIFT, Key::K) {
+    let pressed = |key| ui.input(|input| input.key_pressed(key));
+    let modifiers = ui.input(|input| input.modifiers);
+    if pressed(Key::K) && modifiers.shift_only() {
         actions.push(Action::Key(session.all_channels()));
-    } else if consumed(Modifiers::NONE, Key::K) {
+    } else if pressed(Key::K) && modifiers.is_none() {
         actions.push(Action::Key(session.channels_to_key()));
     }
-    if leaves_space(ui) && consumed(Modifiers::NONE, Key::Space) {
+    if leaves_space(ui) && pressed(Key::Space) && modifiers.is_none() {
         if session.is_playing() || session.has_motion() {
             actions.push(Action::Play(!session.is_playing()));
         } else {
@@ -79,7 +81,8 @@ pub(super) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(ruler::id(), arrows));
     leave_space(ui, ruler::id());
-    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
     let timeline = session.document().timeline;
     let to = if pressed(Key::ArrowLeft) {
         Some(next_frame(session, -1.0))
@@ -89,7 +92,7 @@ pub(super) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         key_before(session)
     } else if pressed(Key::ArrowDown) {
         key_after(session)
-    } else if pressed(Key::Home) {
+    } else if consumed(Modifiers::NONE, Key::Home) {
         Some(timeline.start)
     } else if pressed(Key::End) {
         Some(timeline.end)
@@ -97,7 +100,7 @@ pub(super) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         None
     };
     actions.extend(to.map(Action::SetTime));
-    if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::A)) {
+    if consumed(Modifiers::COMMAND, Key::A) {
         let tracks = session.document().keys.tracks();
         let keys = tracks.flat_map(|(channel, track)| {
             track.knots().iter().map(move |knot| (channel, knot.time))
@@ -105,7 +108,9 @@ pub(super) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(Action::SelectKeys(keys.collect()));
     }
     // Here it never means joints.
-    let _ = pressed(Key::Delete) || pressed(Key::Backspace);
+    for key in [Key::Delete, Key::Backspace] {
+        consumed(Modifiers::NONE, key);
+    }
     keyboard::viewport(ui, session, actions);
 }
 
