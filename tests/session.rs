@@ -287,6 +287,108 @@ proptest! {
     }
 }
 
+/// A hand that goes from one place to another in a second, and is between them.
+fn halfway() -> Session {
+    let mut session = Session::default();
+    for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::Key(vec![Channel::Hand]));
+    }
+    session.apply(Action::SetTime(0.5));
+    assert_eq!(session.arm().cursor, Vec3::new(100.0, 100.0, 0.0));
+    session
+}
+
+#[test]
+fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
+    let mut session = halfway();
+    let document = session.document().clone();
+    session.apply(Action::Saved("x.json".into()));
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    assert!(session.is_overridden(Channel::Hand));
+    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+    assert_eq!(session.document().keys, document.keys);
+    for time in [0.6, 0.5] {
+        session.apply(Action::SetTime(time));
+        let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
+        assert!(session.arm().cursor.distance(expected) < 1e-3);
+        assert!(!session.is_overridden(Channel::Hand));
+    }
+}
+
+#[test]
+fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
+    let mut session = halfway();
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(Action::Undo);
+    assert_eq!(session.arm().cursor, Vec3::new(100.0, 100.0, 0.0));
+    session.apply(Action::Redo);
+    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+    session.apply(Action::Key(vec![Channel::Hand]));
+    session.apply(Action::SetTime(0.0));
+    session.apply(Action::SetTime(0.5));
+    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+}
+
+#[test]
+fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
+    let mut session = halfway();
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(Action::BeginEdit);
+    session.apply(Action::SetTime(1.0));
+    session.apply(Action::CancelEdit);
+    assert_eq!(session.arm().cursor, Vec3::Y * 200.0);
+}
+
+#[test]
+fn with_auto_key_every_edit_makes_a_key() {
+    let mut session = Session::default();
+    session.apply(Action::SetAutoKey(true));
+    for (time, spin) in [(0.0, 6.0), (1.0, 0.5)] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetElbowSpin(spin));
+    }
+    let keys = &session.document().keys;
+    let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
+    assert_eq!(channels, [Channel::ElbowSpin]);
+    // The shorter way, past 0 and not back around.
+    let spun = keys.value(Channel::ElbowSpin, 1.0).expect("a key").x;
+    assert!((spun - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{spun}");
+    // A switch gets no key by being switched.
+    session.apply(Action::Show(Layer::Cursor, false));
+    assert!(!session.document().keys.has(Channel::Layer(Layer::Cursor)));
+}
+
+#[test]
+fn playing_keeps_time_however_slow_the_pictures_are_and_writes_nothing() {
+    for (steps, step) in [(200, 0.01), (4, 0.5), (1, 2.0)] {
+        let mut session = halfway();
+        session.apply(Action::SetTime(0.0));
+        let document = session.document().clone();
+        session.apply(Action::Play(true));
+        for tick in 0..=steps {
+            session.apply(Action::Advance(50.0 + f64::from(tick) * step));
+        }
+        assert!((session.time() - 2.0).abs() < 1e-9, "{}", session.time());
+        assert_eq!(session.document(), &document);
+    }
+}
+
+#[test]
+fn time_ends_where_the_timeline_does_or_begins_again() {
+    for (looping, expected, playing) in [(true, 1.5, true), (false, 8.0, false)] {
+        let mut session = halfway();
+        session.apply(Action::SetTime(0.0));
+        session.apply(Action::SetLooping(looping));
+        session.apply(Action::Play(true));
+        for seconds in [1.0, 10.5] {
+            session.apply(Action::Advance(seconds));
+        }
+        assert_eq!((session.time(), session.is_playing()), (expected, playing));
+    }
+}
+
 #[test]
 fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
     let mut session = Session::default();

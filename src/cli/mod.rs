@@ -34,7 +34,7 @@ enum Command {
     Pose(pose::Args),
     /// Draw the arm or a file to a picture, without a window
     Render(render::Args),
-    /// Write a file's motion or pictures for other programs: .bvh, .csv, .png, .apng
+    /// Write a file's motion or pictures for other programs: .glb, .bvh, .csv, .png, .apng
     Export(export::Args),
     /// List the scenes that come with the program, or print one
     Examples(examples::Args),

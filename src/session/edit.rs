@@ -85,7 +85,7 @@ impl Session {
         if before.differs_from(&self.document) {
             self.newest_revision += 1;
             self.revision = self.newest_revision;
-        } else if before.overrides == self.overrides {
+        } else if before.overrides_at(self.clock.time) == self.overrides {
             return;
         }
         self.history.push(name, before);
@@ -93,7 +93,7 @@ impl Session {
 
     pub(super) fn restore(&mut self, state: &State) {
         self.document = state.document(self.document.camera);
-        self.overrides.clone_from(&state.overrides);
+        self.overrides = state.overrides_at(self.clock.time);
         self.revision = state.revision;
         self.refresh();
         self.forget_trail();
@@ -146,8 +146,8 @@ impl Session {
         if self.run_before.is_some() {
             return self.cancel_run();
         }
-        let (now, time) = (self.state(), self.clock.time);
-        self.message = Some(match self.history.undo(now, time) {
+        let now = self.state();
+        self.message = Some(match self.history.undo(now) {
             Some((name, state)) => {
                 self.restore(&state);
                 format!("Undone: {name}")
@@ -159,8 +159,8 @@ impl Session {
     pub(super) fn redo(&mut self) {
         self.commit_edit();
         self.stop_run();
-        let (now, time) = (self.state(), self.clock.time);
-        self.message = Some(match self.history.redo(now, time) {
+        let now = self.state();
+        self.message = Some(match self.history.redo(now) {
             Some((name, state)) => {
                 self.restore(&state);
                 format!("Done again: {name}")

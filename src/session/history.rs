@@ -23,7 +23,7 @@ pub(super) struct State {
     timeline: Timeline,
     display: Display,
     metres: Option<f32>,
-    pub overrides: Overrides,
+    overrides: Overrides,
     /// When the overrides were made.
     time: f64,
     /// Which document it is: the same number, the same document.
@@ -72,12 +72,15 @@ impl State {
             || self.metres != *metres
     }
 
-    /// As it is at a time: overrides of another one are gone.
-    fn at(mut self, time: f64) -> Self {
-        if self.time != time {
-            self.overrides.clear();
-        }
-        self
+    /// The overrides that are left at a time: at another one than theirs none.
+    pub fn overrides_at(&self, time: f64) -> Overrides {
+        if self.time == time { self.overrides.clone() } else { Overrides::default() }
+    }
+
+    /// Whether it looks as another one does at that one's time: what was only seen at another time is
+    /// gone.
+    fn looks_like(&self, now: &Self) -> bool {
+        self.revision == now.revision && self.overrides_at(now.time) == now.overrides
     }
 
     fn share_with(&mut self, other: &Self) {
@@ -146,12 +149,10 @@ impl History {
     }
 
     /// Goes a step back from `now`: its name, and how everything was.
-    pub fn undo(&mut self, now: State, time: f64) -> Option<(&'static str, State)> {
+    pub fn undo(&mut self, now: State) -> Option<(&'static str, State)> {
         loop {
             let Step { name, state } = self.undo.pop_back()?;
-            let state = state.at(time);
-            // What was only seen at another time is gone already.
-            if state.overrides != now.overrides || state.revision != now.revision {
+            if !state.looks_like(&now) {
                 self.redo.push(Step { name, state: now });
                 return Some((name, state));
             }
@@ -159,11 +160,10 @@ impl History {
     }
 
     /// Goes a step forward from `now`.
-    pub fn redo(&mut self, now: State, time: f64) -> Option<(&'static str, State)> {
+    pub fn redo(&mut self, now: State) -> Option<(&'static str, State)> {
         loop {
             let Step { name, state } = self.redo.pop()?;
-            let state = state.at(time);
-            if state.overrides != now.overrides || state.revision != now.revision {
+            if !state.looks_like(&now) {
                 self.undo.push_back(Step { name, state: now });
                 return Some((name, state));
             }
