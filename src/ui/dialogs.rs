@@ -141,7 +141,7 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
     ];
     // Beside each other, so that all is seen at once; where the window is smaller still, it scrolls.
     let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
-    let size = vec2(900.0, 484.0).min(room);
+    let size = vec2(900.0, 432.0).min(room);
     ui.set_min_size(size);
     ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
         ui.horizontal_top(|ui| {
@@ -158,7 +158,8 @@ fn shortcuts(ui: &mut Ui, session: &Session) {
 
 fn group_of_keys(ui: &mut Ui, (title, rows): (&str, &[(&str, &str)])) {
     ui.strong(title);
-    Grid::new(title).num_columns(2).min_col_width(190.0).show(ui, |ui| {
+    let grid = Grid::new(title).num_columns(2).min_col_width(190.0);
+    grid.min_row_height(18.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
         for (what, keys) in rows {
             ui.label(*what);
             ui.weak(*keys);

@@ -18,7 +18,7 @@ fn in_theme(theme: Theme) -> Bench {
 }
 
 /// Rests the pointer on a widget until its tooltip shows.
-fn has_tooltip(bench: &mut Bench, role: Role, name: &str) -> bool {
+pub fn has_tooltip(bench: &mut Bench, role: Role, name: &str) -> bool {
     bench.move_to(bench.viewport().left_bottom() + vec2(30.0, -30.0));
     bench.wait(0.05);
     bench.move_to(bench.rect(role, name).center());

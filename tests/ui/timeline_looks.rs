@@ -9,6 +9,7 @@ use ik_arm::document::{Channel, Theme};
 use ik_arm::session::Action;
 
 use crate::bench::{Bench, LARGE, SMALL};
+use crate::looks::has_tooltip;
 
 /// An arm that is keyed at three times, in the middle of it.
 pub fn animated() -> Vec<Action> {
@@ -32,6 +33,7 @@ pub fn animated() -> Vec<Action> {
         Action::SetUpper(180.0),
         Action::Key(vec![Channel::Upper]),
         Action::SelectKeys(vec![(Channel::Hand, 3.5), (Channel::ElbowSpin, 3.5)]),
+        Action::SelectChannels(vec![Channel::Hand]),
         Action::SetTime(4.5),
         Action::SetHand(Vec3::new(100.0, 100.0, 100.0)),
     ]);
@@ -52,7 +54,13 @@ fn the_timeline_looks_as_it_did() {
         for (name, size, curves) in
             [("timeline", LARGE, false), ("timeline_small", SMALL, false), ("curves", LARGE, true)]
         {
-            let mut bench = bench(size, [Action::SetTheme(theme), Action::ShowCurves(curves)]);
+            let looks = [Action::SetTheme(theme), Action::ShowCurves(curves)];
+            let mut bench = bench(size, looks);
+            if curves {
+                bench.apply([Action::SelectChannels(Vec::new())]);
+            } else if size == SMALL {
+                bench.apply([Action::SetAutoKey(true)]);
+            }
             let options = SnapshotOptions::new()
                 .threshold(2.0)
                 .max_failed_pixels(600)
@@ -137,6 +145,24 @@ fn a_timeline_without_keys_says_how_to_set_the_first_one() {
 }
 
 #[test]
+fn every_control_of_the_timeline_has_a_tooltip() {
+    let mut bench = bench(LARGE, []);
+    let more = [
+        (Role::Button, "Channel Hand"),
+        (Role::Button, "Key of Hand at 1.00 s"),
+        (Role::Button, "Keys at 2.00 s"),
+        (Role::Image, "Hand is changed here, not keyed: press K to keep it"),
+    ];
+    for (role, name) in CONTROLS.into_iter().chain(more) {
+        assert!(has_tooltip(&mut bench, role, name), "{name}");
+    }
+    let mut bench = Bench::with_timeline(LARGE);
+    for name in ["Play", "Previous key", "Next key"] {
+        assert!(has_tooltip(&mut bench, Role::Button, name), "{name} says why it is disabled");
+    }
+}
+
+#[test]
 fn what_cannot_act_is_disabled() {
     let disabled =
         |bench: &Bench, name: &str| bench.node(Role::Button, name).accesskit_node().is_disabled();
@@ -153,6 +179,7 @@ fn what_cannot_act_is_disabled() {
 #[test]
 fn the_curves_are_those_of_the_selected_channels_or_of_the_whole_rig() {
     let mut bench = bench(LARGE, [Action::ShowCurves(true)]);
+    bench.apply([Action::SelectChannels(Vec::new())]);
     assert!(bench.shows(Role::Image, "Curves of Hand, Elbow spin, Upper length"));
     bench.apply([Action::SelectChannels(vec![Channel::Upper])]);
     assert!(bench.shows(Role::Image, "Curves of Upper length"));

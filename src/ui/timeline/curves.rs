@@ -11,14 +11,17 @@ use super::{Areas, ROW, held, lanes, names, rows, ruler};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::solve::Method;
 use crate::session::{Action, Session};
-use crate::ui::{number, style};
+use crate::ui::{slider, style};
 
 /// More than these cannot be told apart.
 const MOST: usize = 24;
 /// Between two points of a curve, in points of the screen.
 const GRAIN: f32 = 2.0;
 /// Beside the plot.
-const VALUES: f32 = 44.0;
+const VALUES: f32 = 42.0;
+
+/// Between two values that are written, at least.
+const BETWEEN_VALUES: f32 = 20.0;
 
 /// The line of one number of a channel.
 struct Curve {
@@ -163,9 +166,14 @@ fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .set_margin_fraction(egui::Vec2::ZERO)
+        .y_grid_spacer(egui_plot::uniform_grid_spacer(move |grid| {
+            let lines = f64::from((rect.height() / BETWEEN_VALUES).max(1.0));
+            let step = round_step((grid.bounds.1 - grid.bounds.0) / lines);
+            [step, 5.0 * step, 10.0 * step]
+        }))
         .custom_y_axes(vec![
             AxisHints::new_y()
-                .formatter(|mark, _| number::short(mark.value as f32))
+                .formatter(|mark, _| value(mark.value, mark.step_size))
                 .label_spacing(Rangef::new(14.0, 18.0))
                 .min_thickness(VALUES),
         ])
@@ -179,6 +187,19 @@ fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
                 plot.points(knots.color(curve.colour).radius(3.0));
             }
         });
+}
+
+/// With as many digits as tell it from the next one.
+fn value(value: f64, step: f64) -> String {
+    let digits = -step.max(1e-6).log10().floor();
+    slider::format(value, digits.max(0.0) as usize)
+}
+
+/// The 1, 2 or 5 times a power of ten that is next above.
+fn round_step(step: f64) -> f64 {
+    let power = 10_f64.powf(step.max(1e-30).log10().floor());
+    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
+    steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
 }
 
 /// Which line is which.
@@ -196,7 +217,7 @@ fn legend(ui: &mut Ui, session: &Session, areas: &Areas, channels: &[Channel]) {
 }
 
 fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
-    const SWATCH: f32 = 7.0;
+    const SWATCH: f32 = 6.0;
     let size = vec2(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let name = names::channel(session, channel);
@@ -208,7 +229,7 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
         let at = pos2(x, rect.center().y);
         ui.painter().hline(x..=x + SWATCH - 1.5, at.y, Stroke::new(3.0, *colour));
     }
-    let beside = Rect::from_min_max(pos2(rect.left() + width + 4.0, rect.top()), rect.max);
+    let beside = Rect::from_min_max(pos2(rect.left() + width + 3.0, rect.top()), rect.max);
     lanes::text(ui, beside, &name, ui.visuals().text_color());
     let axes = if colours.len() == 3 { ": x, y and z in the colours of the axes" } else { "" };
     response.on_hover_text(format!("{name}{axes}"));

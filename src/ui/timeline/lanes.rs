@@ -254,7 +254,7 @@ impl Shown<'_> {
 pub(super) fn text(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     let font: FontId = TextStyle::Body.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
-    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.width() - 18.0).max(8.0));
+    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.width() - 14.0).max(8.0));
     let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let at = pos2(rect.left() + 10.0, rect.center().y - galley.size().y / 2.0);
     ui.painter().galley(at, galley, colour);

@@ -21,7 +21,7 @@ pub(super) use names::channel;
 use scale::Scale;
 
 /// Of the column with the names.
-const NAMES: f32 = 164.0;
+const NAMES: f32 = 180.0;
 const RULER: f32 = 24.0;
 const ROW: f32 = 20.0;
 
