@@ -19,6 +19,7 @@ mod number;
 mod point;
 mod race;
 mod row;
+mod shortcuts;
 mod slider;
 mod solver;
 mod status;

@@ -21,7 +21,7 @@ const GRAIN: f32 = 2.0;
 const VALUES: f32 = 42.0;
 
 /// Between two values that are written, at least.
-const BETWEEN_VALUES: f32 = 20.0;
+const BETWEEN_VALUES: f32 = 15.0;
 
 /// The line of one number of a channel.
 struct Curve {
@@ -174,7 +174,7 @@ fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
         .custom_y_axes(vec![
             AxisHints::new_y()
                 .formatter(|mark, _| value(mark.value, mark.step_size))
-                .label_spacing(Rangef::new(14.0, 18.0))
+                .label_spacing(Rangef::new(13.0, 15.0))
                 .min_thickness(VALUES),
         ])
         .show(&mut inside, |plot| {
