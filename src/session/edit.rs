@@ -72,6 +72,7 @@ impl Session {
                 after.key(channel, self.clock.time);
             } else if let Some(value) = channel.value(after) {
                 self.overrides.insert(channel, value);
+                self.message = Some("Shown until the time changes: press K to keep it".to_owned());
             }
         }
     }
