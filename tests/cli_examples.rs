@@ -20,7 +20,7 @@ fn stdout(output: &Output) -> &str {
 fn without_a_name_they_are_listed_each_with_what_it_shows() {
     let output = examples(&[]);
     let lines: Vec<_> = stdout(&output).lines().collect();
-    assert_eq!(lines.len(), 6);
+    assert_eq!(lines.len(), Example::ALL.len());
     for (line, example) in lines.iter().zip(Example::ALL) {
         assert!(line.starts_with(&format!("{} ", example.name)), "{line}");
         assert!(line.ends_with(&format!(" {}: {}", example.title, example.sentence)), "{line}");

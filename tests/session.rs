@@ -9,7 +9,7 @@ use ik_arm::document::{
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::Limit;
 use ik_arm::kinematics::solve::{Method, Options, Root};
-use ik_arm::session::{Action, DragInput, Grip, Handle, Session};
+use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, Session};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -330,6 +330,90 @@ fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
     session.apply(Action::SetTime(0.0));
     session.apply(Action::SetTime(0.5));
     assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+}
+
+#[test]
+fn what_is_changed_against_its_keys_is_no_change_of_the_document() {
+    let mut session = halfway();
+    session.apply(Action::Saved("x.json".into()));
+    let document = session.document().clone();
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(Action::SetTime(0.6));
+    assert_eq!(session.document(), &document);
+    assert!(!session.is_unsaved());
+    // Nothing of it is left to undo: the step before is.
+    session.apply(Action::Undo);
+    assert_eq!(session.document().keys.count(), 1);
+}
+
+#[test]
+fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
+    let mut session = halfway();
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(Action::SetAutoKey(true));
+    session.apply(Action::SetHand(Vec3::Z * 60.0));
+    assert_eq!(session.arm().cursor, Vec3::Z * 60.0);
+    assert!(!session.is_overridden(Channel::Hand));
+
+    let mut session = halfway();
+    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(Action::ClearChannels(vec![Channel::Hand]));
+    session.apply(Action::SetHand(Vec3::Z * 70.0));
+    session.apply(Action::SetElbowSpin(1.0));
+    assert_eq!(session.arm().cursor, Vec3::Z * 70.0);
+    assert_eq!(session.document().arm.cursor, Vec3::Z * 70.0);
+}
+
+#[test]
+fn selected_and_copied_keys_follow_their_joints() {
+    let mut session = Session::default();
+    session.apply(Action::OpenExample(Example::find("human").expect("an example")));
+    let channels: Vec<Channel> = (0..19).map(Channel::Rotation).collect();
+    session.apply(Action::Key(channels));
+    let name =
+        |session: &Session, joint: usize| session.skeleton().skeleton.joints()[joint].name.clone();
+    let foot = name(&session, 15);
+    session.apply(Action::SelectKeys(vec![(Channel::Rotation(15), 0.0)]));
+    session.apply(Action::SelectChannels(vec![Channel::Rotation(15)]));
+    session.apply(Action::CopyKeys);
+    session.apply(Action::Delete(vec![8]));
+    let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
+    assert_eq!(name(&session, joint), foot);
+    assert!(session.selected_channels().contains(&Channel::Rotation(joint)));
+    session.apply(Action::SetTime(1.0));
+    session.apply(Action::PasteKeys);
+    assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
+    // Going back, places are others again: nothing is selected that was not meant.
+    session.apply(Action::Undo);
+    session.apply(Action::Undo);
+    assert_eq!((session.selected_keys(), session.selection()), (&[][..], &[][..]));
+}
+
+#[test]
+fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
+    let mut session = Session::default();
+    session.apply(Action::Open { path: "slow.glb".into(), skeleton: None });
+    session.apply(Action::SetElbowSpin(1.0));
+    let opened = Action::Opened { document: Box::default(), file: None };
+    session.apply(opened.clone());
+    assert_eq!(session.arm().elbow_spin, 1.0);
+    assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
+    session.apply(Action::Discard(Box::new(opened)));
+    assert_eq!(session.document(), &Document::default());
+}
+
+#[test]
+fn many_keys_move_at_once() {
+    let mut session = Session::default();
+    let mut document = Document::default();
+    for frame in 0..50_000 {
+        document.keys.insert(Channel::Hand, f64::from(frame) / 30.0, Vec3::X * frame as f32);
+    }
+    session.apply(Action::Opened { document: Box::new(document), file: None });
+    let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
+    session.apply(Action::MoveKeys { keys, by: 1.0 });
+    let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
+    assert_eq!((track.len(), track[0].time), (50_000, 1.0));
 }
 
 #[test]

@@ -60,8 +60,13 @@ pub(super) fn export(
         ..Options::default()
     };
     let thread = thread::spawn(move || {
-        let exported = export::export(&document, &export.path, &options, &progress);
-        report(&proxy, UserEvent::Exported(say_exported(&export.path, exported)));
+        let write = || export::export(&document, &export.path, &options, &progress);
+        // The window is told, whatever happens: it waits for that before it exports again.
+        let how = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(write)) {
+            Ok(exported) => say_exported(&export.path, exported),
+            Err(_) => "Not exported: the export failed by a fault of the program".to_owned(),
+        };
+        report(&proxy, UserEvent::Exported(how));
     });
     (job, thread)
 }

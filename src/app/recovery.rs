@@ -53,11 +53,14 @@ pub(super) struct Recovery {
     place: Option<Arc<Place>>,
     /// What a crash writes; nothing where all is saved.
     newest: Arc<Mutex<Option<Kept>>>,
-    /// Which document `newest` is, and which one is on the disk.
-    revisions: (u64, u64),
+    /// Which document `newest` is.
+    noted: Option<u64>,
+    /// Which document is on the disk.
+    written: Option<u64>,
     /// When the document began to differ from what is on the disk.
     since: Option<Instant>,
-    writing: Option<JoinHandle<()>>,
+    /// Which document is being written, and whether that worked.
+    writing: Option<(u64, JoinHandle<bool>)>,
 }
 
 impl Recovery {
@@ -74,7 +77,7 @@ impl Recovery {
         if let Some(place) = &place {
             write_at_crash(Arc::clone(place), Arc::clone(&newest));
         }
-        Self { place, newest, revisions: (0, 0), since: None, writing: None }
+        Self { place, newest, noted: None, written: None, since: None, writing: None }
     }
 
     /// What another run left, the newest first.
@@ -107,57 +110,80 @@ impl Recovery {
         session: &Session,
         proxy: &EventLoopProxy<UserEvent>,
     ) -> Option<Instant> {
-        let place = self.place.as_ref()?;
+        let place = Arc::clone(self.place.as_ref()?);
         if !session.is_unsaved() {
             self.forget();
             return None;
         }
+        self.follow_writing();
         let revision = session.revision();
-        if self.revisions.0 != revision {
-            self.revisions.0 = revision;
-            let file = session.file().map(Path::to_owned);
-            let kept = Kept { document: session.document().clone(), file };
-            *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(kept);
+        // A change under way goes on without another number.
+        let is_changing = session.is_changing();
+        if self.noted != Some(revision) {
+            self.note(session);
         }
-        if self.revisions.1 == revision {
+        if self.written == Some(revision) && !is_changing {
             self.since = None;
             return None;
         }
         let due = *self.since.get_or_insert_with(Instant::now) + PERIOD;
-        let is_busy = self.writing.as_ref().is_some_and(|writing| !writing.is_finished());
-        if Instant::now() < due || is_busy {
+        if Instant::now() < due || self.writing.is_some() {
             return Some(due.max(Instant::now() + Duration::from_millis(100)));
         }
-        let kept = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-        self.revisions.1 = revision;
+        if is_changing {
+            self.note(session);
+        }
         self.since = None;
-        let (place, proxy) = (Arc::clone(place), proxy.clone());
-        self.writing = Some(thread::spawn(move || {
+        let kept = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let proxy = proxy.clone();
+        let writing = thread::spawn(move || {
+            let written = kept.write(&place.path);
+            let is_written = written.is_ok();
             // Nobody hears it once the window is closed.
-            let _ = proxy.send_event(match kept.write(&place.path) {
+            let _ = proxy.send_event(match written {
                 Ok(()) => UserEvent::Kept,
                 Err(error) => UserEvent::Report(format!("Not kept safe: {error}")),
             });
-        }));
+            is_written
+        });
+        self.writing = Some((revision, writing));
         None
+    }
+
+    /// What a crash writes is the document as it is now.
+    fn note(&mut self, session: &Session) {
+        self.noted = Some(session.revision());
+        let file = session.file().map(Path::to_owned);
+        let kept = Kept { document: session.document().clone(), file };
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(kept);
+    }
+
+    /// What could not be written is tried again after a while.
+    fn follow_writing(&mut self) {
+        if self.writing.as_ref().is_some_and(|(_, writing)| writing.is_finished())
+            && let Some((revision, writing)) = self.writing.take()
+            && writing.join().is_ok_and(|is_written| is_written)
+        {
+            self.written = Some(revision);
+        }
     }
 
     /// Whether a document is on the disk.
     pub fn has(&self, revision: u64) -> bool {
-        self.revisions.1 == revision && self.place.as_ref().is_some_and(|it| it.path.exists())
+        self.written == Some(revision)
     }
 
     /// Lets go of what is saved, or not wanted.
     fn forget(&mut self) {
-        if self.revisions == (0, 0) {
-            return;
-        }
-        self.revisions = (0, 0);
-        self.since = None;
-        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = None;
-        if let Some(writing) = self.writing.take() {
+        if let Some((_, writing)) = self.writing.take() {
             let _ = writing.join();
         }
+        self.since = None;
+        self.written = None;
+        if self.noted.take().is_none() {
+            return;
+        }
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = None;
         if let Some(place) = &self.place {
             let _ = fs::remove_file(&place.path);
         }

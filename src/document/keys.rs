@@ -57,6 +57,26 @@ impl Keys {
         value
     }
 
+    /// Takes many keys away, each named by its channel and time.
+    pub fn remove_all(&mut self, keys: &[(Channel, f64)]) {
+        let mut times: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
+        for (channel, time) in keys {
+            times.entry(*channel).or_default().push(*time);
+        }
+        for (channel, mut times) in times {
+            times.sort_unstable_by(f64::total_cmp);
+            let Some(track) = self.tracks.get_mut(&channel) else { continue };
+            let goes = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
+            let left = track.knots().iter().filter(|knot| !goes(knot.time));
+            let left: Spline<Vec3> = left.copied().collect();
+            if left.is_empty() {
+                self.tracks.remove(&channel);
+            } else {
+                *track = Arc::new(left);
+            }
+        }
+    }
+
     /// Takes all keys of a channel away.
     pub fn clear(&mut self, channel: Channel) {
         self.tracks.remove(&channel);

@@ -83,6 +83,7 @@ pub fn animation(
 /// Takes pictures of a document, one after the other.
 struct Film<'a> {
     playback: Playback,
+    staging: Staging,
     picture: Picture<'a>,
     theme: Theme,
 }
@@ -92,6 +93,7 @@ impl<'a> Film<'a> {
         let (width, height) = options.size;
         Ok(Self {
             playback: Playback::new(document),
+            staging: Staging::new(document, document.timeline.start),
             picture: Picture::of_size(gpu, width, height)?,
             theme: options.theme,
         })
@@ -99,8 +101,9 @@ impl<'a> Film<'a> {
 
     /// Rows from the top, four bytes for each pixel.
     fn picture(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
-        let staging = Staging { time, ..Staging::default() };
-        let scene = Scene::new(self.playback.at(time), &staging, self.theme);
+        let document = self.playback.at(time);
+        self.staging = std::mem::take(&mut self.staging).at(document, time);
+        let scene = Scene::new(document, &self.staging, self.theme);
         Ok(self.picture.draw(&scene)?.into_raw())
     }
 }

@@ -80,7 +80,10 @@ impl Numbered {
 
     /// The name of a number, with zeros before it.
     pub fn name(&self, number: usize) -> OsString {
-        let Self { before, digits, after } = self;
+        /// More zeros than any number needs.
+        const MOST_DIGITS: usize = 64;
+        let Self { before, after, .. } = self;
+        let digits = self.digits.min(MOST_DIGITS);
         format!("{before}{number:0digits$}{after}").into()
     }
 }

@@ -108,18 +108,22 @@ impl<'de> Visitor<'de> for KindVisitor<'_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         while let Some(key) = map.next_key::<Cow<'_, str>>()? {
-            *self.0 = match &*key {
-                "format" => Some(Kind::Document),
-                // In glTF this is a number, and tells nothing yet.
-                "scene" if map.next_value::<Whole>().is_ok() => continue,
-                "scene" => Some(Kind::Scene),
-                "asset" => Some(Kind::Gltf),
-                _ => None,
+            let kind = match &*key {
+                "format" => Kind::Document,
+                // In glTF this is a number, and tells nothing if "asset" comes, too.
+                "scene" if map.next_value::<Whole>().is_ok() => {
+                    *self.0 = Some(Kind::Scene);
+                    continue;
+                }
+                "scene" => Kind::Scene,
+                "asset" => Kind::Gltf,
+                _ => {
+                    map.next_value::<IgnoredAny>()?;
+                    continue;
+                }
             };
-            if self.0.is_some() {
-                return Err(A::Error::custom("enough is read"));
-            }
-            map.next_value::<IgnoredAny>()?;
+            *self.0 = Some(kind);
+            return Err(A::Error::custom("enough is read"));
         }
         Ok(())
     }

@@ -195,8 +195,11 @@ pub enum Action {
     SaveAnd(Box<Action>),
     /// Does it, though it loses changes.
     Discard(Box<Action>),
-    /// Opens what the dialog offers that an earlier run kept.
-    Recover,
+    /// Opens what an earlier run kept; it is not saved yet.
+    Recover {
+        document: Box<Document>,
+        file: Option<PathBuf>,
+    },
     /// Declines it.
     ForgetRecovered,
     /// One of the scenes that come with the program.
@@ -209,7 +212,14 @@ pub enum Action {
 impl Action {
     /// Whether the open document is left behind.
     pub(super) fn leaves_document(&self) -> bool {
-        matches!(self, Self::Open { .. } | Self::OpenExample(_) | Self::NewSkeleton | Self::Quit)
+        match self {
+            Self::Open { .. }
+            | Self::OpenExample(_)
+            | Self::NewSkeleton
+            | Self::Recover { .. }
+            | Self::Quit => true,
+            _ => false,
+        }
     }
 }
 

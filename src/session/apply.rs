@@ -9,7 +9,7 @@ impl Session {
     /// Does it; what is not possible changes nothing and is said in [`Session::message`]. What would
     /// lose changes that are not saved is asked about first.
     pub fn apply(&mut self, action: Action) -> Option<Effect> {
-        if self.is_unsaved() && action.leaves_document() {
+        if self.is_unsaved() && (action.leaves_document() || self.came_late(&action)) {
             self.dialog = Some(Dialog::Unsaved { then: Box::new(action) });
             return None;
         }
@@ -151,7 +151,13 @@ impl Session {
             Action::ShowExplain(shown) => self.preferences.explain = shown,
             Action::ShowTimeline(shown) => self.preferences.timeline = shown,
             Action::ShowCurves(shown) => self.preferences.curves = shown,
-            Action::OpenDialog(dialog) => self.dialog = Some(dialog),
+            Action::OpenDialog(dialog) => {
+                // What waits for the document to be saved waits for no other question.
+                if !matches!(dialog, Dialog::SaveAs { .. }) {
+                    self.then = None;
+                }
+                self.dialog = Some(dialog);
+            }
             Action::CloseDialog => self.close_dialog(),
             Action::Report(message) => self.message = Some(message),
 
@@ -171,14 +177,21 @@ impl Session {
                 self.job = None;
                 self.message = Some(how);
             }
-            Action::Ask(dialog) => return Some(Effect::ChoosePath(dialog)),
+            Action::Ask(dialog) => {
+                self.then = None;
+                return Some(Effect::ChoosePath(dialog));
+            }
             Action::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),
             Action::Open { path, skeleton } => {
                 self.dialog = None;
+                self.opening = Some(self.revision);
                 return Some(Effect::Open { path, skeleton });
             }
             Action::Opened { document, file } => self.replace_document(*document, file),
-            Action::Save => return Some(self.save()),
+            Action::Save => {
+                self.then = None;
+                return Some(self.save());
+            }
             Action::SaveAs(path) => {
                 self.dialog = None;
                 return Some(Effect::Save(path));
@@ -197,7 +210,7 @@ impl Session {
                 self.dialog = None;
                 return self.apply_unasked(*then);
             }
-            Action::Recover => self.recover(),
+            Action::Recover { document, file } => self.recover(*document, file),
             Action::ForgetRecovered => {
                 self.dialog = None;
                 self.recovery_settled = true;

@@ -46,9 +46,12 @@ impl Session {
         }
         if is_rebuilt(&self.shown.skeleton.skeleton, &after.skeleton.skeleton) {
             self.overrides.clear();
+            self.solving = None;
         } else {
             self.hold_changes(&mut after);
+            self.keep_rest(&mut after);
         }
+        self.overrides.retain(|channel, _| after.keys.has(*channel));
         self.document = after;
         self.refresh();
         self.forget_trail();
@@ -70,9 +73,25 @@ impl Session {
         for channel in channels {
             if self.auto_key {
                 after.key(channel, self.clock.time);
+                self.overrides.remove(&channel);
             } else if let Some(value) = channel.value(after) {
                 self.overrides.insert(channel, value);
                 self.message = Some("Shown until the time changes: press K to keep it".to_owned());
+            }
+        }
+    }
+
+    /// What a keyed channel has beneath its keys stays as it was: what it has at this time is no
+    /// change of the document.
+    fn keep_rest(&self, after: &mut Document) {
+        let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
+        let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
+        for channel in keyed.collect::<Vec<_>>() {
+            if let Some(value) = channel.value(&self.document) {
+                channel.set(after, value);
+            }
+            if channel == Channel::Hand {
+                after.arm.facing = self.document.arm.facing;
             }
         }
     }
@@ -93,7 +112,14 @@ impl Session {
     }
 
     pub(super) fn restore(&mut self, state: &State) {
-        self.document = state.document(self.document.camera);
+        let document = state.document(self.document.camera);
+        if is_rebuilt(&self.document.skeleton.skeleton, &document.skeleton.skeleton) {
+            // They name joints by their places.
+            self.selection.clear();
+            self.forget_selected_keys();
+            self.solving = None;
+        }
+        self.document = document;
         self.overrides = state.overrides_at(self.clock.time);
         self.revision = state.revision;
         self.refresh();
@@ -184,6 +210,11 @@ impl Session {
         self.history.redo_name()
     }
 
+    /// Whether a change is under way, a user's or a solver's.
+    pub fn is_changing(&self) -> bool {
+        self.edit.is_some() || self.run_before.is_some()
+    }
+
     /// Whether the document is not as it was saved last, or opened.
     pub fn is_unsaved(&self) -> bool {
         let changing = self.edit.as_ref().map(|edit| &edit.before).or(self.run_before.as_ref());
@@ -192,10 +223,10 @@ impl Session {
     }
 }
 
-/// Whether joints have come, gone or been hung from others.
+/// Whether joints have gone, been hung from others or changed their places.
 fn is_rebuilt(before: &Skeleton, after: &Skeleton) -> bool {
     let parents = |skeleton: &Skeleton| -> Vec<_> {
         skeleton.joints().iter().map(|joint| joint.parent).collect()
     };
-    parents(before) != parents(after)
+    !parents(after).starts_with(&parents(before))
 }

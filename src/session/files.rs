@@ -30,13 +30,18 @@ impl Session {
     }
 
     /// Opens what an earlier run of the program kept: it is not saved yet.
-    pub(super) fn recover(&mut self) {
-        if let Some(Dialog::Recover { document, file }) = self.dialog.take() {
-            self.replace_document(*document, file);
-            self.saved_revision = self.revision - 1;
-            self.recovery_settled = true;
-            self.message = Some("The document that was kept is open; save it".to_owned());
-        }
+    pub(super) fn recover(&mut self, document: Document, file: Option<PathBuf>) {
+        self.replace_document(document, file);
+        self.saved_revision = self.revision - 1;
+        self.recovery_settled = true;
+        self.message = Some("The document that was kept is open; save it".to_owned());
+    }
+
+    /// Whether a file that took its time to open would now take the place of changes that were made
+    /// meanwhile.
+    pub(super) fn came_late(&self, action: &Action) -> bool {
+        let is_other = self.opening.is_some_and(|revision| revision != self.revision);
+        matches!(action, Action::Opened { .. }) && (is_other || self.is_changing())
     }
 
     /// Whether what an earlier run kept has been opened or declined.

@@ -149,10 +149,11 @@ impl History {
     }
 
     /// Goes a step back from `now`: its name, and how everything was.
-    pub fn undo(&mut self, now: State) -> Option<(&'static str, State)> {
+    pub fn undo(&mut self, mut now: State) -> Option<(&'static str, State)> {
         loop {
             let Step { name, state } = self.undo.pop_back()?;
             if !state.looks_like(&now) {
+                now.share_with(&state);
                 self.redo.push(Step { name, state: now });
                 return Some((name, state));
             }
@@ -160,10 +161,11 @@ impl History {
     }
 
     /// Goes a step forward from `now`.
-    pub fn redo(&mut self, now: State) -> Option<(&'static str, State)> {
+    pub fn redo(&mut self, mut now: State) -> Option<(&'static str, State)> {
         loop {
             let Step { name, state } = self.redo.pop()?;
             if !state.looks_like(&now) {
+                now.share_with(&state);
                 self.undo.push_back(Step { name, state: now });
                 return Some((name, state));
             }

@@ -4,9 +4,13 @@ use glam::Vec3;
 
 use super::{Effect, Session};
 use crate::document::{Channel, Document, Keys, RigKind, Timeline};
+use crate::kinematics::skeleton::Moved;
 
 /// A key: its channel and its time, in seconds.
 pub type Key = (Channel, f64);
+
+/// Channels that are selected.
+pub(super) type Channels = BTreeSet<Channel>;
 
 /// Keys that were copied: their times from the first one's.
 pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
@@ -80,11 +84,31 @@ impl Session {
     }
 
     pub(super) fn delete_keys(&mut self, keys: &[Key]) {
-        self.edit_keys(|document| {
-            for (channel, time) in keys {
-                document.keys.remove(*channel, *time);
-            }
-        });
+        self.edit_keys(|document| document.keys.remove_all(keys));
+    }
+
+    pub(super) fn selected_in_timeline(&self) -> (Vec<Key>, Channels) {
+        (self.selected_keys.clone(), self.selected_channels.clone())
+    }
+
+    /// What is selected and copied follows its joints to new places.
+    pub(super) fn follow_keys(&mut self, moved: &Moved, (keys, channels): (Vec<Key>, Channels)) {
+        let keys = keys.into_iter();
+        self.selected_keys =
+            keys.filter_map(|(channel, time)| Some((channel.moved(moved)?, time))).collect();
+        self.selected_channels =
+            channels.into_iter().filter_map(|channel| channel.moved(moved)).collect();
+        let copies = std::mem::take(&mut self.clipboard).into_iter();
+        let copies =
+            copies.filter_map(|(channel, time, value)| Some((channel.moved(moved)?, time, value)));
+        self.clipboard = copies.collect();
+        self.retain_keys();
+    }
+
+    pub(super) fn forget_selected_keys(&mut self) {
+        self.selected_keys.clear();
+        self.selected_channels.clear();
+        self.clipboard.retain(|(channel, ..)| channel.joint().is_none());
     }
 
     pub(super) fn clear_channels(&mut self, channels: &[Channel]) {
@@ -113,9 +137,7 @@ impl Session {
         let keys = keys.to_vec();
         self.edit_keys(|document| {
             document.keys = before;
-            for (channel, time) in keys {
-                document.keys.remove(channel, time);
-            }
+            document.keys.remove_all(&keys);
             insert(&mut document.keys, &moved);
         });
     }

@@ -94,6 +94,8 @@ pub struct Session {
     job: Option<Job>,
     /// Whether what an earlier run kept has been opened or declined.
     recovery_settled: bool,
+    /// Which document was there when the file was asked for that is being opened.
+    opening: Option<u64>,
     /// What waits for the document to be saved.
     then: Option<Box<Action>>,
     message: Option<String>,
@@ -184,6 +186,7 @@ impl Session {
             dialog: None,
             job: None,
             recovery_settled: false,
+            opening: None,
             then: None,
             message: None,
         }
@@ -236,7 +239,7 @@ impl Session {
             pointed: self.pointed,
             ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
             trail: self.trail().to_vec(),
-            onion_skins: self.onion_skins(),
+            onion_skins: trail::onion_skins(&self.document, self.clock.time),
         }
     }
 

@@ -56,25 +56,30 @@ impl Session {
         let skeleton = &self.skeleton().skeleton;
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
         let parents: Vec<usize> = parents.collect();
+        let selected = self.selected_in_timeline();
         let moved = self.edit_document(|document| {
             let moved = document.skeleton.skeleton.remove(joints);
             document.follow(&moved);
             Ok::<_, SkeletonError>(moved)
         });
         let Some(moved) = moved else { return };
+        self.follow_keys(&moved, selected);
         let left = parents.iter().rev().find_map(|parent| moved.get(*parent));
         self.select(left.into_iter().collect());
     }
 
     pub(super) fn reparent(&mut self, joint: usize, parent: Option<usize>) {
+        let selected = self.selected_in_timeline();
+        let before = self.selection.clone();
         let moved = self.edit_document(|document| {
             let moved = document.skeleton.skeleton.reparent(joint, parent)?;
             document.follow(&moved);
             Ok::<_, SkeletonError>(moved)
         });
         if let Some(moved) = moved {
+            self.follow_keys(&moved, selected);
             self.pointed = self.pointed.and_then(|joint| moved.get(joint));
-            self.select(self.selection.iter().filter_map(|joint| moved.get(*joint)).collect());
+            self.select(before.iter().filter_map(|joint| moved.get(*joint)).collect());
         }
     }
 

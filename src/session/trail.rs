@@ -1,17 +1,13 @@
 use glam::Vec3;
 
-use super::{OnionSkin, Session};
+use super::{OnionSkin, Session, Staging};
 use crate::document::{Document, Layer, RigKind};
 
-/// What is shown of other times.
 impl Session {
-    /// How many skins there are before and after, and how many frames lie between two.
-    const SKINS: (usize, f64) = (3, 5.0);
-
     /// Where the hand, or the selected joint's tip, is at every frame.
     pub(super) fn trail(&self) -> &[Vec3] {
-        if self.document.is_posed_by_time() && self.shown.display.shows(Layer::Trail) {
-            self.trail.get_or_init(|| trail(&self.document, self.selected()))
+        if has_trail(&self.document, &self.shown) {
+            self.trail.get_or_init(|| walk(&self.document, self.selected()))
         } else {
             &[]
         }
@@ -21,35 +17,60 @@ impl Session {
     pub(super) fn forget_trail(&mut self) {
         self.trail.take();
     }
+}
 
-    /// The rig some frames before and after, as far as the timeline goes.
-    pub(super) fn onion_skins(&self) -> Vec<OnionSkin> {
-        if !self.shown.display.shows(Layer::OnionSkins) || !self.document.is_posed_by_time() {
-            return Vec::new();
+impl Staging {
+    /// What a picture of a document at a time shows beside it, as the document's display has it:
+    /// nothing is selected.
+    pub fn new(document: &Document, time: f64) -> Self {
+        let has_trail = has_trail(document, &document.at(time));
+        Self {
+            time,
+            trail: if has_trail { walk(document, None) } else { Vec::new() },
+            onion_skins: onion_skins(document, time),
+            ..Self::default()
         }
-        let (count, frames) = Self::SKINS;
-        let timeline = self.document.timeline;
-        let step = frames / f64::from(timeline.frame_rate);
-        let skin = |place: isize| {
-            let time = self.clock.time + place as f64 * step;
-            let is_played = time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
-            is_played.then(|| {
-                let posed = self.document.at(time);
-                OnionSkin {
-                    arm: posed.arm,
-                    pose: posed.skeleton.at(time).pose(),
-                    past: place < 0,
-                    opacity: 1.0 / place.unsigned_abs() as f32,
-                }
-            })
-        };
-        let count = count as isize;
-        (-count..=count).filter(|place| *place != 0).filter_map(skin).collect()
+    }
+
+    /// The same at another time.
+    #[must_use]
+    pub fn at(self, document: &Document, time: f64) -> Self {
+        Self { time, onion_skins: onion_skins(document, time), ..self }
     }
 }
 
-/// Of a long motion not every frame.
-fn trail(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
+fn has_trail(document: &Document, shown: &Document) -> bool {
+    document.is_posed_by_time() && shown.display.shows(Layer::Trail)
+}
+
+/// The rig some frames before and after, as far as the timeline goes.
+pub(super) fn onion_skins(document: &Document, time: f64) -> Vec<OnionSkin> {
+    /// How many there are before and after, and how many frames lie between two.
+    const SKINS: (isize, f64) = (3, 5.0);
+    if !document.display.shows(Layer::OnionSkins) || !document.is_posed_by_time() {
+        return Vec::new();
+    }
+    let (count, frames) = SKINS;
+    let timeline = document.timeline;
+    let step = frames / f64::from(timeline.frame_rate);
+    let skin = |place: isize| {
+        let time = time + place as f64 * step;
+        let is_played = time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
+        is_played.then(|| {
+            let posed = document.at(time);
+            OnionSkin {
+                arm: posed.arm,
+                pose: posed.skeleton.at(time).pose(),
+                past: place < 0,
+                opacity: 1.0 / place.unsigned_abs() as f32,
+            }
+        })
+    };
+    (-count..=count).filter(|place| *place != 0).filter_map(skin).collect()
+}
+
+/// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.
+fn walk(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Joints times points: what a large skeleton may cost.
     const MOST_POSES: usize = 100_000;

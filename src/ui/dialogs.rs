@@ -5,6 +5,7 @@ use std::path::Path;
 use egui::{Align2, Grid, Key, ScrollArea, TextEdit, Ui, Window, vec2};
 
 use super::{Machine, export, shortcuts};
+use crate::document::Document;
 use crate::session::{Action, Dialog, Export, Session};
 
 pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
@@ -39,9 +40,9 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
         Some(Dialog::Unsaved { then }) => {
             window(ui, "Save changes?", actions, |ui, actions| unsaved(ui, session, then, actions));
         }
-        Some(Dialog::Recover { file, .. }) => {
+        Some(Dialog::Recover { document, file }) => {
             window(ui, "Not saved last time", actions, |ui, actions| {
-                recover(ui, file.as_deref(), actions);
+                recover(ui, document, file.as_deref(), actions);
             });
         }
         None => {}
@@ -203,7 +204,7 @@ fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Acti
     });
 }
 
-fn recover(ui: &mut Ui, file: Option<&Path>, actions: &mut Vec<Action>) {
+fn recover(ui: &mut Ui, document: &Document, file: Option<&Path>, actions: &mut Vec<Action>) {
     ui.set_width(420.0);
     let name = file.and_then(Path::file_name).map(|name| name.to_string_lossy());
     ui.label(match name {
@@ -215,7 +216,8 @@ fn recover(ui: &mut Ui, file: Option<&Path>, actions: &mut Vec<Action>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Open it") {
-            actions.push(Action::Recover);
+            let (document, file) = (Box::new(document.clone()), file.map(Path::to_owned));
+            actions.push(Action::Recover { document, file });
         }
         if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
             actions.push(Action::ForgetRecovered);

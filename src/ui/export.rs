@@ -6,7 +6,9 @@ use egui::{DragValue, Grid, Ui};
 
 use super::dialogs::ask;
 use super::row::Field;
+use crate::document::Timeline;
 use crate::export::Format;
+use crate::io::Frames;
 use crate::session::{Action, Dialog, Export, Session};
 
 /// A format, what it is called and for, and the ending of its files.
@@ -81,7 +83,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
         let name = ui.label("Frames a second");
-        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=240)).labelled_by(name.id);
+        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::HIGHEST_FRAME_RATE))
+            .labelled_by(name.id);
         ui.end_row();
         if chosen.is_some_and(Format::is_picture) {
             let name = ui.label("Size in pixels");
@@ -102,8 +105,13 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
         }
         ui.label("Length");
         let timeline = session.document().timeline;
-        let moves = session.document().is_posed_by_time();
-        ui.label(match moves {
+        let document = session.document();
+        let rate = Some(export.frame_rate);
+        let frames = match chosen {
+            Some(format) if format.is_picture() => Frames::of_picture(document, rate),
+            _ => Frames::of_pose(document, rate),
+        };
+        ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
             true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
             false => "One frame: nothing moves".to_owned(),
         });

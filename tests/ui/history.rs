@@ -191,6 +191,17 @@ fn what_is_not_saved_stays_open_and_unsaved() {
 }
 
 #[test]
+fn a_save_that_was_given_up_does_not_end_the_program_later() {
+    let mut bench = moved();
+    bench.apply([Action::Quit]);
+    bench.click(Role::Button, "Save");
+    bench.settle();
+    bench.key(Key::F1);
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
+}
+
+#[test]
 fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
     let mut bench = moved();
     assert!(bench.session().is_unsaved());

@@ -128,7 +128,7 @@ pub fn run(args: &Args) -> ExitCode {
 fn render(args: &Args) -> Result<(), RenderError> {
     let document = args.document()?;
     let theme = args.theme.into();
-    let staging = Staging { time: args.time.0, ..Staging::default() };
+    let staging = Staging::new(&document, args.time.0);
     let gpu = Gpu::headless()?;
     let mut picture = Picture::of_size(&gpu, args.size.width, args.size.height)?;
     let scene = || Scene::new(&document, &staging, theme);
