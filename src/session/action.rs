@@ -212,14 +212,14 @@ pub enum Action {
 impl Action {
     /// Whether the open document is left behind.
     pub(super) fn leaves_document(&self) -> bool {
-        match self {
+        matches!(
+            self,
             Self::Open { .. }
-            | Self::OpenExample(_)
-            | Self::NewSkeleton
-            | Self::Recover { .. }
-            | Self::Quit => true,
-            _ => false,
-        }
+                | Self::OpenExample(_)
+                | Self::NewSkeleton
+                | Self::Recover { .. }
+                | Self::Quit
+        )
     }
 }
 
