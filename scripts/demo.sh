@@ -9,7 +9,7 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # Where the mouse drags the hand, in screen pixels: from each point to the next.
-hand_path=("740 392" "860 250" "700 190" "620 330" "800 300")
+hand_path=("720 318" "815 204" "688 157" "624 268" "767 244")
 
 picture=$target/demo.png
 

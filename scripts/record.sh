@@ -8,9 +8,9 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # A closed curve of the hand on screen: middle and radii, in pixels.
-middle=(740 392)
-across=110
-up=95
+middle=(720 318)
+across=90
+up=75
 steps=72
 
 frames=$target/record
