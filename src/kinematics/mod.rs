@@ -2,9 +2,11 @@
 
 mod arc;
 pub mod follow;
+pub mod reach;
 pub mod skeleton;
 pub mod solve;
 pub mod spline;
+pub mod swivel;
 pub mod two_bone;
 
 pub(crate) use arc::arc;
