@@ -417,6 +417,21 @@ fn many_keys_move_at_once() {
 }
 
 #[test]
+fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
+    let mut session = halfway();
+    session.apply(Action::SetTime(0.0));
+    let skins = Channel::Layer(Layer::OnionSkins);
+    session.apply(Action::Key(vec![skins]));
+    session.apply(Action::SetTime(0.5));
+    session.apply(Action::Show(Layer::OnionSkins, true));
+    session.apply(Action::Key(vec![skins]));
+    for (time, shown) in [(0.4, false), (0.6, true)] {
+        session.apply(Action::SetTime(time));
+        assert_eq!(session.staging().onion_skins.is_empty(), !shown, "at {time} s");
+    }
+}
+
+#[test]
 fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
     let mut session = halfway();
     session.apply(Action::SetHand(Vec3::Z * 50.0));

@@ -23,19 +23,20 @@ impl Staging {
     /// What a picture of a document at a time shows beside it, as the document's display has it:
     /// nothing is selected.
     pub fn new(document: &Document, time: f64) -> Self {
-        let has_trail = has_trail(document, &document.at(time));
+        let shown = document.at(time);
+        let has_trail = has_trail(document, &shown);
         Self {
             time,
             trail: if has_trail { walk(document, None) } else { Vec::new() },
-            onion_skins: onion_skins(document, time),
+            onion_skins: onion_skins(document, &shown, time),
             ..Self::default()
         }
     }
 
-    /// The same at another time.
+    /// The same at another time, at which the document is.
     #[must_use]
     pub fn at(self, document: &Document, time: f64) -> Self {
-        Self { time, onion_skins: onion_skins(document, time), ..self }
+        Self { time, onion_skins: onion_skins(document, document, time), ..self }
     }
 }
 
@@ -44,10 +45,10 @@ fn has_trail(document: &Document, shown: &Document) -> bool {
 }
 
 /// The rig some frames before and after, as far as the timeline goes.
-pub(super) fn onion_skins(document: &Document, time: f64) -> Vec<OnionSkin> {
+pub(super) fn onion_skins(document: &Document, shown: &Document, time: f64) -> Vec<OnionSkin> {
     /// How many there are before and after, and how many frames lie between two.
     const SKINS: (isize, f64) = (3, 5.0);
-    if !document.display.shows(Layer::OnionSkins) || !document.is_posed_by_time() {
+    if !shown.display.shows(Layer::OnionSkins) || !document.is_posed_by_time() {
         return Vec::new();
     }
     let (count, frames) = SKINS;
