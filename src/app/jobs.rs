@@ -9,7 +9,7 @@ use winit::event_loop::EventLoopProxy;
 
 use super::UserEvent;
 use crate::document::{Document, Theme};
-use crate::export::{self, ExportError, Options};
+use crate::export::{self, ExportError, Format, Options};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, Picture};
 use crate::scene::Scene;
@@ -130,14 +130,16 @@ pub(super) enum Choice {
 pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
     /// Nobody cancels as fast as a system answers that has no dialog; both answer alike.
     const FASTEST_HAND: Duration = Duration::from_millis(400);
+    let exported = Format::ENDINGS.map(|(ending, _)| ending);
     let (path, name, extensions): (_, _, &[&str]) = match &dialog {
-        Dialog::SavePicture { path } => (path, "PNG", &["png"]),
-        Dialog::Open { path } => (path, "Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
-        Dialog::SaveAs { path } => (path, "Scene", &["json"]),
-        Dialog::Export { path, .. } => (path, "Export", &["glb", "bvh", "csv", "png", "apng"]),
+        Dialog::SavePicture { path } => (Path::new(path), "PNG", &["png"]),
+        Dialog::Open { path } => {
+            (Path::new(path), "Scene", &["json", "js3d", "bvh", "glb", "gltf"])
+        }
+        Dialog::SaveAs { path } => (Path::new(path), "Scene", &["json"]),
+        Dialog::Export(export) => (export.path.as_path(), "Export", &exported),
         _ => return,
     };
-    let path = Path::new(path);
     let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
     if let Some(name) = path.file_name() {
         system = system.set_file_name(name.to_string_lossy());
@@ -174,9 +176,8 @@ pub(super) fn chosen(dialog: Dialog, choice: Choice) -> Option<Action> {
         (Choice::Path(path), Dialog::SavePicture { .. }) => {
             Some(Action::SavePicture(path.display().to_string()))
         }
-        (Choice::Path(path), Dialog::Export { frame_rate, size, .. }) => {
-            let path = path.display().to_string();
-            Some(Action::OpenDialog(Dialog::Export { path, frame_rate, size }))
+        (Choice::Path(path), Dialog::Export(export)) => {
+            Some(Action::OpenDialog(Dialog::Export(Export { path, ..export })))
         }
         (Choice::Path(_), _) => None,
         (Choice::Cancelled, _) => Some(Action::NotSaved("No file was chosen".to_owned())),

@@ -257,8 +257,6 @@ impl ApplicationHandler<UserEvent> for App {
         self.session.apply(Action::CancelExport);
         if let State::Active(window) = &mut self.state {
             window.await_export();
-        }
-        if let State::Active(window) = &self.state {
             log::info!("{} frames drawn", window.frames());
             window.settings(&self.session).save();
         }

@@ -39,11 +39,11 @@ impl Session {
         const SIZE: (u32, u32) = (1280, 800);
         let stem = self.file.as_ref().and_then(|file| file.file_stem());
         let stem = stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy());
-        Dialog::Export {
-            path: format!("{stem}.glb"),
+        Dialog::Export(Export {
+            path: format!("{stem}.glb").into(),
             frame_rate: self.document.timeline.frame_rate,
             size: SIZE,
-        }
+        })
     }
 
     pub(super) fn export(&mut self, export: Export) -> Option<Effect> {

@@ -119,12 +119,8 @@ pub enum Dialog {
     SavePicture {
         path: String,
     },
-    Export {
-        path: String,
-        frame_rate: u32,
-        /// Of pictures, in pixels.
-        size: (u32, u32),
-    },
+    /// Asks what to export, and how.
+    Export(Export),
     Open {
         path: String,
     },
@@ -239,7 +235,7 @@ impl Session {
             pointed: self.pointed,
             ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
             trail: self.trail().to_vec(),
-            onion_skins: trail::onion_skins(&self.document, self.clock.time),
+            onion_skins: trail::onion_skins(&self.document, &self.shown, self.clock.time),
         }
     }
 

@@ -6,7 +6,7 @@ use egui::{Align2, Grid, Key, ScrollArea, TextEdit, Ui, Window, vec2};
 
 use super::{Machine, export, shortcuts};
 use crate::document::Document;
-use crate::session::{Action, Dialog, Export, Session};
+use crate::session::{Action, Dialog, Session};
 
 pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
     match session.dialog() {
@@ -19,9 +19,8 @@ pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Ve
                 ask_path(ui, &SAVE_PICTURE, path, actions);
             });
         }
-        Some(Dialog::Export { path, frame_rate, size }) => {
-            let export = Export { path: path.into(), frame_rate: *frame_rate, size: *size };
-            window(ui, "Export", actions, |ui, actions| export::ui(ui, session, &export, actions));
+        Some(Dialog::Export(export)) => {
+            window(ui, "Export", actions, |ui, actions| export::ui(ui, session, export, actions));
         }
         Some(Dialog::Open { path }) => {
             window(ui, "Open", actions, |ui, actions| ask_path(ui, &OPEN, path, actions));

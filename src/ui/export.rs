@@ -61,11 +61,7 @@ const CHOICES: [Choice; 6] = [
 pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut Vec<Action>) {
     ui.set_width(460.0);
     let path = export.path.to_string_lossy();
-    let change = |export: Export| {
-        let Export { path, frame_rate, size } = export;
-        let path = path.to_string_lossy().into_owned();
-        Action::OpenDialog(Dialog::Export { path, frame_rate, size })
-    };
+    let change = |export: Export| Action::OpenDialog(Dialog::Export(export));
     let chosen = Format::of(&export.path).ok();
     ui.horizontal_wrapped(|ui| {
         for Choice { format, name, ending, tooltip } in CHOICES {
