@@ -74,7 +74,7 @@ fn places() -> impl Strategy<Value = Vec3> {
 fn standing() -> impl Strategy<Value = Standing> {
     (anywhere(), places()).prop_map(|(case, root)| {
         let pose = case.solve();
-        let rig = ArmRig::new(case.arm, root, case.cursor, case.spin, &pose);
+        let rig = ArmRig::new(case.arm, root, case.cursor, &pose);
         Standing { case, root, pose, rig }
     })
 }

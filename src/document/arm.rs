@@ -39,7 +39,7 @@ impl Arm {
     }
 
     pub fn rig(&self, pose: &Pose) -> ArmRig {
-        ArmRig::new(self.bones, self.root, self.cursor, self.elbow_spin, pose)
+        ArmRig::new(self.bones, self.root, self.cursor, pose)
     }
 
     /// Where the hand is asked to be, in the world.

@@ -1,7 +1,10 @@
 //! Pure numbers: solvers that know nothing of files, windows or GPUs.
 
 mod arc;
+pub mod euler;
+pub mod fk;
 pub mod follow;
+pub mod ik;
 pub mod reach;
 pub mod skeleton;
 pub mod solve;

@@ -122,6 +122,19 @@ impl Softening {
         Limits::new(self, bones).least as f32
     }
 
+    /// How far a cursor is from the shoulder that brings the hand to a distance: the inverse of
+    /// [`Self::extent`]. The hand meets its limits only in the infinite: there, and beyond, a cursor
+    /// 12 soft zones away is as near as f32 tells. Where stretching begins, the cursor is at the hand.
+    pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
+        let limits = Limits::new(self, bones);
+        let (d, longest) = (f64::from(distance), f64::from(self.max_stretch));
+        if d <= limits.outer_join() {
+            return saturated(limits.harden(d).max(0.0));
+        }
+        let is_stretched_to_it = longest > 1.0 && d <= longest * limits.soften(d).0;
+        if is_stretched_to_it { distance } else { saturated(limits.harden(d / longest).max(d)) }
+    }
+
     /// How far the hand goes for a cursor at a distance from the shoulder (finite, 0 or more).
     pub fn extent(self, bones: TwoBone, cursor_distance: f32) -> Extent {
         let limits = Limits::new(self, bones);
@@ -186,6 +199,21 @@ impl Limits {
             (least + width * left, left)
         } else {
             (d, 1.0)
+        }
+    }
+
+    /// The d that gives a d'.
+    fn harden(self, softened: f64) -> f64 {
+        const ZONES: f64 = 12.0;
+        let Self { least, most, width } = self;
+        if width == 0.0 {
+            softened.clamp(least, most)
+        } else if softened > self.outer_join() {
+            self.outer_join() - width * ((most - softened) / width).max((-ZONES).exp()).ln()
+        } else if softened < self.inner_join() {
+            self.inner_join() + width * ((softened - least) / width).max((-ZONES).exp()).ln()
+        } else {
+            softened
         }
     }
 }

@@ -133,6 +133,8 @@ impl Reference {
             Self::Limb => Some(facing.limb_frame().y_axis.as_dvec3()),
             Self::Pole(pole) => towards(pole, w),
             Self::Stereographic(map) => map.outward(w),
+            // Without a past it begins on the map.
+            Self::Transport if last.is_none() => Stereographic::default().outward(w),
             Self::Transport => None,
         };
         match (own, last) {

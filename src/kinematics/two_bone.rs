@@ -116,6 +116,11 @@ pub struct Pose {
     pub along: f32,
     /// o_e ≥ 0, the elbow's Socket-space y: how far out from the Pointer it is.
     pub out: f32,
+    /// The angle about the Pointer from the Limb frame's +y to where the elbow stands out: the
+    /// Socket's rotation, radians.
+    pub spin: f32,
+    /// How many times as long as at rest the bones are: 1 unless they were stretched.
+    pub stretch: f32,
     /// The Pointer's direction and heading. Keep it for the next [`TwoBone::solve_from`].
     pub facing: Facing,
 }
@@ -172,36 +177,86 @@ impl TwoBone {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
         debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
 
-        let (unit, scale) = power_of_two_near(self.upper.max(self.lower));
-        let (upper, lower) = (self.upper * scale, self.lower * scale);
-        let (sum, difference) = (upper + lower, upper - lower);
-
+        let scaled = Scaled::new(self);
         let facing = Facing::towards(cursor, last);
-        let asked = (cursor * scale).length();
-        let distance = asked.clamp(difference.abs(), sum);
-        let (along, out) = elbow_in_socket(upper, lower, distance);
+        let asked = (cursor * scaled.scale).length();
+        let pose = scaled.pose(facing, asked, elbow_spin);
 
-        let (reach, hand) = if asked > sum {
-            (Reach::TooFar, saturate(facing.direction * distance, unit))
-        } else if asked < difference.abs() {
-            (Reach::TooClose, saturate(facing.direction * distance, unit))
+        if asked > scaled.sum {
+            Pose { reach: Reach::TooFar, ..pose }
+        } else if asked < scaled.difference.abs() {
+            Pose { reach: Reach::TooClose, ..pose }
         } else {
-            (Reach::Reached, cursor)
-        };
+            Pose { hand: cursor, ..pose }
+        }
+    }
 
+    /// The pose with the hand at a distance from the shoulder, brought between the limits, in the
+    /// direction that the arm faces: [`Reach::Reached`] says no more than that.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::solve`].
+    pub fn solve_at(self, facing: Facing, distance: f32, elbow_spin: f32) -> Pose {
+        debug_assert!(distance.is_finite(), "distance is {distance}");
+        debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
+        let scaled = Scaled::new(self);
+        scaled.pose(facing, distance * scaled.scale, elbow_spin)
+    }
+}
+
+/// Bones near 1 long, so that nothing overflows or vanishes.
+#[derive(Clone, Copy)]
+struct Scaled {
+    upper: f32,
+    /// L and δ.
+    sum: f32,
+    difference: f32,
+    unit: f32,
+    scale: f32,
+}
+
+impl Scaled {
+    fn new(bones: TwoBone) -> Self {
+        let (unit, scale) = power_of_two_near(bones.upper.max(bones.lower));
+        let (upper, lower) = (bones.upper * scale, bones.lower * scale);
+        Self { upper, sum: upper + lower, difference: upper - lower, unit, scale }
+    }
+
+    /// The hand as far out as it is asked to be and can be.
+    fn pose(self, facing: Facing, asked: f32, spin: f32) -> Pose {
+        let Self { unit, .. } = self;
+        let distance = asked.clamp(self.difference.abs(), self.sum);
+        let (along, out) = self.elbow_in_socket(distance);
         let limb = facing.limb_frame();
-        let (sin, cos) = elbow_spin.sin_cos();
+        let (sin, cos) = spin.sin_cos();
         let elbow = limb.x_axis * along + (limb.y_axis * cos + limb.z_axis * sin) * out;
-
         Pose {
             elbow: saturate(elbow, unit),
-            hand,
-            reach,
+            hand: saturate(facing.direction * distance, unit),
+            reach: Reach::Reached,
             distance: (distance * unit).min(f32::MAX),
             along: along * unit,
             out: out * unit,
+            spin,
+            stretch: 1.0,
             facing,
         }
+    }
+
+    /// (h_e, o_e).
+    fn elbow_in_socket(self, distance: f32) -> (f32, f32) {
+        let Self { upper, sum, difference, .. } = self;
+        if distance == 0.0 {
+            return (0.0, upper);
+        }
+        // L·(δ/D) rather than δ·(L/D): D is never less than |δ|, but it may be tiny beside L.
+        let along = 0.5 * (distance + sum * (difference / distance));
+        let squared = (sum + distance)
+            * (sum - distance)
+            * ((distance + difference) / distance)
+            * ((distance - difference) / distance);
+        (along.clamp(-upper, upper), 0.5 * squared.max(0.0).sqrt())
     }
 }
 
@@ -215,6 +270,14 @@ impl Pose {
     pub fn pitch(&self) -> f32 {
         let Vec3 { x, y, z } = self.facing.direction;
         y.atan2(x.hypot(z))
+    }
+
+    /// Unit vector perpendicular to the Pointer towards the side that the elbow stands out on; of a
+    /// straight or folded arm that on which it would.
+    pub fn outward(&self) -> Vec3 {
+        let limb = self.facing.limb_frame();
+        let (sin, cos) = self.spin.sin_cos();
+        limb.y_axis * cos + limb.z_axis * sin
     }
 
     /// θ_e, the angle at the shoulder between Pointer and upper bone, in [0, π].
@@ -269,21 +332,6 @@ impl Facing {
 fn heading(v: Vec3) -> Option<Vec2> {
     let flat = Vec2::new(v.x, v.z);
     (flat != Vec2::ZERO).then(|| (flat * power_of_two_near(flat.abs().max_element()).1).normalize())
-}
-
-/// (h_e, o_e) for lengths near 1.
-fn elbow_in_socket(upper: f32, lower: f32, distance: f32) -> (f32, f32) {
-    let (sum, difference) = (upper + lower, upper - lower);
-    if distance == 0.0 {
-        return (0.0, upper);
-    }
-    // L·(δ/D) rather than δ·(L/D): D is never less than |δ|, but it may be tiny beside L.
-    let along = 0.5 * (distance + sum * (difference / distance));
-    let squared = (sum + distance)
-        * (sum - distance)
-        * ((distance + difference) / distance)
-        * ((distance - difference) / distance);
-    (along.clamp(-upper, upper), 0.5 * squared.max(0.0).sqrt())
 }
 
 /// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that

@@ -8,7 +8,7 @@ use crate::kinematics::two_bone::{Pose, TwoBone};
 /// ```text
 /// Root                 translation = shoulder in the world
 ///  ├ Limb              rotation = R_y(−θ_z)·R_z(θ_y): turns the Pointer, its +x, onto the hand
-///  │  ├ Socket         rotation = R_x(ψ): spins the elbow about the Pointer
+///  │  ├ Socket         rotation = R_x(ψ_ref + ψ): spins the elbow about the Pointer
 ///  │  │  ├ UpperLimb   from the origin to (h_e, o_e, 0)
 ///  │  │  ├ LowerLimb   from (h_e, o_e, 0) to (D, 0, 0)
 ///  │  │  ├ Elbow       at (h_e, o_e, 0)
@@ -81,9 +81,9 @@ impl ArmRig {
     const POINTER_RADIUS: f32 = 4.0;
     const SEED_LENGTH: f32 = 500.0;
 
-    /// Hangs a pose (Root space) with its spin (radians) below a shoulder at `root` (world). The
-    /// `cursor` is in Root space, as it was given to the solver.
-    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, elbow_spin: f32, pose: &Pose) -> Self {
+    /// Hangs a pose (Root space) below a shoulder at `root` (world). The `cursor` is in Root space,
+    /// as it was given to the solver.
+    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &Pose) -> Self {
         let thickness = Self::thickness(arm);
         let (base_radius, tip_radius) =
             (Self::BASE_RADIUS * thickness, Self::TIP_RADIUS * thickness);
@@ -96,7 +96,7 @@ impl ArmRig {
         let local = Part::ALL.map(|part| match part {
             Part::Root => Affine3A::from_translation(root),
             Part::Limb => Affine3A::from_mat3(pose.facing.limb_frame()),
-            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(elbow_spin).into()),
+            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(pose.spin).into()),
             Part::UpperLimb => upper_limb,
             Part::LowerLimb => lower_limb,
             Part::Elbow => Affine3A::from_translation(elbow),

@@ -1,0 +1,46 @@
+//! Angles of a ball joint as the arm has them: R = R_y · R_z · R_x, so that y is the yaw, z the pitch
+//! and x the twist about the bone, which lies along +x. (Skeletons measure theirs otherwise: see
+//! [`skeleton`](super::skeleton).)
+
+use core::f64::consts::PI;
+
+use glam::{DMat3, DVec3, Vec3};
+
+/// The rotation of angles about x, y and z, radians.
+pub fn rotation(angles: Vec3) -> DMat3 {
+    let angles = angles.as_dvec3();
+    DMat3::from_rotation_y(angles.y)
+        * DMat3::from_rotation_z(angles.z)
+        * DMat3::from_rotation_x(angles.x)
+}
+
+/// Angles of a rotation. Of all that there are those nearest to the last ones, so that they go on
+/// where they were, past half a turn too; straight up or down the last yaw is kept.
+pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
+    const VERTICAL: f64 = 1e-7;
+    let (x, last) = (rotation.x_axis, last.as_dvec3());
+    let level = x.x.hypot(x.z);
+    let pitch = x.y.atan2(level);
+    let yaw = if level < VERTICAL { last.y } else { (-x.z).atan2(x.x) };
+    let untwisted = DMat3::from_rotation_z(-pitch) * DMat3::from_rotation_y(-yaw) * rotation;
+    let twist = untwisted.y_axis.z.atan2(untwisted.y_axis.y);
+
+    let near = |angles: DVec3| angles + ((last - angles) / (2.0 * PI)).round() * (2.0 * PI);
+    let one = near(DVec3::new(twist, yaw, pitch));
+    // Tipped over backwards it is the same.
+    let other = near(DVec3::new(twist + PI, yaw + PI, PI - pitch));
+    let far = |angles: DVec3| (angles - last).abs().element_sum();
+    if far(other) < far(one) - 1e-6 { other.as_vec3() } else { one.as_vec3() }
+}
+
+/// The roll about +x of a rotation, τ = 2·atan2(q·x̂, q_w), radians, of all that there are the one
+/// nearest to the last; where the rotation turns +x around and so has no roll, the last.
+pub fn roll(rotation: DMat3, last: f32) -> f32 {
+    const NONE: f64 = 1e-9;
+    let q = glam::DQuat::from_mat3(&rotation);
+    if q.x.hypot(q.w) < NONE {
+        return last;
+    }
+    let (roll, last) = (2.0 * q.x.atan2(q.w), f64::from(last));
+    (roll + ((last - roll) / (2.0 * PI)).round() * (2.0 * PI)) as f32
+}

@@ -1,0 +1,181 @@
+//! Forward kinematics of the arm: the shoulder's three angles and the elbow's bend; how to get them
+//! from a pose, a pose from them, and something between two.
+//!
+//! ```text
+//! U     = R_y(−θ_z) R_z(θ_y) R_x(ψ_ref + ψ) R_z(θ_e)        the upper limb's rotation, by IK
+//!       = R_y · R_z · R_x                                   by the shoulder's angles
+//! Lower = U · R_z(−β),   β = 180° − φ                        the bend: 0 straight, 180° folded
+//! ```
+//!
+//! A negative bend is the same pose as the positive one with the shoulder turned by 180° about the
+//! limb. Root space, right-handed, radians.
+//!
+//! # How exact
+//!
+//! From a pose to angles and back the hand is within 1e-6·L and the elbow within 1e-5·L for
+//! 1° ≤ φ ≤ 179°; nearer to straight or folded within 5e-4·L, because there a hand in f32 does not
+//! say better where the elbow is.
+
+use core::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
+
+use super::euler;
+use super::ik::{length, reach, stretched};
+use super::swivel::angle_from_limb;
+use super::two_bone::{Facing, Pose, Reach, TwoBone};
+
+/// The angles of the arm's two joints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fk {
+    /// Angles about x, y and z, unwrapped: see [`euler`].
+    pub shoulder: Vec3,
+    /// β, unwrapped.
+    pub bend: f32,
+    /// How many times as long as at rest the limbs are.
+    pub stretch: f32,
+}
+
+impl Default for Fk {
+    /// Straight along +x.
+    fn default() -> Self {
+        Self { shoulder: Vec3::ZERO, bend: 0.0, stretch: 1.0 }
+    }
+}
+
+impl Fk {
+    /// The angles of a pose, of all that there are the nearest to the last ones.
+    #[must_use]
+    pub fn matching(pose: &Pose, last: Self) -> Self {
+        let turned = Turned::of_pose(pose);
+        // A bend that was negative stays so.
+        let is_back = (f64::from(last.bend) / TAU).round() * TAU > f64::from(last.bend);
+        let (upper, bend) = if is_back && turned.bend > 0.0 {
+            (turned.upper * DQuat::from_rotation_x(PI), -turned.bend)
+        } else {
+            (turned.upper, turned.bend)
+        };
+        let turns = ((f64::from(last.bend) - bend) / TAU).round() * TAU;
+        Self {
+            shoulder: euler::angles(DMat3::from_quat(upper), last.shoulder),
+            bend: (bend + turns) as f32,
+            stretch: pose.stretch,
+        }
+    }
+
+    /// The pose of the angles; `last` is where the arm last faced. Its hand is where it is asked to
+    /// be: [`Reach::Reached`] says no more than that.
+    pub fn pose(self, bones: TwoBone, last: Facing) -> Pose {
+        Turned::of_fk(self).pose(bones, last)
+    }
+}
+
+/// A pose between the angles and a solved one: limbs and elbow turn, and keep their lengths. The
+/// weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
+///
+/// The hand is [`Reach::Reached`] only when it is within 1e-6·L of the cursor.
+pub fn blended(fk: Fk, solved: &Pose, weight: f32, bones: TwoBone, cursor: Vec3) -> Pose {
+    if weight >= 1.0 {
+        return *solved;
+    }
+    let (fk, ik) = (Turned::of_fk(fk), Turned::of_pose(solved));
+    let between = if weight > 0.0 { fk.to(ik, f64::from(weight)) } else { fk };
+    let pose = between.pose(bones, solved.facing);
+    let missed = length(pose.hand - cursor);
+    let reach = match reach(0.0, missed, bones) {
+        Reach::Reached => Reach::Reached,
+        _ if pose.distance > length(cursor) => Reach::TooClose,
+        _ => Reach::TooFar,
+    };
+    Pose { reach, ..pose }
+}
+
+/// How the two limbs are turned, in f64: rounding of an angle is felt at the end of a long limb.
+#[derive(Clone, Copy)]
+struct Turned {
+    /// U.
+    upper: DQuat,
+    /// β, from 0 to π.
+    bend: f64,
+    stretch: f64,
+}
+
+impl Turned {
+    fn of_fk(fk: Fk) -> Self {
+        let bend = f64::from(fk.bend);
+        let bend = bend - (bend / TAU).round() * TAU;
+        let upper = DQuat::from_mat3(&euler::rotation(fk.shoulder));
+        let upper = if bend < 0.0 { upper * DQuat::from_rotation_x(PI) } else { upper };
+        Self { upper, bend: bend.abs(), stretch: f64::from(fk.stretch) }
+    }
+
+    fn of_pose(pose: &Pose) -> Self {
+        let [along, out, distance] = [pose.along, pose.out, pose.distance].map(f64::from);
+        let at_shoulder = out.atan2(along);
+        let at_hand = out.atan2(distance - along);
+        let upper =
+            DMat3::from_cols_array(&pose.facing.limb_frame().to_cols_array().map(f64::from))
+                * DMat3::from_rotation_x(f64::from(pose.spin))
+                * DMat3::from_rotation_z(at_shoulder);
+        Self {
+            upper: DQuat::from_mat3(&upper).normalize(),
+            bend: at_shoulder + at_hand,
+            stretch: f64::from(pose.stretch),
+        }
+    }
+
+    fn to(self, other: Self, part: f64) -> Self {
+        let between = |a: f64, b: f64| a + (b - a) * part;
+        Self {
+            upper: self.upper.slerp(other.upper, part),
+            bend: between(self.bend, other.bend),
+            stretch: between(self.stretch, other.stretch),
+        }
+    }
+
+    fn pose(self, bones: TwoBone, last: Facing) -> Pose {
+        let bones = stretched(bones, self.stretch as f32);
+        let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
+        let (sin, _) = self.bend.sin_cos();
+        let half = (0.5 * self.bend).cos();
+        // d₁ + d₂ cos β, which cancels where equal bones are folded.
+        let ahead = (upper - lower) + 2.0 * lower * half * half;
+        let aside = lower * sin;
+        let (distance, at_shoulder) = (ahead.hypot(aside), aside.atan2(ahead));
+
+        let axes = DMat3::from_quat(self.upper);
+        let (sin, cos) = at_shoulder.sin_cos();
+        let direction = axes.x_axis * cos - axes.y_axis * sin;
+        let outward = axes.x_axis * sin + axes.y_axis * cos;
+        let facing = Facing {
+            direction: direction.as_vec3().normalize(),
+            heading: heading(direction).unwrap_or(last.heading),
+        };
+        Pose {
+            elbow: saturated(axes.x_axis * upper),
+            hand: saturated(direction * distance),
+            reach: Reach::Reached,
+            distance: saturate(distance),
+            along: saturate(upper * cos),
+            out: saturate(upper * sin),
+            spin: angle_from_limb(facing, outward.as_vec3()),
+            stretch: self.stretch as f32,
+            facing,
+        }
+    }
+}
+
+/// Seen from above; nothing where it stands upright, but for rounding.
+fn heading(direction: DVec3) -> Option<Vec2> {
+    const VERTICAL: f64 = 1e-7;
+    let flat = DVec2::new(direction.x, direction.z);
+    (flat.length() > VERTICAL).then(|| flat.normalize().as_vec2())
+}
+
+fn saturated(v: DVec3) -> Vec3 {
+    v.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
+}
+
+fn saturate(value: f64) -> f32 {
+    value.min(f64::from(f32::MAX)) as f32
+}

@@ -1,0 +1,138 @@
+//! The arm's inverse kinematics with all its choices: what the elbow's spin is measured from, and how
+//! the hand meets its limits.
+//!
+//! [`TwoBone`] is the exact arm of the seed; [`Ik`] puts a [`Reference`] and a [`Softening`] around it.
+//! With [`Reference::Limb`] and nothing softened the two give the same, bit for bit.
+//!
+//! Everything is in Root space, right-handed; lengths share any one unit, angles are radians.
+//!
+//! # How fast the elbow can go
+//!
+//! With root, spin and lengths constant, no stretch, and a cursor no nearer to the shoulder than
+//! 0.05·L, the elbow is at most
+//!
+//! ```text
+//! hypot( r'·d₁·|D − hₑ| / (D·oₑ),  (d₁ + oₑ·g) / d )
+//! ```
+//!
+//! times as fast as the cursor; r' = dD/dd is [`Solved::slope`], g the reference's
+//! [gain](Reference::gain), d how far the cursor is from the shoulder. Where this is unbounded the
+//! elbow pops: at a straight or folded arm without softness (oₑ → 0 while r' = 1), where the reference
+//! is singular (g → ∞), and at a cursor that crosses the shoulder (d → 0).
+
+use glam::Vec3;
+
+use super::reach::Softening;
+use super::swivel::{Carried, Reference, angle_from_limb, respun};
+use super::two_bone::{Facing, Pose, Reach, TwoBone};
+
+/// Bones with what their elbow's spin is measured from and how their hand meets its limits.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm::kinematics::ik::Ik;
+/// use ik_arm::kinematics::reach::Softening;
+/// use ik_arm::kinematics::swivel::{Reference, Stereographic};
+/// use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+///
+/// let ik = Ik {
+///     bones: TwoBone::new(200.0, 300.0)?,
+///     reference: Reference::Stereographic(Stereographic::default()),
+///     softening: Softening::new(0.1, 1.0, 0.0)?,
+/// };
+/// let solved = ik.solve(Vec3::new(0.0, 490.0, 0.0), 0.0, Facing::default(), None);
+/// assert!(solved.pose.distance < 490.0, "the hand lags behind before the arm is straight");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ik {
+    pub bones: TwoBone,
+    pub reference: Reference,
+    pub softening: Softening,
+}
+
+/// A solved arm, with what the next solve goes on from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solved {
+    pub pose: Pose,
+    /// Where the spin was measured from.
+    pub carried: Carried,
+    /// r' = dD/dd, how fast the hand goes for the cursor, outwards.
+    pub slope: f32,
+}
+
+impl Ik {
+    /// Poses the hand at `cursor` with the elbow turned by `spin` (ψ) from the reference.
+    ///
+    /// `last` and `carried` are [`Pose::facing`] and [`Solved::carried`] of the last pose, for callers
+    /// that keep them: they decide where the cursor or the reference does not, and transport goes on
+    /// from them. Without a past it begins at the stereographic direction.
+    ///
+    /// With softness or stretch the hand is [`Reach::Reached`] when it is within 1e-6·L of the
+    /// cursor.
+    ///
+    /// # Panics
+    ///
+    /// In debug builds, if an argument is not finite.
+    pub fn solve(&self, cursor: Vec3, spin: f32, last: Facing, carried: Option<Carried>) -> Solved {
+        let facing = Facing::towards(cursor, last);
+        let outward = self.reference.outward(facing, carried);
+        let carried = Carried { direction: facing.direction, outward };
+        let spin = match self.reference {
+            Reference::Limb => spin,
+            _ => spin + angle_from_limb(facing, outward),
+        };
+        let asked = length(cursor);
+        let extent = self.softening.extent(self.bones, asked);
+        let pose = if self.softening.is_hard() {
+            self.bones.solve_from(cursor, spin, last)
+        } else {
+            let bones = stretched(self.bones, extent.stretch);
+            let pose = bones.solve_at(facing, extent.distance, spin);
+            let hand = if extent.distance == asked { cursor } else { pose.hand };
+            let reach = reach(extent.distance, asked, self.bones);
+            Pose { hand, reach, stretch: extent.stretch, ..pose }
+        };
+        Solved { pose, carried, slope: extent.slope }
+    }
+
+    /// The cursor and the spin ψ, in [0, 2π), that give a pose: the hand where it is, the elbow out to
+    /// the same side, also of a straight or folded arm.
+    ///
+    /// A soft limit that the hand cannot have come to keeps it from there, and one that stretches the
+    /// limbs of a pose that is not stretched bends its elbow.
+    pub fn matching(&self, pose: &Pose, carried: Option<Carried>) -> (Vec3, f32) {
+        let distance = self.softening.cursor_distance(self.bones, pose.distance);
+        let cursor = if self.softening.is_hard() || distance == pose.distance {
+            pose.hand
+        } else {
+            (pose.facing.direction * distance).clamp(Vec3::MIN, Vec3::MAX)
+        };
+        let facing = Facing::towards(cursor, pose.facing);
+        let reference = self.reference.angle(facing, carried);
+        (cursor, respun(angle_from_limb(facing, pose.outward()), 0.0, reference))
+    }
+}
+
+/// Whether a hand that is `distance` from the shoulder is as far out as a cursor.
+pub(super) fn reach(distance: f32, asked: f32, bones: TwoBone) -> Reach {
+    const NEAR: f64 = 1e-6;
+    let near = NEAR * (f64::from(bones.upper()) + f64::from(bones.lower()));
+    match f64::from(distance) - f64::from(asked) {
+        short if short < -near => Reach::TooFar,
+        long if long > near => Reach::TooClose,
+        _ => Reach::Reached,
+    }
+}
+
+/// Bones that are so many times as long.
+pub(super) fn stretched(bones: TwoBone, stretch: f32) -> TwoBone {
+    let [upper, lower] =
+        [bones.upper(), bones.lower()].map(|length| (length * stretch).min(f32::MAX));
+    TwoBone::new(upper, lower).unwrap_or(bones)
+}
+
+/// In f64, where no square overflows.
+pub(super) fn length(v: Vec3) -> f32 {
+    v.as_dvec3().length().min(f64::from(f32::MAX)) as f32
+}

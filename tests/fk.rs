@@ -1,0 +1,262 @@
+//! The arm's joint angles: the pose that they give, the angles that a pose has, and what is between.
+
+use std::f64::consts::PI;
+
+use glam::{DMat3, DQuat, DVec3, Vec3};
+use ik_arm::kinematics::euler;
+use ik_arm::kinematics::fk::{Fk, blended};
+use ik_arm::kinematics::ik::Ik;
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x000f_ee1f),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+fn arms() -> impl Strategy<Value = TwoBone> {
+    let length = || (-2.0..4.0_f32).prop_map(|power| 10_f32.powf(power));
+    (length(), -1.4..1.4_f32).prop_map(|(upper, ratio)| {
+        TwoBone::new(upper, upper * 10_f32.powf(ratio)).expect("lengths")
+    })
+}
+
+fn angles() -> impl Strategy<Value = Vec3> {
+    let angle = || -3.1..3.1_f32;
+    [angle(), angle(), angle()].prop_map(Vec3::from_array)
+}
+
+fn bends() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        8 => -3.14..3.14_f32,
+        1 => -0.02..0.02_f32,
+        1 => 3.12..3.1415_f32,
+        1 => prop_oneof![Just(0.0_f32), Just(core::f32::consts::PI)],
+    ]
+}
+
+fn directions() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0_f64, -PI..PI).prop_map(|(y, turn)| {
+        let flat = (1.0 - y * y).sqrt();
+        DVec3::new(flat * turn.cos(), y, flat * turn.sin())
+    })
+}
+
+fn references() -> impl Strategy<Value = Reference> {
+    prop_oneof![
+        Just(Reference::Limb),
+        directions().prop_map(|pole| Reference::Pole(pole.as_vec3())),
+        Just(Reference::Stereographic(Stereographic::default())),
+        Just(Reference::Transport),
+    ]
+}
+
+fn length(arm: TwoBone) -> f64 {
+    f64::from(arm.upper()) + f64::from(arm.lower())
+}
+
+/// Elbow and hand by matrices, in f64.
+fn twin(fk: Fk, bones: TwoBone) -> (DVec3, DVec3) {
+    let shoulder = fk.shoulder.as_dvec3();
+    let upper = DQuat::from_axis_angle(DVec3::Y, shoulder.y)
+        * DQuat::from_axis_angle(DVec3::Z, shoulder.z)
+        * DQuat::from_axis_angle(DVec3::X, shoulder.x);
+    let lower = upper * DQuat::from_axis_angle(DVec3::Z, -f64::from(fk.bend));
+    let elbow = upper * (DVec3::X * f64::from(bones.upper()));
+    (elbow, elbow + lower * (DVec3::X * f64::from(bones.lower())))
+}
+
+fn apart(pose: &Pose, other: (DVec3, DVec3)) -> (f64, f64) {
+    (pose.elbow.as_dvec3().distance(other.0), pose.hand.as_dvec3().distance(other.1))
+}
+
+fn elbow_tolerance(pose: &Pose) -> f64 {
+    let angle = pose.elbow_angle().to_degrees();
+    if (1.0..=179.0).contains(&angle) { 1e-5 } else { 5e-4 }
+}
+
+fn points(pose: &Pose) -> (DVec3, DVec3) {
+    (pose.elbow.as_dvec3(), pose.hand.as_dvec3())
+}
+
+proptest! {
+    #![proptest_config(config(10_000))]
+
+    #[test]
+    fn a_pose_is_what_matrices_make_of_its_angles(
+        bones in arms(), shoulder in angles(), bend in bends()
+    ) {
+        let fk = Fk { shoulder, bend, stretch: 1.0 };
+        let pose = fk.pose(bones, Facing::default());
+        let (elbow, hand) = apart(&pose, twin(fk, bones));
+        prop_assert!(elbow < 3e-7 * length(bones) && hand < 3e-7 * length(bones));
+        // What the hierarchy is made of says the same.
+        let w = pose.facing.direction.as_dvec3();
+        let out = pose.outward().as_dvec3();
+        let again = w * f64::from(pose.along) + out * f64::from(pose.out);
+        prop_assert!(again.distance(pose.elbow.as_dvec3()) < 1e-6 * length(bones));
+        prop_assert!((w * f64::from(pose.distance)).distance(twin(fk, bones).1) < 5e-7 * length(bones));
+    }
+
+    #[test]
+    fn a_negative_bend_is_the_same_pose_with_the_shoulder_turned_about_the_limb(
+        bones in arms(), shoulder in angles(), bend in bends()
+    ) {
+        let fk = Fk { shoulder, bend, stretch: 1.0 };
+        let turned = Fk { shoulder: shoulder + Vec3::X * core::f32::consts::PI, bend: -bend, ..fk };
+        let (elbow, hand) = apart(&fk.pose(bones, Facing::default()), points(&turned.pose(bones, Facing::default())));
+        prop_assert!(elbow < 1e-6 * length(bones) && hand < 1e-6 * length(bones));
+    }
+
+    #[test]
+    fn from_angles_to_a_hand_and_back_the_pose_stays(
+        bones in arms(), shoulder in angles(), bend in bends(), reference in references()
+    ) {
+        let fk = Fk { shoulder, bend, stretch: 1.0 };
+        let pose = fk.pose(bones, Facing::default());
+        let ik = Ik { bones, reference, softening: Softening::default() };
+        let (cursor, spin) = ik.matching(&pose, None);
+        let solved = ik.solve(cursor, spin, pose.facing, None).pose;
+        let again = Fk::matching(&solved, fk).pose(bones, solved.facing);
+        for found in [solved, again] {
+            let (elbow, hand) = apart(&found, points(&pose));
+            let l = length(bones);
+            prop_assert!(hand <= 1e-6 * l, "the hand is off by {}", hand / l);
+            prop_assert!(elbow <= elbow_tolerance(&pose) * l, "the elbow is off by {}", elbow / l);
+        }
+    }
+
+    #[test]
+    fn from_a_hand_to_angles_and_back_the_pose_stays(
+        bones in arms(), direction in directions(), part in 0.0..1.2_f32, spin in 0.0..6.28_f32,
+        reference in references()
+    ) {
+        let ik = Ik { bones, reference, softening: Softening::default() };
+        let cursor = direction.as_vec3() * part * bones.outer_limit();
+        let solved = ik.solve(cursor, spin, Facing::default(), None);
+        let fk = Fk::matching(&solved.pose, Fk::default());
+        let posed = fk.pose(bones, solved.pose.facing);
+        let (cursor, spin) = ik.matching(&posed, Some(solved.carried));
+        let again = ik.solve(cursor, spin, posed.facing, Some(solved.carried)).pose;
+        for found in [posed, again] {
+            let (elbow, hand) = apart(&found, points(&solved.pose));
+            let l = length(bones);
+            prop_assert!(hand <= 1e-6 * l, "the hand is off by {}", hand / l);
+            prop_assert!(elbow <= elbow_tolerance(&solved.pose) * l, "the elbow is off by {}", elbow / l);
+        }
+    }
+
+    #[test]
+    fn angles_go_on_where_they_were(shoulder in angles(), turns in -2..3_i32, bend in bends()) {
+        let bones = TwoBone::new(2.0, 3.0).expect("lengths");
+        let turned = f64::from(turns) * 2.0 * PI;
+        let around = |angle: f32| (f64::from(angle) + turned) as f32;
+        let last = Fk { shoulder: shoulder.map(around), bend: around(bend), stretch: 1.0 };
+        let found = Fk::matching(&last.pose(bones, Facing::default()), last);
+        let degenerate = shoulder.z.cos().abs() < 1e-3 || bend.sin().abs() < 1e-3;
+        prop_assert!(degenerate || found.shoulder.distance(last.shoulder) < 2e-3, "{:?} is not {:?}", found, last);
+        prop_assert!((found.bend - last.bend).abs() < 2e-3 || degenerate, "{:?} is not {:?}", found, last);
+    }
+
+    #[test]
+    fn between_angles_and_a_solved_pose_the_limbs_keep_their_lengths(
+        bones in arms(), shoulder in angles(), bend in bends(), direction in directions(),
+        part in 0.0..1.2_f32, weight in 0.0..=1.0_f32
+    ) {
+        let fk = Fk { shoulder, bend, stretch: 1.0 };
+        let cursor = direction.as_vec3() * part * bones.outer_limit();
+        let solved = bones.solve(cursor, 0.4);
+        let pose = blended(fk, &solved, weight, bones, cursor);
+        let l = length(bones);
+        let (elbow, hand) = points(&pose);
+        prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 3e-7 * l);
+        prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 4e-7 * l);
+        prop_assert!(pose.reach != Reach::Reached || hand.distance(cursor.as_dvec3()) < 2e-6 * l);
+        prop_assert_eq!(blended(fk, &solved, 1.0, bones, cursor), solved);
+        let (elbow, hand) = apart(&blended(fk, &solved, 0.0, bones, cursor), twin(fk, bones));
+        prop_assert!(elbow < 3e-7 * l && hand < 3e-7 * l);
+    }
+
+    #[test]
+    fn half_way_the_upper_limb_has_made_half_its_turn(
+        shoulder in angles(), bend in 0.0..3.1_f32, direction in directions(), part in 0.3..0.9_f32
+    ) {
+        let bones = TwoBone::new(2.0, 3.0).expect("lengths");
+        let cursor = direction.as_vec3() * part * 5.0;
+        let solved = bones.solve(cursor, 0.4);
+        let end = |weight| {
+            let pose = blended(Fk { shoulder, bend, stretch: 1.0 }, &solved, weight, bones, cursor);
+            let axes = frame(&pose);
+            (DQuat::from_mat3(&axes), f64::from(pose.elbow_angle()))
+        };
+        let [(from, bent), (middle, half), (to, solved)] = [0.0, 0.5, 1.0].map(end);
+        let turn = from.angle_between(to).min(from.angle_between(-to));
+        prop_assume!(turn < 3.0);
+        let [before, after] = [from, to].map(|end| {
+            middle.angle_between(end).min(middle.angle_between(-end))
+        });
+        prop_assert!((before - 0.5 * turn).abs() < 1e-3 && (after - 0.5 * turn).abs() < 1e-3);
+        prop_assert!((half - 0.5 * (bent + solved)).abs() < 1e-3);
+    }
+}
+
+/// The upper limb's axes as its points tell: x along it, z the hinge.
+fn frame(pose: &Pose) -> DMat3 {
+    let x = pose.elbow.as_dvec3().normalize();
+    let z = pose.facing.direction.as_dvec3().cross(pose.outward().as_dvec3()).normalize();
+    DMat3::from_cols(x, z.cross(x), z)
+}
+
+#[test]
+fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
+    let bones = TwoBone::new(2.0, 3.0).expect("lengths");
+    let ik = Ik { bones, reference: Reference::Limb, softening: Softening::default() };
+    for twist in [0.0, 1.0, -2.5_f32] {
+        for bend in [0.0, core::f32::consts::PI] {
+            let fk = Fk { shoulder: Vec3::new(twist, 0.3, -0.7), bend, stretch: 1.0 };
+            let pose = fk.pose(bones, Facing::default());
+            let (cursor, spin) = ik.matching(&pose, None);
+            let solved = ik.solve(cursor * 0.999, spin, pose.facing, None).pose;
+            let hinge = DQuat::from_mat3(&euler::rotation(fk.shoulder)) * DVec3::Z;
+            let found = solved.facing.direction.cross(solved.outward()).as_dvec3();
+            assert!(hinge.distance(-found).min(hinge.distance(found)) < 1e-3);
+            if bend == 0.0 {
+                assert!(hinge.distance(found) < 1e-3, "{hinge} is not {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn straight_up_the_last_yaw_is_kept() {
+    let up = euler::rotation(Vec3::new(0.4, 0.0, core::f32::consts::FRAC_PI_2));
+    let angles = euler::angles(up, Vec3::new(0.0, 1.1, 1.0));
+    assert!((angles.y - 1.1).abs() < 1e-6, "{angles}");
+    let again = euler::rotation(angles);
+    assert!((again * DVec3::Y).distance(up * DVec3::Y) < 1e-6);
+}
+
+#[test]
+fn a_roll_is_the_part_of_a_rotation_about_x_and_goes_on_past_half_a_turn() {
+    let swing = DQuat::from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 0.9);
+    let mut last = 0.0;
+    for step in 0..=40 {
+        let roll = f64::from(step) * 0.25;
+        let rotation = DMat3::from_quat(swing * DQuat::from_axis_angle(DVec3::X, roll));
+        last = euler::roll(rotation, last);
+        assert!((f64::from(last) - roll).abs() < 1e-5, "{last} is not {roll}");
+    }
+}
+
+#[test]
+fn turned_around_a_hand_keeps_its_last_roll() {
+    let around = DMat3::from_rotation_y(PI);
+    assert_eq!(euler::roll(around, 0.7), 0.7);
+}

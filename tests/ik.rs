@@ -1,0 +1,299 @@
+//! The arm with a reference and a softening: how far it is the plain arm, and how smooth it is.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec3, Vec3};
+use ik_arm::kinematics::ik::{Ik, Solved};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x001c_0de5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+fn arms() -> impl Strategy<Value = TwoBone> {
+    (1.0..10.0_f32, 1.0..10.0_f32).prop_map(|(a, b)| TwoBone::new(a, b).expect("lengths"))
+}
+
+fn cursors() -> impl Strategy<Value = Vec3> {
+    [-25.0..25.0_f32, -25.0..25.0, -25.0..25.0].prop_map(Vec3::from_array)
+}
+
+fn references() -> impl Strategy<Value = Reference> {
+    prop_oneof![
+        Just(Reference::Limb),
+        cursors().prop_map(Reference::Pole),
+        Just(Reference::Stereographic(Stereographic::default())),
+        Just(Reference::Transport),
+    ]
+}
+
+fn softenings() -> impl Strategy<Value = Softening> {
+    (0.0..0.9_f32, 1.0..2.0_f32, 0.0..2.0_f32)
+        .prop_map(|(softness, stretch, angle)| soft(softness, stretch, angle))
+}
+
+fn soft(softness: f32, stretch: f32, angle: f32) -> Softening {
+    Softening::new(softness, stretch, angle).expect("a softening")
+}
+
+fn length(arm: TwoBone) -> f64 {
+    f64::from(arm.upper()) + f64::from(arm.lower())
+}
+
+fn bits(v: Vec3) -> [u32; 3] {
+    v.to_array().map(f32::to_bits)
+}
+
+proptest! {
+    #![proptest_config(config(10_000))]
+
+    #[test]
+    fn with_all_off_it_is_the_plain_arm_bit_for_bit(
+        bones in arms(), cursor in cursors(), spin in -7.0..7.0_f32
+    ) {
+        let plain = bones.solve(cursor, spin);
+        let ik = Ik { bones, reference: Reference::Limb, softening: Softening::default() };
+        let pose = ik.solve(cursor, spin, Facing::default(), None).pose;
+        prop_assert_eq!(bits(pose.elbow), bits(plain.elbow));
+        prop_assert_eq!(bits(pose.hand), bits(plain.hand));
+        prop_assert_eq!(pose, plain);
+    }
+
+    #[test]
+    fn softening_never_changes_which_way_the_elbow_points(
+        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
+        reference in references(), softening in softenings()
+    ) {
+        let hard = Ik { bones, reference, softening: Softening::default() };
+        let soft = Ik { softening, ..hard };
+        let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, spin, Facing::default(), None));
+        prop_assert!(hard.pose.outward().distance(soft.pose.outward()) < 1e-6);
+        prop_assert_eq!(hard.carried, soft.carried);
+    }
+
+    #[test]
+    fn the_elbow_is_turned_from_the_reference_by_the_spin(
+        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32, reference in references()
+    ) {
+        let ik = Ik { bones, reference, softening: Softening::default() };
+        let Solved { pose, carried, .. } = ik.solve(cursor, spin, Facing::default(), None);
+        let (w, e) = (pose.facing.direction.as_dvec3(), carried.outward.as_dvec3());
+        let (sin, cos) = f64::from(spin).sin_cos();
+        let expected = e * cos + w.cross(e) * sin;
+        let elbow = w * f64::from(pose.along) + expected * f64::from(pose.out);
+        let error = elbow.distance(pose.elbow.as_dvec3());
+        prop_assert!(error < 2e-6 * length(bones), "off by {}", error);
+    }
+
+    #[test]
+    fn a_softened_hand_is_on_the_line_to_the_cursor_and_its_limbs_are_stretched_alike(
+        bones in arms(), cursor in cursors(), reference in references(), softening in softenings()
+    ) {
+        let ik = Ik { bones, reference, softening };
+        let pose = ik.solve(cursor, 0.3, Facing::default(), None).pose;
+        let (l, sigma) = (length(bones), f64::from(pose.stretch));
+        let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
+        let asked = cursor.as_dvec3();
+        let extent = softening.extent(bones, asked.length() as f32);
+        prop_assert!(hand.distance(asked.normalize() * f64::from(extent.distance)) < 1e-6 * l);
+        for (limb, rest) in [(elbow.length(), bones.upper()), ((hand - elbow).length(), bones.lower())]
+        {
+            prop_assert!((limb - sigma * f64::from(rest)).abs() < 6e-7 * sigma * l);
+        }
+        let short = asked.length() - f64::from(extent.distance);
+        let expected = match short / l {
+            off if off > 2e-6 => Some(Reach::TooFar),
+            off if off < -2e-6 => Some(Reach::TooClose),
+            off if off.abs() < 0.5e-6 => Some(Reach::Reached),
+            _ => None,
+        };
+        prop_assert!(expected.is_none_or(|reach| reach == pose.reach), "{:?} off by {}", pose.reach, short);
+        prop_assert!(pose.reach != Reach::Reached || hand.distance(asked) < 3e-6 * l);
+    }
+
+    #[test]
+    fn a_pose_is_found_again_from_its_hand_and_its_elbow(
+        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
+        from in references(), to in references(), softening in softenings()
+    ) {
+        let from = Ik { bones, reference: from, softening };
+        let to = Ik { reference: to, ..from };
+        let solved = from.solve(cursor, spin, Facing::default(), None);
+        let (cursor, spin) = to.matching(&solved.pose, None);
+        prop_assert!((0.0..TAU as f32).contains(&spin));
+        let again = to.solve(cursor, spin, solved.pose.facing, None).pose;
+        let l = length(bones);
+        let hand = again.hand.as_dvec3().distance(solved.pose.hand.as_dvec3());
+        // At 12 soft zones the arm is as good as straight, not straight.
+        prop_assert!(hand < 1e-5 * l, "the hand is off by {}", hand / l);
+        let angle = solved.pose.elbow_angle().to_degrees();
+        let bound = if (1.0..=179.0).contains(&angle) { 2e-4 } else { 4e-3 };
+        let elbow = again.elbow.as_dvec3().distance(solved.pose.elbow.as_dvec3());
+        prop_assert!(elbow < bound * l, "the elbow is off by {} at {}°", elbow / l, angle);
+    }
+}
+
+/// A smooth way through space: three waves along each axis.
+#[derive(Clone, Debug)]
+struct Way([[(f64, f64); 3]; 3]);
+
+impl Way {
+    fn at(&self, t: f64) -> DVec3 {
+        DVec3::from_array(self.0.map(|waves| {
+            let wave = |(place, (size, phase)): (usize, &(f64, f64))| {
+                size * ((place as f64 + 1.0) * t + phase).sin()
+            };
+            waves.iter().enumerate().map(wave).sum()
+        }))
+    }
+}
+
+fn ways() -> impl Strategy<Value = Way> {
+    let wave = || (-0.6..0.6_f64, 0.0..TAU);
+    let axis = move || [wave(), wave(), wave()];
+    [axis(), axis(), axis()].prop_map(Way)
+}
+
+/// How fast the elbow may be for a cursor, from the bound in the mathematics, in f64.
+fn bound(arm: TwoBone, softness: f64, cursor: DVec3, gain: f64) -> f64 {
+    let [d1, d2] = [arm.upper(), arm.lower()].map(f64::from);
+    let (l, least, d) = (d1 + d2, (d1 - d2).abs(), cursor.length());
+    let w = softness * (l - least) / 2.0;
+    let (distance, slope) = if d > l - w {
+        let left = (-(d - (l - w)) / w).exp();
+        (l - w * left, left)
+    } else if d < least + w {
+        let left = ((d - (least + w)) / w).exp();
+        (least + w * left, left)
+    } else {
+        (d, 1.0)
+    };
+    let along = (distance * distance + d1 * d1 - d2 * d2) / (2.0 * distance);
+    let out = (d1 * d1 - along * along).max(0.0).sqrt();
+    let radial = slope * d1 * (distance - along).abs() / (distance * out);
+    let around = (d1 + out * gain) / d;
+    radial.hypot(around)
+}
+
+/// The fastest that the elbow goes beyond its bound along a way, in parts of the arm's length. Steps
+/// near the shoulder, or nearer to a direction than 30°, are left out.
+fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
+    const STEPS: usize = 6000;
+    let l = length(ik.bones);
+    let counts = |cursor: DVec3| {
+        let near = avoided.is_some_and(|avoided| cursor.normalize().dot(avoided) > 0.866);
+        cursor.length() > 0.05 * l && !near
+    };
+    let gain = |cursor: DVec3| {
+        let facing = Facing::towards(cursor.as_vec3(), Facing::default());
+        f64::from(ik.reference.gain(facing))
+    };
+    let mut worst: f64 = 0.0;
+    let mut last: Option<(DVec3, Solved)> = None;
+    for step in 0..=STEPS {
+        let cursor = way.at(TAU * step as f64 / STEPS as f64) * l;
+        let (facing, carried) = last.map_or((Facing::default(), None), |(_, solved)| {
+            (solved.pose.facing, Some(solved.carried))
+        });
+        let solved = ik.solve(cursor.as_vec3(), 0.7, facing, carried);
+        if let Some((before, was)) = last
+            && counts(before)
+            && counts(cursor)
+        {
+            let middle = before.midpoint(cursor);
+            let fastest = [before, middle, cursor]
+                .map(|cursor| bound(ik.bones, softness, cursor, gain(cursor)))
+                .into_iter()
+                .fold(0.0, f64::max);
+            let moved = solved.pose.elbow.as_dvec3().distance(was.pose.elbow.as_dvec3());
+            worst = worst.max((moved - 1.02 * fastest * before.distance(cursor)) / l);
+        }
+        last = Some((cursor, solved));
+    }
+    worst
+}
+
+/// What rounding of the hand moves the elbow of a nearly straight arm by, in parts of its length.
+const ROUNDING: f64 = 2e-4;
+
+proptest! {
+    #![proptest_config(config(1_000))]
+
+    #[test]
+    fn measured_on_the_map_a_soft_elbow_never_pops(
+        bones in arms(), way in ways(), softness in 0.1..0.8_f32
+    ) {
+        let map = Stereographic::default();
+        let ik =
+            Ik { bones, reference: Reference::Stereographic(map), softening: soft(softness, 1.0, 0.0) };
+        let avoided = Some(map.singular().as_dvec3());
+        let excess = excess(ik, f64::from(softness), &way, avoided);
+        prop_assert!(excess < ROUNDING, "faster than its bound by {}", excess);
+    }
+
+    #[test]
+    fn transported_a_soft_elbow_never_pops(
+        bones in arms(), way in ways(), softness in 0.1..0.8_f32
+    ) {
+        let ik = Ik { bones, reference: Reference::Transport, softening: soft(softness, 1.0, 0.0) };
+        let excess = excess(ik, f64::from(softness), &way, None);
+        prop_assert!(excess < ROUNDING, "faster than its bound by {}", excess);
+    }
+}
+
+/// The elbow's speed over the cursor's where the cursor passes a point above the shoulder by a hair.
+fn speed_beside_vertical(reference: Reference, aside: f32) -> f64 {
+    let bones = TwoBone::new(1.0, 1.0).expect("lengths");
+    let ik = Ik { bones, reference, softening: soft(0.2, 1.0, 0.0) };
+    let step = 0.1 * aside;
+    let elbow = |x: f32| {
+        ik.solve(Vec3::new(x, 1.2, aside), 0.0, Facing::default(), None).pose.elbow.as_dvec3()
+    };
+    elbow(-0.5 * step).distance(elbow(0.5 * step)) / f64::from(step)
+}
+
+#[test]
+fn past_vertical_the_limbs_reference_breaks_any_bound_and_the_map_none() {
+    for bound in [1e1, 1e2, 1e3, 1e4] {
+        let aside = 0.5 / bound as f32;
+        let speed = speed_beside_vertical(Reference::Limb, aside);
+        assert!(speed > bound, "{speed} at {aside}");
+        let map = Reference::Stereographic(Stereographic::default());
+        let speed = speed_beside_vertical(map, aside.max(1e-3));
+        assert!(speed < 3.0, "{speed} at {aside}");
+    }
+}
+
+#[test]
+fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
+    let bones = TwoBone::new(1.0, 1.0).expect("lengths");
+    let speed = |softening, from: f32| {
+        let ik = Ik { bones, reference: Reference::Limb, softening };
+        let elbow = |x| ik.solve(Vec3::X * x, 0.0, Facing::default(), None).pose.elbow.as_dvec3();
+        elbow(from).distance(elbow(2.0)) / f64::from(2.0 - from)
+    };
+    for (near, bound) in [(1e-2, 5.0), (1e-4, 50.0), (1e-6, 500.0)] {
+        assert!(speed(Softening::default(), 2.0 - near) > bound);
+        assert!(speed(soft(0.2, 1.0, 0.0), 2.0 - near) < 5.0);
+    }
+}
+
+#[test]
+fn transport_without_a_past_begins_on_the_map() {
+    let bones = TwoBone::new(1.0, 1.0).expect("lengths");
+    let solve = |reference| {
+        let ik = Ik { bones, reference, softening: Softening::default() };
+        ik.solve(Vec3::new(0.3, 0.9, -0.4), 0.5, Facing::default(), None)
+    };
+    let map = Reference::Stereographic(Stereographic::default());
+    assert_eq!(solve(Reference::Transport), solve(map));
+}
