@@ -8,12 +8,15 @@ use std::fs;
 use files::{Random, message, mutations};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Channel, Display, Document, Keys, Layer, Motion, Path, Quantity, RigKind,
-    SkeletonRig, Slither, Target, Timeline,
+    Arm, Camera, Channel, Display, Document, Goal, Keys, Layer, Motion, Path, Quantity, RigKind,
+    SkeletonRig, Slither, Space, Swivel, Target, Timeline, Wrist,
 };
 use ik_arm::io::{self, Example, Opened};
+use ik_arm::kinematics::fk::Fk;
+use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
 use ik_arm::kinematics::solve::{Method, Options, Root};
+use ik_arm::kinematics::swivel::Carried;
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 
 fn open(text: &str) -> Opened {
@@ -48,10 +51,10 @@ fn every_document_is_read_again_bit_for_bit() {
 #[test]
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
-    document.arm.cursor = Vec3::new(-0.0, 1.0, 0.0);
+    document.arm.goal = Goal::Root(Vec3::new(-0.0, 1.0, 0.0));
     document.skeleton.skeleton.change(0, |root| root.rotation.y = -0.0).expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
-    assert!(opened.arm.cursor.x.is_sign_negative() && opened.arm.cursor.z.is_sign_positive());
+    assert!(opened.arm.cursor().x.is_sign_negative() && opened.arm.cursor().z.is_sign_positive());
     assert!(opened.skeleton.skeleton.joints()[0].rotation.y.is_sign_negative());
 }
 
@@ -77,14 +80,7 @@ fn a_file_is_laid_out_for_people() {
 }
 
 fn random_document(random: &mut Random) -> Document {
-    let arm = Arm {
-        bones: TwoBone::new(random.above_0(), random.above_0()).expect("lengths"),
-        cursor: random.point(),
-        root: random.point(),
-        elbow_spin: random.any(),
-        facing: Facing::towards(random.point(), Facing::default()),
-    };
-
+    let arm = random_arm(random);
     let mut rig = SkeletonRig::new(random_skeleton(random));
     for joint in 0..rig.skeleton.joints().len() {
         if random.below(3) == 0 {
@@ -139,14 +135,43 @@ fn random_document(random: &mut Random) -> Document {
     }
 }
 
+fn random_arm(random: &mut Random) -> Arm {
+    let facing = Facing::towards(random.point(), Facing::default());
+    let softening = Softening::new(
+        random.between(0.0, 0.99),
+        1.0 + random.any().abs().min(9.0),
+        random.between(0.0, 3.1),
+    );
+    Arm {
+        goal: match random.coin() {
+            true => Goal::Root(random.point()),
+            false => Goal::World(random.point()),
+        },
+        elbow_spin: random.any(),
+        root: random.point(),
+        bones: TwoBone::new(random.above_0(), random.above_0()).expect("lengths"),
+        facing: Facing::towards(random.point(), Facing::default()),
+        swivel: random.one_of(&Swivel::ALL),
+        pole: random.point(),
+        carried: random.coin().then(|| Carried::new(facing)),
+        softening: softening.expect("a softening"),
+        weight: random.between(0.0, 1.0),
+        fk: Fk { shoulder: random.point(), bend: random.any(), stretch: random.above_0() },
+        wrist: Wrist {
+            space: random.one_of(&[Space::Lower, Space::World]),
+            angles: random.point(),
+            roll: random.any(),
+        },
+    }
+}
+
 fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
-    let arm = [Channel::Hand, Channel::ElbowSpin, Channel::Root, Channel::Upper, Channel::Lower];
     let layers = Layer::all().map(Channel::Layer);
     let joints = (0..rig.skeleton.joints().len())
         .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
-    let all = arm.into_iter().chain(layers).chain([Channel::Translation]);
+    let all = Channel::OF_ARM.into_iter().chain(layers).chain([Channel::Translation]);
     let mut keys = Keys::default();
     for channel in all.chain(joints).chain(targets) {
         if random.below(3) > 0 {
@@ -155,6 +180,7 @@ fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
         for _ in 0..1 + random.below(5) {
             let value = match channel.quantity() {
                 Quantity::Point | Quantity::Angles => random.point(),
+                Quantity::Part => Vec3::new(random.between(0.0, 1.0), 0.0, 0.0),
                 Quantity::Angle => Vec3::new(random.any(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.above_0(), 0.0, 0.0),
                 Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),

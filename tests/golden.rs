@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::{LazyLock, Mutex};
 
 use glam::Vec3;
-use ik_arm::document::{Arm, AxisView, Camera, Document, Layer, Theme};
+use ik_arm::document::{Arm, AxisView, Camera, Document, Goal, Layer, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::solve::{self, Method};
 use ik_arm::render::{Gpu, Picture};
@@ -82,7 +82,7 @@ fn check(name: &str, document: &Document, theme: Theme) {
 }
 
 fn posed(cursor: Vec3) -> Document {
-    Document { arm: Arm { cursor, ..Arm::default() }, ..Document::default() }
+    Document { arm: Arm { goal: Goal::Root(cursor), ..Arm::default() }, ..Document::default() }
 }
 
 fn showing(mut document: Document, layers: &[Layer]) -> Document {

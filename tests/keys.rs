@@ -55,7 +55,7 @@ fn a_keyed_hand_goes_along_a_spline() {
         document.keys.insert(Channel::Hand, time, Vec3::new(x, 2.0 * x, 5.0));
     }
     // 8/3 · 100: see the spline's tests.
-    let hand = document.at(2.0).arm.cursor;
+    let hand = document.at(2.0).arm.cursor();
     assert!(hand.distance(Vec3::new(266.666_67, 533.333_3, 5.0)) < 1e-3, "{hand}");
 }
 
@@ -105,7 +105,7 @@ fn huge_values_stay_finite() {
     }
     for step in 0..100 {
         let arm = document.at(f64::from(step) * 0.03).arm;
-        assert!(arm.cursor.is_finite() && arm.elbow_spin.is_finite(), "{arm:?}");
+        assert!(arm.cursor().is_finite() && arm.elbow_spin.is_finite(), "{arm:?}");
         assert!(arm.pose().hand.is_finite());
     }
 }

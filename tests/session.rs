@@ -3,13 +3,15 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Camera, Channel, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Target,
-    Timeline,
+    Arm, Camera, Channel, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Space,
+    Swivel, Target, Timeline,
 };
 use ik_arm::io::Example;
+use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::Limit;
 use ik_arm::kinematics::solve::{Method, Options, Root};
-use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, Session};
+use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, Lead, Session};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -53,6 +55,9 @@ fn grips() -> impl Strategy<Value = Grip> {
     ];
     prop_oneof![
         handles.clone().prop_map(Grip::Hand),
+        handles.clone().prop_map(Grip::Pole),
+        (0..3_usize).prop_map(Grip::Shoulder),
+        Just(Grip::Bend),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
         (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
         (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
@@ -114,12 +119,35 @@ fn posing() -> impl Strategy<Value = Action> {
     ]
 }
 
+fn arming() -> impl Strategy<Value = Action> {
+    let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
+    let softening = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
+    prop_oneof![
+        3 => points().prop_map(Action::SetHand),
+        2 => points().prop_map(Action::SetRoot),
+        2 => any::<bool>().prop_map(Action::PinHand),
+        3 => (0..4_usize).prop_map(|swivel| Action::SetSwivel(Swivel::ALL[swivel])),
+        2 => points().prop_map(Action::SetPole),
+        2 => softening.prop_map(|(softness, stretch, angle)| Action::SetSoftening(
+            Softening::new(softness, stretch, angle).expect("a softening")
+        )),
+        2 => parts().prop_map(Action::SetWeight),
+        2 => prop_oneof![Just(Lead::Hand), Just(Lead::Angles)].prop_map(Action::SwitchTo),
+        1 => points().prop_map(Action::SetShoulder),
+        1 => numbers().prop_map(Action::SetBend),
+        1 => points().prop_map(Action::SetWrist),
+        1 => prop_oneof![Just(Space::Lower), Just(Space::World)].prop_map(Action::SetWristSpace),
+        1 => Just(Action::StartJourney),
+        1 => any::<bool>().prop_map(|arm| {
+            Action::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton })
+        }),
+    ]
+}
+
 fn channels() -> impl Strategy<Value = Channel> + Clone {
     prop_oneof![
         prop_oneof![
-            Just(Channel::Hand),
-            Just(Channel::ElbowSpin),
-            Just(Channel::Upper),
+            (0..Channel::OF_ARM.len()).prop_map(|channel| Channel::OF_ARM[channel]),
             Just(Channel::Translation),
             Just(Channel::Layer(Layer::Cursor)),
         ],
@@ -178,7 +206,10 @@ fn dragging() -> impl Strategy<Value = Action> {
 }
 
 fn actions() -> impl Strategy<Value = Vec<Action>> {
-    vec(prop_oneof![3 => building(), 3 => posing(), 2 => dragging(), 3 => keying()], 1..80)
+    vec(
+        prop_oneof![3 => building(), 3 => posing(), 2 => dragging(), 3 => keying(), 3 => arming()],
+        1..80,
+    )
 }
 
 fn session() -> Session {
@@ -205,16 +236,32 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
         prop_assert!(target.joint < joints.len() && targeted.insert(target.joint));
         prop_assert!(target.home.is_finite() && target.weight > 0.0);
     }
+    check_arm(session.arm(), session.pose())?;
     let document = session.document();
     prop_assert!(document.timeline.is_valid());
     for (channel, track) in document.keys.tracks() {
-        prop_assert!(channel.value(document).is_some(), "{channel:?} is of nothing");
+        let rests = matches!(channel, Channel::Hand | Channel::Pin);
+        prop_assert!(rests || channel.value(document).is_some(), "{channel:?} is of nothing");
         prop_assert!(track.knots().is_sorted_by(|a, b| a.time < b.time));
         prop_assert!(track.knots().iter().all(|knot| knot.value.is_finite()));
     }
     for (channel, time) in session.selected_keys() {
         prop_assert!(document.keys.track(*channel).and_then(|track| track.get(*time)).is_some());
     }
+    Ok(())
+}
+
+/// Where numbers are of a size, elbow and hand are as far from each other as the limbs are long.
+fn check_arm(arm: &Arm, pose: &Pose) -> Result<(), TestCaseError> {
+    prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
+    prop_assert!((0.0..=1.0).contains(&arm.weight) && arm.cursor().is_finite());
+    prop_assert!(arm.carried.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3));
+    let bones =
+        [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
+    let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
+    let tolerance = 2e-6 * (bones[0] + bones[1]);
+    prop_assert!((elbow.length() - bones[0]).abs() <= tolerance, "{:?}", pose);
+    prop_assert!(((hand - elbow).length() - bones[1]).abs() <= tolerance, "{:?}", pose);
     Ok(())
 }
 
@@ -296,7 +343,7 @@ fn halfway() -> Session {
         session.apply(Action::Key(vec![Channel::Hand]));
     }
     session.apply(Action::SetTime(0.5));
-    assert_eq!(session.arm().cursor, Vec3::new(100.0, 100.0, 0.0));
+    assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
     session
 }
 
@@ -308,12 +355,12 @@ fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
     session.apply(Action::SetHand(Vec3::Z * 50.0));
     assert!(session.is_overridden(Channel::Hand));
     assert_eq!(session.message(), Some("Shown until the time changes: press K to keep it"));
-    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
     assert_eq!(session.document().keys, document.keys);
     for time in [0.6, 0.5] {
         session.apply(Action::SetTime(time));
         let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
-        assert!(session.arm().cursor.distance(expected) < 1e-3);
+        assert!(session.arm().cursor().distance(expected) < 1e-3);
         assert!(!session.is_overridden(Channel::Hand));
     }
 }
@@ -323,13 +370,13 @@ fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
     let mut session = halfway();
     session.apply(Action::SetHand(Vec3::Z * 50.0));
     session.apply(Action::Undo);
-    assert_eq!(session.arm().cursor, Vec3::new(100.0, 100.0, 0.0));
+    assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
     session.apply(Action::Redo);
-    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
     session.apply(Action::Key(vec![Channel::Hand]));
     session.apply(Action::SetTime(0.0));
     session.apply(Action::SetTime(0.5));
-    assert_eq!(session.arm().cursor, Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
 }
 
 #[test]
@@ -352,7 +399,7 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     session.apply(Action::SetHand(Vec3::Z * 50.0));
     session.apply(Action::SetAutoKey(true));
     session.apply(Action::SetHand(Vec3::Z * 60.0));
-    assert_eq!(session.arm().cursor, Vec3::Z * 60.0);
+    assert_eq!(session.arm().cursor(), Vec3::Z * 60.0);
     assert!(!session.is_overridden(Channel::Hand));
 
     let mut session = halfway();
@@ -360,8 +407,8 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     session.apply(Action::ClearChannels(vec![Channel::Hand]));
     session.apply(Action::SetHand(Vec3::Z * 70.0));
     session.apply(Action::SetElbowSpin(1.0));
-    assert_eq!(session.arm().cursor, Vec3::Z * 70.0);
-    assert_eq!(session.document().arm.cursor, Vec3::Z * 70.0);
+    assert_eq!(session.arm().cursor(), Vec3::Z * 70.0);
+    assert_eq!(session.document().arm.cursor(), Vec3::Z * 70.0);
 }
 
 #[test]
@@ -438,7 +485,7 @@ fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
     session.apply(Action::BeginEdit);
     session.apply(Action::SetTime(1.0));
     session.apply(Action::CancelEdit);
-    assert_eq!(session.arm().cursor, Vec3::Y * 200.0);
+    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
 }
 
 #[test]

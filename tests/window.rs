@@ -54,7 +54,7 @@ impl Places {
             viewport.center() + egui::vec2(at.x, -at.y) * viewport.size() / 2.0
         };
         let track = rail.x_range().shrink(8.5);
-        let part = (session.arm().cursor.x / session.arm().bones.outer_limit() + 1.0) / 2.0;
+        let part = (session.arm().cursor().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
         Self {
             thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
             rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
@@ -238,7 +238,7 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
     assert!(ended.success());
     assert_eq!(program.end(), Some(130));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
-    let hand = document_of(first).arm.cursor;
+    let hand = document_of(first).arm.cursor();
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
     let mut program = Program::start(folder.path());
@@ -261,5 +261,5 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
     };
     program.0.kill().expect("killed");
     program.end();
-    assert_eq!(document_of(&second).arm.cursor, hand);
+    assert_eq!(document_of(&second).arm.cursor(), hand);
 }

@@ -1,20 +1,69 @@
-use glam::Vec3;
+use glam::{DMat3, Vec3};
 
+use super::Wrist;
+use crate::kinematics::fk::{Fk, blended};
+use crate::kinematics::ik::{Ik, Solved};
+use crate::kinematics::reach::Softening;
+use crate::kinematics::swivel::{Carried, Reference, Stereographic, angle_from_limb, respun};
 use crate::kinematics::two_bone::{Facing, LengthError, Pose, TwoBone};
 use crate::rig::ArmRig;
 
 /// The arm as the user set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// Where the hand is asked to be, in Root space.
-    pub cursor: Vec3,
-    /// ψ, radians.
+    /// Where the hand is asked to be.
+    pub goal: Goal,
+    /// ψ, radians, from where the swivel says.
     pub elbow_spin: f32,
     /// The shoulder, in the world.
     pub root: Vec3,
     pub bones: TwoBone,
     /// Where the arm last faced: decides for a cursor that does not say.
     pub facing: Facing,
+    pub swivel: Swivel,
+    /// What the elbow points at with [`Swivel::Pole`], in Root space.
+    pub pole: Vec3,
+    /// What the spin was last measured from: decides where the pole or the map does not, and goes on
+    /// with [`Swivel::Transport`]. Nothing where transport is as if it began here, on the map.
+    pub carried: Option<Carried>,
+    pub softening: Softening,
+    /// How far the hand leads (1) or the joints' own angles do (0).
+    pub weight: f32,
+    /// The joints' own angles.
+    pub fk: Fk,
+    pub wrist: Wrist,
+}
+
+/// Where the hand is asked to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// In Root space: it goes with the shoulder.
+    Root(Vec3),
+    /// Pinned to the world: it stays when the shoulder moves.
+    World(Vec3),
+}
+
+/// What the elbow's spin is measured from: see [`Reference`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Swivel {
+    #[default]
+    Limb,
+    Pole,
+    Stereographic,
+    Transport,
+}
+
+impl Swivel {
+    pub const ALL: [Self; 4] = [Self::Limb, Self::Pole, Self::Stereographic, Self::Transport];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Limb => "limb",
+            Self::Pole => "pole",
+            Self::Stereographic => "stereographic",
+            Self::Transport => "transport",
+        }
+    }
 }
 
 impl Arm {
@@ -26,25 +75,190 @@ impl Arm {
     pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
         let cursor = Vec3::new(250.0, 120.0, 60.0);
         Ok(Self {
-            cursor,
+            goal: Goal::Root(cursor),
             elbow_spin: 0.0,
             root: Vec3::ZERO,
             bones: TwoBone::new(upper, lower)?,
             facing: Facing::towards(cursor, Facing::default()),
+            swivel: Swivel::default(),
+            pole: Vec3::new(100.0, 300.0, -100.0),
+            carried: None,
+            softening: Softening::default(),
+            weight: 1.0,
+            fk: Fk::default(),
+            wrist: Wrist::default(),
         })
     }
 
-    pub fn pose(&self) -> Pose {
-        self.bones.solve_from(self.cursor, self.elbow_spin, self.facing)
-    }
-
-    pub fn rig(&self, pose: &Pose) -> ArmRig {
-        ArmRig::new(self.bones, self.root, self.cursor, pose)
+    /// Where the hand is asked to be, in Root space.
+    pub fn cursor(&self) -> Vec3 {
+        match self.goal {
+            Goal::Root(cursor) => cursor,
+            Goal::World(cursor) => (cursor - self.root).clamp(Vec3::MIN, Vec3::MAX),
+        }
     }
 
     /// Where the hand is asked to be, in the world.
     pub fn cursor_world(&self) -> Vec3 {
-        self.root + self.cursor
+        match self.goal {
+            Goal::Root(cursor) => self.root + cursor,
+            Goal::World(cursor) => cursor,
+        }
+    }
+
+    /// Asks the hand to be elsewhere, in Root space; pinned it stays pinned.
+    pub fn set_cursor(&mut self, cursor: Vec3) {
+        self.goal = match self.goal {
+            Goal::Root(_) => Goal::Root(cursor),
+            Goal::World(_) => Goal::World((self.root + cursor).clamp(Vec3::MIN, Vec3::MAX)),
+        };
+    }
+
+    pub fn is_pinned(&self) -> bool {
+        matches!(self.goal, Goal::World(_))
+    }
+
+    /// Pinned to the world or not, with the cursor where it is.
+    #[must_use]
+    pub fn pinned(self, pinned: bool) -> Self {
+        let goal = match pinned {
+            true => Goal::World(self.cursor_world()),
+            false => Goal::Root(self.cursor()),
+        };
+        if pinned == self.is_pinned() { self } else { Self { goal, ..self } }
+    }
+
+    /// Whether the hand leads, alone or with others.
+    pub fn is_led_by_hand(&self) -> bool {
+        self.weight > 0.0
+    }
+
+    /// What the elbow's spin is measured from.
+    pub fn reference(&self) -> Reference {
+        self.reference_of(self.swivel)
+    }
+
+    /// What it would be measured from with another choice.
+    pub fn reference_of(&self, swivel: Swivel) -> Reference {
+        match swivel {
+            Swivel::Limb => Reference::Limb,
+            Swivel::Pole => Reference::Pole(self.pole),
+            Swivel::Stereographic => Reference::Stereographic(Stereographic::default()),
+            Swivel::Transport => Reference::Transport,
+        }
+    }
+
+    pub fn ik(&self) -> Ik {
+        Ik { bones: self.bones, reference: self.reference(), softening: self.softening }
+    }
+
+    /// The arm as its hand alone would have it.
+    pub fn solve(&self) -> Solved {
+        self.ik().solve(self.cursor(), self.elbow_spin, self.facing, self.carried)
+    }
+
+    pub fn pose(&self) -> Pose {
+        blended(self.fk, &self.solve().pose, self.weight, self.bones, self.cursor())
+    }
+
+    pub fn rig(&self, pose: &Pose) -> ArmRig {
+        ArmRig::new(self.bones, self.root, self.cursor(), pose)
+    }
+
+    /// The same arm, to be carried along from where another was.
+    #[must_use]
+    pub fn going_on_from(self, other: &Self) -> Self {
+        let begins = self.swivel == Swivel::Transport && self.carried.is_none();
+        if begins && other.swivel == self.swivel {
+            return Self { carried: Some(other.solve().carried), ..self };
+        }
+        self
+    }
+
+    /// The same arm with what its next pose goes on from: where it faces, what its spin is measured
+    /// from, how its forearm is rolled.
+    #[must_use]
+    pub fn settled(self) -> Self {
+        let solved = self.solve();
+        let pose = blended(self.fk, &solved.pose, self.weight, self.bones, self.cursor());
+        let carried = (self.swivel != Swivel::Limb).then_some(solved.carried);
+        let wrist = self.wrist.settled(&pose);
+        Self { facing: solved.pose.facing, carried, wrist, ..self }
+    }
+
+    /// The hand's rotation in the world, which is Root's too.
+    pub fn hand_rotation(&self, pose: &Pose) -> DMat3 {
+        self.wrist.rotation(pose)
+    }
+
+    /// How far the forearm is rolled at the hand, radians.
+    pub fn roll(&self, pose: &Pose) -> f32 {
+        self.wrist.settled(pose).roll
+    }
+
+    /// Measures the elbow's spin from elsewhere and leaves the elbow where it is.
+    #[must_use]
+    pub fn measured_from(self, swivel: Swivel) -> Self {
+        if swivel == self.swivel {
+            return self;
+        }
+        let pose = self.solve().pose;
+        let to = Self { swivel, carried: None, facing: pose.facing, ..self };
+        let outward = to.reference().outward(pose.facing, None);
+        let measured = angle_from_limb(pose.facing, outward);
+        let elbow_spin = respun(pose.spin, 0.0, measured);
+        Self { elbow_spin, ..to }.settled()
+    }
+
+    /// ψ as keys have it: that of the transported reference is measured from the map, so that playing
+    /// needs no past.
+    pub(super) fn keyed_spin(&self) -> f32 {
+        match self.carried {
+            Some(carried) if self.swivel == Swivel::Transport => {
+                let facing = Facing::towards(self.cursor(), self.facing);
+                self.spin_on_map(carried.to(facing.direction))
+            }
+            _ => self.elbow_spin,
+        }
+    }
+
+    /// A transported spin is measured from the map where it was last.
+    pub(super) fn forget_way(&mut self) {
+        if let Some(carried) = self.carried
+            && self.swivel == Swivel::Transport
+        {
+            self.set_keyed_spin(self.spin_on_map(carried));
+        }
+    }
+
+    fn spin_on_map(&self, carried: Carried) -> f32 {
+        let map = Carried::new(Facing::towards(carried.direction, self.facing));
+        respun(self.elbow_spin, map.turn_to(carried), 0.0)
+    }
+
+    /// Sets ψ as keys have it.
+    pub(super) fn set_keyed_spin(&mut self, spin: f32) {
+        self.elbow_spin = spin.rem_euclid(core::f32::consts::TAU);
+        if self.swivel == Swivel::Transport {
+            self.carried = None;
+        }
+    }
+
+    /// The joints' own angles lead from here, and have the present pose.
+    #[must_use]
+    pub fn led_by_angles(self) -> Self {
+        Self { fk: Fk::matching(&self.pose(), self.fk), weight: 0.0, ..self }.settled()
+    }
+
+    /// The hand leads from here, and has the present pose.
+    #[must_use]
+    pub fn led_by_hand(self) -> Self {
+        let pose = self.pose();
+        let carried = self.carried.map(|carried| carried.to(pose.facing.direction));
+        let (cursor, elbow_spin) = self.ik().matching(&pose, carried);
+        let mut arm = Self { elbow_spin, weight: 1.0, facing: pose.facing, carried, ..self };
+        arm.set_cursor(cursor);
+        arm.settled()
     }
 
     /// Lengths that no bones can have change nothing.

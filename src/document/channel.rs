@@ -1,8 +1,6 @@
-use core::f32::consts::TAU;
-
 use glam::Vec3;
 
-use super::{Document, Layer, RigKind, SkeletonRig};
+use super::{Arm, Document, Goal, Layer, RigKind, SkeletonRig, Swivel, Wrist};
 use crate::kinematics::skeleton::{Moved, Skeleton};
 
 /// One thing of a document that keys can change in time.
@@ -11,9 +9,9 @@ use crate::kinematics::skeleton::{Moved, Skeleton};
 /// switch is 0 or 1 in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
-    /// The arm's cursor, in Root space.
+    /// The arm's cursor, in Root space, while it is not pinned.
     Hand,
-    /// ψ in radians, unwrapped.
+    /// ψ in radians, unwrapped; with transport it is measured from the map.
     ElbowSpin,
     /// The arm's shoulder, in the world.
     Root,
@@ -21,6 +19,18 @@ pub enum Channel {
     Upper,
     /// The lower limb's length.
     Lower,
+    /// The arm's cursor, in the world, while it is pinned.
+    Pin,
+    /// What the elbow points at, in Root space.
+    Pole,
+    /// How far the arm's hand leads rather than its joints' angles, from 0 to 1.
+    Weight,
+    /// The shoulder's own angles in radians, unwrapped.
+    Shoulder,
+    /// The elbow's own bend in radians, unwrapped.
+    Bend,
+    /// The hand's angles in radians, unwrapped.
+    Wrist,
     /// Where the skeleton's own origin is, in the world.
     Translation,
     /// A joint's Euler angles in radians, unwrapped.
@@ -42,6 +52,8 @@ pub enum Quantity {
     Point,
     /// In units of the scene, above 0.
     Length,
+    /// From 0 to 1.
+    Part,
     /// In radians.
     Angle,
     /// Three of them, in radians.
@@ -55,7 +67,7 @@ impl Quantity {
     pub fn width(self) -> usize {
         match self {
             Self::Point | Self::Angles => 3,
-            Self::Length | Self::Angle | Self::Switch => 1,
+            Self::Length | Self::Part | Self::Angle | Self::Switch => 1,
         }
     }
 }
@@ -63,12 +75,17 @@ impl Quantity {
 impl Channel {
     pub fn quantity(self) -> Quantity {
         match self {
-            Self::Hand | Self::Root | Self::Translation | Self::Offset(_) | Self::Target(_) => {
-                Quantity::Point
-            }
+            Self::Hand
+            | Self::Root
+            | Self::Pin
+            | Self::Pole
+            | Self::Translation
+            | Self::Offset(_)
+            | Self::Target(_) => Quantity::Point,
             Self::Upper | Self::Lower => Quantity::Length,
-            Self::ElbowSpin => Quantity::Angle,
-            Self::Rotation(_) => Quantity::Angles,
+            Self::Weight => Quantity::Part,
+            Self::ElbowSpin | Self::Bend => Quantity::Angle,
+            Self::Shoulder | Self::Wrist | Self::Rotation(_) => Quantity::Angles,
             Self::Enabled(_) | Self::Layer(_) => Quantity::Switch,
         }
     }
@@ -77,15 +94,39 @@ impl Channel {
         self.quantity() == Quantity::Switch
     }
 
-    /// All that shapes a document's arm.
-    pub const OF_ARM: [Self; 5] =
-        [Self::Hand, Self::ElbowSpin, Self::Root, Self::Upper, Self::Lower];
+    /// All that can shape a document's arm.
+    pub const OF_ARM: [Self; 11] = [
+        Self::Hand,
+        Self::Pin,
+        Self::ElbowSpin,
+        Self::Pole,
+        Self::Root,
+        Self::Upper,
+        Self::Lower,
+        Self::Weight,
+        Self::Shoulder,
+        Self::Bend,
+        Self::Wrist,
+    ];
+
+    /// Whether it shapes an arm as that is set.
+    pub fn shapes(self, arm: &Arm) -> bool {
+        match self {
+            Self::Hand => !arm.is_pinned(),
+            Self::Pin => arm.is_pinned(),
+            Self::Pole => arm.swivel == Swivel::Pole,
+            Self::Weight | Self::Shoulder | Self::Bend => arm.weight < 1.0,
+            Self::Wrist => arm.wrist != Wrist::default(),
+            other => other.rig() == Some(RigKind::Arm),
+        }
+    }
 
     /// All that shapes the rig that is shown. Of a skeleton where it is, where its roots are, how its
     /// joints are turned, and where its targets are.
     pub fn of_rig(document: &Document) -> Vec<Self> {
         if document.rig == RigKind::Arm {
-            return Self::OF_ARM.to_vec();
+            let shapes = |channel: &Self| channel.shapes(&document.arm);
+            return Self::OF_ARM.into_iter().filter(shapes).collect();
         }
         let SkeletonRig { skeleton, targets, .. } = &document.skeleton;
         let joints = skeleton.joints().iter().enumerate();
@@ -100,9 +141,17 @@ impl Channel {
     /// The rig that it belongs to, if to one.
     pub fn rig(self) -> Option<RigKind> {
         match self {
-            Self::Hand | Self::ElbowSpin | Self::Root | Self::Upper | Self::Lower => {
-                Some(RigKind::Arm)
-            }
+            Self::Hand
+            | Self::ElbowSpin
+            | Self::Root
+            | Self::Upper
+            | Self::Lower
+            | Self::Pin
+            | Self::Pole
+            | Self::Weight
+            | Self::Shoulder
+            | Self::Bend
+            | Self::Wrist => Some(RigKind::Arm),
             Self::Translation
             | Self::Rotation(_)
             | Self::Offset(_)
@@ -124,13 +173,7 @@ impl Channel {
             | Self::Offset(joint)
             | Self::Target(joint)
             | Self::Enabled(joint) => Some(joint),
-            Self::Hand
-            | Self::ElbowSpin
-            | Self::Root
-            | Self::Upper
-            | Self::Lower
-            | Self::Translation
-            | Self::Layer(_) => None,
+            _ => None,
         }
     }
 
@@ -146,15 +189,28 @@ impl Channel {
         })
     }
 
-    /// The value that a document has; nothing if it has no such joint or target.
+    /// The value that a document has; nothing if it has no such joint or target,
+    /// or its hand is pinned or not.
     pub fn value(self, document: &Document) -> Option<Vec3> {
         let Document { arm, skeleton: rig, display, .. } = document;
         let number = |value| Vec3::new(value, 0.0, 0.0);
         let switch = |on: bool| number(f32::from(u8::from(on)));
         let target = |joint| Some(rig.targets[rig.target(joint)?]);
         Some(match self {
-            Self::Hand => arm.cursor,
-            Self::ElbowSpin => number(arm.elbow_spin),
+            Self::Hand => match arm.goal {
+                Goal::Root(cursor) => cursor,
+                Goal::World(_) => return None,
+            },
+            Self::Pin => match arm.goal {
+                Goal::World(cursor) => cursor,
+                Goal::Root(_) => return None,
+            },
+            Self::ElbowSpin => number(arm.keyed_spin()),
+            Self::Pole => arm.pole,
+            Self::Weight => number(arm.weight),
+            Self::Shoulder => arm.fk.shoulder,
+            Self::Bend => number(arm.fk.bend),
+            Self::Wrist => arm.wrist.angles,
             Self::Root => arm.root,
             Self::Upper => number(arm.bones.upper()),
             Self::Lower => number(arm.bones.lower()),
@@ -177,8 +233,22 @@ impl Channel {
         }
         let on = value.x >= 0.5;
         match self {
-            Self::Hand => arm.cursor = value,
-            Self::ElbowSpin => arm.elbow_spin = value.x.rem_euclid(TAU),
+            Self::Hand => {
+                if let Goal::Root(cursor) = &mut arm.goal {
+                    *cursor = value;
+                }
+            }
+            Self::Pin => {
+                if let Goal::World(cursor) = &mut arm.goal {
+                    *cursor = value;
+                }
+            }
+            Self::ElbowSpin => arm.set_keyed_spin(value.x),
+            Self::Pole => arm.pole = value,
+            Self::Weight => arm.weight = value.x.clamp(0.0, 1.0),
+            Self::Shoulder => arm.fk.shoulder = value,
+            Self::Bend => arm.fk.bend = value.x,
+            Self::Wrist => arm.wrist.angles = value,
             Self::Root => arm.root = value,
             Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),
             Self::Lower => arm.set_lengths(arm.bones.upper(), value.x),

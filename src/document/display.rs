@@ -28,16 +28,26 @@ pub enum Layer {
     Trail,
     /// The rig as it stands somewhat before and after.
     OnionSkins,
+    /// The Outer Limit coloured by how fast the elbow turns there.
+    Globe,
+    /// The arm as every swivel reference would have it.
+    References,
+    /// The arm's hand, and stripes along its forearm.
+    Hand,
 }
 
 impl Layer {
     /// Everything, in the order in which it is offered.
     pub fn all() -> impl Iterator<Item = Self> {
-        Self::GUIDES.into_iter().chain(Self::MOTION).chain(Self::SURROUNDINGS)
+        let of_arm = Self::GUIDES.into_iter().chain(Self::OF_ARM);
+        of_arm.chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
     /// The four guides of the paper.
     pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
+
+    /// What else shows how the arm is posed.
+    pub const OF_ARM: [Self; 3] = [Self::Hand, Self::Globe, Self::References];
 
     /// What shows how the rig moves.
     pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
@@ -57,7 +67,7 @@ impl Layer {
 /// Which layers are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Display {
-    shown: u16,
+    shown: u32,
 }
 
 impl Display {
@@ -89,13 +99,13 @@ impl FromIterator<Layer> for Display {
 }
 
 impl Default for Display {
-    /// The whole scene, with Cursor, Pointer and trail; the limits would veil the arm.
+    /// The whole scene, with Cursor, Pointer, hand and trail; the limits would veil the arm.
     fn default() -> Self {
-        let guides = [Layer::Cursor, Layer::Pointer, Layer::Trail];
+        let guides = [Layer::Cursor, Layer::Pointer, Layer::Hand, Layer::Trail];
         Layer::SURROUNDINGS.into_iter().chain(guides).collect()
     }
 }
 
-fn bit(layer: Layer) -> u16 {
+fn bit(layer: Layer) -> u32 {
     1 << layer as u16
 }

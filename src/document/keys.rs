@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Channel, Document, Quantity, RigKind};
+use super::{Arm, Channel, Document, Quantity, RigKind, Swivel};
 use crate::kinematics::skeleton::Moved;
 use crate::kinematics::spline::Spline;
 
@@ -89,6 +89,7 @@ impl Keys {
         match channel.quantity() {
             Quantity::Switch => track.step(time),
             Quantity::Length => Some(track.at(time)?.max(Vec3::X * shortest(track))),
+            Quantity::Part => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
             Quantity::Point | Quantity::Angle | Quantity::Angles => track.at(time),
         }
     }
@@ -150,9 +151,31 @@ impl Document {
         self.keys.insert(channel, time, value);
     }
 
+    /// Measures the arm's elbow from elsewhere and leaves it where it is, at every key of its spin too.
+    #[must_use]
+    pub fn measured_from(&self, swivel: Swivel) -> Self {
+        let mut after = Self { arm: self.arm.measured_from(swivel), ..self.clone() };
+        let Some(track) = self.keys.track(Channel::ElbowSpin) else {
+            return after;
+        };
+        let mut shift = 0.0;
+        for knot in track.knots() {
+            let posed = Arm { carried: None, ..self.at(knot.time).arm };
+            let measured = posed.measured_from(swivel).keyed_spin();
+            let (old, turned) = (knot.value.x, measured - knot.value.x);
+            shift = turned + ((shift - turned) / TAU).round() * TAU;
+            after.keys.insert(Channel::ElbowSpin, knot.time, Vec3::new(old + shift, 0.0, 0.0));
+        }
+        after
+    }
+
     /// Gives every keyed channel the value that its keys give at a time.
     pub(crate) fn keys_to(&mut self, time: f64) {
         let keys = std::mem::take(&mut self.keys);
+        if keys.has(Channel::Hand) || keys.has(Channel::Pin) || keys.has(Channel::Root) {
+            // Playing never transports.
+            self.arm.forget_way();
+        }
         for (channel, _) in keys.tracks() {
             if let Some(value) = keys.value(channel, time) {
                 channel.set(self, value);

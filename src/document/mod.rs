@@ -12,8 +12,9 @@ mod keys;
 mod skeleton;
 mod slither;
 mod timeline;
+mod wrist;
 
-pub use arm::Arm;
+pub use arm::{Arm, Goal, Swivel};
 pub use camera::{AxisView, Camera, Projection, Ray};
 pub use channel::{Channel, Quantity};
 pub use display::{Display, Layer, Theme};
@@ -21,6 +22,7 @@ pub use keys::Keys;
 pub use skeleton::{Motion, Path, SkeletonRig, Target};
 pub use slither::Slither;
 pub use timeline::Timeline;
+pub use wrist::{Space, Wrist};
 
 use crate::kinematics::skeleton::Moved;
 

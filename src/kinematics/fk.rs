@@ -70,6 +70,13 @@ impl Fk {
     }
 }
 
+/// The rotations of the upper and the lower limb: their +x along the limb, their +z the hinge.
+pub fn limb_rotations(pose: &Pose) -> (DMat3, DMat3) {
+    let Turned { upper, bend, .. } = Turned::of_pose(pose);
+    let upper = DMat3::from_quat(upper);
+    (upper, upper * DMat3::from_rotation_z(-bend))
+}
+
 /// A pose between the angles and a solved one: limbs and elbow turn, and keep their lengths. The
 /// weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
 ///

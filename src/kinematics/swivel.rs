@@ -122,6 +122,15 @@ impl Carried {
         let outward = perpendicular(carried, to).unwrap_or_else(|| to.any_orthonormal_vector());
         Self { direction, outward: outward.as_vec3() }
     }
+
+    /// How far another's e₀ is turned from this one's about its Pointer, in (−π, π]. On the same way
+    /// from the same start this is the way's holonomy: 0 if what was carried came back, else the
+    /// solid angle that the way goes around.
+    pub fn turn_to(self, other: Self) -> f32 {
+        let from = self.to(other.direction).outward.as_dvec3();
+        let (w, to) = (other.direction.as_dvec3(), other.outward.as_dvec3());
+        w.dot(from.cross(to)).atan2(from.dot(to)) as f32
+    }
 }
 
 impl Reference {

@@ -4,9 +4,10 @@ use glam::{Vec2, Vec3};
 
 use super::{Constraint, Dialog, DragInput, Export, Grip, Job, Key, Motion, Navigation};
 use crate::document::{
-    Camera, Channel, Document, Layer, Ray, RigKind, Slither, Target, Theme, Timeline,
+    Camera, Channel, Document, Layer, Ray, RigKind, Slither, Space, Swivel, Target, Theme, Timeline,
 };
 use crate::io::Example;
+use crate::kinematics::reach::Softening;
 use crate::kinematics::skeleton::Limit;
 use crate::kinematics::solve::Options;
 
@@ -18,6 +19,27 @@ pub enum Action {
     /// ψ in radians; wraps around.
     SetElbowSpin(f32),
     SetRoot(Vec3),
+    /// Pins the hand to the world, or lets it go with the shoulder; it stays where it is.
+    PinHand(bool),
+    /// Measures the elbow's spin from elsewhere; the elbow stays.
+    SetSwivel(Swivel),
+    /// What the elbow points at, in Root space.
+    SetPole(Vec3),
+    SetSoftening(Softening),
+    /// How far the hand leads (1) or the joints' own angles do (0).
+    SetWeight(f32),
+    /// Lets the hand lead alone, or the angles; the pose stays.
+    SwitchTo(Lead),
+    /// The shoulder's own angles about x, y and z in radians.
+    SetShoulder(Vec3),
+    /// The elbow's own bend β, radians.
+    SetBend(f32),
+    /// The hand's angles about x, y and z in radians.
+    SetWrist(Vec3),
+    /// What the hand's angles are measured in; the hand stays as it is turned.
+    SetWristSpace(Space),
+    /// Measures what is carried along with the Pointer from here.
+    StartJourney,
     SetUpper(f32),
     SetLower(f32),
     /// The arm as at first, or the skeleton without rotations; what is shown stays.
@@ -207,6 +229,15 @@ pub enum Action {
     /// A root to hang joints from.
     NewSkeleton,
     Quit,
+}
+
+/// What poses the arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lead {
+    /// Inverse kinematics: where the hand is asked to be.
+    Hand,
+    /// Forward kinematics: the joints' own angles.
+    Angles,
 }
 
 impl Action {

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::drag::Way;
-use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Session, ViewDrag, naming};
+use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming};
 use crate::document::{Arm, Camera, Display, Document, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
@@ -25,9 +25,27 @@ impl Session {
 
     fn act(&mut self, action: Action) -> Option<Effect> {
         match action {
-            Action::SetHand(hand) => self.set_point("hand", hand, |arm| &mut arm.cursor),
-            Action::SetRoot(root) => self.set_point("shoulder", root, |arm| &mut arm.root),
+            Action::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
+            Action::SetRoot(root) => self.set_point("shoulder", root, |arm, root| arm.root = root),
             Action::SetElbowSpin(spin) => self.set_elbow_spin(spin),
+            Action::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
+            Action::SetSwivel(swivel) => self.set_swivel(swivel),
+            Action::SetPole(pole) => self.set_pole(pole),
+            Action::SetSoftening(softening) => {
+                self.replace_arm(Arm { softening, ..*self.arm() });
+            }
+            Action::SetWeight(weight) => self.set_weight(weight),
+            Action::SwitchTo(lead) => self.switch_to(lead),
+            Action::SetShoulder(angles) => self.set_shoulder(angles),
+            Action::SetBend(bend) => self.set_bend(bend),
+            Action::SetWrist(angles) => {
+                self.set_point("hand angles", angles, |arm, angles| arm.wrist.angles = angles);
+            }
+            Action::SetWristSpace(space) => {
+                let wrist = self.arm().wrist.measured_in(space, &self.pose);
+                self.replace_arm(Arm { wrist, ..*self.arm() });
+            }
+            Action::StartJourney => self.journey = Journey::new(&self.pose),
             Action::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
             Action::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
             Action::ResetPose => match self.rig() {
@@ -268,6 +286,8 @@ impl Session {
             Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
             Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
+            Grip::Pole(handle) => self.grab_pole(handle, ray, forward),
+            Grip::Shoulder(_) | Grip::Bend => self.grab_arm_ring(grip, ray),
         }
     }
 
@@ -277,6 +297,8 @@ impl Session {
         };
         change(drag);
         let grip = drag.grip;
+        let Arm { goal, pole, fk, .. } = shown.arm;
+        let mut angles = fk.shoulder;
         *name = Some(naming::of_drag(grip));
         match (grip, &mut drag.way) {
             (Grip::Ring(joint, axis), Way::Turn(turn)) => {
@@ -285,8 +307,24 @@ impl Session {
             }
             (Grip::Hand(_), Way::Point(point)) => {
                 let held = point.point();
-                let hand = if point.has_moved() { held } else { shown.arm.cursor };
-                self.set_point("hand", hand, |arm| &mut arm.cursor);
+                if point.has_moved() {
+                    self.set_point("hand", held, Arm::set_cursor);
+                } else {
+                    self.replace_arm(Arm { goal, ..*self.arm() });
+                }
+            }
+            (Grip::Shoulder(axis), Way::Turn(turn)) => {
+                angles[axis] = turn.angle();
+                self.set_shoulder(angles);
+            }
+            (Grip::Bend, Way::Turn(turn)) => {
+                let bend = turn.angle();
+                self.set_bend(bend);
+            }
+            (Grip::Pole(_), Way::Point(point)) => {
+                let held = point.point();
+                let pole = if point.has_moved() { held } else { pole };
+                self.set_pole(pole);
             }
             (_, Way::Point(point)) => {
                 let to = point.point();
@@ -317,7 +355,7 @@ impl Session {
 /// A line that `ik-arm solve` reads.
 fn pose_line(arm: &Arm) -> String {
     serde_json::json!({
-        "hand": arm.cursor.to_array(),
+        "hand": arm.cursor().to_array(),
         "upper": arm.bones.upper(),
         "lower": arm.bones.lower(),
         "root": arm.root.to_array(),

@@ -1,18 +1,19 @@
 use core::f32::consts::TAU;
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::drag::Way;
-use super::{Drag, Grip, Handle, PointDrag, Session};
-use crate::document::{Arm, Document, Ray};
+use super::{Drag, Grip, Handle, Lead, PointDrag, Ring, Session, TurnDrag};
+use crate::document::{Arm, Document, Ray, Swivel};
+use crate::kinematics::euler;
 use crate::kinematics::two_bone::TwoBone;
 
 /// What actions do to the arm.
 impl Session {
-    pub(super) fn set_point(&mut self, name: &str, point: Vec3, field: fn(&mut Arm) -> &mut Vec3) {
+    pub(super) fn set_point(&mut self, name: &str, point: Vec3, set: fn(&mut Arm, Vec3)) {
         if point.is_finite() {
             let mut arm = *self.arm();
-            *field(&mut arm) = point;
+            set(&mut arm, point);
             self.replace_arm(arm);
         } else {
             self.message = Some(format!("The {name} must be at finite numbers, not {point}"));
@@ -34,10 +35,57 @@ impl Session {
         }
     }
 
-    /// Every change of the arm comes through here: where it faces is kept.
+    /// The elbow stays where it is, at the keys of its spin too.
+    pub(super) fn set_swivel(&mut self, swivel: Swivel) {
+        self.message = None;
+        self.commit(self.shown.measured_from(swivel));
+    }
+
+    pub(super) fn set_weight(&mut self, weight: f32) {
+        if (0.0..=1.0).contains(&weight) {
+            self.replace_arm(Arm { weight, ..*self.arm() });
+        } else {
+            self.message = Some(format!("The IK weight must be from 0 to 1, not {weight}"));
+        }
+    }
+
+    pub(super) fn set_pole(&mut self, pole: Vec3) {
+        self.set_point("pole", pole, |arm, pole| arm.pole = pole);
+    }
+
+    pub(super) fn set_shoulder(&mut self, angles: Vec3) {
+        self.set_point("shoulder angles", angles, |arm, angles| arm.fk.shoulder = angles);
+    }
+
+    pub(super) fn set_bend(&mut self, bend: f32) {
+        if bend.is_finite() {
+            let mut arm = *self.arm();
+            arm.fk.bend = bend;
+            self.replace_arm(arm);
+        } else {
+            self.message = Some(format!("The elbow's bend must be a finite number, not {bend}"));
+        }
+    }
+
+    /// The pose stays, unless a soft limit keeps the hand from where it is.
+    pub(super) fn switch_to(&mut self, lead: Lead) {
+        const MOVED: f32 = 1e-3;
+        let before = self.pose;
+        match lead {
+            Lead::Hand => self.replace_arm(self.arm().led_by_hand()),
+            Lead::Angles => self.replace_arm(self.arm().led_by_angles()),
+        }
+        let moved =
+            self.pose.elbow.distance(before.elbow).max(self.pose.hand.distance(before.hand));
+        if moved > MOVED * self.arm().bones.outer_limit() {
+            self.message = Some("The arm has moved: its soft limits do not let it be there".into());
+        }
+    }
+
+    /// Every change of the arm comes through here: what its next pose goes on from is kept.
     pub(super) fn replace_arm(&mut self, arm: Arm) {
         self.message = None;
-        let arm = Arm { facing: arm.pose().facing, ..arm };
+        let arm = arm.going_on_from(self.arm()).settled();
         self.commit(Document { arm, ..self.shown.clone() });
     }
 
@@ -45,10 +93,55 @@ impl Session {
     /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
     pub(super) fn grab_hand(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
         let (arm, hand) = (*self.arm(), self.pose.hand);
+        if !arm.is_led_by_hand() {
+            return;
+        }
         let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
-        let is_at_hand = handle == Handle::Free && aside(hand) < aside(arm.cursor);
-        let start = if is_at_hand { hand } else { arm.cursor };
+        let is_led = handle == Handle::Free && arm.weight == 1.0;
+        let is_at_hand = is_led && aside(hand) < aside(arm.cursor());
+        let start = if is_at_hand { hand } else { arm.cursor() };
         let drag = PointDrag::new(handle, start, arm.root, forward, ray);
         self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: Way::Point(drag) }));
+    }
+
+    pub(super) fn grab_pole(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
+        let arm = *self.arm();
+        if arm.swivel == Swivel::Pole {
+            let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
+            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), way: Way::Point(drag) }));
+        }
+    }
+
+    pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
+        let fk = self.arm().fk;
+        let start = match grip {
+            Grip::Shoulder(axis) => fk.shoulder[axis],
+            _ => fk.bend,
+        };
+        if let Some(ring) = self.arm_ring(grip) {
+            let way = Way::Turn(TurnDrag::new(ring, start, ray));
+            self.begin_edit(Some(Drag { grip, way }));
+        }
+    }
+
+    /// What one of the arm's own angles turns about, in the world, while they lead: the shoulder's
+    /// about x, y or z, or the elbow's bend.
+    pub fn arm_ring(&self, grip: Grip) -> Option<Ring> {
+        let arm = self.arm();
+        if arm.is_led_by_hand() {
+            return None;
+        }
+        let angles = arm.fk.shoulder;
+        let yaw = Mat3::from_rotation_y(angles.y);
+        let axis = match grip {
+            Grip::Shoulder(1) => Vec3::Y,
+            Grip::Shoulder(2) => yaw.z_axis,
+            Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+            // A growing bend turns the lower limb the other way about the hinge.
+            Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
+            _ => return None,
+        };
+        let centre = if grip == Grip::Bend { arm.root + self.pose.elbow } else { arm.root };
+        Some(Ring { centre, axis })
     }
 }

@@ -6,6 +6,12 @@ use super::turn_drag::TurnDrag;
 pub enum Grip {
     /// The arm's hand.
     Hand(Handle),
+    /// What the arm's elbow points at.
+    Pole(Handle),
+    /// The ring about which the shoulder's angle x, y or z (0, 1, 2) turns.
+    Shoulder(usize),
+    /// The ring about which the elbow bends.
+    Bend,
     /// The target of a joint.
     Target(usize, Handle),
     /// The tip of a joint's bone.

@@ -1,4 +1,5 @@
 use core::fmt::Display;
+use std::collections::BTreeSet;
 
 use super::history::State;
 use super::{Drag, Session};
@@ -66,7 +67,13 @@ impl Session {
             // What is shown or not gets keys only where it has some.
             let switches =
                 after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-            Channel::of_rig(after).into_iter().chain(switches).filter(changed).collect()
+            // What has begun to shape the rig, and what no longer does.
+            let all: BTreeSet<Channel> = [&*after, &self.shown]
+                .into_iter()
+                .flat_map(Channel::of_rig)
+                .chain(switches)
+                .collect();
+            all.into_iter().filter(changed).collect()
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
@@ -90,8 +97,13 @@ impl Session {
             if let Some(value) = channel.value(&self.document) {
                 channel.set(after, value);
             }
-            if channel == Channel::Hand {
-                after.arm.facing = self.document.arm.facing;
+            let (rest, arm) = (&self.document.arm, &mut after.arm);
+            match channel {
+                Channel::Hand | Channel::Pin => arm.facing = rest.facing,
+                Channel::ElbowSpin => {
+                    (arm.elbow_spin, arm.carried) = (rest.elbow_spin, rest.carried)
+                }
+                _ => {}
             }
         }
     }

@@ -50,7 +50,7 @@ impl Session {
             return self.selected_channels.iter().copied().filter(is_there).collect();
         }
         match self.rig() {
-            RigKind::Arm => vec![Channel::Hand, Channel::ElbowSpin],
+            RigKind::Arm => self.leading_channels(),
             RigKind::Skeleton if self.selection.is_empty() => self.all_channels(),
             RigKind::Skeleton => {
                 let is_selected = |channel: &Channel| {
@@ -59,6 +59,15 @@ impl Session {
                 Channel::of_rig(&self.shown).into_iter().filter(is_selected).collect()
             }
         }
+    }
+
+    /// What leads the arm: hand and elbow spin, or the joints' own angles.
+    fn leading_channels(&self) -> Vec<Channel> {
+        let arm = self.arm();
+        let hand = [Channel::Hand, Channel::Pin, Channel::ElbowSpin];
+        let angles = [Channel::Weight, Channel::Shoulder, Channel::Bend];
+        let leading = hand.into_iter().filter(|_| arm.is_led_by_hand()).chain(angles);
+        leading.filter(|channel| channel.shapes(arm)).collect()
     }
 
     /// All that shapes the rig, and what has keys besides.

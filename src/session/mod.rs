@@ -10,6 +10,7 @@ mod edit;
 mod export;
 mod files;
 mod history;
+mod journey;
 mod keys;
 mod naming;
 mod point_drag;
@@ -30,9 +31,10 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-pub use action::{Action, Effect};
+pub use action::{Action, Effect, Lead};
 pub use drag::{Drag, Grip};
 pub use export::{Export, Job};
+pub use journey::Journey;
 pub use keys::Key;
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
 pub use preferences::{Navigation, Preferences};
@@ -66,6 +68,7 @@ pub struct Session {
     recent: Vec<PathBuf>,
     pose: Pose,
     skeleton_pose: SkeletonPose,
+    journey: Journey,
     /// Walked when it is first shown.
     trail: OnceCell<Vec<Vec3>>,
     preferences: Preferences,
@@ -153,6 +156,7 @@ impl Session {
 
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
         Self {
+            journey: Journey::new(&document.arm.pose()),
             pose: document.arm.pose(),
             skeleton_pose: document.skeleton.at(0.0).pose(),
             shown: document.clone(),
@@ -218,6 +222,11 @@ impl Session {
     /// The document's arm, solved.
     pub fn pose(&self) -> &Pose {
         &self.pose
+    }
+
+    /// What has been carried along with the Pointer.
+    pub fn journey(&self) -> &Journey {
+        &self.journey
     }
 
     /// The document's skeleton as it stands at this time, in the world.
@@ -333,6 +342,7 @@ impl Session {
             channel.set(&mut self.shown, *value);
         }
         self.pose = self.shown.arm.pose();
+        self.journey.go_on(self.pose.facing.direction);
         self.skeleton_pose = self.shown.skeleton.at(self.clock.time).pose();
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);

@@ -1,4 +1,4 @@
-use super::{Action, Grip};
+use super::{Action, Grip, Lead};
 use crate::document::{Channel, RigKind};
 
 /// What an action does to the document, as in "Undo move hand"; nothing if it leaves it alone.
@@ -7,6 +7,17 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::SetHand(_) => "move hand",
         Action::SetElbowSpin(_) => "spin elbow",
         Action::SetRoot(_) => "move shoulder",
+        Action::PinHand(true) => "pin hand",
+        Action::PinHand(false) => "unpin hand",
+        Action::SetSwivel(_) => "change swivel",
+        Action::SetPole(_) => "move pole",
+        Action::SetSoftening(_) => "change softness",
+        Action::SetWeight(_) => "blend FK and IK",
+        Action::SwitchTo(Lead::Hand) => "switch to IK",
+        Action::SwitchTo(Lead::Angles) => "switch to FK",
+        Action::SetShoulder(_) => "turn shoulder",
+        Action::SetBend(_) => "bend elbow",
+        Action::SetWrist(_) | Action::SetWristSpace(_) => "turn hand",
         Action::SetUpper(_) | Action::SetLower(_) => "change length",
         Action::ResetPose => "reset pose",
         Action::ResetAll => "reset all",
@@ -51,6 +62,9 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
 pub(super) fn of_drag(grip: Grip) -> &'static str {
     match grip {
         Grip::Hand(_) => "move hand",
+        Grip::Pole(_) => "move pole",
+        Grip::Shoulder(_) => "turn shoulder",
+        Grip::Bend => "bend elbow",
         Grip::Target(..) => "move target",
         Grip::Tip(..) => "pose joints",
         Grip::Ring(..) => "turn joint",

@@ -58,7 +58,7 @@ impl Session {
         match grip {
             Grip::Target(joint, _) => self.drag_target(joint, to),
             Grip::Tip(joint, _) => self.drag_tip(joint, to, moved),
-            Grip::Hand(_) | Grip::Ring(..) => {}
+            _ => {}
         }
     }
 

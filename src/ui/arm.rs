@@ -24,8 +24,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let hand = Point {
         name: "Hand",
-        value: session.arm().cursor,
-        default: Arm::default().cursor,
+        value: session.arm().cursor(),
+        default: Arm::default().cursor(),
         range: session.arm().bones.outer_limit(),
         step: 1.0,
         tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",

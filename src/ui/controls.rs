@@ -79,9 +79,20 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     place.show(ui, session, actions, Action::SetTranslation);
 }
 
+/// The paper's, then what shows more.
+const ARM_GUIDES: [Layer; 7] = [
+    Layer::Cursor,
+    Layer::Pointer,
+    Layer::InnerLimit,
+    Layer::OuterLimit,
+    Layer::Hand,
+    Layer::Globe,
+    Layer::References,
+];
+
 fn guides(session: &Session) -> &'static [Layer] {
     match session.rig() {
-        RigKind::Arm => &Layer::GUIDES,
+        RigKind::Arm => &ARM_GUIDES,
         RigKind::Skeleton if session.skeleton().slither.is_some() => {
             &[Layer::Cursor, Layer::Pointer]
         }
@@ -130,6 +141,17 @@ pub(super) fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static st
         (_, Layer::OuterLimit) => (
             "Outer limit",
             "The sphere that the hand cannot leave: its radius is the sum of the lengths",
+        ),
+        (_, Layer::Hand) => {
+            ("Hand", "A hand at the wrist, and stripes that show the forearm's roll")
+        }
+        (_, Layer::Globe) => (
+            "Singularity globe",
+            "The outer limit, hot where a small move of the hand turns the elbow far",
+        ),
+        (_, Layer::References) => (
+            "Four references",
+            "The elbow as each reference would have it, with how far apart they are",
         ),
         (_, Layer::GridXy) => ("XY grid", "The grid in which z is 0"),
         (_, Layer::GridXz) => ("XZ grid", "The grid in which y is 0"),

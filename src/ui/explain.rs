@@ -40,7 +40,7 @@ fn sentence(ui: &mut Ui, session: &Session) {
 
 fn pointer(session: &Session) -> [Quantity; 4] {
     let (arm, pose) = (session.arm(), session.pose());
-    let cursor = arm.cursor;
+    let cursor = arm.cursor();
     [
         Quantity {
             symbol: "θ_z",
@@ -164,7 +164,7 @@ fn meter(ui: &mut Ui, session: &Session) {
     const BEYOND: f32 = 1.25;
     let bones = session.arm().bones;
     let (inner, outer) = (bones.inner_limit(), bones.outer_limit());
-    let asked = session.arm().cursor.length();
+    let asked = session.arm().cursor().length();
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let bar = egui::Rect::from_min_size(

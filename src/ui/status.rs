@@ -38,7 +38,7 @@ fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
 
 /// One sentence on why the arm is as it is.
 pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
-    let gap = pose.hand.distance(arm.cursor);
+    let gap = pose.hand.distance(arm.cursor());
     match pose.reach {
         Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
         Reach::TooFar => {
@@ -133,7 +133,8 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     let verb = match grip {
         Grip::Tip(..) => "Pose",
         Grip::Target(..) => "Target",
-        Grip::Hand(_) | Grip::Ring(..) => "Move",
+        Grip::Pole(_) => "Pole",
+        _ => "Move",
     };
     let digits = match session.rig() {
         RigKind::Arm => 1,
@@ -150,12 +151,14 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
 }
 
 fn describe_turn(grip: Grip, drag: &TurnDrag) -> String {
-    let axis = match grip {
-        Grip::Ring(_, axis) => ["x", "y", "z"][axis],
-        Grip::Hand(_) | Grip::Target(..) | Grip::Tip(..) => "",
+    let verb = match grip {
+        Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
+            format!("Turn about {}", ["x", "y", "z"][axis.min(2)])
+        }
+        _ => "Bend".to_owned(),
     };
     format!(
-        "Turn about {axis}: {:+.1}°{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
+        "{verb}: {:+.1}°{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
          take back",
         drag.turned().to_degrees(),
         typed(drag.typed()),

@@ -137,7 +137,7 @@ fn select(
     let joint = match grips.at(pointer) {
         Some(Grip::Target(joint, _) | Grip::Tip(joint, _)) => Some(joint),
         Some(Grip::Ring(..)) => return,
-        Some(Grip::Hand(_)) | None => grips.joint_at(pointer),
+        _ => grips.joint_at(pointer),
     };
     if modifiers.command {
         if let Some(parent) = session.selected() {

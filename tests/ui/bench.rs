@@ -103,7 +103,7 @@ impl Bench {
     }
 
     pub fn hand(&self) -> Vec3 {
-        self.session().arm().cursor
+        self.session().arm().cursor()
     }
 
     /// One frame of the window: the input, what it asks for, and if that is anything, once more.

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::Document;
+use ik_arm::document::{Document, Goal};
 use ik_arm::io::Example;
 use ik_arm::kinematics::solve::{Method, Options};
 use ik_arm::session::{Action, Dialog, Effect};
@@ -236,7 +236,7 @@ fn files_that_were_open_are_offered_again() {
 #[test]
 fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     let mut document = Document::default();
-    document.arm.cursor = Vec3::Y * 123.0;
+    document.arm.goal = Goal::Root(Vec3::Y * 123.0);
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([Action::OpenDialog(dialog.clone())]);

@@ -111,7 +111,7 @@ fn the_elbow_spin_wraps() {
     assert!((value(bench.session().arm(), "Elbow spin") - 359.0).abs() < 1e-3);
     bench.key(Key::PageUp);
     assert!((value(bench.session().arm(), "Elbow spin") - 9.0).abs() < 1e-3);
-    assert_eq!(bits(bench.hand()), bits(Arm::default().cursor));
+    assert_eq!(bits(bench.hand()), bits(Arm::default().cursor()));
 }
 
 #[test]

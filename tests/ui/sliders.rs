@@ -19,9 +19,9 @@ fn on_rail(bench: &Bench, name: &str, part: f32) -> Pos2 {
 
 pub fn value(arm: &Arm, slider: &str) -> f32 {
     match slider {
-        "Hand x" => arm.cursor.x,
-        "Hand y" => arm.cursor.y,
-        "Hand z" => arm.cursor.z,
+        "Hand x" => arm.cursor().x,
+        "Hand y" => arm.cursor().y,
+        "Hand z" => arm.cursor().z,
         "Elbow spin" => arm.elbow_spin.to_degrees(),
         "Root x" => arm.root.x,
         "Root y" => arm.root.y,

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::argument::{Guides, Length, Number, Point, Size, ThemeName, Time};
 use super::open;
-use crate::document::{Arm, AxisView, Camera, Display, Document, Layer, RigKind};
+use crate::document::{Arm, AxisView, Camera, Display, Document, Goal, Layer, RigKind};
 use crate::io::OpenError;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, DrawError, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
@@ -178,7 +178,7 @@ impl Args {
     fn arm(&self) -> Result<Arm, LengthError> {
         let mut arm = Arm::default();
         arm.bones = TwoBone::new(self.upper.0, self.lower.0)?;
-        arm.cursor = self.hand.map_or(arm.cursor, |hand| hand.0);
+        arm.goal = Goal::Root(self.hand.map_or(arm.cursor(), |hand| hand.0));
         arm.elbow_spin = (self.elbow_spin.0 % 360.0).to_radians();
         arm.root = self.root.0;
         Ok(arm)

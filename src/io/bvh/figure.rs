@@ -123,7 +123,7 @@ fn arm(arm: &Arm) -> Stance {
     let upper = out.atan2(along);
     let lower = (-out).atan2(f64::from(pose.distance) - along);
     let limb = pose.facing.limb_frame().as_dmat3();
-    let socket = DMat3::from_rotation_x(f64::from(arm.elbow_spin));
+    let socket = DMat3::from_rotation_x(f64::from(pose.spin));
     let bone = |length: f32| Vec3::new(length, 0.0, 0.0).as_dvec3();
     Stance {
         offsets: vec![arm.root.as_dvec3(), bone(arm.bones.upper())],

@@ -3,8 +3,9 @@
 use core::f32::consts::FRAC_PI_2;
 use std::collections::HashSet;
 
-use glam::{Affine3A, Mat3, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec3};
 
+use super::arm::arm;
 use super::file::{self, File, Rig, Root};
 use super::keys::{keys, timeline};
 use crate::document::{
@@ -15,10 +16,6 @@ use crate::io::source::{Odd, Wrong};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
 use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
 use crate::kinematics::solve::{self, Method, Options};
-use crate::kinematics::two_bone::{Facing, TwoBone};
-
-/// How far a unit vector's length may be from 1.
-const UNIT: f32 = 1e-3;
 
 pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     let at = |key| Field::root().key(key);
@@ -53,37 +50,6 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     };
     document.keys = keys(file.keys.unwrap_or_default(), &document)?;
     Ok(document)
-}
-
-fn arm(at: &Field, file: &file::Arm) -> Result<Arm, Wrong> {
-    let seed = Arm::default();
-    let upper = file.upper.map_or(seed.bones.upper(), |Number(upper)| upper);
-    let lower = file.lower.map_or(seed.bones.lower(), |Number(lower)| lower);
-    let bones = TwoBone::new(upper, lower)
-        .map_err(|error| Wrong::new(at.clone().key(error.bone), error.to_string()))?;
-    let cursor = file.cursor.map_or(seed.cursor, |Point(cursor)| cursor);
-    let facing = match &file.facing {
-        Some(Object(file)) => facing(&at.clone().key("facing"), file)?,
-        None => Facing::towards(cursor, Facing::default()),
-    };
-    Ok(Arm {
-        cursor,
-        elbow_spin: file.elbow_spin.map_or(seed.elbow_spin, |Number(spin)| spin),
-        root: file.root.map_or(seed.root, |Point(root)| root),
-        bones,
-        facing,
-    })
-}
-
-fn facing(at: &Field, file: &file::Facing) -> Result<Facing, Wrong> {
-    let unit = |key, length: f32| match (length - 1.0).abs() <= UNIT {
-        true => Ok(()),
-        false => Err(Wrong::new(at.clone().key(key), format!("its length is {length}, not 1"))),
-    };
-    let (direction, heading) = (file.direction.0, Vec2::from_array(file.heading.0));
-    unit("direction", direction.length())?;
-    unit("heading", heading.length())?;
-    Ok(Facing { direction, heading })
 }
 
 fn skeleton_rig(

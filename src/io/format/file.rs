@@ -3,6 +3,7 @@
 use glam::Mat3;
 use serde::{Deserialize, Serialize};
 
+use super::arm::Arm;
 use super::keys::{self, Timeline, Track};
 use super::{NAME, VERSION};
 use crate::document::{self, Camera, Document, Layer, RigKind, SkeletonRig};
@@ -34,22 +35,6 @@ pub struct File {
 pub enum Rig {
     Arm,
     Skeleton,
-}
-
-#[derive(Serialize, Deserialize)]
-pub struct Arm {
-    pub cursor: Option<Point>,
-    pub elbow_spin: Option<Number>,
-    pub root: Option<Point>,
-    pub upper: Option<Number>,
-    pub lower: Option<Number>,
-    pub facing: Option<Object<Facing>>,
-}
-
-#[derive(Serialize, Deserialize)]
-pub struct Facing {
-    pub direction: Point,
-    pub heading: Numbers<2>,
 }
 
 #[derive(Default, Serialize, Deserialize)]
@@ -164,23 +149,6 @@ impl File {
             metres_per_unit: document.metres.map(Number),
             camera: Some(Object(View::new(camera))),
             display: Some(display.layers().collect()),
-        }
-    }
-}
-
-impl Arm {
-    fn new(arm: &document::Arm) -> Self {
-        let facing = Facing {
-            direction: Point(arm.facing.direction),
-            heading: Numbers(arm.facing.heading.to_array()),
-        };
-        Self {
-            cursor: Some(Point(arm.cursor)),
-            elbow_spin: Some(Number(arm.elbow_spin)),
-            root: Some(Point(arm.root)),
-            upper: Some(Number(arm.bones.upper())),
-            lower: Some(Number(arm.bones.lower())),
-            facing: Some(Object(facing)),
         }
     }
 }

@@ -28,6 +28,12 @@ enum Name {
     Root,
     Upper,
     Lower,
+    Pin,
+    Pole,
+    Weight,
+    Shoulder,
+    Bend,
+    Wrist,
     Translation,
     Rotation,
     Offset,
@@ -55,6 +61,12 @@ impl Track {
             Channel::Root => (Name::Root, None),
             Channel::Upper => (Name::Upper, None),
             Channel::Lower => (Name::Lower, None),
+            Channel::Pin => (Name::Pin, None),
+            Channel::Pole => (Name::Pole, None),
+            Channel::Weight => (Name::Weight, None),
+            Channel::Shoulder => (Name::Shoulder, None),
+            Channel::Bend => (Name::Bend, None),
+            Channel::Wrist => (Name::Wrist, None),
             Channel::Translation => (Name::Translation, None),
             Channel::Rotation(_) => (Name::Rotation, None),
             Channel::Offset(_) => (Name::Offset, None),
@@ -101,6 +113,12 @@ impl Track {
             Name::Root => Channel::Root,
             Name::Upper => Channel::Upper,
             Name::Lower => Channel::Lower,
+            Name::Pin => Channel::Pin,
+            Name::Pole => Channel::Pole,
+            Name::Weight => Channel::Weight,
+            Name::Shoulder => Channel::Shoulder,
+            Name::Bend => Channel::Bend,
+            Name::Wrist => Channel::Wrist,
             Name::Translation => Channel::Translation,
             Name::Rotation => Channel::Rotation(joint()?),
             Name::Offset => Channel::Offset(joint()?),
@@ -155,6 +173,9 @@ fn value(quantity: Quantity, knot: &Knot) -> Result<Vec3, String> {
     let x = value[0];
     match quantity {
         Quantity::Switch if x != 0.0 && x != 1.0 => Err(format!("{x} is no switch; it is 0 or 1")),
+        Quantity::Part if !(0.0..=1.0).contains(&x) => {
+            Err(format!("{x} is no part; it is from 0 to 1"))
+        }
         Quantity::Length if x <= 0.0 => Err(format!("length {x} must be above 0")),
         _ => Ok(Vec3::from_array(value)),
     }

@@ -4,7 +4,15 @@
 //! {
 //!   "format": "ik-arm", "version": 1,
 //!   "rig": "arm" | "skeleton",                        which one is shown
-//!   "arm": { "cursor", "elbow_spin", "root", "upper", "lower", "facing": { "direction", "heading" } },
+//!   "arm": {
+//!     "cursor" or "pin", "elbow_spin", "root", "upper", "lower",
+//!     "facing": { "direction", "heading" },
+//!     "swivel": { "reference": "limb" | "pole" | "stereographic" | "transport", "pole",
+//!                 "carried": { "direction", "outward" } },
+//!     "softening": { "softness", "max_stretch", "min_elbow_angle" },
+//!     "weight", "fk": { "shoulder", "bend", "stretch" },
+//!     "wrist": { "space": "lower" | "world", "angles", "roll" }
+//!   },
 //!   "skeleton": {
 //!     "joints": [{ "name", "parent", "offset", "axis", "rotation", "frame", "limits": { "x", "y", "z" },
 //!                  "locked", "radius" }],
@@ -18,7 +26,8 @@
 //!   "metres_per_unit": number,
 //!   "camera": { "target", "yaw", "pitch", "distance", "orthographic" },
 //!   "display": ["cursor", "pointer", "inner_limit", "outer_limit", "grid_xy", "grid_xz", "grid_yz",
-//!               "ground", "axes", "labels", "shadow", "trail", "onion_skins"]
+//!               "ground", "axes", "labels", "shadow", "trail", "onion_skins", "hand", "globe",
+//!               "references"]
 //! }
 //! ```
 //!
@@ -27,8 +36,13 @@
 //! column: where the skeleton's x, y and z axes point in the world, then its origin; a `frame` a 3×3
 //! matrix likewise. A limit is `[from, to]`.
 //!
-//! Keys are of the channels `hand`, `elbow_spin`, `root`, `upper`, `lower`, `translation`, of a joint's
-//! `rotation`, `offset`, `target` and `enabled`, and of a `layer` that is shown or not. A knot has a
+//! An arm's `cursor` and `pole` are relative to its root; a `pin` is in the world, and the hand stays
+//! there when the root moves. `weight` is 1 where the hand leads and 0 where the angles of `fk` do.
+//! `elbow_spin` is measured from the `reference`; keys of it likewise, but with `transport` from
+//! `stereographic`.
+//!
+//! Keys are of the channels `hand`, `pin`, `elbow_spin`, `pole`, `root`, `upper`, `lower`, `weight`,
+//! `shoulder`, `bend`, `wrist`, `translation`, of a joint's `rotation`, `offset`, `target` and `enabled`, and of a `layer` that is shown or not. A knot has a
 //! time in seconds and the value at it: one number or three, as the channel has; switches are 0 or 1.
 //! Between knots values are as [`spline`](crate::kinematics::spline) has it. `metres_per_unit` is how
 //! long a unit is for other programs; absent, a millimetre for the arm and a metre for a skeleton.
@@ -37,6 +51,7 @@
 //! `home`. What is absent is as at first; an absent `offset` puts a joint on its parent's tip, an
 //! absent `camera` shows the whole skeleton. Fields that are not known are remarked on and ignored.
 
+mod arm;
 mod check;
 mod file;
 mod keys;

@@ -110,7 +110,7 @@ fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usi
     };
     let unit = match channel.quantity() {
         Quantity::Angle | Quantity::Angles => 180.0 / core::f64::consts::PI,
-        Quantity::Point | Quantity::Length | Quantity::Switch => 1.0,
+        Quantity::Point | Quantity::Length | Quantity::Part | Quantity::Switch => 1.0,
     };
     let name = names::channel(session, channel);
     let (colours, style) = look(ui, channel, index);

@@ -13,6 +13,12 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     match channel {
         Channel::Hand => "Hand".to_owned(),
         Channel::ElbowSpin => "Elbow spin".to_owned(),
+        Channel::Pin => "Hand, pinned".to_owned(),
+        Channel::Pole => "Pole".to_owned(),
+        Channel::Weight => "IK weight".to_owned(),
+        Channel::Shoulder => "Shoulder angles".to_owned(),
+        Channel::Bend => "Elbow bend".to_owned(),
+        Channel::Wrist => "Hand angles".to_owned(),
         Channel::Root => "Shoulder".to_owned(),
         Channel::Upper => "Upper length".to_owned(),
         Channel::Lower => "Lower length".to_owned(),
