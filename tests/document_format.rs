@@ -390,7 +390,7 @@ fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
             "\"display\":[\"cursor\",\"elbow\"]",
             "line 2, column 21: display[1]: unknown variant `elbow`, expected one of `cursor`, \
              `pointer`, `inner_limit`, `outer_limit`, `grid_xy`, `grid_xz`, `grid_yz`, `ground`, \
-             `axes`, `labels`, `shadow`, `trail`, `onion_skins`",
+             `axes`, `labels`, `shadow`, `trail`, `onion_skins`, `globe`, `references`, `hand`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {

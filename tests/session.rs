@@ -126,6 +126,7 @@ fn arming() -> impl Strategy<Value = Action> {
         3 => points().prop_map(Action::SetHand),
         2 => points().prop_map(Action::SetRoot),
         2 => any::<bool>().prop_map(Action::PinHand),
+        1 => points().prop_map(Action::SetPin),
         3 => (0..4_usize).prop_map(|swivel| Action::SetSwivel(Swivel::ALL[swivel])),
         2 => points().prop_map(Action::SetPole),
         2 => softening.prop_map(|(softness, stretch, angle)| Action::SetSoftening(

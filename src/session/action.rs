@@ -19,6 +19,8 @@ pub enum Action {
     /// ψ in radians; wraps around.
     SetElbowSpin(f32),
     SetRoot(Vec3),
+    /// Where the hand is pinned, in the world.
+    SetPin(Vec3),
     /// Pins the hand to the world, or lets it go with the shoulder; it stays where it is.
     PinHand(bool),
     /// Measures the elbow's spin from elsewhere; the elbow stays.

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::drag::Way;
 use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming};
-use crate::document::{Arm, Camera, Display, Document, Ray, RigKind, SkeletonRig};
+use crate::document::{Arm, Camera, Display, Document, Goal, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
 impl Session {
@@ -28,6 +28,9 @@ impl Session {
             Action::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
             Action::SetRoot(root) => self.set_point("shoulder", root, |arm, root| arm.root = root),
             Action::SetElbowSpin(spin) => self.set_elbow_spin(spin),
+            Action::SetPin(pin) => {
+                self.set_point("hand", pin, |arm, pin| arm.goal = Goal::World(pin));
+            }
             Action::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
             Action::SetSwivel(swivel) => self.set_swivel(swivel),
             Action::SetPole(pole) => self.set_pole(pole),

@@ -4,7 +4,7 @@ use crate::document::{Channel, RigKind};
 /// What an action does to the document, as in "Undo move hand"; nothing if it leaves it alone.
 pub(super) fn of(action: &Action) -> Option<&'static str> {
     Some(match action {
-        Action::SetHand(_) => "move hand",
+        Action::SetHand(_) | Action::SetPin(_) => "move hand",
         Action::SetElbowSpin(_) => "spin elbow",
         Action::SetRoot(_) => "move shoulder",
         Action::PinHand(true) => "pin hand",

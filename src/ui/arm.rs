@@ -1,36 +1,68 @@
-//! The arm: where the hand is, how the elbow is spun, where the root is, how long the limbs are.
-
-use core::f32::consts::TAU;
+//! The arm: what poses it, where the hand is, how the elbow and the hand are turned, where the root is,
+//! how long the limbs are and how they meet their limits.
 
 use egui::Ui;
 use glam::Vec3;
 
 use super::point::Point;
 use super::slider::Slider;
-use super::{row, style};
-use crate::document::Arm;
+use super::{elbow, lead, limits, row, style, wrist};
+use crate::document::{Arm, Goal};
 use crate::session::{Action, Session};
+
+/// Why what the hand leads cannot be set.
+pub(super) const ANGLES_LEAD: &str = "The joints' own angles lead: switch to IK to set this";
 
 const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    lead::switch(ui, session, actions);
+    ui.add_space(6.0);
+    if session.arm().weight < 1.0 {
+        row::section(ui, "Joint angles", |ui| lead::angles(ui, session, actions));
+    }
     row::section(ui, "Hand", |ui| hand(ui, session, actions));
-    row::section(ui, "Elbow", |ui| elbow(ui, session, actions));
+    row::section(ui, "Elbow", |ui| elbow::ui(ui, session, actions));
     row::section(ui, "Root", |ui| root(ui, session, actions));
     row::section(ui, "Lengths", |ui| lengths(ui, session, actions));
+    row::folded_section(ui, "Soft limits", |ui| limits::ui(ui, session, actions));
+    row::folded_section(ui, "Hand orientation", |ui| wrist::ui(ui, session, actions));
 }
 
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let (arm, seed) = (session.arm(), Arm::default().cursor());
+    let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
     let hand = Point {
         name: "Hand",
-        value: session.arm().cursor(),
-        default: Arm::default().cursor(),
-        range: session.arm().bones.outer_limit(),
+        value: arm.cursor(),
+        default: seed,
+        range: arm.bones.outer_limit(),
         step: 1.0,
         tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
+        disabled,
     };
-    hand.show(ui, session, actions, Action::SetHand);
+    match arm.goal {
+        Goal::Root(_) => hand.show(ui, session, actions, Action::SetHand),
+        Goal::World(pin) => {
+            let pinned = Point {
+                value: pin,
+                default: arm.root + seed,
+                range: arm.bones.outer_limit().max(ROOT_RANGE),
+                tooltip: "Where the Cursor is pinned, in the world",
+                ..hand
+            };
+            pinned.show(ui, session, actions, Action::SetPin);
+        }
+    }
+    let mut pinned = arm.is_pinned();
+    let check = ui.checkbox(&mut pinned, "Pinned to the world").on_hover_text(
+        "The hand stays where it is when the Root moves, as on the edge of a table; else it goes \
+         with the Root",
+    );
+    if check.changed() {
+        actions.push(Action::PinHand(pinned));
+    }
 }
 
 fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -40,28 +72,11 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         default: Vec3::ZERO,
         range: ROOT_RANGE,
         step: 1.0,
-        tooltip: "Where the Root, the shoulder, is in the world; the whole arm moves with it",
-    };
-    root.show(ui, session, actions, Action::SetRoot);
-}
-
-fn elbow(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let slider = Slider {
-        name: "Elbow spin",
-        label: "Spin",
-        colour: None,
-        tooltip: "How far the Socket is turned about the Pointer: it takes the elbow around and \
-                  leaves the hand",
-        value: session.arm().elbow_spin.to_degrees(),
-        range: (0.0, TAU.to_degrees()),
-        default: 0.0,
-        unit: "°",
-        step: 1.0,
+        tooltip: "Where the Root, the shoulder, is in the world; the arm moves with it, but for a \
+                  hand that is pinned",
         disabled: None,
     };
-    slider.show(ui, super::is_sliding(session), actions, |degrees| {
-        Action::SetElbowSpin((degrees % 360.0).to_radians())
-    });
+    root.show(ui, session, actions, Action::SetRoot);
 }
 
 fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

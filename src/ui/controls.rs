@@ -75,6 +75,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         range: 2.0 * rig.reach(),
         step: session.shown().cell() * 0.1,
         tooltip: "Where the skeleton's own origin is, in the world; its targets stay",
+        disabled: None,
     };
     place.show(ui, session, actions, Action::SetTranslation);
 }

@@ -1,24 +1,20 @@
 //! The skeleton's grips: targets, tips of bones, and the rings that turn the selected joint.
 
-use core::f32::consts::TAU;
-
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui};
+use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
 use super::handles::{Handles, bright};
+use super::ring::{RingMark, to_segment};
 use super::style;
 use super::viewport::Picture;
-use crate::session::{Grip, Handle, Ring, Session};
+use crate::session::{Grip, Handle, Session};
 
 /// In points.
-const RING: f32 = 56.0;
-const RING_HIT: f32 = 7.0;
 const TIP: f32 = 7.0;
 const TIP_HIT: f32 = 10.0;
 const TARGET: f32 = 9.0;
 const TARGET_HIT: f32 = 12.0;
 const BONE_HIT: f32 = 8.0;
-const STEPS: usize = 64;
 
 /// Where the skeleton's grips are in the picture.
 pub(super) struct Figure {
@@ -44,14 +40,6 @@ struct TargetMark {
     enabled: bool,
 }
 
-struct RingMark {
-    joint: usize,
-    axis: usize,
-    points: Vec<Pos2>,
-    /// Whether a point is on the side of the eye.
-    near: Vec<bool>,
-}
-
 impl Figure {
     pub fn new(picture: &Picture, session: &Session) -> Self {
         Self {
@@ -70,22 +58,15 @@ impl Figure {
         });
         of_handles
             .or_else(|| self.target_at(pointer))
-            .or_else(|| self.ring_at(pointer).filter(|_| self.tip_at(pointer).is_none()))
+            .or_else(|| {
+                RingMark::at(&self.rings, pointer).filter(|_| self.tip_at(pointer).is_none())
+            })
             .or_else(|| self.tip_at(pointer))
     }
 
     fn target_at(&self, pointer: Pos2) -> Option<Grip> {
         let hit = self.targets.iter().find(|target| target.at.distance(pointer) <= TARGET_HIT)?;
         Some(Grip::Target(hit.joint, Handle::Free))
-    }
-
-    fn ring_at(&self, pointer: Pos2) -> Option<Grip> {
-        self.rings
-            .iter()
-            .map(|ring| (ring.distance(pointer), ring))
-            .filter(|(distance, _)| *distance <= RING_HIT)
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, ring)| Grip::Ring(ring.joint, ring.axis))
     }
 
     /// Of tips in the same place, the one that is selected, else that of the last bone.
@@ -123,8 +104,11 @@ impl Figure {
         };
         let axes = style::palette(ui).axes.map(style::colour);
         for ring in &self.rings {
-            let grip = Grip::Ring(ring.joint, ring.axis);
-            ring.paint(painter, faded(grip, axes[ring.axis]), stand_out(grip));
+            let colour = match ring.grip {
+                Grip::Ring(_, axis) => axes[axis],
+                _ => continue,
+            };
+            ring.paint(painter, faded(ring.grip, colour), stand_out(ring.grip));
         }
         let strong = ui.visuals().strong_text_color();
         for target in &self.targets {
@@ -147,22 +131,6 @@ impl Figure {
             if !others_held {
                 handles.paint(painter, ui, of_target(pointed), of_target(held));
             }
-        }
-    }
-}
-
-impl RingMark {
-    fn distance(&self, pointer: Pos2) -> f32 {
-        let near = self.points.windows(2).zip(&self.near).filter(|(_, near)| **near);
-        near.map(|(ends, _)| to_segment(pointer, ends[0], ends[1])).fold(f32::INFINITY, f32::min)
-    }
-
-    /// The half that is behind the joint is faint.
-    fn paint(&self, painter: &Painter, colour: Color32, stands_out: bool) {
-        let width = if stands_out { 3.5 } else { 2.0 };
-        for (ends, near) in self.points.windows(2).zip(&self.near) {
-            let colour = if *near { colour } else { colour.gamma_multiply(0.2) };
-            painter.add(Shape::line_segment([ends[0], ends[1]], Stroke::new(width, colour)));
         }
     }
 }
@@ -205,32 +173,6 @@ fn rings(picture: &Picture, session: &Session) -> Vec<RingMark> {
     let Some(joint) = session.selected().filter(|_| session.skeleton().slither.is_none()) else {
         return Vec::new();
     };
-    let ring = |axis: usize| {
-        let Ring { centre, axis: normal } = session.ring(joint, axis)?;
-        let radius = RING * picture.units_per_point(centre);
-        let (u, v) = normal.any_orthonormal_pair();
-        let mut points = Vec::with_capacity(STEPS + 1);
-        let mut near = Vec::with_capacity(STEPS + 1);
-        for step in 0..=STEPS {
-            let (sin, cos) = (step as f32 / STEPS as f32 * TAU).sin_cos();
-            let aside = (u * cos + v * sin) * radius;
-            points.push(picture.place(centre)? + picture.direction(aside, centre));
-            near.push(picture.depth(centre + aside) <= picture.depth(centre) + 0.05 * radius);
-        }
-        Some(RingMark { joint, axis, points, near })
-    };
+    let ring = |axis| RingMark::new(picture, Grip::Ring(joint, axis), session.ring(joint, axis)?);
     (0..3).filter_map(ring).collect()
-}
-
-fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {
-    if !(from.is_finite() && to.is_finite()) {
-        return f32::INFINITY;
-    }
-    let along = to - from;
-    let part = if along.length_sq() > 0.0 {
-        ((at - from).dot(along) / along.length_sq()).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    at.distance(from + along * part)
 }

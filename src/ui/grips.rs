@@ -2,25 +2,21 @@
 
 use egui::{Painter, Pos2, Ui};
 
+use super::arm_grips::ArmGrips;
 use super::figure::Figure;
-use super::handles::Handles;
 use super::viewport::Picture;
 use crate::document::RigKind;
 use crate::session::{Grip, Session};
 
 pub(super) enum Grips {
-    /// Nothing if the hand is behind the eye.
-    Arm(Option<Handles>),
+    Arm(ArmGrips),
     Skeleton(Figure),
 }
 
 impl Grips {
     pub fn new(picture: &Picture, session: &Session) -> Self {
         match session.rig() {
-            RigKind::Arm => {
-                let (arm, hand) = (session.arm(), session.pose().hand);
-                Self::Arm(Handles::new(picture, arm.cursor_world(), Some(arm.root + hand)))
-            }
+            RigKind::Arm => Self::Arm(ArmGrips::new(picture, session)),
             RigKind::Skeleton => Self::Skeleton(Figure::new(picture, session)),
         }
     }
@@ -28,7 +24,7 @@ impl Grips {
     /// What is under a point of the screen.
     pub fn at(&self, pointer: Pos2) -> Option<Grip> {
         match self {
-            Self::Arm(handles) => handles.as_ref()?.at(pointer).map(Grip::Hand),
+            Self::Arm(arm) => arm.at(pointer),
             Self::Skeleton(figure) => figure.at(pointer),
         }
     }
@@ -44,15 +40,7 @@ impl Grips {
     /// Draws them; what is held or pointed at stands out.
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
         match self {
-            Self::Arm(handles) => {
-                let handle = |grip: Option<Grip>| match grip {
-                    Some(Grip::Hand(handle)) => Some(handle),
-                    _ => None,
-                };
-                if let Some(handles) = handles {
-                    handles.paint(painter, ui, handle(pointed), handle(held));
-                }
-            }
+            Self::Arm(arm) => arm.paint(painter, ui, pointed, held),
             Self::Skeleton(figure) => figure.paint(painter, ui, pointed, held),
         }
     }

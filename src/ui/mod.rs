@@ -1,10 +1,12 @@
 //! The panels: functions that read a session and push actions. They know no window and no GPU.
 
 mod arm;
+mod arm_grips;
 mod compass;
 mod controls;
 mod convergence;
 mod dialogs;
+mod elbow;
 mod explain;
 mod export;
 mod figure;
@@ -13,11 +15,14 @@ mod handles;
 mod joint;
 mod joints;
 mod keyboard;
+mod lead;
+mod limits;
 mod menu;
 mod motion;
 mod number;
 mod point;
 mod race;
+mod ring;
 mod row;
 mod shortcuts;
 mod slider;
@@ -29,6 +34,7 @@ mod targets;
 mod timeline;
 mod triangle;
 mod viewport;
+mod wrist;
 
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 

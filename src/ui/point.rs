@@ -18,6 +18,8 @@ pub(super) struct Point<'a> {
     pub range: f32,
     pub step: f32,
     pub tooltip: &'a str,
+    /// Why it cannot be set now, if it cannot.
+    pub disabled: Option<&'a str>,
 }
 
 impl Point<'_> {
@@ -40,7 +42,7 @@ impl Point<'_> {
                 default: self.default[axis],
                 unit: "",
                 step: self.step,
-                disabled: None,
+                disabled: self.disabled,
             };
             slider.show(ui, super::is_sliding(session), actions, |coordinate| {
                 let mut moved = self.value;

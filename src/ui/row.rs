@@ -17,10 +17,19 @@ pub(super) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) 
     named_section(ui, title, title, contents);
 }
 
+/// A section that is folded at first.
+pub(super) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    show_section(ui, title, title, false, contents);
+}
+
 /// A section whose title changes; `id` says which it is.
 pub(super) fn named_section(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
+    show_section(ui, id, title, true, contents);
+}
+
+fn show_section(ui: &mut Ui, id: &str, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     let heading = cut(ui, title);
-    CollapsingHeader::new(heading).id_salt(id).default_open(true).show_unindented(ui, contents);
+    CollapsingHeader::new(heading).id_salt(id).default_open(open).show_unindented(ui, contents);
     ui.add_space(3.0);
 }
 

@@ -69,6 +69,7 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         range: 1.5 * session.skeleton().reach(),
         step,
         tooltip: "Where the tip is asked to be, in the world",
+        disabled: None,
     };
     place.show(ui, session, actions, |home| Action::SetTarget(Target { home, ..target }));
 }

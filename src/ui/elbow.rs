@@ -1,0 +1,117 @@
+//! Which way the elbow points: what its spin is measured from, and how well that goes here.
+
+use core::f32::consts::TAU;
+
+use egui::{ComboBox, RichText, Ui};
+
+use super::arm::ANGLES_LEAD;
+use super::point::Point;
+use super::slider::Slider;
+use super::{row, style};
+use crate::document::{Arm, Swivel};
+use crate::session::{Action, Session};
+
+/// What a reference is called, and what it is.
+pub(super) fn describe(swivel: Swivel) -> (&'static str, &'static str) {
+    match swivel {
+        Swivel::Limb => (
+            "Limb",
+            "Up, as far as the Pointer lets it, as in the paper. The elbow turns around where the \
+             hand passes straight above or below the shoulder",
+        ),
+        Swivel::Pole => (
+            "Pole",
+            "Towards a point, as most programs have it. The elbow turns around where the hand \
+             passes between the shoulder and the pole, or behind",
+        ),
+        Swivel::Stereographic => (
+            "Stereographic",
+            "As on a map of all directions that leaves out one, straight behind: smooth everywhere \
+             else",
+        ),
+        Swivel::Transport => (
+            "Transport",
+            "Carried along with the hand: never turns around, but a hand that goes in a circle and \
+             comes back finds the elbow elsewhere. Made for posing; keys are measured from the map",
+        ),
+    }
+}
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    reference(ui, session, actions);
+    let arm = session.arm();
+    let slider = Slider {
+        name: "Elbow spin",
+        label: "Spin",
+        colour: None,
+        tooltip: "How far the Socket is turned about the Pointer from the reference: it takes the \
+                  elbow around and leaves the hand",
+        value: arm.elbow_spin.to_degrees(),
+        range: (0.0, TAU.to_degrees()),
+        default: 0.0,
+        unit: "°",
+        step: 1.0,
+        disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
+    };
+    slider.show(ui, super::is_sliding(session), actions, |degrees| {
+        Action::SetElbowSpin((degrees % 360.0).to_radians())
+    });
+    if arm.swivel == Swivel::Pole {
+        pole(ui, session, actions);
+    }
+    gain(ui, session);
+}
+
+fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let chosen = session.arm().swivel;
+    row::pair(ui, "Measured from", |ui| {
+        let combo = ComboBox::from_id_salt("swivel").selected_text(describe(chosen).0);
+        let response = combo.show_ui(ui, |ui| {
+            for swivel in Swivel::ALL {
+                let (name, tooltip) = describe(swivel);
+                let item = ui.selectable_label(swivel == chosen, name).on_hover_text(tooltip);
+                if item.clicked() && swivel != chosen {
+                    actions.push(Action::SetSwivel(swivel));
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Measured from"));
+        response.on_hover_text(describe(chosen).1);
+    });
+}
+
+fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let arm = session.arm();
+    let pole = Point {
+        name: "Pole",
+        value: arm.pole,
+        default: Arm::default().pole,
+        range: arm.bones.outer_limit(),
+        step: 1.0,
+        tooltip: "What the elbow points at, relative to the Root; it can be dragged in the view",
+        disabled: None,
+    };
+    pole.show(ui, session, actions, Action::SetPole);
+}
+
+/// How far the elbow turns for the Pointer, here.
+fn gain(ui: &mut Ui, session: &Session) {
+    let gain = session.arm().reference().gain(session.pose().facing);
+    row::pair(ui, "Gain", |ui| {
+        let value = RichText::new(gain_in_words(gain)).monospace();
+        let value = match gain {
+            calm if calm < 3.0 => value,
+            _ => value.color(style::accent(ui)),
+        };
+        ui.label(value).on_hover_text(
+            "How far the elbow is turned, at most, for every degree that the Pointer turns here. \
+             Without end where the reference is singular: there the elbow flips",
+        );
+    });
+}
+
+/// As in "0.47" or "∞".
+pub(super) fn gain_in_words(gain: f32) -> String {
+    if gain < 1e3 { format!("{gain:.2}") } else { "∞".to_owned() }
+}

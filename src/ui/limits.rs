@@ -1,0 +1,69 @@
+//! How the hand meets its limits.
+
+use core::f32::consts::PI;
+
+use egui::Ui;
+
+use super::slider::Slider;
+use crate::kinematics::reach::Softening;
+use crate::session::{Action, Session};
+
+const MOST_SOFT: f32 = 0.99;
+const MOST_STRETCHED: f32 = 3.0;
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let softening = session.arm().softening;
+    let [softness, stretch, angle] =
+        [softening.softness(), softening.max_stretch(), softening.min_elbow_angle()];
+    let seed = Softening::default();
+    // What no softening can have is brought to the nearest that one can.
+    let set = |softness: f32, stretch: f32, angle: f32| {
+        let widest = PI - 1e-3;
+        let softening = Softening::new(
+            softness.clamp(0.0, MOST_SOFT),
+            stretch.max(1.0),
+            angle.clamp(0.0, widest),
+        );
+        Action::SetSoftening(softening.unwrap_or(seed))
+    };
+    let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
+        name,
+        label,
+        colour: None,
+        tooltip,
+        value,
+        range,
+        default,
+        unit,
+        step,
+        disabled: None,
+    };
+    let is_sliding = super::is_sliding(session);
+    let tooltip = "The hand lags behind the Cursor before it comes to a limit, so that the elbow does \
+                   not snap; 0 is exact, and stops dead";
+    slider("Softness", "Softness", tooltip, softness, (0.0, MOST_SOFT), 0.0, "", 0.1).show(
+        ui,
+        is_sliding,
+        actions,
+        |softness| set(softness, stretch, angle),
+    );
+    let tooltip = "How many times as long the limbs may become to bring the hand to the Cursor";
+    slider("Stretch", "Stretch", tooltip, stretch, (1.0, MOST_STRETCHED), 1.0, "", 0.1).show(
+        ui,
+        is_sliding,
+        actions,
+        |stretch| set(softness, stretch, angle),
+    );
+    let tooltip = "How far the elbow is open at least: the hand comes no nearer to the shoulder";
+    slider(
+        "Smallest elbow angle",
+        "φ_min",
+        tooltip,
+        angle.to_degrees(),
+        (0.0, 179.0),
+        0.0,
+        "°",
+        1.0,
+    )
+    .show(ui, is_sliding, actions, |degrees| set(softness, stretch, degrees.to_radians()));
+}
