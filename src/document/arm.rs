@@ -157,6 +157,14 @@ impl Arm {
         self.ik().solve(self.cursor(), self.elbow_spin, self.facing, self.carried)
     }
 
+    /// As its hand alone would have it with the same spin measured from elsewhere. `carried` is what
+    /// another reference than its own goes on from.
+    pub fn pose_measured_from(&self, swivel: Swivel, carried: Option<Carried>) -> Pose {
+        let carried = if swivel == self.swivel { self.carried } else { carried };
+        let ik = Ik { reference: self.reference_of(swivel), ..self.ik() };
+        ik.solve(self.cursor(), self.elbow_spin, self.facing, carried).pose
+    }
+
     pub fn pose(&self) -> Pose {
         blended(self.fk, &self.solve().pose, self.weight, self.bones, self.cursor())
     }

@@ -280,6 +280,12 @@ impl Pose {
         limb.y_axis * cos + limb.z_axis * sin
     }
 
+    /// How far another pose's elbow is turned about this one's Pointer, in (−π, π].
+    pub fn elbow_turn_to(&self, other: &Self) -> f32 {
+        let (w, from, to) = (self.facing.direction, self.outward(), other.outward());
+        w.dot(from.cross(to)).atan2(from.dot(to))
+    }
+
     /// θ_e, the angle at the shoulder between Pointer and upper bone, in [0, π].
     pub fn shoulder_angle(&self) -> f32 {
         self.out.atan2(self.along)

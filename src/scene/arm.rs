@@ -1,6 +1,8 @@
+use glam::Vec3;
+
 use super::shadow::above_ground;
 use super::{Ball, Label, Line, Scene, Shadow, Shell, Side, Solid};
-use crate::document::{Arm, Display, Layer};
+use crate::document::{Arm, Display, Layer, Swivel};
 use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::{ArmRig, Part};
 
@@ -9,15 +11,22 @@ const SHOULDER_BALL: f32 = 33.0;
 const ELBOW_BALL: f32 = 33.0;
 const HAND_BALL: f32 = 22.0;
 const CURSOR_BALL: f32 = 11.0;
+const POLE_BALL: f32 = 11.0;
 
 /// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
     add_limbs(scene, &rig, thickness);
-    add_guides(scene, &rig, thickness, display);
-    if display.shows(Layer::Cursor) && pose.reach != Reach::Reached {
-        add_gap(scene, &rig, thickness);
+    add_guides(scene, &rig, display);
+    if display.shows(Layer::Cursor) && arm.is_led_by_hand() {
+        add_cursor(scene, arm.cursor_world(), thickness);
+        if pose.reach != Reach::Reached {
+            add_gap(scene, &rig, arm.cursor_world(), thickness);
+        }
+    }
+    if arm.swivel == Swivel::Pole && arm.is_led_by_hand() {
+        add_pole(scene, &rig, arm.root + arm.pole, thickness, display);
     }
     if display.shows(Layer::Labels) {
         add_labels(scene, &rig, thickness);
@@ -41,15 +50,24 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     }));
 }
 
-fn add_guides(scene: &mut Scene, rig: &ArmRig, thickness: f32, display: Display) {
-    let colour = scene.palette.guide;
-    if display.shows(Layer::Cursor) {
-        scene.guide_balls.push(Ball {
-            centre: rig.origin(Part::Cursor),
-            radius: CURSOR_BALL * thickness,
-            colour,
-        });
+fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
+    let (radius, colour) = (CURSOR_BALL * thickness, scene.palette.guide);
+    scene.guide_balls.push(Ball { centre, radius, colour });
+}
+
+/// What the elbow points at, with a line from there.
+fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display: Display) {
+    let (radius, colour) = (POLE_BALL * thickness, scene.palette.swivel(Swivel::Pole));
+    scene.guide_balls.push(Ball { centre: pole, radius, colour });
+    scene.lines.push(Line { from: rig.origin(Part::Elbow), to: pole, colour, dashed: true });
+    if display.shows(Layer::Labels) {
+        let text = "Pole".to_owned();
+        scene.labels.push(Label { at: pole, clearance: radius, side: Side::Above, text, colour });
     }
+}
+
+fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
+    let colour = scene.palette.guide;
     if display.shows(Layer::Pointer) {
         scene.guide_solids.push(Solid {
             place: rig.world(Part::Pointer),
@@ -68,8 +86,8 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, thickness: f32, display: Display)
 }
 
 /// The way from the hand to a Cursor that it does not reach, with its length.
-fn add_gap(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
-    let (hand, cursor) = (rig.origin(Part::Hand), rig.origin(Part::Cursor));
+fn add_gap(scene: &mut Scene, rig: &ArmRig, cursor: Vec3, thickness: f32) {
+    let hand = rig.origin(Part::Hand);
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     scene.labels.push(Label {

@@ -5,6 +5,7 @@
 mod arm;
 mod motion;
 mod palette;
+mod references;
 mod shadow;
 mod skeleton;
 
@@ -131,7 +132,12 @@ impl Scene {
             scene.add_axes(reach);
         }
         match document.rig {
-            RigKind::Arm => arm::add(&mut scene, &document.arm, &document.arm.pose(), display),
+            RigKind::Arm => {
+                arm::add(&mut scene, &document.arm, &document.arm.pose(), display);
+                if display.shows(Layer::References) {
+                    references::add(&mut scene, &document.arm, staging.carried);
+                }
+            }
             RigKind::Skeleton => skeleton::add(&mut scene, &document.skeleton, staging, display),
         }
         motion::add(&mut scene, document, staging, reach);

@@ -1,4 +1,4 @@
-use crate::document::Theme;
+use crate::document::{Swivel, Theme};
 use crate::kinematics::solve::Method;
 
 /// A colour as a screen has it: sRGB, with opacity.
@@ -89,6 +89,17 @@ impl Palette {
                 shadow: 0.42,
             },
         }
+    }
+
+    /// The colour that a swivel reference has wherever they are beside each other.
+    pub fn swivel(&self, swivel: Swivel) -> Colour {
+        let [dark, light] = match swivel {
+            Swivel::Limb => [0xf2d06b, 0x866400],
+            Swivel::Pole => [0x8fd460, 0x3f7a15],
+            Swivel::Stereographic => [0x3fb8a5, 0x0b7466],
+            Swivel::Transport => [0xf08fb4, 0xb02a63],
+        };
+        Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
     /// The colour that a solver has wherever solvers are beside each other.

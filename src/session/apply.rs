@@ -48,7 +48,7 @@ impl Session {
                 let wrist = self.arm().wrist.measured_in(space, &self.pose);
                 self.replace_arm(Arm { wrist, ..*self.arm() });
             }
-            Action::StartJourney => self.journey = Journey::new(&self.pose),
+            Action::StartJourney => self.journey = Journey::new(self.arm()),
             Action::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
             Action::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
             Action::ResetPose => match self.rig() {

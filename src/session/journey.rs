@@ -1,7 +1,6 @@
-use glam::Vec3;
-
+use crate::document::Arm;
 use crate::kinematics::swivel::Carried;
-use crate::kinematics::two_bone::Pose;
+use crate::kinematics::two_bone::Facing;
 
 /// What is carried along with the Pointer on its way: what transport would measure the elbow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,13 +10,14 @@ pub struct Journey {
 }
 
 impl Journey {
-    /// From where the elbow stands out.
-    pub(super) fn new(pose: &Pose) -> Self {
-        let start = Carried { direction: pose.facing.direction, outward: pose.outward() };
+    /// From where the arm's spin is measured now.
+    pub(super) fn new(arm: &Arm) -> Self {
+        let start = arm.solve().carried;
         Self { start, now: start }
     }
 
-    pub(super) fn go_on(&mut self, direction: Vec3) {
+    pub(super) fn go_on(&mut self, arm: &Arm) {
+        let direction = Facing::towards(arm.cursor(), arm.facing).direction;
         if direction != self.now.direction {
             self.now = self.now.to(direction);
         }

@@ -156,7 +156,7 @@ impl Session {
 
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
         Self {
-            journey: Journey::new(&document.arm.pose()),
+            journey: Journey::new(&document.arm),
             pose: document.arm.pose(),
             skeleton_pose: document.skeleton.at(0.0).pose(),
             shown: document.clone(),
@@ -243,6 +243,7 @@ impl Session {
             selection: self.selection.clone(),
             pointed: self.pointed,
             ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
+            carried: Some(self.journey.carried()),
             trail: self.trail().to_vec(),
             onion_skins: trail::onion_skins(&self.document, &self.shown, self.clock.time),
         }
@@ -342,7 +343,7 @@ impl Session {
             channel.set(&mut self.shown, *value);
         }
         self.pose = self.shown.arm.pose();
-        self.journey.go_on(self.pose.facing.direction);
+        self.journey.go_on(&self.shown.arm);
         self.skeleton_pose = self.shown.skeleton.at(self.clock.time).pose();
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);

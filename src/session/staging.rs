@@ -3,6 +3,7 @@ use glam::Vec3;
 use crate::document::Arm;
 use crate::kinematics::skeleton::{Pose, Skeleton};
 use crate::kinematics::solve::Method;
+use crate::kinematics::swivel::Carried;
 
 /// What a picture shows beside the document.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Staging {
     pub pointed: Option<usize>,
     /// The skeleton as solvers in a race have it.
     pub ghosts: Vec<Ghost>,
+    /// What was carried along with the Pointer, from which transport would measure the elbow.
+    pub carried: Option<Carried>,
     /// Where the hand or the selected joint's tip is at every frame, in the world.
     pub trail: Vec<Vec3>,
     pub onion_skins: Vec<OnionSkin>,

@@ -2,8 +2,8 @@
 
 use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
-use super::{row, status, style, symbol, triangle};
-use crate::session::Session;
+use super::{references, row, status, style, symbol, triangle};
+use crate::session::{Action, Session};
 
 const FORMULA_SIZE: f32 = 13.5;
 
@@ -16,7 +16,7 @@ struct Quantity {
     colour: Option<Color32>,
 }
 
-pub(super) fn ui(ui: &mut Ui, session: &Session) {
+pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
         row::section(ui, "Triangle", |ui| {
@@ -26,6 +26,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
         row::section(ui, "Reach", |ui| meter(ui, session));
         row::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
         row::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
+        row::section(ui, "Swivel references", |ui| references::ui(ui, session, actions));
     });
 }
 

@@ -22,6 +22,7 @@ mod motion;
 mod number;
 mod point;
 mod race;
+mod references;
 mod ring;
 mod row;
 mod shortcuts;
@@ -78,7 +79,7 @@ pub fn show(
         Panel::right("explain").resizable(true).default_size(272.0).size_range(232.0..=460.0).show(
             ui,
             |ui| match session.rig() {
-                RigKind::Arm => explain::ui(ui, session),
+                RigKind::Arm => explain::ui(ui, session, actions),
                 RigKind::Skeleton => solver::ui(ui, session, actions),
             },
         );
