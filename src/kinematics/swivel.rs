@@ -167,6 +167,8 @@ impl Reference {
         let w = facing.direction.as_dvec3();
         let gain = match self {
             Self::Limb => w.y.abs() / w.x.hypot(w.z),
+            // Rounding of the Pointer leaves a pole on its line a little beside it.
+            Self::Pole(pole) if towards(pole, w).is_none() => f64::INFINITY,
             Self::Pole(pole) => {
                 let pole = pole.as_dvec3();
                 pole.dot(w).abs() / pole.cross(w).length()
