@@ -1,22 +1,46 @@
 //! One line of `ik-arm solve`: what it asks for, and the pose that it gets.
 
 use std::fmt;
-use std::str::{self, Utf8Error};
+use std::str;
 
 use glam::Vec3;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
-use serde_path_to_error::{Path, Segment};
-use thiserror::Error;
 
-use crate::io::error::shortened;
+use super::error::LineError;
+use super::swivel::Swivel;
 use crate::io::value::{Number, Point};
-use crate::kinematics::two_bone::{LengthError, Pose, Reach, TwoBone};
+use crate::kinematics::ik::{Ik, Solved};
+use crate::kinematics::reach::{Softening, SofteningError};
+use crate::kinematics::swivel::{Carried, Reference};
+use crate::kinematics::two_bone::{Facing, Reach, TwoBone};
 
-/// Solves one line, given without its end.
-pub fn solve(line: &[u8]) -> Result<Answer, LineError> {
-    Request::parse(line)?.answer()
+/// Solves one line, given without its end. `past` is what the good line before it left, and becomes
+/// what this one leaves; a bad line changes nothing.
+pub fn solve(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineError> {
+    let request = Request::parse(line)?;
+    let ik = request.ik()?;
+    // Only what is transported has a past: any other line is solved on its own.
+    let is_carried = ik.reference == Reference::Transport;
+    let solved = request.solve(ik, past.filter(|_| is_carried));
+    let answer = Answer::new(request.root.0, ik.reference, &solved)?;
+    *past = is_carried.then(|| Past::new(&solved));
+    Ok(answer)
+}
+
+/// What a transported line leaves to the next: where its arm faced, for a hand that says nothing of
+/// that (at the shoulder, or straight above or below it), and what its elbow was measured from.
+#[derive(Clone, Copy)]
+pub struct Past {
+    facing: Facing,
+    carried: Carried,
+}
+
+impl Past {
+    fn new(solved: &Solved) -> Self {
+        Self { facing: solved.pose.facing, carried: solved.carried }
+    }
 }
 
 /// What a line asks for.
@@ -32,6 +56,14 @@ struct Request {
     root: Point,
     #[serde(default)]
     elbow_spin_deg: Number,
+    #[serde(default)]
+    swivel: Swivel,
+    #[serde(default)]
+    softness: Number,
+    #[serde(default = "default_max_stretch")]
+    max_stretch: Number,
+    #[serde(default)]
+    min_elbow_deg: Number,
 }
 
 fn default_upper() -> Number {
@@ -40,6 +72,10 @@ fn default_upper() -> Number {
 
 fn default_lower() -> Number {
     Number(300.0)
+}
+
+fn default_max_stretch() -> Number {
+    Number(1.0)
 }
 
 impl Request {
@@ -52,11 +88,32 @@ impl Request {
         Ok(request)
     }
 
-    fn answer(&self) -> Result<Answer, LineError> {
-        let arm = TwoBone::new(self.upper.0, self.lower.0)?;
+    fn ik(&self) -> Result<Ik, LineError> {
+        Ok(Ik {
+            bones: TwoBone::new(self.upper.0, self.lower.0)?,
+            reference: self.swivel.0,
+            softening: self.softening()?,
+        })
+    }
+
+    fn softening(&self) -> Result<Softening, LineError> {
+        let degrees = self.min_elbow_deg.0;
+        Softening::new(self.softness.0, self.max_stretch.0, degrees.to_radians()).map_err(|error| {
+            let SofteningError { field, value, range } = error;
+            match field {
+                "min_elbow_angle" => {
+                    LineError::Softening { field: "min_elbow_deg", value: degrees, range }
+                }
+                _ => LineError::Softening { field, value, range },
+            }
+        })
+    }
+
+    fn solve(&self, ik: Ik, past: Option<Past>) -> Solved {
         // In degrees the remainder is exact; in radians a big spin would lose its turns.
         let spin = (self.elbow_spin_deg.0 % 360.0).to_radians();
-        Answer::new(self.root.0, &arm.solve(self.hand.0, spin))
+        let last = past.map_or_else(Facing::default, |past| past.facing);
+        ik.solve(self.hand.0, spin, last, past.map(|past| past.carried))
     }
 }
 
@@ -72,10 +129,14 @@ pub struct Answer {
     theta_e_deg: f32,
     along: f32,
     out: f32,
+    /// Nothing where it is infinite.
+    swivel_gain: Option<f32>,
+    elbow_angle_deg: f32,
 }
 
 impl Answer {
-    fn new(root: Vec3, pose: &Pose) -> Result<Self, LineError> {
+    fn new(root: Vec3, reference: Reference, solved: &Solved) -> Result<Self, LineError> {
+        let pose = &solved.pose;
         Ok(Self {
             reach: match pose.reach {
                 Reach::Reached => "reached",
@@ -90,6 +151,8 @@ impl Answer {
             theta_e_deg: pose.shoulder_angle().to_degrees(),
             along: pose.along,
             out: pose.out,
+            swivel_gain: Some(reference.gain(pose.facing)).filter(|gain| gain.is_finite()),
+            elbow_angle_deg: pose.elbow_angle().to_degrees(),
         })
     }
 }
@@ -123,81 +186,4 @@ impl<'de> Deserialize<'de> for Object {
 
         deserializer.deserialize_map(ObjectVisitor)
     }
-}
-
-/// Why a line has no pose. `place` is empty or ends in a colon and a space.
-#[derive(Debug, Error)]
-pub enum LineError {
-    #[error("the line is longer than 64 KiB; a pose needs far less")]
-    TooLong,
-    #[error("byte {at} is {byte:#04x}, which is not UTF-8 there; JSON is written in UTF-8")]
-    NotUtf8 { at: usize, byte: u8 },
-    #[error("{place}not JSON: {reason} (byte {at})")]
-    NotJson { place: String, reason: String, at: usize },
-    #[error("{place}{reason}")]
-    NotARequest { place: String, reason: String },
-    #[error("{place}{number} is out of range; it must be between -3.4028235e38 and 3.4028235e38")]
-    OutOfRange { place: String, number: String },
-    #[error("{}: length is {}; it must be a finite number above 0", .0.bone, .0.value)]
-    Length(#[from] LengthError),
-    #[error("root: {:?} puts the {joint} beyond 3.4028235e38; bring it nearer to 0", .root.to_array())]
-    OutOfWorld { joint: &'static str, root: Vec3 },
-}
-
-impl LineError {
-    pub fn message(&self) -> String {
-        shortened(self.to_string())
-    }
-
-    fn not_utf8(line: &[u8], error: Utf8Error) -> Self {
-        let valid = error.valid_up_to();
-        Self::NotUtf8 { at: valid + 1, byte: line.get(valid).copied().unwrap_or_default() }
-    }
-
-    fn not_a_request(line: &str, path: &Path, error: &serde_json::Error) -> Self {
-        let reason = without_position(error);
-        let place = place(path, &reason);
-        // serde_json has no other way to tell this error from the rest.
-        if reason == "number out of range" {
-            let number = word_around(line, error.column()).to_owned();
-            return Self::OutOfRange { place, number };
-        }
-        if error.is_data() {
-            return Self::NotARequest { place, reason };
-        }
-        Self::not_json(line, place, error)
-    }
-
-    fn not_json(line: &str, place: String, error: &serde_json::Error) -> Self {
-        let (reason, at) = (without_position(error), error.column());
-        match word_around(line, at) {
-            "" => Self::NotJson { place, reason, at },
-            word => Self::NotJson { place, reason: format!("{reason}, found `{word}`"), at },
-        }
-    }
-}
-
-/// The parser counts lines too, and would always say "line 1".
-fn without_position(error: &serde_json::Error) -> String {
-    let position = format!(" at line {} column {}", error.line(), error.column());
-    let text = error.to_string();
-    text.strip_suffix(&position).unwrap_or(&text).to_owned()
-}
-
-/// The field that an error is about, unless the reason names it already or nobody knows it.
-fn place(path: &Path, reason: &str) -> String {
-    let known = path.iter().len() > 0 && !path.iter().any(|s| matches!(s, Segment::Unknown));
-    if !known || reason.contains(&format!("`{path}`")) {
-        return String::new();
-    }
-    format!("{path}: ")
-}
-
-/// What stands where the parser was when it had read `read` bytes, up to the next punctuation.
-fn word_around(line: &str, read: usize) -> &str {
-    let in_word = |c: char| !(c.is_whitespace() || r#",:[]{}""#.contains(c));
-    let (before, after) = line.split_at_checked(read).unwrap_or((line, ""));
-    let start = before.trim_end_matches(in_word).len();
-    let end = line.len() - after.trim_start_matches(in_word).len();
-    &line[start..end]
 }

@@ -1,6 +1,8 @@
-//! `ik-arm solve`: poses as JSON Lines, each line on its own.
+//! `ik-arm solve`: poses as JSON Lines, each line on its own unless its swivel is transported.
 
+mod error;
 mod line;
+mod swivel;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -10,7 +12,7 @@ use std::process::ExitCode;
 use serde::Serialize;
 use thiserror::Error;
 
-use line::LineError;
+use error::LineError;
 
 /// The longest line, in bytes and without its end: what a line may ask of the memory.
 const LONGEST_LINE: usize = 64 * 1024;
@@ -18,10 +20,22 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 #[derive(clap::Args)]
 #[command(after_help = r#"Each line in is an object; only "hand" (relative to root) is required:
-  {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"elbow_spin_deg":0}
+  {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"elbow_spin_deg":0,
+   "swivel":"limb","softness":0,"max_stretch":1,"min_elbow_deg":0}
+swivel, what the elbow's spin is measured from:
+  "limb"            up, as far as the hand's direction lets it
+  {"pole":[x,y,z]}  towards a point, relative to root
+  "stereographic"   as on a map of all directions but -x
+  "transport"       from there at first, then carried along from line to line; a bad line changes
+                    nothing, and after a line with another swivel it starts again
+softness, 0 to less than 1, lets the hand lag before its limits; the limbs become up to max_stretch
+(1 or more) times as long where it would; min_elbow_deg, 0 to less than 180, keeps the elbow open.
 Each line out is a pose, with elbow and hand in the world:
   {"reach":"reached|too_far|too_close","elbow":[x,y,z],"hand":[x,y,z],"distance":D,
-   "theta_z_deg":…,"theta_y_deg":…,"theta_e_deg":…,"along":…,"out":…}
+   "theta_z_deg":…,"theta_y_deg":…,"theta_e_deg":…,"along":…,"out":…,
+   "swivel_gain":…,"elbow_angle_deg":…}
+distance is from the shoulder to that hand. swivel_gain is how many times as far as the hand's
+direction the elbow turns, at worst; it is null where that has no bound.
 A bad line gives {"line":N,"error":"…"} in its place; the exit code is then 1."#)]
 pub struct Args {
     /// File of poses, or - for standard input
@@ -56,6 +70,7 @@ enum Failure {
 /// Answers every line and returns how many were bad.
 fn solve_lines(mut input: Input, output: impl Write) -> Result<u64, Failure> {
     let mut output = BufWriter::new(output);
+    let mut past = None;
     let mut bad = 0;
     loop {
         // The next read may wait for whoever writes the lines, who may wait for the answers.
@@ -66,7 +81,7 @@ fn solve_lines(mut input: Input, output: impl Write) -> Result<u64, Failure> {
         if line.is_blank() {
             continue;
         }
-        let written = match line.bytes().and_then(line::solve) {
+        let written = match line.bytes().and_then(|bytes| line::solve(bytes, &mut past)) {
             Ok(answer) => write_line(&mut output, &answer),
             Err(error) => {
                 bad += 1;

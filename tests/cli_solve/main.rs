@@ -2,6 +2,9 @@
 
 #![cfg(feature = "app")]
 
+mod reach;
+mod swivel;
+
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -92,17 +95,28 @@ struct Answer {
     theta_e_deg: f32,
     along: f32,
     out: f32,
+    // Null, not missing.
+    #[serde(deserialize_with = "Option::deserialize")]
+    swivel_gain: Option<f32>,
+    elbow_angle_deg: f32,
 }
 
 /// The pose that a line alone gets.
 fn pose(line: &str) -> Answer {
-    let output = solve(line);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let mut poses = poses(&[line]);
+    poses.pop().expect("one line has one pose")
+}
+
+/// The poses that lines get, all of them good.
+fn poses(lines: &[impl AsRef<str>]) -> Vec<Answer> {
+    let lines: Vec<&str> = lines.iter().map(AsRef::as_ref).collect();
+    let output = solve(lines.join("\n"));
+    let answers = answers(&output);
+    assert_eq!(errors(&output), []);
+    assert_eq!((output.status.code(), answers.len()), (Some(0), lines.len()), "{output:?}");
     assert_eq!(stderr(&output), "");
-    match answers(&output).as_slice() {
-        [answer] => serde_json::from_str(answer).expect("the answer is a pose"),
-        other => panic!("expected one pose, got {other:?}"),
-    }
+    let pose = |answer: &String| serde_json::from_str(answer).expect("the answer is a pose");
+    answers.iter().map(pose).collect()
 }
 
 // Poses
@@ -115,14 +129,17 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
         [concat!(
             r#"{"reach":"reached","elbow":[210.0,20.0,30.0],"hand":[510.0,20.0,30.0],"#,
             r#""distance":500.0,"theta_z_deg":0.0,"theta_y_deg":0.0,"theta_e_deg":0.0,"#,
-            r#""along":200.0,"out":0.0}"#
+            r#""along":200.0,"out":0.0,"swivel_gain":0.0,"elbow_angle_deg":180.0}"#
         )]
     );
 }
 
 #[test]
 fn what_a_line_leaves_out_is_the_arm_of_the_seed_at_the_origin() {
-    let full = r#"{"elbow_spin_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#;
+    let full = concat!(
+        r#"{"min_elbow_deg":0,"max_stretch":1,"softness":0,"swivel":"limb","#,
+        r#""elbow_spin_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#
+    );
     assert_eq!(answers(&solve(POSE)), answers(&solve(full)));
 }
 
@@ -216,8 +233,15 @@ impl Asked {
         let mut point = |v: Vec3| v.to_array().map(&mut number).join(",");
         let (hand, root) = (point(self.hand), point(self.root));
         let [upper, lower, spin] = [self.upper, self.lower, self.spin_deg].map(number);
+        // What a line leaves out, said.
+        let as_before = [
+            "",
+            r#","swivel":"limb""#,
+            r#","softness":0,"max_stretch":1"#,
+            r#","min_elbow_deg":0,"swivel":"limb","softness":-0.0,"max_stretch":1.0"#,
+        ][random.below(4) as usize];
         format!(
-            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"elbow_spin_deg":{spin}}}"#
+            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"elbow_spin_deg":{spin}{as_before}}}"#
         )
     }
 
@@ -239,6 +263,7 @@ impl Asked {
             ("theta_e_deg", answer.theta_e_deg, pose.shoulder_angle().to_degrees()),
             ("along", answer.along, pose.along),
             ("out", answer.out, pose.out),
+            ("elbow_angle_deg", answer.elbow_angle_deg, pose.elbow_angle().to_degrees()),
         ];
         for (name, printed, own) in numbers {
             assert_eq!(printed.to_bits(), own.to_bits(), "{name} of {self:?}");
@@ -255,7 +280,8 @@ fn check_shortest(answer: &str) {
     let is_number = |token: &&str| token.starts_with(|c: char| c == '-' || c.is_ascii_digit());
     let tokens: Vec<&str> =
         answer.split([':', ',', '[', ']', '{', '}']).filter(is_number).collect();
-    assert_eq!(tokens.len(), 12, "{answer}");
+    let numbers = if answer.contains(r#""swivel_gain":null"#) { 13 } else { 14 };
+    assert_eq!(tokens.len(), numbers, "{answer}");
     for token in tokens {
         let value: f32 = token.parse().expect("it is a number");
         assert_eq!(digits(token), digits(&format!("{value:e}")), "{token} in {answer}");
@@ -348,7 +374,10 @@ fn a_line_that_is_json_but_no_object_is_refused() {
 
 #[test]
 fn a_missing_unknown_or_duplicate_field_is_named() {
-    let fields = "`hand`, `upper`, `lower`, `root`, `elbow_spin_deg`";
+    let fields = concat!(
+        "`hand`, `upper`, `lower`, `root`, `elbow_spin_deg`, ",
+        "`swivel`, `softness`, `max_stretch`, `min_elbow_deg`"
+    );
     for (line, error) in [
         ("{}", "missing field `hand`".to_owned()),
         (r#"{"upper":1}"#, "missing field `hand`".to_owned()),
@@ -695,6 +724,7 @@ proptest! {
             } else {
                 let pose: Answer = serde_json::from_str(answer).expect("and else a pose");
                 prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite());
+                prop_assert!((0.0..=180.0).contains(&pose.elbow_angle_deg), "{answer}");
             }
         }
         prop_assert_eq!(output.status.code(), Some(i32::from(bad > 0)));
@@ -738,6 +768,10 @@ fn any_piece() -> impl Strategy<Value = &'static str> {
         "\"hand\":",
         "\"upper\":",
         "\"root\":",
+        "\"swivel\":",
+        "\"transport\"",
+        "{\"pole\":[0,1,0]}",
+        "\"softness\":",
         "[1,2,3]",
         "[1e39,0,0]",
         "-",
@@ -762,12 +796,32 @@ fn any_piece() -> impl Strategy<Value = &'static str> {
 fn any_valid_line() -> impl Strategy<Value = String> {
     let number = || any::<f32>().prop_filter("finite", |n| n.is_finite());
     let length = number().prop_map(|n| n.abs().max(f32::from_bits(1)));
-    (prop::array::uniform3(number()), prop::option::of(length), prop::option::of(number()))
-        .prop_map(|([x, y, z], upper, spin)| {
-            let upper = upper.map(|n| format!(",\"upper\":{n:e}")).unwrap_or_default();
-            let spin = spin.map(|n| format!(",\"elbow_spin_deg\":{n}")).unwrap_or_default();
-            format!("{{\"hand\":[{x:e},{y:e},{z}]{upper}{spin}}}")
-        })
+    let swivel = prop_oneof![
+        prop::sample::select(vec!["limb", "stereographic", "transport"])
+            .prop_map(|name| format!("\"{name}\"")),
+        prop::array::uniform3(number())
+            .prop_map(|[x, y, z]| format!("{{\"pole\":[{x:e},{y:e},{z:e}]}}")),
+    ];
+    let stretch = number().prop_map(|n| n.abs().max(1.0));
+    let fields = (
+        optional("upper", length.prop_map(|n| format!("{n:e}"))),
+        optional("elbow_spin_deg", number().prop_map(|n| n.to_string())),
+        optional("swivel", swivel),
+        optional("softness", (0.0..1.0_f32).prop_map(|n| n.to_string())),
+        optional("max_stretch", stretch.prop_map(|n| format!("{n:e}"))),
+        optional("min_elbow_deg", (0.0..180.0_f32).prop_map(|n| n.to_string())),
+    );
+    (prop::array::uniform3(number()), fields).prop_map(|([x, y, z], (a, b, c, d, e, f))| {
+        format!("{{\"hand\":[{x:e},{y:e},{z}]{a}{b}{c}{d}{e}{f}}}")
+    })
+}
+
+fn optional(
+    name: &'static str,
+    value: impl Strategy<Value = String>,
+) -> impl Strategy<Value = String> {
+    let field = value.prop_map(move |value| format!(",\"{name}\":{value}"));
+    prop_oneof![Just(String::new()), field]
 }
 
 #[derive(Clone, Debug)]
