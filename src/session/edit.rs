@@ -101,7 +101,8 @@ impl Session {
             match channel {
                 Channel::Hand | Channel::Pin => arm.facing = rest.facing,
                 Channel::ElbowSpin => {
-                    (arm.elbow_spin, arm.carried) = (rest.elbow_spin, rest.carried)
+                    arm.elbow_spin = rest.elbow_spin;
+                    arm.carried = rest.carried;
                 }
                 _ => {}
             }
