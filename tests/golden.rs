@@ -3,82 +3,23 @@
 //! `UPDATE_GOLDEN=1 cargo test --test golden` keeps the new ones; look at them before committing.
 #![cfg(feature = "render")]
 
-use std::path::PathBuf;
-use std::sync::{LazyLock, Mutex};
+mod pictures;
 
 use glam::Vec3;
 use ik_arm::document::{Arm, AxisView, Camera, Document, Goal, Layer, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::solve::{self, Method};
-use ik_arm::render::{Gpu, Picture};
+use ik_arm::render::Picture;
 use ik_arm::scene::{Colour, Scene};
 use ik_arm::session::{Ghost, Staging};
-use image::RgbaImage;
-
-const SIZE: (u32, u32) = (480, 300);
-
-/// At most so many of the pixels differ by more than a little, and the mean of all by so much.
-const NOTICED: u8 = 16;
-const MOST_NOTICED: f64 = 0.002;
-const MOST_MEAN: f64 = 1.0;
-
-static GPU: LazyLock<Mutex<Gpu>> =
-    LazyLock::new(|| Mutex::new(Gpu::headless().expect("a graphics adapter")));
-
-fn draw(scene: &Scene) -> RgbaImage {
-    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Picture::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene).expect("drawn")
-}
+use pictures::{GPU, SIZE, compare, draw, kept};
 
 fn scene(document: &Document, theme: Theme) -> Scene {
     Scene::new(document, &Staging::default(), theme)
 }
 
-fn path(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
-}
-
-fn kept(name: &str) -> RgbaImage {
-    let path = path(&format!("{name}.png"));
-    image::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).into_rgba8()
-}
-
-/// How two pictures differ, if that is too much.
-fn compare(a: &RgbaImage, b: &RgbaImage) -> Result<(), String> {
-    if a.dimensions() != b.dimensions() {
-        return Err(format!("{:?} is not {:?}", a.dimensions(), b.dimensions()));
-    }
-    let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| {
-        let [r, g, b, _] = [0, 1, 2, 3].map(|channel| a.0[channel].abs_diff(b.0[channel]));
-        [r, g, b]
-    };
-    let (mut noticed, mut sum) = (0_u32, 0_u64);
-    for (a, b) in a.pixels().zip(b.pixels()) {
-        let apart = apart(a, b);
-        noticed += u32::from(apart.iter().any(|channel| *channel > NOTICED));
-        sum += apart.iter().map(|channel| u64::from(*channel)).sum::<u64>();
-    }
-    let pixels = f64::from(a.width() * a.height());
-    let (noticed, mean) = (f64::from(noticed) / pixels, sum as f64 / (3.0 * pixels));
-    if noticed > MOST_NOTICED || mean > MOST_MEAN {
-        return Err(format!(
-            "{:.3} % of the pixels differ, the mean by {mean:.3}",
-            noticed * 100.0
-        ));
-    }
-    Ok(())
-}
-
 fn check(name: &str, document: &Document, theme: Theme) {
-    let drawn = draw(&scene(document, theme));
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        drawn.save(path(&format!("{name}.png"))).expect("saved");
-    }
-    if let Err(difference) = compare(&drawn, &kept(name)) {
-        let new = path(&format!("{name}.new.png"));
-        drawn.save(&new).expect("saved");
-        panic!("{name}: {difference}; see {}", new.display());
-    }
+    pictures::check(name, &scene(document, theme));
 }
 
 fn posed(cursor: Vec3) -> Document {
