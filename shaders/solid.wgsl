@@ -13,6 +13,7 @@ struct Instance {
     @location(5) z_tip_radius: vec4f,
     @location(6) origin: vec3f,
     @location(7) colour: vec4f,
+    @location(8) stripes: vec2f, // 1 or 0, winding
 }
 
 struct Surface {
@@ -21,7 +22,13 @@ struct Surface {
     // Within the solid, also where its edge is in the pixel.
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(flat) colour: vec4f,
+    @location(3) around_along: vec3f, // where on the rim, how far along
+    @location(4) @interpolate(flat) stripes: vec2f, // how strong, winding
 }
+
+const STRIPES = 5.0;
+const STRIPE_WIDTH = 0.13; // of the way from one to the next
+const STRIPE_SHADE = 0.3;
 
 @vertex
 fn vertex(v: Vertex, i: Instance) -> Surface {
@@ -38,13 +45,34 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
         world,
         axes * (v.normal + vec3f(tilt, 0.0, 0.0)),
         i.colour,
+        vec3f(v.rim.yz, v.along),
+        vec2f(i.stripes.x * dot(v.normal.yz, v.normal.yz), i.stripes.y),
     );
+}
+
+// How dark the lines along a solid's side make a pixel. The angle around has a seam; its change from
+// pixel to pixel, taken from the rim itself, has none.
+fn stripe_shade(s: Surface) -> f32 {
+    let rim = s.around_along.xy;
+    let turn = vec2f(
+        rim.x * dpdx(rim.y) - rim.y * dpdx(rim.x),
+        rim.x * dpdy(rim.y) - rim.y * dpdy(rim.x),
+    ) / max(dot(rim, rim), 1e-6);
+    let wound = vec2f(dpdx(s.around_along.z), dpdy(s.around_along.z)) * s.stripes.y;
+    let per_radian = STRIPES / 6.2831853;
+    let pixel = max(length(turn - wound) * per_radian, 1e-6);
+    let at = (atan2(rim.y, rim.x) - s.around_along.z * s.stripes.y) * per_radian;
+    let off = abs(at - round(at));
+    let width = max(STRIPE_WIDTH, pixel);
+    let sharp = saturate(0.5 + (width * 0.5 - off) / pixel) * STRIPE_WIDTH / width;
+    let cover = mix(sharp, STRIPE_WIDTH, saturate(pixel * 2.0 - 1.0));
+    return cover * STRIPE_SHADE * s.stripes.x;
 }
 
 fn shaded(s: Surface) -> vec3f {
     let ray = pixel_ray(s.position.xy);
     let along = dot(s.world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    let colour = fogged(lit(s.colour.rgb, normalize(s.normal)), s.position.xy, along);
+    let colour = fogged(lit(s.colour.rgb * (1.0 - stripe_shade(s)), normalize(s.normal)), s.position.xy, along);
     return behind_shells(behind_planes(colour, ray, along), ray, along);
 }
 

@@ -7,6 +7,7 @@
 mod backdrop;
 mod canvas;
 mod font;
+mod globe;
 mod gpu;
 mod instances;
 mod label;
@@ -26,9 +27,10 @@ pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::Renderer;
 
 /// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 5] {
+pub fn shaders() -> [(&'static str, &'static str); 6] {
     [
         ("backdrop", backdrop::SHADER),
+        ("globe", globe::SHADER),
         ("line", line::SHADER),
         ("label", label::SHADER),
         ("shadow", shadow::SHADER),

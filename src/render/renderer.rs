@@ -1,4 +1,5 @@
 use super::backdrop::Backdrop;
+use super::globe::Globes;
 use super::label::Labels;
 use super::line::Lines;
 use super::shadow::Shadows;
@@ -14,6 +15,7 @@ pub struct Renderer {
     solids: Solids,
     backdrop: Backdrop,
     shadows: Shadows,
+    globes: Globes,
     lines: Lines,
     labels: Labels,
 }
@@ -25,6 +27,7 @@ impl Renderer {
             solids: Solids::new(gpu, &view.layout),
             backdrop: Backdrop::new(gpu, &view.layout),
             shadows: Shadows::new(gpu, &view.layout),
+            globes: Globes::new(gpu, &view.layout),
             lines: Lines::new(gpu, &view.layout),
             labels: Labels::new(gpu, &view.layout),
             view,
@@ -37,6 +40,7 @@ impl Renderer {
         self.view.upload(gpu, scene, canvas.size(), scale);
         self.solids.upload(gpu, scene, canvas.size());
         self.shadows.upload(gpu, scene);
+        self.globes.upload(gpu, scene);
         self.lines.upload(gpu, scene);
         self.labels.upload(gpu, scene, canvas.size(), scale);
 
@@ -69,6 +73,7 @@ impl Renderer {
         self.solids.draw(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
+        self.globes.draw(&mut pass);
         self.lines.draw(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);

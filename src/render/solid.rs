@@ -47,10 +47,12 @@ struct Instance {
     tip_radius: f32,
     origin: Vec3,
     colour: [f32; 4],
+    /// 1 or 0: whether there are any; how they wind.
+    stripes: [f32; 2],
 }
 
 const _: () = assert!(size_of::<Vertex>() == 28);
-const _: () = assert!(size_of::<Instance>() == 76);
+const _: () = assert!(size_of::<Instance>() == 84);
 
 /// Draws tapered cylinders and balls, and those that show through what hides them.
 #[derive(Debug)]
@@ -75,7 +77,8 @@ impl Solids {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let vertex = wgpu::vertex_attr_array![0 => Float32, 1 => Float32x3, 2 => Float32x3];
         let instance = wgpu::vertex_attr_array![
-            3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x3, 7 => Float32x4
+            3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x3, 7 => Float32x4,
+            8 => Float32x2
         ];
         let buffers = [
             wgpu::VertexBufferLayout {
@@ -186,6 +189,7 @@ fn draw(pass: &mut wgpu::RenderPass<'_>, mesh: &Mesh, instances: &Instances<Inst
 impl Instance {
     fn of_solid(solid: &Solid) -> Self {
         let axes = Mat3::from(solid.place.matrix3);
+        let winding = solid.stripes.filter(|winding| winding.is_finite());
         Self {
             x: axes.x_axis,
             length: solid.shape.length,
@@ -195,6 +199,7 @@ impl Instance {
             tip_radius: solid.shape.tip_radius,
             origin: solid.place.translation.into(),
             colour: solid.colour.channels(),
+            stripes: winding.map_or([0.0, 0.0], |winding| [1.0, winding]),
         }
     }
 
@@ -208,6 +213,7 @@ impl Instance {
             tip_radius: ball.radius,
             origin: ball.centre,
             colour: ball.colour.channels(),
+            stripes: [0.0, 0.0],
         }
     }
 }

@@ -39,8 +39,18 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
 fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     let palette = scene.palette;
     scene.solids.extend([
-        Solid { place: rig.world(Part::UpperLimb), shape: rig.upper(), colour: palette.upper },
-        Solid { place: rig.world(Part::LowerLimb), shape: rig.lower(), colour: palette.lower },
+        Solid {
+            place: rig.world(Part::UpperLimb),
+            shape: rig.upper(),
+            colour: palette.upper,
+            stripes: None,
+        },
+        Solid {
+            place: rig.world(Part::LowerLimb),
+            shape: rig.lower(),
+            colour: palette.lower,
+            stripes: None,
+        },
     ]);
     let joints = [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
     scene.balls.extend(joints.map(|(part, radius)| Ball {
@@ -73,6 +83,7 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
             place: rig.world(Part::Pointer),
             shape: rig.pointer(),
             colour,
+            stripes: None,
         });
     }
     for (layer, part, radius) in [

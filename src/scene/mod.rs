@@ -3,6 +3,8 @@
 //! Nothing here knows how things are drawn; nothing in [`crate::render`] knows what they mean.
 
 mod arm;
+mod globe;
+mod hand;
 mod motion;
 mod palette;
 mod references;
@@ -11,6 +13,7 @@ mod skeleton;
 
 use glam::{Affine3A, Vec3};
 
+pub use globe::Globe;
 pub use palette::{Colour, Palette};
 
 use crate::document::{Camera, Display, Document, Layer, RigKind, Theme};
@@ -31,6 +34,8 @@ pub struct Scene {
     pub guide_solids: Vec<Solid>,
     pub guide_balls: Vec<Ball>,
     pub shells: Vec<Shell>,
+    /// Drawn over everything solid.
+    pub globe: Option<Globe>,
     pub lines: Vec<Line>,
     pub labels: Vec<Label>,
 }
@@ -54,6 +59,9 @@ pub struct Solid {
     pub place: Affine3A,
     pub shape: Cone,
     pub colour: Colour,
+    /// Darker lines along the side that wind by so many radians from base to tip, right-handed about
+    /// the solid's +x; none without a finite angle.
+    pub stripes: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,6 +133,7 @@ impl Scene {
             guide_solids: Vec::new(),
             guide_balls: Vec::new(),
             shells: Vec::new(),
+            globe: None,
             lines: Vec::new(),
             labels: Vec::new(),
         };
@@ -142,6 +151,19 @@ impl Scene {
         }
         motion::add(&mut scene, document, staging, reach);
         scene
+    }
+
+    /// Shows the globe, and marks each singular direction on it with a ball and a label.
+    pub fn add_globe(&mut self, globe: Globe) {
+        globe::add(self, globe);
+    }
+
+    /// Adds a right hand of cones and balls, in a cuff of the lower limb's colour. `place` is its
+    /// wrist, rigid: +x is towards the fingertips, +y out of the back (the palm faces −y), +z on the
+    /// little finger's side (the thumb is at −z). `size` is from the wrist to the tip of the middle
+    /// finger.
+    pub fn add_hand(&mut self, place: Affine3A, size: f32, colour: Colour) {
+        hand::add(self, place, size, colour);
     }
 
     /// Three arrows from the world's origin, half as long as the rig reaches.
@@ -164,7 +186,7 @@ impl Scene {
         colour: Colour,
     ) {
         let (place, shape) = Cone::between(base, tip, base_radius, tip_radius);
-        self.solids.push(Solid { place, shape, colour });
+        self.solids.push(Solid { place, shape, colour, stripes: None });
     }
 }
 

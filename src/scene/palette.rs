@@ -51,11 +51,19 @@ pub struct Palette {
     pub ground: Colour,
     pub grid: Colour,
     pub text: Colour,
+    /// The ramp of [`Palette::gain`]: further and further from the background in lightness, and ever
+    /// less seen through, so that it reads without its hues. Steps are alike in Oklab.
+    pub gains: [Colour; Palette::GAINS],
     /// How dark the darkest shadow is.
     pub shadow: f32,
 }
 
 impl Palette {
+    /// How many colours the ramp of gains is given by.
+    pub const GAINS: usize = 5;
+    /// The gain at which the ramp ends: what is beyond has its last colour.
+    pub const HOT: f32 = 8.0;
+
     pub fn new(theme: Theme) -> Self {
         match theme {
             Theme::Dark => Self {
@@ -71,6 +79,7 @@ impl Palette {
                 ground: Colour::rgb(0x3a404a),
                 grid: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
+                gains: ramp([0x4d667f, 0x954f9d, 0xd63f71, 0xf76c43, 0xffa83f]),
                 shadow: 0.62,
             },
             Theme::Light => Self {
@@ -86,6 +95,7 @@ impl Palette {
                 ground: Colour::rgb(0xffffff),
                 grid: Colour::rgb(0x5a6678),
                 text: Colour::rgb(0x1c1f24),
+                gains: ramp([0x7cabcc, 0xa17cd4, 0xc4499a, 0xbb1a40, 0x850609]),
                 shadow: 0.42,
             },
         }
@@ -114,4 +124,19 @@ impl Palette {
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
+
+    /// The colour of a [gain](crate::kinematics::swivel::Reference::gain), as seen through as it is on
+    /// the globe: calm at 0, hot at [`Palette::HOT`] and beyond, evenly in the logarithm of 1 + gain
+    /// between.
+    pub fn gain(&self, gain: f32) -> Colour {
+        let last = Self::GAINS - 1;
+        let along = gain.max(0.0).ln_1p() / Self::HOT.ln_1p() * last as f32;
+        let step = (along as usize).min(last - 1);
+        self.gains[step].mixed(self.gains[step + 1], (along - step as f32).min(1.0))
+    }
+}
+
+fn ramp(hex: [u32; Palette::GAINS]) -> [Colour; Palette::GAINS] {
+    const OPACITY: [f32; Palette::GAINS] = [0.05, 0.11, 0.21, 0.36, 0.54];
+    std::array::from_fn(|step| Colour::rgb(hex[step]).with_opacity(OPACITY[step]))
 }

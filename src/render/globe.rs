@@ -1,0 +1,113 @@
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+
+use super::{Gpu, pipeline};
+use crate::scene::{Colour, Globe, Palette, Scene};
+
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/globe.wgsl"),);
+
+/// The far side, then the near one.
+const SIDES: u32 = 2;
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+struct Uniform {
+    centre: Vec3,
+    radius: f32,
+    axis: Vec3,
+    singular: f32,
+    ramp: [Vec4; Palette::GAINS],
+    line: Vec4,
+    hot: f32,
+    padding: [f32; 3],
+}
+
+const _: () = assert!(size_of::<Uniform>() == 2 * 16 + Palette::GAINS * 16 + 2 * 16);
+
+/// Draws the globe of gains over everything solid.
+#[derive(Debug)]
+pub(super) struct Globes {
+    pipeline: wgpu::RenderPipeline,
+    buffer: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    shown: bool,
+}
+
+impl Globes {
+    pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("globe"),
+            size: size_of::<Uniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("globe"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("globe"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        let pipeline = pipeline::build(
+            gpu,
+            &pipeline::Kind {
+                label: "globe",
+                shader: SHADER,
+                fragment: "fragment",
+                layouts: &[view, &layout],
+                buffers: &[],
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                cull: None,
+                depth: wgpu::CompareFunction::Greater,
+                opaque: false,
+            },
+        );
+        Self { pipeline, buffer, group, shown: false }
+    }
+
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
+        let globe = scene.globe.filter(Globe::has_size);
+        self.shown = globe.is_some();
+        if let Some(globe) = globe {
+            let uniform = Uniform::new(&globe, &scene.palette);
+            gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
+        }
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if self.shown {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(1, &self.group, &[]);
+            pass.draw(0..4, 0..SIDES);
+        }
+    }
+}
+
+impl Uniform {
+    fn new(globe: &Globe, palette: &Palette) -> Self {
+        let screen = |colour: Colour| Vec4::from_array(colour.channels());
+        let singular = globe.singular();
+        Self {
+            centre: globe.centre,
+            radius: globe.radius,
+            axis: singular.first().copied().unwrap_or(Vec3::Y),
+            singular: singular.len() as f32,
+            ramp: palette.gains.map(screen),
+            line: screen(palette.guide),
+            hot: Palette::HOT,
+            padding: [0.0; 3],
+        }
+    }
+}

@@ -1,0 +1,123 @@
+use glam::{Affine3A, Quat, Vec3};
+
+use super::{Ball, Colour, Scene};
+
+/// A finger in hand lengths: its knuckle, its three bones, how thick it is, and how it bends.
+struct Finger {
+    knuckle: Vec3,
+    bones: [f32; 3],
+    radius: f32,
+    /// Radians to the little finger's side.
+    spread: f32,
+    /// Radians towards the palm, at each joint.
+    bends: [f32; 3],
+}
+
+const FINGERS: [Finger; 4] = [
+    Finger {
+        knuckle: Vec3::new(0.5, 0.01, -0.182),
+        bones: [0.185, 0.115, 0.07],
+        radius: 0.068,
+        spread: -0.2,
+        bends: [0.04, 0.16, 0.16],
+    },
+    Finger {
+        knuckle: Vec3::new(0.525, 0.022, -0.06),
+        bones: [0.205, 0.13, 0.078],
+        radius: 0.071,
+        spread: -0.04,
+        bends: [0.06, 0.2, 0.18],
+    },
+    Finger {
+        knuckle: Vec3::new(0.505, 0.014, 0.062),
+        bones: [0.185, 0.12, 0.074],
+        radius: 0.068,
+        spread: 0.12,
+        bends: [0.1, 0.24, 0.2],
+    },
+    Finger {
+        knuckle: Vec3::new(0.455, -0.006, 0.174),
+        bones: [0.14, 0.09, 0.06],
+        radius: 0.059,
+        spread: 0.32,
+        bends: [0.14, 0.26, 0.22],
+    },
+];
+
+/// The thumb from the wrist to its tip: places and radii.
+const THUMB: [(Vec3, f32); 4] = [
+    (Vec3::new(0.12, -0.02, -0.07), 0.105),
+    (Vec3::new(0.27, -0.06, -0.225), 0.092),
+    (Vec3::new(0.4, -0.075, -0.325), 0.073),
+    (Vec3::new(0.505, -0.07, -0.365), 0.062),
+];
+
+/// A cuff around the wrist, of the lower limb's colour: its length and its radii.
+const CUFF: (f32, [f32; 2]) = (0.1, [0.165, 0.185]);
+
+/// How far apart the bones of the palm are at the wrist, to how far at the knuckles.
+const WRIST: f32 = 0.5;
+const PALM_RADIUS: f32 = 0.085;
+/// A finger's tip is so thin beside its knuckle.
+const TAPER: f32 = 0.84;
+
+/// Adds a right hand: +x from the wrist to the fingertips, +y out of its back, +z to the little
+/// finger's side.
+pub(super) fn add(scene: &mut Scene, place: Affine3A, size: f32, colour: Colour) {
+    let mut hand = Hand { scene, place, size, colour };
+    for finger in &FINGERS {
+        hand.add_palm(finger);
+        hand.add_finger(finger);
+    }
+    hand.add_chain(&THUMB);
+    hand.add_cuff();
+}
+
+struct Hand<'a> {
+    scene: &'a mut Scene,
+    place: Affine3A,
+    size: f32,
+    colour: Colour,
+}
+
+impl Hand<'_> {
+    /// The bone of the palm that a finger stands on.
+    fn add_palm(&mut self, finger: &Finger) {
+        let wrist = Vec3::new(0.06, 0.0, finger.knuckle.z * WRIST);
+        self.add_chain(&[(wrist, PALM_RADIUS), (finger.knuckle, finger.radius * 1.15)]);
+    }
+
+    fn add_finger(&mut self, finger: &Finger) {
+        let mut turn = Quat::from_rotation_y(-finger.spread);
+        let mut joint = finger.knuckle;
+        let mut joints = vec![(joint, finger.radius)];
+        for (step, (bone, bend)) in finger.bones.iter().zip(finger.bends).enumerate() {
+            turn *= Quat::from_rotation_z(-bend);
+            joint += turn * Vec3::X * *bone;
+            let radius = finger.radius * (1.0 - (1.0 - TAPER) * (step + 1) as f32 / 3.0);
+            joints.push((joint, radius));
+        }
+        self.add_chain(&joints);
+    }
+
+    fn add_cuff(&mut self) {
+        let (length, [base, tip]) = CUFF;
+        let at = |x: f32| self.place.transform_point3(Vec3::X * x * self.size);
+        let colour = self.scene.palette.lower;
+        self.scene.add_solid(at(0.0), at(length), base * self.size, tip * self.size, colour);
+    }
+
+    /// Balls and the cones between them.
+    fn add_chain(&mut self, joints: &[(Vec3, f32)]) {
+        let at = |point| self.place.transform_point3(point * self.size);
+        for (point, radius) in joints {
+            let (centre, radius) = (at(*point), radius * self.size);
+            self.scene.balls.push(Ball { centre, radius, colour: self.colour });
+        }
+        for ends in joints.windows(2) {
+            let [(base, base_radius), (tip, tip_radius)] = [ends[0], ends[1]];
+            let (base_radius, tip_radius) = (base_radius * self.size, tip_radius * self.size);
+            self.scene.add_solid(at(base), at(tip), base_radius, tip_radius, self.colour);
+        }
+    }
+}
