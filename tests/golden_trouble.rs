@@ -208,6 +208,8 @@ fn every_singular_direction_is_marked_on_the_globe() {
     let expected = [
         (Reference::Limb, vec![Vec3::Y, Vec3::NEG_Y]),
         (Reference::Pole(Vec3::X * 30.0), vec![Vec3::X, Vec3::NEG_X]),
+        (Reference::Pole(Vec3::X * 1e-30), vec![Vec3::X, Vec3::NEG_X]),
+        (Reference::Pole(Vec3::X * 1e30), vec![Vec3::X, Vec3::NEG_X]),
         (Reference::Pole(Vec3::ZERO), vec![]),
         (Reference::Stereographic(Stereographic::default()), vec![Vec3::NEG_X]),
         (Reference::Transport, vec![]),
@@ -230,10 +232,10 @@ fn every_singular_direction_is_marked_on_the_globe() {
 fn lightness(colour: [f32; 4]) -> f32 {
     let light = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
     let [r, g, b, _] = colour.map(light);
-    let l = 0.412_221_47 * r + 0.536_332_54 * g + 0.051_445_993 * b;
-    let m = 0.211_903_5 * r + 0.680_699_55 * g + 0.107_396_96 * b;
-    let s = 0.088_302_46 * r + 0.281_718_84 * g + 0.629_978_7 * b;
-    0.210_454_26 * l.cbrt() + 0.793_617_8 * m.cbrt() - 0.004_072_047 * s.cbrt()
+    let l = 0.412_22 * r + 0.536_33 * g + 0.051_45 * b;
+    let m = 0.211_90 * r + 0.680_70 * g + 0.107_40 * b;
+    let s = 0.088_30 * r + 0.281_72 * g + 0.629_98 * b;
+    0.210_45 * l.cbrt() + 0.793_62 * m.cbrt() - 0.004_07 * s.cbrt()
 }
 
 #[test]

@@ -27,7 +27,10 @@ impl Globe {
         let both = |axis: Vec3| vec![axis, -axis];
         match self.reference {
             Reference::Limb => both(Vec3::Y),
-            Reference::Pole(pole) => pole.try_normalize().map_or_else(Vec::new, both),
+            Reference::Pole(pole) => {
+                let axis = pole.as_dvec3().try_normalize();
+                axis.map_or_else(Vec::new, |axis| both(axis.as_vec3()))
+            }
             Reference::Stereographic(map) => vec![map.singular()],
             Reference::Transport => Vec::new(),
         }
