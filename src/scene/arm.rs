@@ -1,7 +1,7 @@
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
-use super::{Ball, Label, Line, Scene, Shadow, Shell, Side, Solid};
+use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid};
 use crate::document::{Arm, Display, Layer, Swivel};
 use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::{ArmRig, Part};
@@ -10,6 +10,7 @@ use crate::rig::{ArmRig, Part};
 const SHOULDER_BALL: f32 = 33.0;
 const ELBOW_BALL: f32 = 33.0;
 const HAND_BALL: f32 = 22.0;
+const HAND: f32 = 105.0;
 const CURSOR_BALL: f32 = 11.0;
 const POLE_BALL: f32 = 11.0;
 
@@ -17,8 +18,16 @@ const POLE_BALL: f32 = 11.0;
 pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
-    add_limbs(scene, &rig, thickness);
+    let has_hand = display.shows(Layer::Hand);
+    add_limbs(scene, &rig, thickness, has_hand.then(|| arm.roll(pose)));
+    if has_hand {
+        add_hand(scene, arm, pose, thickness);
+    }
     add_guides(scene, &rig, display);
+    if display.shows(Layer::Globe) {
+        let (centre, radius) = (arm.root, rig.outer_limit());
+        scene.add_globe(Globe { centre, radius, reference: arm.reference() });
+    }
     if display.shows(Layer::Cursor) && arm.is_led_by_hand() {
         add_cursor(scene, arm.cursor_world(), thickness);
         if pose.reach != Reach::Reached {
@@ -36,7 +45,8 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
     }
 }
 
-fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+/// `roll` is the forearm's at the hand, if stripes are to show it.
+fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>) {
     let palette = scene.palette;
     scene.solids.extend([
         Solid {
@@ -49,7 +59,7 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
             place: rig.world(Part::LowerLimb),
             shape: rig.lower(),
             colour: palette.lower,
-            stripes: None,
+            stripes: roll,
         },
     ]);
     let joints = [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
@@ -58,6 +68,12 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
         radius: radius * thickness,
         colour: palette.joint,
     }));
+}
+
+fn add_hand(scene: &mut Scene, arm: &Arm, pose: &Pose, thickness: f32) {
+    let rotation = arm.hand_rotation(pose).as_mat3();
+    let place = Affine3A::from_mat3_translation(rotation, arm.root + pose.hand);
+    scene.add_hand(place, HAND * thickness, scene.palette.joint);
 }
 
 fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
