@@ -128,6 +128,12 @@ impl Arm {
         if pinned == self.is_pinned() { self } else { Self { goal, ..self } }
     }
 
+    /// The least and the most that the hand can be from the shoulder, as it leads.
+    pub fn reach(&self) -> (f32, f32) {
+        let most = self.bones.outer_limit() * self.softening.max_stretch();
+        (self.softening.least_distance(self.bones), most.min(f32::MAX))
+    }
+
     /// Whether the hand leads, alone or with others.
     pub fn is_led_by_hand(&self) -> bool {
         self.weight > 0.0

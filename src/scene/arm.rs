@@ -8,7 +8,7 @@ use crate::rig::{ArmRig, Part};
 
 /// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
 const SHOULDER_BALL: f32 = 33.0;
-const ELBOW_BALL: f32 = 33.0;
+pub(super) const ELBOW_BALL: f32 = 33.0;
 const HAND_BALL: f32 = 22.0;
 const HAND: f32 = 105.0;
 const CURSOR_BALL: f32 = 11.0;

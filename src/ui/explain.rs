@@ -41,7 +41,7 @@ fn sentence(ui: &mut Ui, session: &Session) {
 
 fn pointer(session: &Session) -> [Quantity; 4] {
     let (arm, pose) = (session.arm(), session.pose());
-    let cursor = arm.cursor();
+    let cursor = if arm.is_led_by_hand() { arm.cursor() } else { pose.hand };
     [
         Quantity {
             symbol: "θ_z",
@@ -66,7 +66,10 @@ fn pointer(session: &Session) -> [Quantity; 4] {
         },
         Quantity {
             symbol: "D",
-            formula: "|c| within limits",
+            formula: match arm.softening.is_hard() {
+                true => "|c| within limits",
+                false => "|c| softened",
+            },
             value: length(pose.distance),
             meaning: "From shoulder to hand: the cursor's distance, held between the two limits",
             colour: None,
@@ -81,14 +84,14 @@ fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
         Quantity {
             symbol: "d_1",
             formula: "",
-            value: length(bones.upper()),
+            value: length(bones.upper() * pose.stretch),
             meaning: "Length of the Upper Limb",
             colour: Some(style::colour(palette.upper)),
         },
         Quantity {
             symbol: "d_2",
             formula: "",
-            value: length(bones.lower()),
+            value: length(bones.lower() * pose.stretch),
             meaning: "Length of the Lower Limb",
             colour: Some(style::colour(palette.lower)),
         },
@@ -163,9 +166,12 @@ fn meter(ui: &mut Ui, session: &Session) {
     const HEIGHT: f32 = 44.0;
     const BAR: f32 = 8.0;
     const BEYOND: f32 = 1.25;
-    let bones = session.arm().bones;
-    let (inner, outer) = (bones.inner_limit(), bones.outer_limit());
-    let asked = session.arm().cursor().length();
+    let arm = session.arm();
+    let (inner, outer) = arm.reach();
+    let (what, asked) = match arm.is_led_by_hand() {
+        true => ("Cursor", arm.cursor().length()),
+        false => ("Hand", session.pose().distance),
+    };
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let bar = egui::Rect::from_min_size(
@@ -194,7 +200,7 @@ fn meter(ui: &mut Ui, session: &Session) {
         written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.0}"));
     }
     written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.0}"));
-    let summary = format!("Cursor at {asked:.1}; the hand reaches from {inner:.1} to {outer:.1}");
+    let summary = format!("{what} at {asked:.1}; the hand reaches from {inner:.1} to {outer:.1}");
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))
     });

@@ -16,7 +16,11 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.menu_button("Help", |ui| help(ui, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rig = match session.rig() {
-                RigKind::Arm => "Arm · IK".to_owned(),
+                RigKind::Arm => match session.arm().weight {
+                    1.0 => "Arm · IK".to_owned(),
+                    0.0 => "Arm · FK".to_owned(),
+                    weight => format!("Arm · {:.0} % IK", weight * 100.0),
+                },
                 RigKind::Skeleton => {
                     format!("Skeleton · {}", status::method_name(session.skeleton().solver.method))
                 }

@@ -39,8 +39,26 @@ fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
 /// One sentence on why the arm is as it is.
 pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
     let gap = pose.hand.distance(arm.cursor());
+    if !arm.is_led_by_hand() {
+        return "FK: the joints' own angles place the hand.".to_owned();
+    }
+    if arm.weight < 1.0 {
+        return format!("Between FK and IK: the hand is {gap:.1} from the cursor.");
+    }
+    if pose.stretch > 1.0 {
+        let reached = if pose.reach == Reach::Reached { "" } else { " as far as they may" };
+        return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
+    }
     match pose.reach {
         Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
+        Reach::TooFar if arm.softening.softness() > 0.0 => {
+            format!(
+                "Soft: the hand lags {gap:.1} behind the cursor, so that the elbow does not snap."
+            )
+        }
+        Reach::TooClose if !arm.softening.is_hard() => {
+            format!("Soft: the hand keeps away from the shoulder, {gap:.1} from the cursor.")
+        }
         Reach::TooFar => {
             format!("Too far: the arm is straight and points at the cursor, {gap:.1} short.")
         }
@@ -103,19 +121,17 @@ fn describe_skeleton(session: &Session) -> String {
 fn describe_pose(session: &Session) -> String {
     let (arm, pose) = (session.arm(), session.pose());
     let reach = match pose.reach {
+        _ if !arm.is_led_by_hand() => "FK",
+        _ if arm.weight < 1.0 => "Between FK and IK",
         Reach::Reached => "Reached",
         Reach::TooFar => "Too far",
         Reach::TooClose => "Too close",
     };
     let hand = pose.hand;
+    let (least, most) = arm.reach();
     format!(
         "{reach} · hand ({:.1}, {:.1}, {:.1}) · D {:.1} of {:.0}–{:.0}",
-        hand.x,
-        hand.y,
-        hand.z,
-        pose.distance,
-        arm.bones.inner_limit(),
-        arm.bones.outer_limit(),
+        hand.x, hand.y, hand.z, pose.distance, least, most,
     )
 }
 

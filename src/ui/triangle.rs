@@ -20,8 +20,8 @@ pub(super) fn ui(ui: &mut Ui, arm: &Arm, pose: &Pose) {
     response.widget_info(|| {
         let text = format!(
             "Triangle: d 1 {:.1}, d 2 {:.1}, D {:.1}, theta e {:.1} degrees",
-            arm.bones.upper(),
-            arm.bones.lower(),
+            arm.bones.upper() * pose.stretch,
+            arm.bones.lower() * pose.stretch,
             pose.distance,
             pose.shoulder_angle().to_degrees(),
         );
