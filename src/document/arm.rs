@@ -56,12 +56,13 @@ pub enum Swivel {
 impl Swivel {
     pub const ALL: [Self; 4] = [Self::Limb, Self::Pole, Self::Stereographic, Self::Transport];
 
+    /// As pictures and panels call it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Limb => "limb",
-            Self::Pole => "pole",
-            Self::Stereographic => "stereographic",
-            Self::Transport => "transport",
+            Self::Limb => "Limb",
+            Self::Pole => "Pole",
+            Self::Stereographic => "Stereographic",
+            Self::Transport => "Transport",
         }
     }
 }

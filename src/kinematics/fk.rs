@@ -21,7 +21,7 @@ use core::f64::consts::{PI, TAU};
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use super::euler;
-use super::ik::{length, reach, stretched};
+use super::ik::{length, reach};
 use super::swivel::angle_from_limb;
 use super::two_bone::{Facing, Pose, Reach, TwoBone};
 
@@ -141,7 +141,7 @@ impl Turned {
     }
 
     fn pose(self, bones: TwoBone, last: Facing) -> Pose {
-        let bones = stretched(bones, self.stretch as f32);
+        let bones = bones.stretched(self.stretch as f32);
         let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
         let (sin, _) = self.bend.sin_cos();
         let half = (0.5 * self.bend).cos();

@@ -87,7 +87,7 @@ impl Ik {
         let pose = if self.softening.is_hard() {
             self.bones.solve_from(cursor, spin, last)
         } else {
-            let bones = stretched(self.bones, extent.stretch);
+            let bones = self.bones.stretched(extent.stretch);
             let pose = bones.solve_at(facing, extent.distance, spin);
             let hand = if extent.distance == asked { cursor } else { pose.hand };
             let reach = reach(extent.distance, asked, self.bones);
@@ -123,13 +123,6 @@ pub(super) fn reach(distance: f32, asked: f32, bones: TwoBone) -> Reach {
         long if long > near => Reach::TooClose,
         _ => Reach::Reached,
     }
-}
-
-/// Bones that are so many times as long.
-pub(super) fn stretched(bones: TwoBone, stretch: f32) -> TwoBone {
-    let [upper, lower] =
-        [bones.upper(), bones.lower()].map(|length| (length * stretch).min(f32::MAX));
-    TwoBone::new(upper, lower).unwrap_or(bones)
 }
 
 /// In f64, where no square overflows.

@@ -148,6 +148,13 @@ impl TwoBone {
         self.lower
     }
 
+    /// Bones so many times as long, as far as numbers go; as they are if that is no factor.
+    #[must_use]
+    pub fn stretched(self, factor: f32) -> Self {
+        let length = |length: f32| (length * factor).min(f32::MAX);
+        Self::new(length(self.upper), length(self.lower)).unwrap_or(self)
+    }
+
     /// L = d₁ + d₂, the farthest that the hand can be (`f32::MAX` where the sum is beyond it).
     pub fn outer_limit(self) -> f32 {
         (self.upper + self.lower).min(f32::MAX)

@@ -54,7 +54,7 @@ impl Ghost {
 /// As in "Limb, Stereographic +19°". Beside the arm's own elbow it stands below that one's name.
 fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
     let Some(ghost) = group.get(group.len() / 2) else { return };
-    let names: Vec<_> = group.iter().map(|ghost| title(ghost.swivel)).collect();
+    let names: Vec<_> = group.iter().map(|ghost| ghost.swivel.name()).collect();
     let degrees = (ghost.turn.to_degrees().round()) + 0.0;
     let is_beside = ghost.turn.abs() < APART;
     scene.labels.push(Label {
@@ -64,14 +64,4 @@ fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
         text: format!("{} {degrees:+.0}°", names.join(", ")),
         colour: scene.palette.swivel(ghost.swivel),
     });
-}
-
-/// As pictures and panels call it.
-fn title(swivel: Swivel) -> &'static str {
-    match swivel {
-        Swivel::Limb => "Limb",
-        Swivel::Pole => "Pole",
-        Swivel::Stereographic => "Stereographic",
-        Swivel::Transport => "Transport",
-    }
 }

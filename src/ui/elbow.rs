@@ -11,29 +11,25 @@ use super::{row, style};
 use crate::document::{Arm, Swivel};
 use crate::session::{Action, Session};
 
-/// What a reference is called, and what it is.
-pub(super) fn describe(swivel: Swivel) -> (&'static str, &'static str) {
+/// What a reference is.
+pub(super) fn describe(swivel: Swivel) -> &'static str {
     match swivel {
-        Swivel::Limb => (
-            "Limb",
+        Swivel::Limb => {
             "Up, as far as the Pointer lets it, as in the paper. The elbow turns around where the \
-             hand passes straight above or below the shoulder",
-        ),
-        Swivel::Pole => (
-            "Pole",
+             hand passes straight above or below the shoulder"
+        }
+        Swivel::Pole => {
             "Towards a point, as most programs have it. The elbow turns around where the hand \
-             passes between the shoulder and the pole, or behind",
-        ),
-        Swivel::Stereographic => (
-            "Stereographic",
+             passes between the shoulder and the pole, or behind"
+        }
+        Swivel::Stereographic => {
             "As on a map of all directions that leaves out one, straight behind: smooth everywhere \
-             else",
-        ),
-        Swivel::Transport => (
-            "Transport",
+             else"
+        }
+        Swivel::Transport => {
             "Carried along with the hand: never turns around, but a hand that goes in a circle and \
-             comes back finds the elbow elsewhere. Made for posing; keys are measured from the map",
-        ),
+             comes back finds the elbow elsewhere. Made for posing; keys are measured from the map"
+        }
     }
 }
 
@@ -65,11 +61,11 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let chosen = session.arm().swivel;
     row::pair(ui, "Measured from", |ui| {
-        let combo = ComboBox::from_id_salt("swivel").selected_text(describe(chosen).0);
+        let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
         let response = combo.show_ui(ui, |ui| {
             for swivel in Swivel::ALL {
-                let (name, tooltip) = describe(swivel);
-                let item = ui.selectable_label(swivel == chosen, name).on_hover_text(tooltip);
+                let item = ui.selectable_label(swivel == chosen, swivel.name());
+                let item = item.on_hover_text(describe(swivel));
                 if item.clicked() && swivel != chosen {
                     actions.push(Action::SetSwivel(swivel));
                 }
@@ -77,7 +73,7 @@ fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         });
         let response = response.response;
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Measured from"));
-        response.on_hover_text(describe(chosen).1);
+        response.on_hover_text(describe(chosen));
     });
 }
 

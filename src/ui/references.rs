@@ -37,12 +37,12 @@ fn table(ui: &mut Ui, arm: &Arm, carried: Carried) {
         }
         ui.end_row();
         for swivel in Swivel::ALL {
-            let (name, tooltip) = elbow::describe(swivel);
             let colour = match swivel == arm.swivel {
                 true => ui.visuals().strong_text_color(),
                 false => style::colour(palette.swivel(swivel)),
             };
-            ui.label(RichText::new(name).color(colour)).on_hover_text(tooltip);
+            let name = RichText::new(swivel.name()).color(colour);
+            ui.label(name).on_hover_text(elbow::describe(swivel));
             let pose = arm.pose_measured_from(swivel, Some(carried));
             let apart = format!("{:+.1}°", own.elbow_turn_to(&pose).to_degrees());
             let gain = arm.reference_of(swivel).gain(own.facing);

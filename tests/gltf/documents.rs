@@ -1,8 +1,9 @@
 //! What is exported: every example, as it is and with keys.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::document::{Arm, Channel, Document, RigKind, Swivel, Timeline};
 use ik_arm::io::{self, Example, Progress};
+use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 
 use crate::rigs::{Random, transform};
@@ -19,6 +20,7 @@ pub fn glb(document: &Document) -> Vec<u8> {
 pub fn all() -> Vec<(String, Document)> {
     let mut random = Random(20);
     let mut all = vec![("keyed-lengths".to_owned(), keyed_arm(&mut random))];
+    all.push(("led".to_owned(), led_arm(&mut random)));
     for Example { name, .. } in Example::ALL {
         let document = example(name);
         if document.rig == RigKind::Skeleton {
@@ -51,6 +53,22 @@ pub fn keyed_arm(random: &mut Random) -> Document {
         ] {
             key(channel, Vec3::X * random.within(low..high));
         }
+    }
+    document
+}
+
+/// An arm that stretches, goes softly, and is led by its hand and by its angles in turn.
+fn led_arm(random: &mut Random) -> Document {
+    let softening = Softening::new(0.3, 2.0, 0.5).expect("a softening");
+    let arm = Arm { swivel: Swivel::Stereographic, softening, ..Arm::default() };
+    let mut document = Document { arm, timeline: short(), ..Document::default() };
+    for time in times() {
+        let mut key = |channel, value| document.keys.insert(channel, time, value);
+        key(Channel::Hand, random.vector(700.0));
+        key(Channel::ElbowSpin, Vec3::X * random.within(-9.0..9.0));
+        key(Channel::Weight, Vec3::X * random.within(0.0..1.0));
+        key(Channel::Shoulder, random.vector(3.0));
+        key(Channel::Bend, Vec3::X * random.within(-3.0..3.0));
     }
     document
 }

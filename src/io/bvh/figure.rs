@@ -124,10 +124,11 @@ fn arm(arm: &Arm) -> Stance {
     let lower = (-out).atan2(f64::from(pose.distance) - along);
     let limb = pose.facing.limb_frame().as_dmat3();
     let socket = DMat3::from_rotation_x(f64::from(pose.spin));
+    let bones = arm.bones.stretched(pose.stretch);
     let bone = |length: f32| Vec3::new(length, 0.0, 0.0).as_dvec3();
     Stance {
-        offsets: vec![arm.root.as_dvec3(), bone(arm.bones.upper())],
-        ends: vec![None, Some(bone(arm.bones.lower()))],
+        offsets: vec![arm.root.as_dvec3(), bone(bones.upper())],
+        ends: vec![None, Some(bone(bones.lower()))],
         turns: vec![
             limb * socket * DMat3::from_rotation_z(upper),
             DMat3::from_rotation_z(lower - upper),

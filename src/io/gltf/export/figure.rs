@@ -1,9 +1,10 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::GlbError;
-use crate::document::{Channel, Document, RigKind};
+use crate::document::{Arm, Channel, Document, RigKind};
 use crate::io::gltf::frame::frame;
 use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{ArmRig, Cone, Part};
 
 /// The shown rig, arm or skeleton, as bones in the world, in metres.
@@ -101,6 +102,7 @@ impl Figure {
     fn limbs(&self) -> Vec<Bone> {
         let Document { arm, keys, .. } = &self.document;
         let rig = arm.rig(&arm.pose());
+        let stretches = arm.softening.max_stretch() > 1.0;
         let radii = |limb: Cone| {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
         };
@@ -108,7 +110,7 @@ impl Figure {
             Bone {
                 name: "upper".to_owned(),
                 parent: None,
-                has_tip: keys.has(Channel::Upper),
+                has_tip: keys.has(Channel::Upper) || stretches,
                 is_leaf: false,
                 radii: radii(rig.upper()),
                 shade: 0,
@@ -188,20 +190,22 @@ fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed
 
 /// Along the Root's +x, its hinge facing as in a Socket that is not turned.
 fn straight_arm(document: &Document) -> Vec<Placed> {
-    limbs(document, [DMat3::IDENTITY; 2])
+    limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
 }
 
 fn posed_arm(document: &Document) -> Vec<Placed> {
-    let rig: ArmRig = document.arm.rig(&document.arm.pose());
+    let arm = &document.arm;
+    let pose = arm.pose();
+    let rig: ArmRig = arm.rig(&pose);
     let socket = rig.local(Part::Limb) * rig.local(Part::Socket);
     let turn = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
-    limbs(document, [turn(Part::UpperLimb), turn(Part::LowerLimb)])
+    let bones = arm.bones.stretched(pose.stretch);
+    limbs(arm, bones, [turn(Part::UpperLimb), turn(Part::LowerLimb)])
 }
 
 /// The limbs by how each is turned: it lies along x, and bends about z.
-fn limbs(document: &Document, turns: [DMat3; 2]) -> Vec<Placed> {
-    let arm = &document.arm;
-    let lengths = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
+fn limbs(arm: &Arm, bones: TwoBone, turns: [DMat3; 2]) -> Vec<Placed> {
+    let lengths = [bones.upper(), bones.lower()].map(f64::from);
     let mut base = arm.root.as_dvec3();
     let limb = |(turn, length): (DMat3, f64)| {
         let along = turn.x_axis.normalize_or(DVec3::X) * length;
