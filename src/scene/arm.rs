@@ -4,7 +4,7 @@ use super::shadow::above_ground;
 use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid};
 use crate::document::{Arm, Display, Layer, Swivel};
 use crate::kinematics::two_bone::{Pose, Reach};
-use crate::rig::{ArmRig, Part};
+use crate::rig::{ArmRig, Cone, Part};
 
 /// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
 const SHOULDER_BALL: f32 = 33.0;
@@ -13,6 +13,9 @@ const HAND_BALL: f32 = 22.0;
 const HAND: f32 = 105.0;
 const CURSOR_BALL: f32 = 11.0;
 const POLE_BALL: f32 = 11.0;
+const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
+const PIN_RADIUS: f32 = 4.5;
+const PIN_HEAD: f32 = 13.0;
 
 /// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
@@ -30,6 +33,9 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
     }
     if display.shows(Layer::Cursor) && arm.is_led_by_hand() {
         add_cursor(scene, arm.cursor_world(), thickness);
+        if arm.is_pinned() {
+            add_pin(scene, arm.cursor_world(), thickness);
+        }
         if pose.reach != Reach::Reached {
             add_gap(scene, &rig, arm.cursor_world(), thickness);
         }
@@ -79,6 +85,15 @@ fn add_hand(scene: &mut Scene, arm: &Arm, pose: &Pose, thickness: f32) {
 fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
     let (radius, colour) = (CURSOR_BALL * thickness, scene.palette.guide);
     scene.guide_balls.push(Ball { centre, radius, colour });
+}
+
+/// A pin that sticks in the Cursor: it holds the hand to the world.
+fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
+    let colour = scene.palette.accent;
+    let head = cursor + PIN * thickness;
+    let (place, shape) = Cone::between(cursor, head, 0.0, PIN_RADIUS * thickness);
+    scene.guide_solids.push(Solid { place, shape, colour, stripes: None });
+    scene.guide_balls.push(Ball { centre: head, radius: PIN_HEAD * thickness, colour });
 }
 
 /// What the elbow points at, with a line from there.

@@ -184,7 +184,7 @@ impl Session {
 
             Action::CopyPose => {
                 self.message = Some("Pose copied as a line for ik-arm solve".to_owned());
-                return Some(Effect::CopyText(pose_line(self.arm())));
+                return Some(Effect::CopyText(super::pose_line::of(self.arm())));
             }
             Action::SavePicture(path) => {
                 self.dialog = None;
@@ -353,16 +353,4 @@ impl Session {
             self.advance_solvers();
         }
     }
-}
-
-/// A line that `ik-arm solve` reads.
-fn pose_line(arm: &Arm) -> String {
-    serde_json::json!({
-        "hand": arm.cursor().to_array(),
-        "upper": arm.bones.upper(),
-        "lower": arm.bones.lower(),
-        "root": arm.root.to_array(),
-        "elbow_spin_deg": arm.elbow_spin.to_degrees(),
-    })
-    .to_string()
 }

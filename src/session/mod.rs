@@ -14,6 +14,7 @@ mod journey;
 mod keys;
 mod naming;
 mod point_drag;
+mod pose_line;
 mod preferences;
 mod race;
 mod run;

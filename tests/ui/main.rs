@@ -3,6 +3,7 @@
 #![cfg(feature = "app")]
 
 mod accessibility;
+mod arm_posing;
 mod bench;
 mod dialogs;
 mod export;

@@ -1,0 +1,249 @@
+//! The arm posed as an animator does: led by its angles, pinned, its elbow measured from elsewhere.
+
+use egui::accesskit::Role;
+use egui::{PointerButton, Pos2, vec2};
+use egui_kittest::{SnapshotOptions, SnapshotResults};
+use glam::Vec3;
+use ik_arm::document::{Channel, Layer, Space, Swivel, Theme};
+use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::session::{Action, Grip, Lead};
+
+use crate::bench::{Bench, LARGE, bits};
+
+const LEFT: PointerButton = PointerButton::Primary;
+
+fn apart(a: &Pose, b: &Pose) -> f32 {
+    a.elbow.distance(b.elbow).max(a.hand.distance(b.hand))
+}
+
+/// Chooses from the list beside a name.
+fn pick(bench: &mut Bench, list: &str, item: &str) {
+    bench.click(Role::ComboBox, list);
+    bench.click(Role::Button, item);
+}
+
+fn pole_place(bench: &Bench) -> Pos2 {
+    let arm = bench.session().arm();
+    bench.place(arm.root + arm.pole)
+}
+
+#[test]
+fn fk_takes_over_the_pose_and_ik_takes_it_back() {
+    let mut bench = Bench::after([Action::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
+    let pose = *bench.session().pose();
+    assert!(!bench.shows(Role::Slider, "Elbow bend"));
+    bench.click(Role::Button, "FK");
+    assert_eq!(bench.session().arm().weight, 0.0);
+    assert!(apart(&pose, bench.session().pose()) < 5e-3);
+    assert!(bench.says("Arm · FK") && bench.says("FK: the joints' own angles place the hand."));
+    bench.enter("Elbow bend", "60");
+    assert!((bench.session().pose().elbow_angle().to_degrees() - 120.0).abs() < 0.01);
+    bench.enter("Shoulder yaw", "0");
+    bench.enter("Shoulder pitch", "0");
+    bench.enter("Shoulder twist", "0");
+    let elbow = bench.session().pose().elbow;
+    assert!(elbow.distance(Vec3::X * 200.0) < 1e-3, "{elbow}");
+    let pose = *bench.session().pose();
+    bench.click(Role::Button, "IK");
+    assert!(apart(&pose, bench.session().pose()) < 5e-3);
+    assert_eq!(bench.session().undo_name(), Some("switch to IK"));
+    assert!(!bench.shows(Role::Slider, "Elbow bend"));
+}
+
+#[test]
+fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
+    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles)]);
+    let before = bench.hand();
+    let rail = bench.rect(Role::Slider, "Hand x");
+    bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
+    assert_eq!(bits(bench.hand()), bits(before));
+    let cursor = bench.cursor_place();
+    bench.drag_and_drop(LEFT, cursor, cursor + vec2(40.0, 0.0));
+    assert_eq!(bits(bench.hand()), bits(before));
+}
+
+#[test]
+fn between_fk_and_ik_the_arm_is_between_its_poses() {
+    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles), Action::SetBend(0.5)]);
+    let angles = bench.session().pose().elbow_angle();
+    bench.enter("IK weight", "1");
+    let hand = bench.session().pose().elbow_angle();
+    bench.enter("IK weight", "0.5");
+    let between = bench.session().pose().elbow_angle();
+    assert!((between - 0.5 * (angles + hand)).abs() < 1e-4);
+    assert!(bench.says("Arm · 50 % IK") && bench.says("Between FK and IK"));
+    bench.enter("IK weight", "3");
+    assert!(bench.says("The IK weight must be from 0 to 1, not 3"));
+    assert_eq!(bench.session().arm().weight, 0.5);
+}
+
+#[test]
+fn rings_turn_the_shoulder_and_bend_the_elbow() {
+    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles), Action::SetShoulder(Vec3::ZERO)]);
+    bench.apply([Action::SetBend(0.8)]);
+    for grip in [Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
+        let ring = bench.session().arm_ring(grip).expect("a ring");
+        let centre = bench.place(ring.centre);
+        let before = *bench.session().arm();
+        // The ring is as large on screen wherever it is: around its middle there are places on it.
+        let around = (0..360).map(|step| {
+            let angle = (step as f32).to_radians();
+            centre + vec2(angle.cos(), angle.sin()) * 1.0
+        });
+        let held = around
+            .clone()
+            .flat_map(|at| (20..60).map(move |radius| centre + (at - centre) * radius as f32));
+        let mut taken = false;
+        for at in held.step_by(53) {
+            bench.move_to(at);
+            bench.press(LEFT);
+            taken = bench.session().drag().is_some_and(|drag| drag.grip() == grip);
+            if taken {
+                bench.move_to(at + vec2(9.0, 7.0));
+                bench.move_to(at + vec2(18.0, 14.0));
+                bench.release(LEFT);
+                break;
+            }
+            bench.release(LEFT);
+        }
+        assert!(taken, "{grip:?} is nowhere");
+        let (now, was) = (bench.session().arm().fk, before.fk);
+        let changed = [
+            now.shoulder.x != was.shoulder.x,
+            now.shoulder.y != was.shoulder.y,
+            now.shoulder.z != was.shoulder.z,
+            now.bend != was.bend,
+        ];
+        let expected =
+            [false, grip == Grip::Shoulder(1), grip == Grip::Shoulder(2), grip == Grip::Bend];
+        assert_eq!(changed, expected, "{grip:?}");
+        bench.apply([Action::Undo]);
+        assert_eq!(bench.session().arm().fk, was);
+    }
+}
+
+#[test]
+fn a_pinned_hand_stays_when_the_root_moves() {
+    let mut bench = Bench::new();
+    let before = bench.session().arm().cursor_world();
+    bench.click(Role::CheckBox, "Pinned to the world");
+    bench.enter("Root x", "80");
+    bench.enter("Root y", "-30.5");
+    assert_eq!(bits(bench.session().arm().cursor_world()), bits(before));
+    let (arm, pose) = (bench.session().arm(), bench.session().pose());
+    assert!((arm.root + pose.hand).distance(before) < 2e-4);
+    bench.enter("Hand z", "10");
+    assert_eq!(bench.session().arm().cursor_world().z, 10.0, "it is set in the world");
+    let pose = *bench.session().pose();
+    bench.click(Role::CheckBox, "Pinned to the world");
+    assert!(apart(&pose, bench.session().pose()) < 1e-3);
+    let cursor = bench.cursor_place();
+    bench.apply([Action::PinHand(true)]);
+    bench.drag_and_drop(LEFT, cursor, cursor + vec2(-30.0, 20.0));
+    assert!(bench.cursor_place().distance(cursor + vec2(-30.0, 20.0)) < 0.5, "it can be dragged");
+}
+
+#[test]
+fn the_elbow_is_measured_from_elsewhere_and_stays() {
+    let mut bench = Bench::after([Action::SetElbowSpin(0.4)]);
+    let pose = *bench.session().pose();
+    for (name, swivel) in [
+        ("Pole", Swivel::Pole),
+        ("Stereographic", Swivel::Stereographic),
+        ("Transport", Swivel::Transport),
+        ("Limb", Swivel::Limb),
+    ] {
+        pick(&mut bench, "Measured from", name);
+        assert_eq!(bench.session().arm().swivel, swivel);
+        assert!(apart(&pose, bench.session().pose()) < 5e-3, "{name}");
+        assert_eq!(bench.shows(Role::Slider, "Pole x"), swivel == Swivel::Pole);
+        assert_eq!(bench.session().undo_name(), Some("change swivel"));
+    }
+}
+
+#[test]
+fn the_pole_is_dragged_in_the_view_and_taken_back() {
+    let mut bench = Bench::after([Action::SetSwivel(Swivel::Pole)]);
+    let (before, elbow) = (bench.session().arm().pole, bench.session().pose().elbow);
+    let at = pole_place(&bench);
+    bench.drag(LEFT, at, at + vec2(60.0, 90.0));
+    assert!(bench.says("Pole freely"));
+    assert!(pole_place(&bench).distance(at + vec2(60.0, 90.0)) < 0.5, "it is under the pointer");
+    assert!(bench.session().pose().elbow.distance(elbow) > 5.0, "the elbow follows");
+    bench.key(egui::Key::Escape);
+    assert_eq!(bits(bench.session().arm().pole), bits(before));
+    bench.release(LEFT);
+    bench.drag_and_drop(LEFT, at, at + vec2(-40.0, 20.0));
+    assert_eq!(bench.session().undo_name(), Some("move pole"));
+    bench.apply([Action::Undo]);
+    assert_eq!(bits(bench.session().arm().pole), bits(before));
+    bench.enter("Pole y", "123.5");
+    assert_eq!(bench.session().arm().pole.y, 123.5);
+}
+
+#[test]
+fn the_four_references_stand_beside_each_other() {
+    let mut bench = Bench::after([Action::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
+    for name in ["Stereographic", "Transport", "Holonomy"] {
+        assert!(bench.says(name), "{name}");
+    }
+    assert!(bench.says("300.00"), "the gain of the limb's, straight above");
+    for (name, layer) in [("As ghosts", Layer::References), ("Globe of gains", Layer::Globe)] {
+        bench.click(Role::CheckBox, name);
+        assert!(bench.session().shown().display.shows(layer));
+    }
+    bench.apply([Action::SetHand(Vec3::X * 300.0), Action::StartJourney]);
+    for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
+        bench.apply([Action::SetHand(hand * 300.0)]);
+    }
+    assert!(bench.says("+90.0°"), "an octant's solid angle");
+    bench.click(Role::Button, "Start here");
+    assert!(!bench.says("+90.0°"));
+}
+
+#[test]
+fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
+    let mut bench = Bench::new();
+    assert!(!bench.shows(Role::Slider, "Softness"));
+    bench.click(Role::Button, "Soft limits");
+    bench.enter("Softness", "0.25");
+    bench.enter("Stretch", "1.5");
+    bench.enter("Smallest elbow angle", "20");
+    let softening = bench.session().arm().softening;
+    assert_eq!((softening.softness(), softening.max_stretch()), (0.25, 1.5));
+    assert!((softening.min_elbow_angle().to_degrees() - 20.0).abs() < 1e-4);
+    bench.enter("Softness", "7");
+    assert!(bench.session().arm().softening.softness() < 1.0, "it is brought within");
+    bench.click(Role::Button, "Soft limits");
+    bench.click(Role::Button, "Hand orientation");
+    bench.enter("Hand turn x", "270");
+    assert!(bench.says("270.0°"), "the forearm rolls by all of it");
+    bench.click(Role::RadioButton, "Keep in world");
+    assert_eq!(bench.session().arm().wrist.space, Space::World);
+}
+
+#[test]
+fn k_keys_what_leads() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([Action::PinHand(true)]);
+    bench.key(egui::Key::K);
+    let keyed = |bench: &Bench| -> Vec<Channel> {
+        bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
+    };
+    assert_eq!(keyed(&bench), [Channel::ElbowSpin, Channel::Pin]);
+    bench.apply([Action::Undo, Action::SwitchTo(Lead::Angles)]);
+    bench.key(egui::Key::K);
+    assert_eq!(keyed(&bench), [Channel::Weight, Channel::Shoulder, Channel::Bend]);
+}
+
+#[test]
+fn the_panels_of_a_measured_and_of_a_led_arm_look_as_they_did() {
+    let mut results = SnapshotResults::new();
+    for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
+        let mut bench = Bench::after([Action::SetTheme(theme), Action::SetSwivel(Swivel::Pole)]);
+        let options = SnapshotOptions::new();
+        results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
+        bench.apply([Action::SwitchTo(Lead::Angles)]);
+        results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));
+    }
+}
