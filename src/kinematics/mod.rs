@@ -5,6 +5,7 @@ pub mod euler;
 pub mod fk;
 pub mod follow;
 pub mod ik;
+pub mod job;
 pub mod reach;
 pub mod skeleton;
 pub mod solve;

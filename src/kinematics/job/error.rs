@@ -1,0 +1,96 @@
+use glam::{Affine3A, DVec3};
+use thiserror::Error;
+
+use super::{Softening, TwoBoneJob};
+
+/// A job that cannot be done.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum JobError {
+    /// A matrix or a vector has a number that is infinite or not a number.
+    #[error("{field} is not finite; each of its numbers must be")]
+    NotFinite {
+        /// The field of [`TwoBoneJob`].
+        field: &'static str,
+    },
+    /// A joint is scaled unevenly.
+    #[error(
+        "{field} has axes of length {}, {} and {}; they must be equal to one in a thousand",
+        .lengths[0], .lengths[1], .lengths[2]
+    )]
+    UnevenAxes {
+        /// The matrix: `"start"`, `"middle"` or `"end"`.
+        field: &'static str,
+        /// Of its three columns.
+        lengths: [f32; 3],
+    },
+    /// A joint is sheared.
+    #[error(
+        "{field} has axes that are not perpendicular: the cosine between two is {cosine}; it must be \
+         from -0.001 to 0.001"
+    )]
+    SkewAxes {
+        /// The matrix: `"start"`, `"middle"` or `"end"`.
+        field: &'static str,
+        /// Of the angle between the two axes that are farthest from perpendicular.
+        cosine: f32,
+    },
+    /// A number is outside its range.
+    #[error("{field} is {value}; it must be {range}")]
+    OutOfRange {
+        /// `"twist"`, `"softness"` or `"weight"`.
+        field: &'static str,
+        /// What was given.
+        value: f32,
+        /// What would be right.
+        range: &'static str,
+    },
+}
+
+impl TwoBoneJob {
+    pub(super) fn checked(&self) -> Result<Softening, JobError> {
+        let joints = [("start", self.start), ("middle", self.middle), ("end", self.end)];
+        for (field, joint) in joints {
+            check_axes(field, joint)?;
+        }
+        let vectors = [("target", self.target), ("pole", self.pole), ("hinge", self.hinge)];
+        if let Some((field, _)) = vectors.into_iter().find(|(_, vector)| !vector.is_finite()) {
+            return Err(JobError::NotFinite { field });
+        }
+        if !self.twist.is_finite() {
+            return Err(out_of_range("twist", self.twist, "a finite number"));
+        }
+        if !(0.0..=1.0).contains(&self.weight) {
+            return Err(out_of_range("weight", self.weight, "from 0 to 1"));
+        }
+        Softening::new(self.softness, 1.0, 0.0)
+            .map_err(|error| out_of_range(error.field, error.value, error.range))
+    }
+}
+
+fn out_of_range(field: &'static str, value: f32, range: &'static str) -> JobError {
+    JobError::OutOfRange { field, value, range }
+}
+
+/// Refuses all that is not a rotation, a scale that is the same along each axis (or 0) and perhaps a
+/// mirror.
+fn check_axes(field: &'static str, joint: Affine3A) -> Result<(), JobError> {
+    const DIFFERENT: f64 = 1e-3;
+    if !joint.is_finite() {
+        return Err(JobError::NotFinite { field });
+    }
+    let axes = joint.matrix3.as_dmat3();
+    let lengths = [axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length()];
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let shortest = lengths.into_iter().fold(longest, f64::min);
+    if longest - shortest > DIFFERENT * longest {
+        let lengths = lengths.map(|length| length.min(f32::MAX.into()) as f32);
+        return Err(JobError::UnevenAxes { field, lengths });
+    }
+    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize_or_zero);
+    let cosines = [x.dot(y), y.dot(z), z.dot(x)];
+    let skewest = cosines.into_iter().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+    if skewest.abs() > DIFFERENT {
+        return Err(JobError::SkewAxes { field, cosine: skewest as f32 });
+    }
+    Ok(())
+}

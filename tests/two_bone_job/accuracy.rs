@@ -1,0 +1,52 @@
+//! How exactly the hand arrives.
+
+use glam::Vec3;
+use ik_arm::kinematics::job::TwoBoneJob;
+use ik_arm::kinematics::two_bone::Reach;
+use proptest::prelude::*;
+
+use crate::rigs::Random;
+use crate::skeleton::*;
+
+#[test]
+fn the_hand_is_within_a_millionth_of_the_chain_at_103_000_random_targets() {
+    let (mut random, mut worst) = (Random(1), 0.0_f64);
+    for _ in 0..103_000 {
+        let skeleton = Skeleton::random(&mut random);
+        let direction = random.direction().as_dvec3();
+        let target = skeleton.point_in_reach(direction, random.within(0.0..1.0).into());
+        let job = TwoBoneJob {
+            pole: random.vector(1.0),
+            hinge: if random.chance(0.2) { Vec3::ZERO } else { random.vector(1.0) },
+            twist: random.within(-4.0..4.0),
+            ..skeleton.job(target)
+        };
+        let correction = run(job);
+        assert_eq!(correction.reach, Reach::Reached, "{correction:?}");
+        let [_, _, hand] = skeleton.turned(&correction).points();
+        worst = worst.max(hand.distance(target) / skeleton.length());
+    }
+    println!("worst hand error: {worst:e} of the chain's length");
+    assert!(worst <= EXACT, "{worst:e}");
+}
+
+#[test]
+fn within_a_hair_of_its_limits_a_hand_that_is_reached_is_there() {
+    let (mut random, mut worst, mut reached) = (Random(2), 0.0_f64, 0);
+    for _ in 0..50_000 {
+        let skeleton = Skeleton::random(&mut random);
+        let share = if random.chance(0.5) { 0.0 } else { 1.0 };
+        let share = share + f64::from(random.within(-2e-6..2e-6));
+        let direction = random.direction().as_dvec3();
+        let target = skeleton.point_in_reach(direction, share);
+        let job = TwoBoneJob { pole: random.vector(1.0), ..skeleton.job(target) };
+        let correction = run(job);
+        let [_, _, hand] = skeleton.turned(&correction).points();
+        if correction.reach == Reach::Reached {
+            reached += 1;
+            worst = worst.max(hand.distance(target) / skeleton.length());
+        }
+    }
+    println!("reached: {reached}, worst hand error: {worst:e} of the chain's length");
+    assert!(reached > 10_000 && worst <= EXACT, "{reached}, {worst:e}");
+}

@@ -1,0 +1,115 @@
+//! What is refused, and what is only just not.
+
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use ik_arm::kinematics::job::{JobError, TwoBoneJob};
+use ik_arm::kinematics::two_bone::Reach;
+use proptest::prelude::*;
+
+use crate::rigs::Random;
+use crate::skeleton::*;
+
+#[test]
+fn a_joint_whose_own_scale_mirrors_one_axis_is_turned_before_it() {
+    let mut random = Random(3);
+    for _ in 0..500 {
+        let mut skeleton = Skeleton::random(&mut random);
+        for local in [&mut skeleton.start, &mut skeleton.middle] {
+            let signs = random.vector(1.0).as_dvec3().map(f64::signum);
+            local.scale = signs * local.scale.x.abs();
+        }
+        let direction = random.direction().as_dvec3();
+        let target = skeleton.point_in_reach(direction, 0.5);
+        let job = TwoBoneJob { pole: random.vector(1.0), ..skeleton.job(target) };
+        let scales = [skeleton.start.scale, skeleton.middle.scale].map(DVec3::as_vec3);
+        is_at(&skeleton, &run(job).before_scales(scales[0], scales[1]), target);
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_by_name() {
+    let job = Skeleton::square().job(DVec3::X);
+    let scaled = |x: f32, y: f32, z: f32| Affine3A::from_scale(Vec3::new(x, y, z));
+    let sheared = |by: f64| {
+        let axes = DMat3::from_cols(DVec3::X, DVec3::new(by, 1.0, 0.0).normalize(), DVec3::Z);
+        Affine3A::from_mat3(axes.as_mat3())
+    };
+    let said = |job: TwoBoneJob| job.run().expect_err("refused").to_string();
+
+    let uneven = [scaled(1.0, 1.0, 1.01), scaled(0.0, 1.0, 1.0), scaled(2.0, -1.0, 2.0)];
+    for start in uneven {
+        let error = TwoBoneJob { start, ..job }.run();
+        assert!(matches!(error, Err(JobError::UnevenAxes { field: "start", .. })), "{error:?}");
+    }
+    assert!(TwoBoneJob { start: scaled(1.0, 1.0, 1.0009), ..job }.run().is_ok());
+    assert!(TwoBoneJob { middle: sheared(0.0009), ..job }.run().is_ok());
+    assert_eq!(
+        said(TwoBoneJob { middle: scaled(1.0, 2.0, 1.0), ..job }),
+        "middle has axes of length 1, 2 and 1; they must be equal to one in a thousand"
+    );
+    assert_eq!(
+        said(TwoBoneJob { end: sheared(-1.0), ..job }),
+        "end has axes that are not perpendicular: the cosine between two is -0.70710677; it must \
+         be from -0.001 to 0.001"
+    );
+
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let vector = Vec3::new(0.0, bad, 0.0);
+        let joint = Affine3A::from_translation(vector);
+        let fields = [
+            ("start", TwoBoneJob { start: joint, ..job }),
+            ("middle", TwoBoneJob { middle: Affine3A::from_scale(vector), ..job }),
+            ("end", TwoBoneJob { end: joint, ..job }),
+            ("target", TwoBoneJob { target: vector, ..job }),
+            ("pole", TwoBoneJob { pole: vector, ..job }),
+            ("hinge", TwoBoneJob { hinge: vector, ..job }),
+        ];
+        for (field, job) in fields {
+            assert_eq!(job.run(), Err(JobError::NotFinite { field }));
+        }
+        assert!(said(TwoBoneJob { twist: bad, ..job }).ends_with("it must be a finite number"));
+    }
+    assert_eq!(
+        said(TwoBoneJob { softness: 1.0, ..job }),
+        "softness is 1; it must be from 0 to less than 1"
+    );
+    for weight in [-0.1, 1.1] {
+        let expected = format!("weight is {weight}; it must be from 0 to 1");
+        assert_eq!(said(TwoBoneJob { weight, ..job }), expected);
+    }
+}
+
+#[test]
+fn what_is_a_little_uneven_is_exact_in_a_parent_and_not_called_reached_in_a_joint() {
+    let target = DVec3::new(0.2, 0.9, 0.8);
+    let uneven = DVec3::new(1.0, 1.0009, 1.0);
+    let parent = DAffine3::from_scale(uneven);
+    let turned = |at: DVec3| Local {
+        rotation: DQuat::from_euler(glam::EulerRot::XYZ, 0.5, 0.9, -0.4),
+        ..Local::at(at)
+    };
+    let own =
+        Skeleton { start: turned(DVec3::ZERO), middle: turned(DVec3::Y), ..Skeleton::square() };
+    let skeleton = Skeleton { parent, ..own };
+    is_at(&skeleton, &run(skeleton.job(target)), target);
+
+    let skeleton = Skeleton { middle: Local { scale: uneven, ..own.middle }, ..own };
+    let correction = run(skeleton.job(target));
+    assert_ne!(correction.reach, Reach::Reached);
+    assert!(correction.hand_error > 1e-6 && correction.hand_error < 1e-3);
+}
+
+#[test]
+fn a_uniform_scale_in_pieces_is_not_too_uneven() {
+    // What products of rotations and scales make of a matrix in f32 is far from one in a thousand.
+    let step = Affine3A::from_scale_rotation_translation(
+        Vec3::splat(1.01),
+        Quat::from_axis_angle(Vec3::new(1.0, 2.0, 3.0).normalize(), 1.0),
+        Vec3::X * 0.01,
+    );
+    let start = (0..100).fold(Affine3A::IDENTITY, |parent, _| parent * step);
+    let middle = start * Affine3A::from_translation(Vec3::Y);
+    let end = middle * Affine3A::from_translation(Vec3::X);
+    let target = start.transform_point3(Vec3::new(0.2, 0.7, 0.9));
+    let correction = run(TwoBoneJob::new(start, middle, end, target));
+    assert_eq!(correction.reach, Reach::Reached);
+}
