@@ -3,7 +3,6 @@
 use glam::Vec3;
 use ik_arm::kinematics::job::TwoBoneJob;
 use ik_arm::kinematics::two_bone::Reach;
-use proptest::prelude::*;
 
 use crate::rigs::Random;
 use crate::skeleton::*;

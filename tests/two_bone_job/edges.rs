@@ -3,7 +3,6 @@
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use ik_arm::kinematics::job::{JobError, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
-use proptest::prelude::*;
 
 use crate::rigs::Random;
 use crate::skeleton::*;
