@@ -18,12 +18,16 @@ const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     lead::switch(ui, session, actions);
-    ui.add_space(6.0);
+    ui.add_space(2.0);
     if session.arm().weight < 1.0 {
         row::section(ui, "Joint angles", |ui| lead::angles(ui, session, actions));
     }
-    row::section(ui, "Hand", |ui| hand(ui, session, actions));
-    row::section(ui, "Elbow", |ui| elbow::ui(ui, session, actions));
+    let mut aside = Vec::new();
+    let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
+    row::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
+    let reference = |ui: &mut Ui| elbow::reference(ui, session, &mut aside);
+    row::section_with(ui, "Elbow", reference, |ui| elbow::ui(ui, session, actions));
+    actions.append(&mut aside);
     row::section(ui, "Root", |ui| root(ui, session, actions));
     row::section(ui, "Lengths", |ui| lengths(ui, session, actions));
     row::folded_section(ui, "Soft limits", |ui| limits::ui(ui, session, actions));
@@ -55,7 +59,10 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             pinned.show(ui, session, actions, Action::SetPin);
         }
     }
-    let mut pinned = arm.is_pinned();
+}
+
+fn pin(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut pinned = session.arm().is_pinned();
     let check = ui.checkbox(&mut pinned, "Pinned to the world").on_hover_text(
         "The hand stays where it is when the Root moves, as on the edge of a table; else it goes \
          with the Root",

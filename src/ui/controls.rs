@@ -9,17 +9,19 @@ use crate::document::{Layer, RigKind};
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    ui.add_space(8.0);
+    ui.add_space(6.0);
     rig(ui, session, actions);
-    ui.add_space(4.0);
+    ui.add_space(2.0);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.add_space(4.0);
+        ui.add_space(2.0);
         match session.rig() {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton(ui, session, actions),
         }
-        row::section(ui, "Guides", |ui| layers(ui, session, guides(session), actions));
-        row::section(ui, "Display", |ui| layers(ui, session, &Layer::SURROUNDINGS, actions));
+        row::section(ui, "Guides", |ui| layers(ui, session, 2, guides(session), actions));
+        let hand = (session.rig() == RigKind::Arm).then_some(Layer::Hand);
+        let surroundings: Vec<_> = Layer::SURROUNDINGS.into_iter().chain(hand).collect();
+        row::section(ui, "Display", |ui| layers(ui, session, 3, &surroundings, actions));
         resets(ui, session, actions);
         ui.add_space(8.0);
     });
@@ -80,20 +82,9 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     place.show(ui, session, actions, Action::SetTranslation);
 }
 
-/// The paper's, then what shows more.
-const ARM_GUIDES: [Layer; 7] = [
-    Layer::Cursor,
-    Layer::Pointer,
-    Layer::InnerLimit,
-    Layer::OuterLimit,
-    Layer::Hand,
-    Layer::Globe,
-    Layer::References,
-];
-
 fn guides(session: &Session) -> &'static [Layer] {
     match session.rig() {
-        RigKind::Arm => &ARM_GUIDES,
+        RigKind::Arm => &Layer::GUIDES,
         RigKind::Skeleton if session.skeleton().slither.is_some() => {
             &[Layer::Cursor, Layer::Pointer]
         }
@@ -101,12 +92,20 @@ fn guides(session: &Session) -> &'static [Layer] {
     }
 }
 
-fn layers(ui: &mut Ui, session: &Session, layers: &[Layer], actions: &mut Vec<Action>) {
-    ui.columns(2, |columns| {
+/// In so many columns.
+fn layers(
+    ui: &mut Ui,
+    session: &Session,
+    count: usize,
+    layers: &[Layer],
+    actions: &mut Vec<Action>,
+) {
+    ui.columns(count, |columns| {
         for (index, layer) in layers.iter().enumerate() {
             let (name, tooltip) = describe(session.rig(), *layer);
             let mut shown = session.shown().display.shows(*layer);
-            if columns[index % 2].checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
+            let column = &mut columns[index % count];
+            if column.checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
                 actions.push(Action::Show(*layer, shown));
             }
         }

@@ -1,13 +1,12 @@
-//! Which way the elbow points: what its spin is measured from, and how well that goes here.
+//! Which way the elbow points: its spin, and what that is measured from.
 
 use core::f32::consts::TAU;
 
-use egui::{ComboBox, RichText, Ui};
+use egui::{ComboBox, Label, RichText, Ui};
 
 use super::arm::ANGLES_LEAD;
 use super::point::Point;
 use super::slider::Slider;
-use super::{row, style};
 use crate::document::{Arm, Swivel};
 use crate::session::{Action, Session};
 
@@ -34,7 +33,6 @@ pub(super) fn describe(swivel: Swivel) -> &'static str {
 }
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    reference(ui, session, actions);
     let arm = session.arm();
     let slider = Slider {
         name: "Elbow spin",
@@ -55,26 +53,25 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     if arm.swivel == Swivel::Pole {
         pole(ui, session, actions);
     }
-    gain(ui, session);
 }
 
-fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+/// What the spin is measured from, to choose.
+pub(super) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let chosen = session.arm().swivel;
-    row::pair(ui, "Measured from", |ui| {
-        let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
-        let response = combo.show_ui(ui, |ui| {
-            for swivel in Swivel::ALL {
-                let item = ui.selectable_label(swivel == chosen, swivel.name());
-                let item = item.on_hover_text(describe(swivel));
-                if item.clicked() && swivel != chosen {
-                    actions.push(Action::SetSwivel(swivel));
-                }
+    let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
+    let response = combo.show_ui(ui, |ui| {
+        for swivel in Swivel::ALL {
+            let item = ui.selectable_label(swivel == chosen, swivel.name());
+            let item = item.on_hover_text(describe(swivel));
+            if item.clicked() && swivel != chosen {
+                actions.push(Action::SetSwivel(swivel));
             }
-        });
-        let response = response.response;
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Measured from"));
-        response.on_hover_text(describe(chosen));
+        }
     });
+    let response = response.response;
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Measured from"));
+    response.on_hover_text(format!("What the spin is measured from. {}", describe(chosen)));
+    ui.add(Label::new(RichText::new("from").weak()).selectable(false));
 }
 
 fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -89,22 +86,6 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         disabled: None,
     };
     pole.show(ui, session, actions, Action::SetPole);
-}
-
-/// How far the elbow turns for the Pointer, here.
-fn gain(ui: &mut Ui, session: &Session) {
-    let gain = session.arm().reference().gain(session.pose().facing);
-    row::pair(ui, "Gain", |ui| {
-        let value = RichText::new(gain_in_words(gain)).monospace();
-        let value = match gain {
-            calm if calm < 3.0 => value,
-            _ => value.color(style::accent(ui)),
-        };
-        ui.label(value).on_hover_text(
-            "How far the elbow is turned, at most, for every degree that the Pointer turns here. \
-             Without end where the reference is singular: there the elbow flips",
-        );
-    });
 }
 
 /// As in "0.47" or "∞".

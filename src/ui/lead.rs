@@ -1,11 +1,14 @@
 //! What poses the arm: the hand (IK), the joints' own angles (FK), or something between.
 
-use egui::Ui;
+use egui::{Ui, vec2};
 use glam::Vec3;
 
 use super::slider::Slider;
 use super::{point, row, style};
 use crate::session::{Action, Lead, Session};
+
+/// Of each of the two buttons.
+const WIDTH: f32 = 33.0;
 
 /// IK or FK, and how much of each.
 pub(super) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -19,18 +22,6 @@ pub(super) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) 
             "The joints' own angles lead, and place the hand. The pose stays",
         ),
     ];
-    ui.columns(2, |columns| {
-        for (column, (lead, name, whole, tooltip)) in columns.iter_mut().zip(leads) {
-            let chosen = weight == whole;
-            let layout = egui::Layout::top_down_justified(egui::Align::Center);
-            column.with_layout(layout, |ui| {
-                let button = egui::Button::selectable(chosen, name).frame_when_inactive(true);
-                if ui.add(button).on_hover_text(tooltip).clicked() && !chosen {
-                    actions.push(Action::SwitchTo(lead));
-                }
-            });
-        }
-    });
     let blend = Slider {
         name: "IK weight",
         label: "IK weight",
@@ -44,7 +35,19 @@ pub(super) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) 
         step: 0.1,
         disabled: None,
     };
-    blend.show(ui, super::is_sliding(session), actions, Action::SetWeight);
+    let is_sliding = super::is_sliding(session);
+    blend.show_after(ui, is_sliding, actions, Action::SetWeight, |ui, actions| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (lead, name, whole, tooltip) in leads {
+            let chosen = weight == whole;
+            let button = egui::Button::selectable(chosen, name).frame_when_inactive(true);
+            let button = button.min_size(vec2(WIDTH, 0.0));
+            if ui.add(button).on_hover_text(tooltip).clicked() && !chosen {
+                actions.push(Action::SwitchTo(lead));
+            }
+        }
+        ui.spacing_mut().item_spacing.x = 8.0;
+    });
 }
 
 /// The shoulder's three and the elbow's one.

@@ -183,7 +183,12 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     }
     ui.separator();
-    for (layer, name) in [(Layer::Trail, "Motion trail"), (Layer::OnionSkins, "Onion skins")] {
+    let mut layers = vec![(Layer::Trail, "Motion trail"), (Layer::OnionSkins, "Onion skins")];
+    if session.rig() == RigKind::Arm {
+        layers.push((Layer::Globe, "Singularity globe"));
+        layers.push((Layer::References, "Four swivel references"));
+    }
+    for (layer, name) in layers {
         let mut shown = session.shown().display.shows(layer);
         if ui.checkbox(&mut shown, name).changed() {
             actions.push(Action::Show(layer, shown));

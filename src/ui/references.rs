@@ -32,8 +32,11 @@ fn table(ui: &mut Ui, arm: &Arm, carried: Carried) {
     let own = arm.solve().pose;
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
-        for heading in ["Measured from", "Elbow", "Gain"] {
-            ui.label(RichText::new(heading).weak());
+        ui.label(RichText::new("Measured from").weak());
+        for heading in ["Elbow", "Gain"] {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(heading).weak());
+            });
         }
         ui.end_row();
         for swivel in Swivel::ALL {

@@ -2,7 +2,8 @@
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Response, Ui, WidgetText,
+    Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Rect, Response, Ui, UiBuilder,
+    WidgetText,
 };
 
 use super::number::Number;
@@ -12,9 +13,29 @@ use crate::session::{Action, Session};
 /// Three of them stand beside a name in the narrowest panel.
 const FIELD_WIDTH: f32 = 52.0;
 
+/// Below a section.
+const SPACE: f32 = 2.0;
+
 /// A section that can be folded; whether it is, survives a restart.
 pub(super) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     named_section(ui, title, title, contents);
+}
+
+/// A section with something of its own at the right of its title.
+pub(super) fn section_with(
+    ui: &mut Ui,
+    title: &str,
+    aside: impl FnOnce(&mut Ui),
+    contents: impl FnOnce(&mut Ui),
+) {
+    let heading = cut(ui, title);
+    let header = CollapsingHeader::new(heading).id_salt(title).default_open(true);
+    let shown = header.show_unindented(ui, contents);
+    let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), shown.header_response.rect.y_range());
+    let right = Layout::right_to_left(Align::Center);
+    // Beside what is there: it takes no room.
+    aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
+    ui.add_space(SPACE);
 }
 
 /// A section that is folded at first.
@@ -30,7 +51,7 @@ pub(super) fn named_section(ui: &mut Ui, id: &str, title: &str, contents: impl F
 fn show_section(ui: &mut Ui, id: &str, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     let heading = cut(ui, title);
     CollapsingHeader::new(heading).id_salt(id).default_open(open).show_unindented(ui, contents);
-    ui.add_space(3.0);
+    ui.add_space(SPACE);
 }
 
 /// A title in one line no wider than the panel, whatever a joint is called: a header would make the

@@ -48,31 +48,38 @@ impl Slider<'_> {
         actions: &mut Vec<Action>,
         set: impl Fn(f32) -> Action,
     ) {
-        let row = ui.add_enabled_ui(self.disabled.is_none(), |ui| {
-            self.row(ui, is_editing, actions, set);
-        });
-        if let Some(why) = self.disabled {
-            row.response.on_disabled_hover_text(why);
-        }
+        let label = |ui: &mut Ui, actions: &mut Vec<Action>| {
+            if self.label(ui).double_clicked() {
+                actions.push(set(self.default));
+            }
+        };
+        self.show_after(ui, is_editing, actions, &set, label);
     }
 
-    fn row(
+    /// As [`Self::show`], with something else where the label is.
+    pub fn show_after(
         &self,
         ui: &mut Ui,
         is_editing: bool,
         actions: &mut Vec<Action>,
         set: impl Fn(f32) -> Action,
+        head: impl FnOnce(&mut Ui, &mut Vec<Action>),
     ) {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 8.0;
-            let label = self.label(ui);
-            let rail = self.rail(ui);
-            self.edit_by_rail(ui, &rail, is_editing, actions, &set);
-            self.number(ui, is_editing, actions, &set);
-            if label.double_clicked() || rail.double_clicked() {
-                actions.push(set(self.default));
-            }
+        let row = ui.add_enabled_ui(self.disabled.is_none(), |ui| {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 8.0;
+                head(ui, actions);
+                let rail = self.rail(ui);
+                self.edit_by_rail(ui, &rail, is_editing, actions, &set);
+                self.number(ui, is_editing, actions, &set);
+                if rail.double_clicked() {
+                    actions.push(set(self.default));
+                }
+            });
         });
+        if let Some(why) = self.disabled {
+            row.response.on_disabled_hover_text(why);
+        }
     }
 
     fn label(&self, ui: &mut Ui) -> Response {

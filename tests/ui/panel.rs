@@ -21,7 +21,7 @@ pub const SLIDERS: [&str; 9] = [
     "Lower length",
 ];
 
-pub const CHECKBOXES: [(&str, Layer); 11] = [
+pub const CHECKBOXES: [(&str, Layer); 12] = [
     ("Cursor", Layer::Cursor),
     ("Pointer", Layer::Pointer),
     ("Inner limit", Layer::InnerLimit),
@@ -33,6 +33,7 @@ pub const CHECKBOXES: [(&str, Layer); 11] = [
     ("Axes", Layer::Axes),
     ("Labels", Layer::Labels),
     ("Shadow", Layer::Shadow),
+    ("Hand", Layer::Hand),
 ];
 
 pub const MENUS: [(&str, &[&str]); 4] = [

@@ -61,7 +61,8 @@ fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
     assert!(bench.shows(Role::Button, "Channel Elbow spin"));
     bench.click(Role::Button, "Key all");
     for channel in Channel::OF_ARM {
-        assert_eq!(times(&bench, channel), [1.5], "{channel:?}");
+        let expected = if channel.shapes(bench.session().arm()) { &[1.5][..] } else { &[] };
+        assert_eq!(times(&bench, channel), expected, "{channel:?}");
     }
 }
 
