@@ -21,7 +21,7 @@
 //!
 //! | module | what it is | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | pure numbers: two bones, their swivel and reach, skeletons, solvers, following a path, splines | |
+//! | [`kinematics`] | pure numbers: two bones, their swivel and reach, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, solvers, following a path, splines | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
 //! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
 //! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out | `document` |
@@ -49,7 +49,8 @@
 //! right. All state that shapes the pose is in the document: pose = f(document, time). A solver's
 //! iteration is an action that edits angles, like any other. Keyed channels have the values of their
 //! keys; one that is edited without a new key is shown as it is edited until the time changes, which
-//! is the only state of a pose that is not saved. Playing writes nothing.
+//! is the only state of a pose that is not saved. Playing writes nothing, and never carries the elbow
+//! along: a transported spin has keys that are measured from the map.
 
 #[cfg(feature = "app")]
 pub mod app;

@@ -9,11 +9,10 @@ use crate::document::{Layer, RigKind};
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    ui.add_space(6.0);
+    ui.add_space(4.0);
     rig(ui, session, actions);
     ui.add_space(2.0);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.add_space(2.0);
         match session.rig() {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton(ui, session, actions),

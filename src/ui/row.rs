@@ -14,7 +14,7 @@ use crate::session::{Action, Session};
 const FIELD_WIDTH: f32 = 52.0;
 
 /// Below a section.
-const SPACE: f32 = 2.0;
+const SPACE: f32 = 1.0;
 
 /// A section that can be folded; whether it is, survives a restart.
 pub(super) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {

@@ -22,6 +22,20 @@ fn pick(bench: &mut Bench, list: &str, item: &str) {
     bench.click(Role::Button, item);
 }
 
+/// Scrolls the panel of a widget until that is in sight.
+fn reveal(bench: &mut Bench, role: Role, name: &str) {
+    for _ in 0..40 {
+        let rect = bench.rect(role, name);
+        if rect.bottom() < bench.viewport().bottom() - 8.0 {
+            return;
+        }
+        bench.move_to(egui::pos2(rect.center().x, bench.viewport().center().y));
+        bench.wheel(-3.0);
+        bench.settle();
+    }
+    panic!("{name} cannot be scrolled to");
+}
+
 fn pole_place(bench: &Bench) -> Pos2 {
     let arm = bench.session().arm();
     bench.place(arm.root + arm.pole)
@@ -189,6 +203,7 @@ fn the_four_references_stand_beside_each_other() {
     }
     assert!(bench.says("300.00"), "the gain of the limb's, straight above");
     for (name, layer) in [("As ghosts", Layer::References), ("Globe of gains", Layer::Globe)] {
+        reveal(&mut bench, Role::CheckBox, name);
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
     }
@@ -197,6 +212,7 @@ fn the_four_references_stand_beside_each_other() {
         bench.apply([Action::SetHand(hand * 300.0)]);
     }
     assert!(bench.says("+90.0°"), "an octant's solid angle");
+    reveal(&mut bench, Role::Button, "Start here");
     bench.click(Role::Button, "Start here");
     assert!(!bench.says("+90.0°"));
 }
@@ -205,7 +221,7 @@ fn the_four_references_stand_beside_each_other() {
 fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     let mut bench = Bench::new();
     assert!(!bench.shows(Role::Slider, "Softness"));
-    bench.click(Role::Button, "Soft limits");
+    bench.click(Role::DisclosureTriangle, "Soft limits");
     bench.enter("Softness", "0.25");
     bench.enter("Stretch", "1.5");
     bench.enter("Smallest elbow angle", "20");
@@ -214,10 +230,12 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     assert!((softening.min_elbow_angle().to_degrees() - 20.0).abs() < 1e-4);
     bench.enter("Softness", "7");
     assert!(bench.session().arm().softening.softness() < 1.0, "it is brought within");
-    bench.click(Role::Button, "Soft limits");
-    bench.click(Role::Button, "Hand orientation");
-    bench.enter("Hand turn x", "270");
-    assert!(bench.says("270.0°"), "the forearm rolls by all of it");
+    bench.click(Role::DisclosureTriangle, "Soft limits");
+    bench.click(Role::DisclosureTriangle, "Hand orientation");
+    for degrees in ["100", "200", "270"] {
+        bench.enter("Hand turn x", degrees);
+    }
+    assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
     bench.click(Role::RadioButton, "Keep in world");
     assert_eq!(bench.session().arm().wrist.space, Space::World);
 }
