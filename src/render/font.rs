@@ -28,7 +28,9 @@ pub(super) struct Rectangle {
 
 impl Font {
     pub const WIDTH: u32 = 512;
-    const LETTERS: core::ops::RangeInclusive<char> = ' '..='~';
+    const ASCII: core::ops::RangeInclusive<char> = ' '..='~';
+    /// What labels have besides.
+    const SIGNS: [char; 3] = ['°', '·', '−'];
     /// Between letters, so that none bleeds into its neighbour.
     const GAP: u32 = 1;
 
@@ -40,7 +42,7 @@ impl Font {
             Self { pixels: Vec::new(), height: 0, font, size: size.into(), glyphs: Vec::new() };
         let mut pen = (Self::GAP, Self::GAP);
         let mut row_height = 0;
-        for letter in Self::LETTERS {
+        for letter in Self::letters() {
             let glyph = drawn.font.glyph_id(letter).with_scale(drawn.size);
             let Some(outline) = drawn.font.outline_glyph(glyph) else {
                 drawn.glyphs.push(None);
@@ -71,6 +73,18 @@ impl Font {
         drawn
     }
 
+    fn letters() -> impl Iterator<Item = char> {
+        Self::ASCII.chain(Self::SIGNS)
+    }
+
+    fn index(letter: char) -> Option<usize> {
+        if Self::ASCII.contains(&letter) {
+            return Some(letter as usize - *Self::ASCII.start() as usize);
+        }
+        let sign = Self::SIGNS.iter().position(|sign| *sign == letter)?;
+        Some(Self::ASCII.count() + sign)
+    }
+
     /// The letters of a text whose baseline starts at `pen`: where each stands, and its source.
     pub fn lay_out(
         &self,
@@ -85,8 +99,7 @@ impl Font {
             last = Some(id);
             let start = pen.round();
             pen.x += scaled.h_advance(id);
-            let index = (letter as usize).checked_sub(*Self::LETTERS.start() as usize)?;
-            let glyph = (*self.glyphs.get(index)?)?;
+            let glyph = (*self.glyphs.get(Self::index(letter)?)?)?;
             let stands = Rectangle { at: start + glyph.from_pen, size: glyph.source.size };
             Some((stands, glyph.source))
         })
@@ -101,9 +114,9 @@ mod tests {
     fn every_letter_of_a_label_is_drawn_inside_the_atlas() {
         for size in [9.0, 14.0, 28.0, 64.0] {
             let font = Font::new(size);
-            let text: String = Font::LETTERS.filter(|letter| *letter != ' ').collect();
+            let text: String = Font::letters().filter(|letter| *letter != ' ').collect();
             let laid: Vec<_> = font.lay_out(&text, Vec2::ZERO).collect();
-            assert_eq!(laid.len(), text.len());
+            assert_eq!(laid.len(), text.chars().count());
             for (_, source) in laid {
                 let end = source.at + source.size;
                 assert!(end.x <= Font::WIDTH as f32 && end.y <= font.height as f32);

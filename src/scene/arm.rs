@@ -44,7 +44,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
         add_pole(scene, &rig, arm.root + arm.pole, thickness, display);
     }
     if display.shows(Layer::Labels) {
-        add_labels(scene, &rig, thickness);
+        add_labels(scene, &rig, thickness, display.shows(Layer::References));
     }
     if display.shows(Layer::Shadow) {
         add_shadows(scene, &rig, thickness);
@@ -141,13 +141,15 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, cursor: Vec3, thickness: f32) {
     });
 }
 
-fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+/// The elbow says what it is measured from where that is shown.
+fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: bool) {
     let colour = scene.palette.text;
     let named = [
         (Part::Root, SHOULDER_BALL, Side::Below, "Root"),
         (Part::Elbow, ELBOW_BALL, Side::Above, "Elbow"),
         (Part::Hand, HAND_BALL, Side::Below, "Hand"),
     ];
+    let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == Part::Elbow));
     scene.labels.extend(named.map(|(part, radius, side, name)| Label {
         at: rig.origin(part),
         clearance: radius * thickness,

@@ -8,23 +8,22 @@ use crate::rig::ArmRig;
 const LIMB: f32 = 7.0;
 const ELBOW: f32 = 13.0;
 
-/// Elbows that are nearer to each other than this share a label, which would cover each other.
-const APART: f32 = 12.0 * core::f32::consts::PI / 180.0;
+/// Elbows that are nearer to each other than this share a label: two would cover each other.
+const APART: f32 = 30.0 * core::f32::consts::PI / 180.0;
 
-/// Adds the arm as every swivel reference would have it with the same spin, but for its own, thin, and
-/// how far each elbow is from the arm's. `carried` is what transport would measure from.
+/// Adds the arm as every other swivel reference would have it with the same spin, thin, and how far
+/// each elbow is from the arm's. `carried` is what transport would measure from.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, carried: Option<Carried>) {
     if !arm.is_led_by_hand() {
         return;
     }
     let own = arm.solve().pose;
-    let ghosts = Swivel::ALL.into_iter().filter(|swivel| *swivel != arm.swivel).map(|swivel| {
+    let mut ghosts = Swivel::ALL.map(|swivel| {
         let pose = arm.pose_measured_from(swivel, carried);
-        Ghost { swivel, pose, turn: own.elbow_turn_to(&pose) }
+        Ghost { swivel, pose, turn: own.elbow_turn_to(&pose), is_own: swivel == arm.swivel }
     });
-    let mut ghosts: Vec<Ghost> = ghosts.collect();
     ghosts.sort_by(|a, b| a.turn.total_cmp(&b.turn));
-    for ghost in &ghosts {
+    for ghost in ghosts.iter().filter(|ghost| !ghost.is_own) {
         ghost.add_limbs(scene, arm);
     }
     for group in ghosts.chunk_by(|a, b| b.turn - a.turn < APART) {
@@ -37,6 +36,7 @@ struct Ghost {
     pose: Pose,
     /// How far its elbow is turned from the arm's.
     turn: f32,
+    is_own: bool,
 }
 
 impl Ghost {
@@ -51,17 +51,29 @@ impl Ghost {
     }
 }
 
-/// As in "Limb, Stereographic +19°". Beside the arm's own elbow it stands below that one's name.
+/// As in "Stereographic · Limb −17°", where the arm's own has no angle.
 fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
-    let Some(ghost) = group.get(group.len() / 2) else { return };
-    let names: Vec<_> = group.iter().map(|ghost| ghost.swivel.name()).collect();
-    let degrees = (ghost.turn.to_degrees().round()) + 0.0;
-    let is_beside = ghost.turn.abs() < APART;
+    let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
+    let Some(ghost) = shown else { return };
+    let name = |ghost: &Ghost| match ghost.is_own {
+        true => ghost.swivel.name().to_owned(),
+        // A nothing has no sign.
+        false => {
+            let turn = format!("{:+.0}°", ghost.turn.to_degrees().round() + 0.0);
+            format!("{} {}", ghost.swivel.name(), turn.replace('-', "−"))
+        }
+    };
+    let mut names: Vec<_> = group.iter().filter(|ghost| ghost.is_own).map(name).collect();
+    names.extend(group.iter().filter(|ghost| !ghost.is_own).map(name));
+    let (ball, colour) = match ghost.is_own {
+        true => (arm::ELBOW_BALL, scene.palette.text),
+        false => (ELBOW, scene.palette.swivel(ghost.swivel)),
+    };
     scene.labels.push(Label {
         at: arm.root + ghost.pose.elbow,
-        clearance: if is_beside { arm::ELBOW_BALL } else { ELBOW } * ArmRig::thickness(arm.bones),
-        side: if is_beside { Side::Below } else { Side::Above },
-        text: format!("{} {degrees:+.0}°", names.join(", ")),
-        colour: scene.palette.swivel(ghost.swivel),
+        clearance: ball * ArmRig::thickness(arm.bones),
+        side: Side::Above,
+        text: names.join(" · "),
+        colour,
     });
 }
