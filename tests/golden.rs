@@ -6,8 +6,9 @@
 mod pictures;
 
 use glam::Vec3;
-use ik_arm::document::{Arm, AxisView, Camera, Document, Goal, Layer, Theme};
+use ik_arm::document::{Arm, AxisView, Camera, Document, Goal, Layer, Space, Swivel, Theme, Wrist};
 use ik_arm::io::Example;
+use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::solve::{self, Method};
 use ik_arm::render::Picture;
 use ik_arm::scene::{Colour, Scene};
@@ -179,7 +180,9 @@ fn a_limb_of_another_colour_is_noticed() {
         let mut recoloured = scene(&Document::default(), Theme::Dark);
         let colour = limbs(&recoloured)[limb];
         let solids = recoloured.solids.iter_mut().filter(|solid| solid.colour == colour);
-        assert_eq!(solids.map(|solid| solid.colour = Colour([90, 160, 90, 255])).count(), 1);
+        let count = solids.map(|solid| solid.colour = Colour([90, 160, 90, 255])).count();
+        // The hand's cuff has the lower limb's.
+        assert_eq!(count, 1 + limb);
         assert!(compare(&draw(&recoloured), &kept("default")).is_err(), "limb {limb}");
     }
 }
@@ -199,4 +202,30 @@ fn a_large_picture_is_the_same_picture() {
         .sum();
     let mean = sum as f64 / f64::from(SIZE.0 * SIZE.1 * 3);
     assert!(mean < 2.5, "the mean differs by {mean}");
+}
+
+fn with(arm: Arm, layers: &[Layer]) -> Document {
+    showing(Document { arm: arm.settled(), ..Document::default() }, layers)
+}
+
+#[test]
+fn the_arm_as_an_animator_has_it() {
+    let pole = Arm { swivel: Swivel::Pole, ..Arm::default() };
+    let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().pinned(true) };
+    let spun = Arm { elbow_spin: 1.0, ..pole };
+    let wrist = Wrist { space: Space::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
+    let turned = Arm { wrist, ..Arm::default() };
+    let angles = Fk { shoulder: Vec3::new(0.3, 0.6, 0.9), bend: 1.3, stretch: 1.0 };
+    let led = Arm { fk: angles, weight: 0.0, ..Arm::default() };
+    let cases: [(&str, Arm, &[Layer]); 5] = [
+        ("pole", pole, &[]),
+        ("pin", pinned, &[]),
+        ("references", spun, &[Layer::References]),
+        ("turned", turned, &[]),
+        ("led", led, &[Layer::Globe]),
+    ];
+    for (name, arm, layers) in cases {
+        check(name, &with(arm, layers), Theme::Dark);
+        check(&format!("{name}-light"), &with(arm, layers), Theme::Light);
+    }
 }

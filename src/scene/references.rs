@@ -9,7 +9,7 @@ const LIMB: f32 = 7.0;
 const ELBOW: f32 = 13.0;
 
 /// Elbows that are nearer to each other than this share a label: two would cover each other.
-const APART: f32 = 30.0 * core::f32::consts::PI / 180.0;
+const APART: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
 /// Adds the arm as every other swivel reference would have it with the same spin, thin, and how far
 /// each elbow is from the arm's. `carried` is what transport would measure from.
