@@ -98,7 +98,7 @@ impl Stereographic {
     }
 
     fn outward(self, w: DVec3) -> Option<DVec3> {
-        let k = (w - self.singular.as_dvec3()).cross(self.up.as_dvec3());
+        let k = (w - unit(self.singular)).cross(unit(self.up));
         k.cross(w).try_normalize()
     }
 }
@@ -137,7 +137,7 @@ impl Reference {
     /// e₀, a unit vector perpendicular to the Pointer. Where the reference is singular, what is
     /// carried decides if there is something, else the Limb frame's +y.
     pub fn outward(self, facing: Facing, last: Option<Carried>) -> Vec3 {
-        let w = facing.direction.as_dvec3();
+        let w = unit(facing.direction);
         let own = match self {
             Self::Limb => Some(facing.limb_frame().y_axis.as_dvec3()),
             Self::Pole(pole) => towards(pole, w),
@@ -164,7 +164,7 @@ impl Reference {
 
     /// g: see the module. Infinite where the reference is singular.
     pub fn gain(self, facing: Facing) -> f32 {
-        let w = facing.direction.as_dvec3();
+        let w = unit(facing.direction);
         let gain = match self {
             Self::Limb => w.y.abs() / w.x.hypot(w.z),
             // Rounding of the Pointer leaves a pole on its line a little beside it.
@@ -174,7 +174,7 @@ impl Reference {
                 pole.dot(w).abs() / pole.cross(w).length()
             }
             Self::Stereographic(map) => {
-                let singular = map.singular.as_dvec3();
+                let singular = unit(map.singular);
                 (w + singular).length() / (w - singular).length()
             }
             Self::Transport => 0.0,
@@ -205,6 +205,12 @@ fn towards(pole: Vec3, w: DVec3) -> Option<DVec3> {
     let pole = pole.as_dvec3().try_normalize()?;
     let aside = w.cross(pole).cross(w);
     (aside.length() > ON_LINE).then(|| aside.normalize())
+}
+
+/// Near R the map's e₀ is a difference of second order: there the length of a direction in f32, off
+/// by one rounding, would turn it.
+fn unit(direction: Vec3) -> DVec3 {
+    direction.as_dvec3().normalize()
 }
 
 fn perpendicular(v: DVec3, w: DVec3) -> Option<DVec3> {

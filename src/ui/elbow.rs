@@ -87,8 +87,3 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     };
     pole.show(ui, session, actions, Action::SetPole);
 }
-
-/// As in "0.47" or "∞".
-pub(super) fn gain_in_words(gain: f32) -> String {
-    if gain < 1e3 { format!("{gain:.2}") } else { "∞".to_owned() }
-}

@@ -9,6 +9,7 @@ use ik_arm::kinematics::two_bone::Pose;
 use ik_arm::session::{Action, Grip, Lead};
 
 use crate::bench::{Bench, LARGE, bits};
+use crate::looks::has_tooltip;
 
 const LEFT: PointerButton = PointerButton::Primary;
 
@@ -238,6 +239,21 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
     bench.click(Role::RadioButton, "Keep in world");
     assert_eq!(bench.session().arm().wrist.space, Space::World);
+}
+
+#[test]
+fn every_control_of_the_posing_has_a_tooltip() {
+    let mut bench = Bench::after([Action::SetSwivel(Swivel::Pole)]);
+    for (role, name) in [
+        (Role::Button, "IK"),
+        (Role::Button, "FK"),
+        (Role::Slider, "IK weight"),
+        (Role::CheckBox, "Pinned to the world"),
+        (Role::ComboBox, "Measured from"),
+        (Role::Slider, "Pole y"),
+    ] {
+        assert!(has_tooltip(&mut bench, role, name), "{name}");
+    }
 }
 
 #[test]
