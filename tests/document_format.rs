@@ -11,7 +11,7 @@ use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, Goal, Keys, Layer, Motion, Path, Quantity, RigKind,
     SkeletonRig, Slither, Space, Swivel, Target, Timeline, Wrist,
 };
-use ik_arm::io::{self, Example, Opened};
+use ik_arm::io::{self, Example, Group, Opened};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
@@ -615,7 +615,11 @@ fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
         assert_eq!(opened.warnings, [], "{}", example.name);
         let again = open(&io::to_json(&opened.document).expect("written"));
         assert_eq!(again.document, opened.document, "{}", example.name);
-        let path = format!("{}/assets/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);
+        let folder = match example.group {
+            Group::Tour => "assets",
+            Group::HardCases => "assets/hard",
+        };
+        let path = format!("{}/{folder}/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);
         assert_eq!(fs::read_to_string(path).expect("named as its file"), example.text);
     }
 }

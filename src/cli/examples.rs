@@ -48,8 +48,9 @@ pub fn run(args: &Args) -> ExitCode {
 fn show(args: &Args) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     let Some(example) = args.name.as_deref().and_then(Example::find) else {
+        let width = Example::ALL.map(|example| example.name.len()).into_iter().max().unwrap_or(0);
         for Example { name, title, sentence, .. } in Example::ALL {
-            writeln!(stdout, "{name:<12} {title}: {sentence}")?;
+            writeln!(stdout, "{name:<width$} {title}: {sentence}")?;
         }
         return Ok(());
     };

@@ -59,7 +59,7 @@ impl Camera {
     /// What a point must be beyond to be seen, as a part of the distance to the target.
     const NEAR: f32 = 0.01;
     /// How near and far the eye can go, from the smallest rig to the largest.
-    const DISTANCES: (f32, f32) = (1e-3, 1e6);
+    const DISTANCES: (f32, f32) = (1e-4, 1e8);
     /// How much depth an orthographic picture has, before and behind the target, in distances.
     const ORTHOGRAPHIC_DEPTH: f32 = 200.0;
     /// Room around what is framed.

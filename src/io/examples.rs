@@ -4,6 +4,7 @@ use super::open::{Opened, parse};
 /// A scene that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
+    pub group: Group,
     /// As its file is called, without its ending.
     pub name: &'static str,
     pub title: &'static str,
@@ -13,52 +14,160 @@ pub struct Example {
     pub text: &'static str,
 }
 
+/// What an example is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// To begin with: what the program can do.
+    Tour,
+    /// Where arms go wrong: a scene for every case.
+    HardCases,
+}
+
 impl Example {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 18] = [
         Self {
+            group: Group::Tour,
             name: "arm",
             title: "Arm",
             sentence: "The arm of the paper, two limbs in closed form.",
             text: include_str!("../../assets/arm.json"),
         },
         Self {
+            group: Group::Tour,
             name: "two-targets",
             title: "Two targets on a Y",
             sentence: "A tree with two branches, each with a target of its own.",
             text: include_str!("../../assets/two-targets.json"),
         },
         Self {
+            group: Group::Tour,
             name: "human",
             title: "Human",
             sentence: "A figure with limited elbows and knees, and targets for hands and feet.",
             text: include_str!("../../assets/human.json"),
         },
         Self {
+            group: Group::Tour,
             name: "snake",
             title: "Snake",
             sentence: "24 joints that follow their head around in waves.",
             text: include_str!("../../assets/snake.json"),
         },
         Self {
+            group: Group::Tour,
             name: "ten-joints",
             title: "Ten-joint chain",
             sentence: "A chain with one target, to watch the solvers at work.",
             text: include_str!("../../assets/ten-joints.json"),
         },
         Self {
+            group: Group::Tour,
             name: "keyframes",
             title: "Keyframes",
             sentence: "An arm whose hand goes along a spline through six keys; press Space to play.",
             text: include_str!("../../assets/keyframes.json"),
         },
         Self {
+            group: Group::Tour,
             name: "degenerate",
             title: "Degenerate cases",
             sentence: "What breaks careless solvers: a bone without length, a target at the root, a \
                        straight chain, targets out of reach, all of it in a mirror.",
             text: include_str!("../../assets/degenerate.json"),
         },
+        Self {
+            group: Group::HardCases,
+            name: "through-the-root",
+            title: "Target through the root",
+            sentence: "The target goes straight through the shoulder: the hand comes no nearer \
+                       than 100 and jumps to the other side; limbs of equal length take the jump \
+                       away.",
+            text: include_str!("../../assets/hard/through-the-root.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "straight-up-and-down",
+            title: "Straight up and down",
+            sentence: "The hand goes around through straight up and straight down, where the \
+                       Limb's elbow does not know its side and jumps; the stereographic swivel \
+                       takes the jumps away.",
+            text: include_str!("../../assets/hard/straight-up-and-down.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "along-the-pole",
+            title: "Along the pole",
+            sentence: "The hand crosses the line to the pole, and the elbow that points at it \
+                       flips over; the stereographic swivel takes the flip away.",
+            text: include_str!("../../assets/hard/along-the-pole.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "exactly-straight",
+            title: "Exactly straight",
+            sentence: "The target is exactly as far away as the arm is long: it is reached, and \
+                       the spin that plays leaves the elbow where it is.",
+            text: include_str!("../../assets/hard/exactly-straight.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "just-past-straight",
+            title: "Just past straight",
+            sentence: "The target leaves the arm's reach and comes back, and the elbow snaps where \
+                       the arm is straight; a softness of 0.1 takes the snap away.",
+            text: include_str!("../../assets/hard/just-past-straight.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "equal-bones-folded",
+            title: "Equal bones folded",
+            sentence: "The target goes through the shoulder of two equal limbs: they fold up \
+                       completely, it is reached all the way, and nothing jumps.",
+            text: include_str!("../../assets/hard/equal-bones-folded.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "thousand-to-one",
+            title: "One bone a thousand times the other",
+            sentence: "A forearm of 0.3 on an upper arm of 300, small as its joints: the hand goes \
+                       once around the elbow's place and is where it is asked to be.",
+            text: include_str!("../../assets/hard/thousand-to-one.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "far-root",
+            title: "Root a million units away",
+            sentence: "The shoulder is a million units away, where places are 1/16 apart: the \
+                       limbs keep their lengths as well as such places can tell.",
+            text: include_str!("../../assets/hard/far-root.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "tiny",
+            title: "Tiny arm",
+            sentence: "An arm a thousandth of a unit long, which moves as the large ones do.",
+            text: include_str!("../../assets/hard/tiny.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "huge",
+            title: "Huge arm",
+            sentence: "An arm a million units long, which moves as the small ones do.",
+            text: include_str!("../../assets/hard/huge.json"),
+        },
+        Self {
+            group: Group::HardCases,
+            name: "mirrored",
+            title: "Mirrored",
+            sentence: "Two bones in a mirror, where turning left is turning right: the hand is at \
+                       its target all the same; press R and Space, and it follows.",
+            text: include_str!("../../assets/hard/mirrored.json"),
+        },
     ];
+
+    pub fn of(group: Group) -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(move |example| example.group == group)
+    }
 
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|example| example.name == name)

@@ -4,7 +4,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::{status, timeline};
 use crate::document::{AxisView, Camera, Channel, Layer, RigKind, Theme};
-use crate::io::Example;
+use crate::io::{Example, Group};
 use crate::session::{Action, Dialog, Navigation, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -234,7 +234,13 @@ pub(super) fn frame_all(session: &Session) -> Action {
 }
 
 fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
-    for example in Example::ALL {
+    examples_of(Group::Tour, ui, actions);
+    ui.separator();
+    ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
+}
+
+fn examples_of(group: Group, ui: &mut Ui, actions: &mut Vec<Action>) {
+    for example in Example::of(group) {
         if ui.button(example.title).on_hover_text(example.sentence).clicked() {
             actions.push(Action::OpenExample(example));
         }

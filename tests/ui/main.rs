@@ -7,6 +7,7 @@ mod arm_posing;
 mod bench;
 mod dialogs;
 mod export;
+mod gallery;
 mod hand;
 mod hand_keys;
 mod history;

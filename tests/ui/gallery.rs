@@ -1,0 +1,17 @@
+//! The hard cases in their menu.
+
+use ik_arm::io::{Example, Group};
+
+use crate::bench::Bench;
+
+#[test]
+fn every_hard_case_opens_from_its_menu_and_says_what_it_shows() {
+    let mut bench = Bench::new();
+    for example in Example::of(Group::HardCases) {
+        bench.choose(&["Examples", "Hard cases", example.title]);
+        let opened = example.open().expect("it opens").document;
+        assert_eq!(bench.session().document(), &opened, "{}", example.title);
+        assert!(bench.says(example.sentence), "{}", example.sentence);
+        assert!(bench.session().has_motion(), "Space plays {}", example.title);
+    }
+}
