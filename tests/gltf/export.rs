@@ -248,8 +248,10 @@ fn the_mesh_is_around_the_bind_pose() {
         let ends: Vec<Vec3> = joints.iter().map(|joint| worlds[*joint].w_axis.truncate()).collect();
         let low = ends.iter().copied().reduce(Vec3::min).expect("a joint");
         let high = ends.iter().copied().reduce(Vec3::max).expect("a joint");
-        let reach = document.skeleton.reach();
-        let room = 0.05 * if document.rig == RigKind::Arm { 1.0 } else { reach };
+        let room = match document.rig {
+            RigKind::Arm => 0.1 * document.arm.bones.outer_limit() * document.metres_per_unit(),
+            RigKind::Skeleton => 0.05 * document.skeleton.reach(),
+        };
         for primitive in glb.json["meshes"][0]["primitives"].as_array().expect("primitives") {
             let accessor = index(&primitive["attributes"]["POSITION"]);
             let positions = glb.rows(&Value::from(accessor));
