@@ -6,6 +6,7 @@ pub mod fk;
 pub mod follow;
 pub mod ik;
 pub mod job;
+pub mod pop;
 pub mod reach;
 pub mod skeleton;
 pub mod solve;

@@ -1,0 +1,238 @@
+//! Pops: steps in which the elbow goes much faster than the cursor, and why.
+//!
+//! With ŵ the Pointer's direction, ê the side that the elbow stands out on, hₑ along and oₑ out, the
+//! elbow is at hₑ ŵ + oₑ ê. T is the least turn from the Pointer before a step (ŵ) to that after it
+//! (ŵ'). What the elbow did in the step has three parts, whose sum it is exactly:
+//!
+//! ```text
+//! turn    T(hₑ ŵ + oₑ ê) − (hₑ ŵ + oₑ ê)                   the Pointer's own turn
+//! bend    (hₑ' − hₑ) ŵ' + (oₑ' − oₑ) · ½ (ê' + T ê)        in the plane of the arm
+//! swing   ½ (oₑ + oₑ') · (ê' − T ê)                        the reference's, about the Pointer
+//! ```
+//!
+//! # What is a spike
+//!
+//! A step in which the elbow goes more than twice as far as it calmly would. Calm is an elbow that
+//! goes as far as the cursor, or as an arm that turns about the shoulder as one piece takes it, which
+//! is σd₁/D times as far:
+//!
+//! ```text
+//! |Δ elbow| / |Δ cursor|  >  2 · max(1, σd₁ / max(D, L/5))
+//! ```
+//!
+//! Twice, because that is what an arm without a pop can need: the sideways part of the bound in
+//! [`ik`](super::ik) is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer
+//! turns (gain g ≤ 1: 45° or more from the Limb's or a pole's line, all of the front of the map), and
+//! the bending of two equal bones stays below 2 up to D = 0.97·L. Nearer to the shoulder than a fifth
+//! of the outer limit the turn itself has a name: there a cursor that goes past turns the whole arm
+//! about.
+//!
+//! Everything is in Root space; lengths share any one unit, angles are radians.
+
+use core::f64::consts::FRAC_PI_2;
+
+use glam::{DVec3, Vec3};
+
+use super::fk::Fk;
+use super::ik::Ik;
+use super::swivel::{Carried, Reference, Stereographic};
+use super::two_bone::Pose;
+
+/// How the arm stood, and all that made it stand so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    pub pose: Pose,
+    pub cursor: Vec3,
+    pub ik: Ik,
+    /// ψ.
+    pub spin: f32,
+    /// The shoulder in the world, if the cursor is pinned to the world: a cursor that goes with the
+    /// shoulder does not feel where that is.
+    pub pinned_root: Option<Vec3>,
+    /// How far the hand leads (1) or the joints' own angles do (0).
+    pub weight: f32,
+    pub fk: Fk,
+}
+
+/// What else than the cursor changed in a step: such a step is none of a drag's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Change {
+    Lengths,
+    Reference,
+    Pole,
+    Softening,
+    Weight,
+    Angles,
+    Spin,
+    Root,
+}
+
+/// What the elbow did while the cursor took a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// How many times as far as the cursor the elbow went.
+    pub ratio: f32,
+    /// The ratio above which it is a spike.
+    pub limit: f32,
+    pub turn: Vec3,
+    pub bend: Vec3,
+    pub swing: Vec3,
+    /// Why it is a spike, if it is one.
+    pub pop: Option<Pop>,
+}
+
+/// Why the elbow popped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pop {
+    /// The Pointer passed where the reference says nothing, `nearest` to it in radians.
+    Singular { nearest: f32 },
+    /// The arm became straight, or was and bent.
+    Straight,
+    /// The arm folded up at its inner limit, or was and opened.
+    Folded,
+    /// The cursor passed the shoulder.
+    Shoulder,
+}
+
+impl Change {
+    pub const ALL: [Self; 8] = [
+        Self::Lengths,
+        Self::Reference,
+        Self::Pole,
+        Self::Softening,
+        Self::Weight,
+        Self::Angles,
+        Self::Spin,
+        Self::Root,
+    ];
+
+    /// The first in the order above. What does not pose the arm then is no change: its angles while
+    /// the hand leads alone, the shoulder's place unless the cursor is pinned to the world.
+    pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
+        Self::ALL.into_iter().find(|change| change.is_between(before, after))
+    }
+
+    fn is_between(self, before: &Moment, after: &Moment) -> bool {
+        let references = (before.ik.reference, after.ik.reference);
+        match self {
+            Self::Lengths => before.ik.bones != after.ik.bones,
+            Self::Reference => match references {
+                (Reference::Pole(_), Reference::Pole(_)) => false,
+                (one, other) => one != other,
+            },
+            Self::Pole => references.0 != references.1,
+            Self::Softening => before.ik.softening != after.ik.softening,
+            Self::Weight => before.weight != after.weight,
+            Self::Angles => after.weight < 1.0 && before.fk != after.fk,
+            Self::Spin => before.spin != after.spin,
+            Self::Root => match (before.pinned_root, after.pinned_root) {
+                (Some(one), Some(other)) => one != other,
+                _ => false,
+            },
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lengths => "lengths",
+            Self::Reference => "reference",
+            Self::Pole => "pole",
+            Self::Softening => "softening",
+            Self::Weight => "weight",
+            Self::Angles => "angles",
+            Self::Spin => "spin",
+            Self::Root => "root",
+        }
+    }
+}
+
+impl Step {
+    /// The shortest step of a cursor that is told apart from rounding, in parts of L: that is how well
+    /// f32 knows the elbow of an arm that is nearly straight or folded. Shorter ones can be added up.
+    pub const LEAST: f32 = 1e-3;
+    /// How many times as far as calmly: see the module.
+    const SPIKE: f64 = 2.0;
+
+    /// From one moment to another with no [`Change`] between; nothing where the cursor went less far
+    /// than [`Self::LEAST`].
+    pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
+        let went = (after.cursor.as_dvec3() - before.cursor.as_dvec3()).length();
+        let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
+        if went < f64::from(Self::LEAST) * sum {
+            return None;
+        }
+        let [turn, bend, swing] = parts(&before.pose, &after.pose);
+        let moved = (after.pose.elbow.as_dvec3() - before.pose.elbow.as_dvec3()).length();
+        let (ratio, limit) = (moved / went, Self::SPIKE * calm(before, after, sum));
+        let pop = (ratio > limit).then(|| {
+            let [turned, bent, swung] = [turn, bend, swing].map(DVec3::length);
+            if swung >= turned.max(bent) {
+                Pop::Singular { nearest: nearest_to_singular(before, after) as f32 }
+            } else if turned >= bent {
+                Pop::Shoulder
+            } else if is_far_out(before, after, sum) {
+                Pop::Straight
+            } else {
+                Pop::Folded
+            }
+        });
+        let [turn, bend, swing] = [turn, bend, swing].map(DVec3::as_vec3);
+        Some(Self { ratio: ratio as f32, limit: limit as f32, turn, bend, swing, pop })
+    }
+}
+
+/// Turn, bend and swing.
+fn parts(before: &Pose, after: &Pose) -> [DVec3; 3] {
+    let outward = before.outward();
+    let carried = Carried { direction: before.facing.direction, outward };
+    let [w, to] = [before, after].map(|pose| pose.facing.direction.as_dvec3());
+    let (out, carried) =
+        (outward.as_dvec3(), carried.to(after.facing.direction).outward.as_dvec3());
+    let [from, at] =
+        [before, after].map(|pose| DVec3::new(pose.along.into(), pose.out.into(), 0.0));
+    let side = after.outward().as_dvec3();
+    [
+        (to - w) * from.x + (carried - out) * from.y,
+        to * (at.x - from.x) + (side + carried) * (0.5 * (at.y - from.y)),
+        (side - carried) * (0.5 * (from.y + at.y)),
+    ]
+}
+
+fn calm(before: &Moment, after: &Moment, sum: f64) -> f64 {
+    const NEAR_SHOULDER: f64 = 0.2;
+    let stretch = f64::from(before.pose.stretch.max(after.pose.stretch));
+    let distance = f64::from(before.pose.distance.min(after.pose.distance));
+    let upper = stretch * f64::from(after.ik.bones.upper());
+    (upper / distance.max(NEAR_SHOULDER * sum)).max(1.0)
+}
+
+/// Whether the hand is nearer to the outer limit than to the inner one.
+fn is_far_out(before: &Moment, after: &Moment, sum: f64) -> bool {
+    let least = f64::from(after.ik.softening.least_distance(after.ik.bones));
+    f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
+}
+
+/// How near the Pointer came to where the reference is singular.
+fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
+    let [from, to] = [before, after].map(|it| it.pose.facing.direction.as_dvec3());
+    let nearest = |direction: Vec3| {
+        direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_way(it, from, to))
+    };
+    match after.ik.reference {
+        Reference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
+        Reference::Pole(pole) => nearest(pole).min(nearest(-pole)),
+        Reference::Stereographic(map) => nearest(map.singular()),
+        // Without a past it is as on the map.
+        Reference::Transport => nearest(Stereographic::default().singular()),
+    }
+}
+
+/// How near the shorter way between two directions comes to another one, radians.
+fn nearest_on_way(point: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let at_ends = from.angle_between(point).min(to.angle_between(point));
+    let Some(normal) = from.cross(to).try_normalize() else {
+        return at_ends;
+    };
+    let is_beside = from.cross(point).dot(normal) > 0.0 && point.cross(to).dot(normal) > 0.0;
+    if is_beside { normal.dot(point).abs().min(1.0).asin() } else { at_ends }
+}

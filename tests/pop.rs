@@ -1,0 +1,293 @@
+//! When an elbow pops, and why.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use ik_arm::kinematics::fk::Fk;
+use ik_arm::kinematics::ik::Ik;
+use ik_arm::kinematics::pop::{Change, Moment, Pop, Step};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x0009_0909),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+fn map() -> Reference {
+    Reference::Stereographic(Stereographic::default())
+}
+
+fn soft(softness: f32) -> Softening {
+    Softening::new(softness, 1.0, 0.0).expect("a softening")
+}
+
+fn arm(reference: Reference, softness: f32) -> Ik {
+    let bones = TwoBone::new(200.0, 300.0).expect("lengths");
+    Ik { bones, reference, softening: soft(softness) }
+}
+
+/// As a drag leaves it: each pose goes on from the one before.
+fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Moment> {
+    let (mut facing, mut carried) = (Facing::default(), None);
+    let poses = cursors.into_iter().map(|cursor| {
+        let solved = ik.solve(cursor, 0.0, facing, carried);
+        (facing, carried) = (solved.pose.facing, Some(solved.carried));
+        Moment {
+            pose: solved.pose,
+            cursor,
+            ik,
+            spin: 0.0,
+            pinned_root: None,
+            weight: 1.0,
+            fk: Fk::default(),
+        }
+    });
+    poses.collect()
+}
+
+fn steps(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Step> {
+    let moments = moments(ik, cursors);
+    moments.windows(2).filter_map(|pair| Step::between(&pair[0], &pair[1])).collect()
+}
+
+fn pops(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Pop> {
+    steps(ik, cursors).into_iter().filter_map(|step| step.pop).collect()
+}
+
+/// There and back again.
+fn line(from: Vec3, to: Vec3, steps: u16) -> impl Iterator<Item = Vec3> + Clone {
+    let there = (0..=steps).chain((0..steps).rev());
+    there.map(move |step| from.lerp(to, f32::from(step) / f32::from(steps)))
+}
+
+/// Past the vertical, about 4 degrees from it.
+fn over_the_top() -> impl Iterator<Item = Vec3> + Clone {
+    line(Vec3::new(150.0, 300.0, 20.0), Vec3::new(-150.0, 300.0, 20.0), 60)
+}
+
+#[test]
+fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
+    let pops = pops(arm(Reference::Limb, 0.0), over_the_top());
+    assert!(!pops.is_empty());
+    let nearest = pops.iter().map(|pop| match pop {
+        Pop::Singular { nearest } => f64::from(*nearest),
+        other => panic!("{other:?}"),
+    });
+    let nearest = nearest.fold(f64::INFINITY, f64::min);
+    let expected = (20.0_f64 / 300.0).atan();
+    assert!((nearest - expected).abs() < 1e-4, "{nearest}, not {expected}");
+}
+
+#[test]
+fn the_same_pass_is_calm_with_the_map_and_with_transport() {
+    for reference in [map(), Reference::Transport] {
+        assert_eq!(pops(arm(reference, 0.0), over_the_top()), [], "{reference:?}");
+    }
+}
+
+#[test]
+fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
+    let pole = Vec3::new(100.0, 300.0, -100.0);
+    let aside = pole.normalize().any_orthonormal_vector();
+    for side in [1.0, -1.0] {
+        let at = pole * side * 0.9 + pole.cross(aside).normalize() * 15.0;
+        let pass = line(at - aside * 120.0, at + aside * 120.0, 50);
+        let pops = pops(arm(Reference::Pole(pole), 0.0), pass.clone());
+        let is_near = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.5);
+        assert!(!pops.is_empty() && pops.iter().all(is_near), "{side}: {pops:?}");
+        let nearest = pops.iter().map(|pop| match pop {
+            Pop::Singular { nearest } => *nearest,
+            _ => f32::INFINITY,
+        });
+        let expected = (15.0 / (0.9 * pole.length())).atan();
+        assert!((nearest.fold(f32::INFINITY, f32::min) - expected).abs() < 1e-3, "{side}");
+    }
+}
+
+#[test]
+fn the_map_pops_only_behind_and_transport_not_even_there() {
+    let behind = line(Vec3::new(-300.0, 60.0, 8.0), Vec3::new(-300.0, -60.0, 8.0), 40);
+    let pops_of = |reference| pops(arm(reference, 0.0), behind.clone());
+    let on_map = pops_of(map());
+    let is_singular = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.15);
+    assert!(!on_map.is_empty() && on_map.iter().all(is_singular), "{on_map:?}");
+    assert_eq!(pops_of(Reference::Transport), []);
+    assert_eq!(pops_of(Reference::Limb), []);
+}
+
+#[test]
+fn a_hand_that_runs_into_the_outer_limit_pops_unless_it_is_soft() {
+    let out = line(Vec3::new(420.0, 30.0, 0.0), Vec3::new(560.0, 40.0, 0.0), 28);
+    let hard = pops(arm(map(), 0.0), out.clone());
+    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == Pop::Straight), "{hard:?}");
+    assert_eq!(pops(arm(map(), 0.25), out), []);
+}
+
+#[test]
+fn a_hand_that_runs_into_the_inner_limit_pops_unless_it_is_soft() {
+    let in_and_out = line(Vec3::new(170.0, 20.0, 0.0), Vec3::new(88.0, 10.0, 0.0), 28);
+    let hard = pops(arm(map(), 0.0), in_and_out.clone());
+    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == Pop::Folded), "{hard:?}");
+    assert_eq!(pops(arm(map(), 0.25), in_and_out), []);
+}
+
+#[test]
+fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
+    let past = line(Vec3::new(95.0, 4.0, 7.0), Vec3::new(-95.0, 4.0, 7.0), 14);
+    for softness in [0.0, 0.2, 0.9] {
+        let pops = pops(arm(Reference::Transport, softness), past.clone());
+        assert!(pops.contains(&Pop::Shoulder), "{softness}: {pops:?}");
+        let is_turn = |pop: &Pop| matches!(pop, Pop::Shoulder);
+        assert!(pops.iter().all(is_turn), "{softness}: {pops:?}");
+    }
+}
+
+#[test]
+fn a_step_too_short_to_tell_from_rounding_is_none() {
+    let x = Vec3::new(300.0, 0.0, 0.0);
+    let found = |length: f32| steps(arm(map(), 0.0), [x, x + Vec3::Y * length]).len();
+    assert_eq!([found(0.0), found(0.49), found(0.51)], [0, 0, 1]);
+}
+
+#[test]
+fn every_change_that_is_not_the_cursors_has_its_own_name() {
+    let ik = arm(Reference::Pole(Vec3::Y), 0.0);
+    let moment = moments(ik, [Vec3::new(300.0, 50.0, 0.0)])[0];
+    let before = Moment { pinned_root: Some(Vec3::ZERO), weight: 0.5, ..moment };
+    let with = |ik: Ik| Moment { ik, ..before };
+    let bones = TwoBone::new(200.0, 301.0).expect("lengths");
+    let fk = Fk { bend: 1.25, ..before.fk };
+    let changed = [
+        (Change::Lengths, with(Ik { bones, ..ik })),
+        (Change::Reference, with(Ik { reference: Reference::Limb, ..ik })),
+        (Change::Pole, with(Ik { reference: Reference::Pole(Vec3::X), ..ik })),
+        (Change::Softening, with(Ik { softening: soft(0.1), ..ik })),
+        (Change::Weight, Moment { weight: 0.25, ..before }),
+        (Change::Angles, Moment { fk, ..before }),
+        (Change::Spin, Moment { spin: 0.1, ..before }),
+        (Change::Root, Moment { pinned_root: Some(Vec3::Y), ..before }),
+    ];
+    assert_eq!(changed.map(|(change, _)| change), Change::ALL);
+    for (change, after) in changed {
+        assert_eq!(Change::between(&before, &after), Some(change));
+    }
+    assert_eq!(Change::between(&before, &before), None);
+}
+
+#[test]
+fn what_does_not_pose_the_arm_is_no_change() {
+    let before = moments(arm(Reference::Limb, 0.0), [Vec3::X])[0];
+    let elsewhere = Moment { cursor: Vec3::Y, ..before };
+    let pinned = Moment { pinned_root: Some(Vec3::Y), ..before };
+    let turned = Moment { fk: Fk { bend: 2.0, ..before.fk }, ..before };
+    for after in [elsewhere, pinned, turned] {
+        assert_eq!(Change::between(&before, &after), None);
+    }
+}
+
+/// An arm with a reference, in f64, without a line of the program: the elbow by the law of cosines.
+fn elbow(ik: &Ik, cursor: DVec3) -> DVec3 {
+    let (upper, lower) = (f64::from(ik.bones.upper()), f64::from(ik.bones.lower()));
+    let distance = cursor.length().clamp((upper - lower).abs(), upper + lower);
+    let w = cursor.normalize();
+    let cos = (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);
+    let towards = match ik.reference {
+        Reference::Pole(pole) => pole.as_dvec3(),
+        Reference::Stereographic(map) => {
+            let k = (w - map.singular().as_dvec3()).cross(map.up().as_dvec3());
+            k.cross(w)
+        }
+        _ => DVec3::Y,
+    };
+    let out = (towards - w * towards.dot(w)).normalize();
+    w * (upper * cos) + out * (upper * (1.0 - cos * cos).max(0.0).sqrt())
+}
+
+fn cursors() -> impl Strategy<Value = Vec3> {
+    (130.0..470.0_f64, -0.9..0.9_f64, -PI..PI).prop_map(|(distance, y, turn)| {
+        let flat = (1.0 - y * y).sqrt();
+        (DVec3::new(flat * turn.cos(), y, flat * turn.sin()) * distance).as_vec3()
+    })
+}
+
+fn references() -> impl Strategy<Value = Reference> {
+    prop_oneof![
+        Just(Reference::Limb),
+        Just(Reference::Pole(Vec3::new(30.0, -250.0, 120.0))),
+        Just(map()),
+    ]
+}
+
+/// Where an elbow is sure in f32.
+fn is_well_placed(ik: &Ik, cursor: Vec3) -> bool {
+    let facing = Facing::towards(cursor, Facing::default());
+    ik.reference.gain(facing) < 10.0
+}
+
+proptest! {
+    #![proptest_config(config(4000))]
+
+    #[test]
+    fn the_ratio_is_that_of_the_same_arm_in_f64(
+        reference in references(), from in cursors(), to in cursors()
+    ) {
+        let ik = arm(reference, 0.0);
+        prop_assume!(is_well_placed(&ik, from) && is_well_placed(&ik, to));
+        let (from64, to64) = (from.as_dvec3(), to.as_dvec3());
+        let went = from64.distance(to64);
+        let expected = elbow(&ik, from64).distance(elbow(&ik, to64)) / went;
+        let step = steps(ik, [from, to])[0];
+        let off = (f64::from(step.ratio) - expected).abs();
+        prop_assert!(off < 1e-5 * 500.0 / went + 1e-6 * expected, "{} {expected}", step.ratio);
+    }
+
+    #[test]
+    fn turn_bend_and_swing_add_up_to_what_the_elbow_did(
+        reference in references(), softness in 0.0..0.9_f32, from in cursors(), to in cursors()
+    ) {
+        let moments = moments(arm(reference, softness), [from, to]);
+        let step = Step::between(&moments[0], &moments[1]);
+        prop_assume!(step.is_some());
+        let step = step.expect("long enough");
+        let moved = moments[1].pose.elbow - moments[0].pose.elbow;
+        prop_assert!((step.turn + step.bend + step.swing).distance(moved) < 1e-3, "{step:?}");
+    }
+
+    #[test]
+    fn an_arm_that_only_turns_has_no_swing_and_no_bend(from in cursors(), to in cursors()) {
+        let to = to.normalize() * from.length();
+        prop_assume!(from.distance(to) > 1.0 && from.dot(to) > -0.99 * from.dot(from));
+        let step = steps(arm(Reference::Transport, 0.0), [from, to])[0];
+        prop_assert!(step.swing.length() < 1e-3 && step.bend.length() < 1e-2, "{step:?}");
+    }
+
+    #[test]
+    fn softness_of_a_quarter_calms_every_arm_at_both_limits(
+        upper in 10.0..300.0_f32, lower in 10.0..300.0_f32, cursor in cursors(), count in 20..100_u16
+    ) {
+        let bones = TwoBone::new(upper, lower).expect("lengths");
+        let ik = Ik { bones, reference: map(), softening: soft(0.25) };
+        let way = cursor.normalize();
+        let (least, most) = (bones.inner_limit(), bones.outer_limit());
+        let radial = line(way * least.max(1e-3 * most), way * (1.5 * most), count);
+        prop_assert_eq!(pops(ik, radial), []);
+    }
+
+    #[test]
+    fn where_the_map_turns_slowly_a_soft_arm_is_calm(
+        from in cursors(), to in cursors(), length in 1.0..40.0_f32
+    ) {
+        let from = Vec3::new(from.x.abs(), from.y, from.z);
+        prop_assume!(from != to);
+        let step = steps(arm(map(), 0.25), [from, from + (to - from).normalize() * length])[0];
+        prop_assert_eq!(step.pop, None, "{:?}", step);
+    }
+}
