@@ -70,6 +70,7 @@ impl Session {
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();
+        self.pops = super::Pops::new(&self.shown.arm, self.pose, self.clock.time);
         self.forget_trail();
         if let Some(file) = file {
             self.remember_file(file);

@@ -15,8 +15,10 @@ mod keys;
 mod naming;
 mod point_drag;
 mod pose_line;
+mod pops;
 mod preferences;
 mod race;
+mod remedy;
 mod run;
 mod skeleton;
 mod skeleton_drag;
@@ -38,8 +40,10 @@ pub use export::{Export, Job};
 pub use journey::Journey;
 pub use keys::Key;
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
+pub use pops::{Pops, Sample, Spike, What};
 pub use preferences::{Navigation, Preferences};
 pub use race::{Race, Runner};
+pub use remedy::Remedy;
 pub use solving::{History, Solving};
 pub use staging::{Ghost, OnionSkin, Staging};
 pub use turn_drag::{Ring, TurnDrag};
@@ -70,6 +74,7 @@ pub struct Session {
     pose: Pose,
     skeleton_pose: SkeletonPose,
     journey: Journey,
+    pops: Pops,
     /// Walked when it is first shown.
     trail: OnceCell<Vec<Vec3>>,
     preferences: Preferences,
@@ -158,6 +163,7 @@ impl Session {
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
         Self {
             journey: Journey::new(&document.arm),
+            pops: Pops::new(&document.arm, document.arm.pose(), 0.0),
             pose: document.arm.pose(),
             skeleton_pose: document.skeleton.at(0.0).pose(),
             shown: document.clone(),
@@ -345,6 +351,7 @@ impl Session {
         }
         self.pose = self.shown.arm.pose();
         self.journey.go_on(&self.shown.arm);
+        self.watch_elbow();
         self.skeleton_pose = self.shown.skeleton.at(self.clock.time).pose();
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);

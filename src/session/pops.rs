@@ -1,0 +1,197 @@
+use std::collections::VecDeque;
+
+use super::Session;
+use crate::document::Arm;
+use crate::kinematics::ik::Ik;
+use crate::kinematics::pop::{Change, Moment, Pop, Step};
+use crate::kinematics::two_bone::Pose;
+
+/// How fast the arm's elbow has been beside its cursor, in the last steps that were dragged or
+/// played: not saved, and not undone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pops {
+    samples: VecDeque<Sample>,
+    last: Last,
+    run: u32,
+}
+
+/// One step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Samples of one drag, or of one stretch that was played, have the same number.
+    pub run: u32,
+    /// What posed the arm.
+    pub ik: Ik,
+    pub what: What,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What {
+    /// The cursor moved, and nothing else.
+    Step(Step),
+    /// Something else changed the pose, once or many times in a row.
+    Change(Change),
+}
+
+/// Steps in a row that popped, for one reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spike {
+    /// The place of its highest step among the samples.
+    pub at: usize,
+    /// The ratio of that.
+    pub ratio: f32,
+    pub pop: Pop,
+    /// What posed the arm.
+    pub ik: Ik,
+}
+
+/// How the cursor comes to move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// By a drag, in the viewport or of a slider, that began at a revision.
+    Dragged(u64),
+    Played,
+    /// At once: typed, undone, another time chosen.
+    Set,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Last {
+    moment: Moment,
+    way: Way,
+    time: f64,
+}
+
+impl Pops {
+    const MOST: usize = 600;
+
+    /// None yet of an arm that stands so.
+    pub(super) fn new(arm: &Arm, pose: Pose, time: f64) -> Self {
+        let last = Last { moment: moment(arm, pose), way: Way::Set, time };
+        Self { samples: VecDeque::new(), last, run: 0 }
+    }
+
+    /// The oldest first, [`Self::MOST`] at most.
+    pub fn samples(&self) -> impl ExactSizeIterator<Item = &Sample> + Clone {
+        self.samples.iter()
+    }
+
+    /// The oldest first.
+    pub fn spikes(&self) -> Vec<Spike> {
+        // A hand that goes into a limit and comes out again pops once.
+        const APART: usize = 4;
+        let mut spikes: Vec<(Spike, usize)> = Vec::new();
+        for (at, sample) in self.samples.iter().enumerate() {
+            let What::Step(Step { ratio, pop: Some(pop), .. }) = sample.what else {
+                continue;
+            };
+            let spike = Spike { at, ratio, pop, ik: sample.ik };
+            match spikes.last_mut() {
+                Some((last, end))
+                    if self.samples[*end].run == sample.run
+                        && at - *end < APART
+                        && last.is_like(spike) =>
+                {
+                    *last = last.joined(spike);
+                    *end = at;
+                }
+                _ => spikes.push((spike, at)),
+            }
+        }
+        spikes.into_iter().map(|(spike, _)| spike).collect()
+    }
+
+    fn go_on(&mut self, moment: Moment, way: Way, time: f64) {
+        let last = &mut self.last;
+        // What is played begins again.
+        let way = if way == Way::Played && time < last.time { Way::Set } else { way };
+        let is_elsewhen = way == Way::Set && time != last.time;
+        if way != last.way || way == Way::Set {
+            self.run = self.run.wrapping_add(1);
+        }
+        let before = last.moment;
+        (last.way, last.time) = (way, time);
+        match Change::between(&before, &moment) {
+            _ if is_elsewhen => {}
+            Some(_) if before.pose == moment.pose => {}
+            Some(change) => self.push(moment.ik, What::Change(change)),
+            None if way == Way::Set => {}
+            None => match Step::between(&before, &moment) {
+                Some(step) => self.push(moment.ik, What::Step(step)),
+                // Short ones add up.
+                None => return,
+            },
+        }
+        self.last.moment = moment;
+    }
+
+    fn push(&mut self, ik: Ik, what: What) {
+        let sample = Sample { run: self.run, ik, what };
+        if let (What::Change(_), Some(last)) = (what, self.samples.back_mut())
+            && last.run == sample.run
+            && last.what == what
+        {
+            *last = sample;
+            return;
+        }
+        if self.samples.len() >= Self::MOST {
+            self.samples.pop_front();
+        }
+        self.samples.push_back(sample);
+    }
+}
+
+impl Spike {
+    fn is_like(self, other: Self) -> bool {
+        core::mem::discriminant(&self.pop) == core::mem::discriminant(&other.pop)
+            && self.ik == other.ik
+    }
+
+    fn joined(self, other: Self) -> Self {
+        let higher = if other.ratio > self.ratio { other } else { self };
+        let pop = match (self.pop, other.pop) {
+            (Pop::Singular { nearest: one }, Pop::Singular { nearest: other }) => {
+                Pop::Singular { nearest: one.min(other) }
+            }
+            (pop, _) => pop,
+        };
+        Self { pop, ..higher }
+    }
+
+    /// Whether the same way of the cursor would pop again: nothing has been done about it.
+    pub fn stands(self, arm: &Arm) -> bool {
+        match self.pop {
+            Pop::Singular { .. } => self.ik.reference == arm.reference(),
+            _ => self.ik.softening == arm.softening && self.ik.bones == arm.bones,
+        }
+    }
+}
+
+impl Session {
+    /// How fast the arm's elbow has been beside its cursor.
+    pub fn pops(&self) -> &Pops {
+        &self.pops
+    }
+
+    /// The arm has a pose: what made it.
+    pub(super) fn watch_elbow(&mut self) {
+        let way = match &self.edit {
+            Some(edit) => Way::Dragged(edit.before.revision),
+            None if self.clock.playing => Way::Played,
+            None => Way::Set,
+        };
+        self.pops.go_on(moment(&self.shown.arm, self.pose), way, self.clock.time);
+    }
+}
+
+fn moment(arm: &Arm, pose: Pose) -> Moment {
+    Moment {
+        pose,
+        cursor: arm.cursor(),
+        ik: arm.ik(),
+        spin: arm.elbow_spin,
+        pinned_root: arm.is_pinned().then_some(arm.root),
+        weight: arm.weight,
+        fk: arm.fk,
+    }
+}

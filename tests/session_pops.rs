@@ -1,0 +1,240 @@
+//! What the session keeps of how the elbow goes, and what it knows against pops.
+#![cfg(feature = "document")]
+
+use glam::Vec3;
+use ik_arm::document::{Arm, Channel, Document, Swivel, Timeline};
+use ik_arm::kinematics::pop::{Change, Pop};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::session::{Action, Remedy, Session, Spike, What};
+
+fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
+    session.apply(Action::SetHand(from));
+    session.apply(Action::BeginEdit);
+    for step in 1..=steps {
+        let part = f32::from(step) / f32::from(steps);
+        session.apply(Action::SetHand(from.lerp(to, part)));
+    }
+    session.apply(Action::CommitEdit);
+}
+
+fn over_the_top(session: &mut Session) {
+    drag(session, Vec3::new(150.0, 300.0, 20.0), Vec3::new(-150.0, 300.0, 20.0), 30);
+}
+
+fn into_the_limit(session: &mut Session) {
+    drag(session, Vec3::new(420.0, 0.0, 40.0), Vec3::new(560.0, 0.0, 40.0), 28);
+}
+
+fn fold_up(session: &mut Session) {
+    drag(session, Vec3::new(200.0, 0.0, 10.0), Vec3::new(90.0, 0.0, 10.0), 40);
+}
+
+fn past_the_shoulder(session: &mut Session) {
+    drag(session, Vec3::new(95.0, 3.0, 5.0), Vec3::new(-95.0, 3.0, 5.0), 19);
+}
+
+fn standing(session: &Session) -> Vec<Spike> {
+    let stands = |spike: &Spike| spike.stands(session.arm());
+    session.pops().spikes().into_iter().filter(stands).collect()
+}
+
+fn changes(session: &Session) -> Vec<Change> {
+    let change = |what| match what {
+        What::Change(change) => Some(change),
+        What::Step(_) => None,
+    };
+    session.pops().samples().filter_map(|sample| change(sample.what)).collect()
+}
+
+/// Drags, does what is said to help against the one pop, and drags again.
+fn is_cured(session: &mut Session, drag: fn(&mut Session)) -> Remedy {
+    drag(session);
+    let spikes = standing(session);
+    assert_eq!(spikes.len(), 1, "{spikes:?}");
+    let remedy = Remedy::new(&spikes[0], session.arm()).expect("a remedy");
+    session.apply(remedy.action());
+    assert_eq!(session.message(), None);
+    assert_eq!(Remedy::new(&spikes[0], session.arm()), None, "it is taken");
+    drag(session);
+    assert_eq!(standing(session), []);
+    remedy
+}
+
+#[test]
+fn each_remedy_cures_the_drag_that_asked_for_it() {
+    let remedies: [(fn(&mut Session), Remedy); 3] = [
+        (over_the_top, Remedy::Measure(Swivel::Stereographic)),
+        (into_the_limit, Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"))),
+        (fold_up, Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"))),
+    ];
+    for (drag, remedy) in remedies {
+        assert_eq!(is_cured(&mut Session::default(), drag), remedy);
+    }
+}
+
+#[test]
+fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
+    let mut session = Session::default();
+    session.apply(Action::SetPole(Vec3::new(0.0, 300.0, 10.0)));
+    session.apply(Action::SetSwivel(Swivel::Pole));
+    assert_eq!(is_cured(&mut session, over_the_top), Remedy::Measure(Swivel::Stereographic));
+}
+
+#[test]
+fn behind_the_body_the_map_pops_and_transport_cures_it() {
+    let mut session = Session::default();
+    session.apply(Action::SetSwivel(Swivel::Stereographic));
+    let behind = |session: &mut Session| {
+        drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
+    };
+    assert_eq!(is_cured(&mut session, behind), Remedy::Measure(Swivel::Transport));
+}
+
+#[test]
+fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
+    let mut session = Session::default();
+    let almost_hard = Softening::new(0.01, 1.2, 0.0).expect("soft");
+    session.apply(Action::SetSoftening(almost_hard));
+    let expected = Remedy::KeepOpen(Softening::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
+    assert_eq!(is_cured(&mut session, fold_up), expected);
+
+    let spike = |pop, softening| {
+        let arm = Arm { softening, ..Arm::default() };
+        let spike = Spike { at: 0, ratio: 9.0, pop, ik: arm.ik() };
+        Remedy::new(&spike, &arm)
+    };
+    let soft = |softness| Softening::new(softness, 1.2, 0.3).expect("soft");
+    for (from, to) in [(0.1, 0.25), (0.2, 0.4), (0.3, 0.5)] {
+        assert_eq!(spike(Pop::Straight, soft(from)), Some(Remedy::Soften(soft(to))), "{from}");
+    }
+    assert_eq!(spike(Pop::Straight, soft(0.5)), None);
+    let open = Softening::new(0.2, 1.0, 1.5).expect("soft");
+    assert_eq!(spike(Pop::Folded, open), None);
+}
+
+#[test]
+fn nothing_helps_a_cursor_that_passes_the_shoulder() {
+    let mut session = Session::default();
+    past_the_shoulder(&mut session);
+    let spikes = standing(&session);
+    assert!(spikes.iter().any(|spike| spike.pop == Pop::Shoulder), "{spikes:?}");
+    for spike in spikes.iter().filter(|spike| spike.pop == Pop::Shoulder) {
+        assert_eq!(Remedy::new(spike, session.arm()), None);
+    }
+}
+
+#[test]
+fn each_drag_and_each_played_stretch_is_a_run_of_its_own() {
+    let mut session = Session::default();
+    into_the_limit(&mut session);
+    over_the_top(&mut session);
+    let runs = |session: &Session| {
+        let mut runs: Vec<u32> = session.pops().samples().map(|sample| sample.run).collect();
+        let steps = runs.len();
+        runs.dedup();
+        (runs.len(), steps)
+    };
+    assert_eq!(runs(&session), (2, 28 + 30));
+    session.apply(Action::Undo);
+    session.apply(Action::SetHand(Vec3::new(222.0, 0.0, 0.0)));
+    assert_eq!(runs(&session), (2, 28 + 30), "what is not dragged is not measured");
+}
+
+/// A second of the hand over the top, ten pictures, and the spin the other way.
+fn keyed(channels: &[Channel]) -> Session {
+    let mut session = Session::default();
+    session.apply(Action::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
+    for (time, x, spin) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(Vec3::new(x, 300.0, 20.0)));
+        session.apply(Action::SetElbowSpin(spin));
+        session.apply(Action::Key(channels.to_vec()));
+    }
+    session
+}
+
+fn play(session: &mut Session, seconds: std::ops::Range<f64>) {
+    session.apply(Action::SetTime(0.0));
+    session.apply(Action::Play(true));
+    for picture in 0..=40 {
+        let part = f64::from(picture) / 40.0;
+        session.apply(Action::Advance(seconds.start + part * (seconds.end - seconds.start)));
+    }
+}
+
+#[test]
+fn what_is_played_is_measured_and_its_beginning_again_is_no_step() {
+    let mut session = keyed(&[Channel::Hand]);
+    let typed = session.pops().samples().count();
+    play(&mut session, 10.0..11.9);
+    let samples: Vec<_> = session.pops().samples().skip(typed).collect();
+    assert!(samples.len() > 30, "{}", samples.len());
+    let mut runs: Vec<u32> = samples.iter().map(|sample| sample.run).collect();
+    runs.dedup();
+    assert_eq!(runs.len(), 2);
+    let spikes = session.pops().spikes();
+    assert_eq!(spikes.len(), 2, "{spikes:?}");
+    assert!(spikes.iter().all(|spike| matches!(spike.pop, Pop::Singular { .. })), "{spikes:?}");
+}
+
+#[test]
+fn a_spin_that_is_played_is_marked_once_and_apart() {
+    let mut session = keyed(&[Channel::Hand, Channel::ElbowSpin]);
+    let before = changes(&session).len();
+    play(&mut session, 10.0..10.9);
+    assert_eq!(changes(&session)[before..], [Change::Spin]);
+    assert_eq!(session.pops().spikes(), []);
+}
+
+#[test]
+fn the_root_of_a_pinned_arm_is_marked_and_that_of_another_is_nothing() {
+    for (pinned, marked) in [(false, vec![]), (true, vec![Change::Root])] {
+        let mut session = Session::default();
+        session.apply(Action::PinHand(pinned));
+        session.apply(Action::BeginEdit);
+        for step in 1..9_u8 {
+            session.apply(Action::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
+        }
+        session.apply(Action::CommitEdit);
+        assert_eq!(changes(&session), marked);
+        assert_eq!(session.pops().samples().count(), marked.len());
+    }
+}
+
+#[test]
+fn a_slow_hand_adds_up_to_the_same_pop() {
+    let mut session = Session::default();
+    drag(&mut session, Vec3::new(40.0, 300.0, 4.0), Vec3::new(-40.0, 300.0, 4.0), 1600);
+    let count = session.pops().samples().count();
+    assert!((130..=160).contains(&count), "{count} of 80 units in steps of half a one or more");
+    assert_eq!(standing(&session).len(), 1);
+}
+
+#[test]
+fn what_is_kept_is_bounded_and_goes_with_the_document() {
+    let mut session = Session::default();
+    drag(&mut session, Vec3::new(150.0, 300.0, 20.0), Vec3::new(-150.0, 300.0, 20.0), 200);
+    for _ in 0..4 {
+        over_the_top(&mut session);
+        drag(&mut session, Vec3::new(300.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 300.0), 200);
+    }
+    assert_eq!(session.pops().samples().count(), 600);
+    let document = Box::new(Document::default());
+    session.apply(Action::Discard(Box::new(Action::Opened { document, file: None })));
+    assert_eq!(session.pops().samples().count(), 0);
+}
+
+#[test]
+fn a_hand_that_only_lies_out_of_reach_moves_no_elbow() {
+    let mut session = Session::default();
+    drag(&mut session, Vec3::new(600.0, 0.0, 0.0), Vec3::new(900.0, 0.0, 0.0), 10);
+    let ratios: Vec<f32> = session
+        .pops()
+        .samples()
+        .map(|sample| match sample.what {
+            What::Step(step) => step.ratio,
+            What::Change(change) => panic!("{change:?}"),
+        })
+        .collect();
+    assert!(ratios.len() == 10 && ratios.iter().all(|ratio| *ratio < 1e-5), "{ratios:?}");
+}
