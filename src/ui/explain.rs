@@ -2,7 +2,7 @@
 
 use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
-use super::{references, row, status, style, symbol, triangle};
+use super::{pops, reach_curve, references, row, status, style, symbol, triangle};
 use crate::session::{Action, Session};
 
 const FORMULA_SIZE: f32 = 13.5;
@@ -27,6 +27,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         row::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
         row::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
         row::section(ui, "Swivel references", |ui| references::ui(ui, session, actions));
+        row::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
+        row::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
     });
 }
 

@@ -14,6 +14,8 @@ mod history;
 mod looks;
 mod numbers;
 mod panel;
+mod pops;
+mod reach_curve;
 mod skeleton_keys;
 mod skeleton_panel;
 mod skeleton_view;

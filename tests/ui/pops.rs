@@ -1,0 +1,189 @@
+//! Spikes of the elbow by name, with what helps as a button.
+
+use egui::accesskit::Role;
+use egui::{PointerButton, Vec2, vec2};
+use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options};
+use glam::Vec3;
+use ik_arm::document::{AxisView, Document, Swivel, Theme};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::session::{Action, Preferences};
+use image::{RgbaImage, imageops};
+
+use crate::bench::Bench;
+
+const LEFT: PointerButton = PointerButton::Primary;
+/// High enough for all of the right panel, and wide enough for all that the hand can reach.
+const HUGE: Vec2 = vec2(2000.0, 1400.0);
+const HIGH: Vec2 = vec2(900.0, 1480.0);
+
+/// Looks at all that the hand can reach from the front: there the hand is dragged in x and y.
+fn from_the_front() -> Bench {
+    let preferences = Preferences { timeline: false, ..Preferences::default() };
+    let mut bench = Bench::liking(HUGE, preferences);
+    let all = bench.session().framing_all();
+    bench.apply([Action::SetCamera(all.along(AxisView::Front))]);
+    bench
+}
+
+fn drag(bench: &mut Bench, from: Vec3, to: Vec3, steps: u16) {
+    bench.apply([Action::SetHand(from)]);
+    let (start, end) = (bench.place(from), bench.place(to));
+    bench.move_to(start);
+    bench.press(LEFT);
+    for step in 1..=steps {
+        bench.move_to(start + (end - start) * (f32::from(step) / f32::from(steps)));
+    }
+    bench.release(LEFT);
+    bench.settle();
+    let there = bench.hand().distance(to);
+    assert!(there < 2.0, "the hand is {there} from where it was dragged to");
+}
+
+fn over_the_top(bench: &mut Bench) {
+    drag(bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0), 40);
+}
+
+fn out_straight(bench: &mut Bench) {
+    drag(bench, Vec3::new(420.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0), 26);
+}
+
+fn softened(softness: f32) -> Softening {
+    Softening::new(softness, 1.0, 0.0).expect("soft")
+}
+
+#[test]
+fn at_first_it_says_what_to_do() {
+    let bench = from_the_front();
+    assert!(bench.says("Drag the hand, or play"));
+    assert!(bench.shows(Role::Image, "Pops: none"));
+}
+
+#[test]
+fn a_calm_drag_is_said_to_be_calm() {
+    let mut bench = from_the_front();
+    drag(&mut bench, Vec3::new(300.0, 0.0, 0.0), Vec3::new(200.0, 150.0, 0.0), 20);
+    assert!(bench.says("No pops"));
+    assert!(bench.shows(Role::Image, "Pops: none"));
+}
+
+#[test]
+fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
+    let mut bench = from_the_front();
+    over_the_top(&mut bench);
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"));
+    assert!(bench.says("Pole: the Pointer passed within 3."));
+    let (elbow, hand) = (bench.session().pose().elbow, bench.hand());
+    bench.click(Role::Button, "Measure from the map");
+    assert_eq!(bench.session().arm().swivel, Swivel::Stereographic);
+    assert!(bench.session().pose().elbow.distance(elbow) < 0.01 && bench.hand() == hand);
+    assert!(bench.says("since then changed"));
+    assert!(!bench.shows(Role::Button, "Measure from the map"), "it is done");
+    over_the_top(&mut bench);
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
+}
+
+#[test]
+fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
+    let mut bench = from_the_front();
+    bench.apply([Action::SetSwivel(Swivel::Stereographic)]);
+    let behind = |bench: &mut Bench| {
+        drag(bench, Vec3::new(-300.0, 90.0, 12.0), Vec3::new(-300.0, -90.0, 12.0), 40);
+    };
+    behind(&mut bench);
+    assert!(bench.says("of what the map leaves out"));
+    bench.click(Role::Button, "Carry it along");
+    assert_eq!(bench.session().arm().swivel, Swivel::Transport);
+    behind(&mut bench);
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
+}
+
+#[test]
+fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
+    let mut bench = from_the_front();
+    out_straight(&mut bench);
+    assert!(bench.says("Straight: the arm reached its outer limit"));
+    bench.click(Role::Button, "Soften the reach");
+    assert_eq!(bench.session().arm().softening, softened(0.25));
+    out_straight(&mut bench);
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Straight"), "no other one");
+    bench.apply([Action::Undo, Action::Undo, Action::Undo]);
+    assert_eq!(bench.session().arm().softening, softened(0.0), "it is a step to undo");
+}
+
+#[test]
+fn a_hand_dragged_to_the_inner_limit_pops_there() {
+    let mut bench = from_the_front();
+    drag(&mut bench, Vec3::new(170.0, 10.0, 0.0), Vec3::new(92.0, 10.0, 0.0), 26);
+    assert!(bench.says("Inner limit: the arm folded up"));
+    assert!(bench.shows(Role::Button, "Soften the reach"));
+}
+
+#[test]
+fn a_hand_dragged_past_the_shoulder_has_no_button_but_a_reason() {
+    let mut bench = from_the_front();
+    drag(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0), 20);
+    assert!(bench.says("Shoulder: the cursor passed the shoulder"));
+    assert!(bench.says("must jump by twice the least reach, 200.0"));
+}
+
+#[test]
+fn one_remedy_is_offered_once() {
+    let mut bench = from_the_front();
+    over_the_top(&mut bench);
+    over_the_top(&mut bench);
+    assert!(bench.shows(Role::Image, "Pops: 2, the last one Pole"));
+    let _ = bench.node(Role::Button, "Measure from the map");
+}
+
+#[test]
+fn other_changes_are_told_apart_from_pops() {
+    let mut bench = from_the_front();
+    bench.apply([Action::SetElbowSpin(2.0), Action::SetLower(240.0)]);
+    assert!(bench.says("Dotted: lengths, spin changed"));
+    assert!(bench.shows(Role::Image, "Pops: none"));
+}
+
+#[test]
+fn another_document_has_popped_nowhere() {
+    let mut bench = from_the_front();
+    over_the_top(&mut bench);
+    let document = Box::new(Document::default());
+    bench.apply([Action::Discard(Box::new(Action::Opened { document, file: None }))]);
+    assert!(bench.says("Drag the hand, or play"));
+}
+
+/// Drags as a slider would.
+fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
+    let way = (1..=40).map(|step| Action::SetHand(from.lerp(to, step as f32 / 40.0)));
+    let way = [Action::SetHand(from), Action::BeginEdit].into_iter().chain(way);
+    bench.apply(way.chain([Action::CommitEdit]));
+}
+
+/// The two sections as they are painted, and nothing around them.
+fn sections(bench: &mut Bench) -> RgbaImage {
+    let first = bench.rect(Role::Label, "Actual reach / asked reach");
+    let [left, top] = [first.left() - 10.0, first.top() - 30.0].map(|at| at as u32);
+    let picture = bench.harness.render().expect("a picture");
+    let (width, height) = (picture.width() - left, picture.height() - top - 40);
+    imageops::crop_imm(&picture, left, top, width, height).to_image()
+}
+
+#[test]
+fn pops_and_the_reach_curve_look_as_they_did() {
+    let mut results = SnapshotResults::new();
+    for theme in [Theme::Dark, Theme::Light] {
+        let preferences = Preferences { timeline: false, theme, ..Preferences::default() };
+        let mut bench = Bench::liking(HIGH, preferences);
+        slide(&mut bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0));
+        bench.apply([Action::SetSwivel(Swivel::Stereographic), Action::SetElbowSpin(0.4)]);
+        slide(&mut bench, Vec3::new(400.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0));
+        slide(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0));
+        bench.apply([Action::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
+        let options = SnapshotOptions::new()
+            .threshold(2.0)
+            .max_failed_pixels(600)
+            .output_path("tests/ui/snapshots");
+        let name = format!("pops_{}", format!("{theme:?}").to_lowercase());
+        results.add(try_image_snapshot_options(&sections(&mut bench), name, &options));
+    }
+}

@@ -1,0 +1,101 @@
+//! How far the hand goes for what it is asked, as a curve.
+
+use egui::accesskit::Role;
+use egui::{Rect, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glam::Vec3;
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::session::{Action, Preferences};
+
+use crate::bench::Bench;
+
+fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
+    let preferences = Preferences { timeline: false, ..Preferences::default() };
+    let mut bench = Bench::liking(vec2(1280.0, 1500.0), preferences);
+    let softening = Softening::new(softness, stretch, 0.0).expect("a softening");
+    bench.apply([Action::SetSoftening(softening), Action::SetHand(Vec3::X * asked)]);
+    bench
+}
+
+/// Where the plot is, whatever it says.
+fn plot(bench: &Bench) -> Rect {
+    let plots = bench.harness.query_all_by_label_contains("Reach curve: ");
+    let mut images = plots.filter(|node| node.accesskit_node().role() == Role::Image);
+    images.next().expect("a plot").rect()
+}
+
+#[test]
+fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
+    // The soft zone is 0.2·(500 − 100)/2 = 40 wide.
+    let soft = 500.0 - 40.0 * (-1.0_f64).exp();
+    for (softness, stretch, asked, actual, slope) in [
+        (0.0, 1.0, 300.0, 300.0, 1.0),
+        (0.0, 1.0, 560.0, 500.0, 0.0),
+        (0.0, 1.0, 60.0, 100.0, 0.0),
+        (0.2, 1.0, 300.0, 300.0, 1.0),
+        (0.2, 1.0, 500.0, soft, (-1.0_f64).exp()),
+        (0.0, 1.5, 560.0, 560.0, 1.0),
+        (0.0, 1.5, 900.0, 750.0, 0.0),
+    ] {
+        let bench = bench(softness, stretch, asked);
+        let said = format!("Asked {asked:.1}, actual {actual:.1}, slope {slope:.2}");
+        assert!(bench.shows(Role::Label, &said), "{said}");
+        assert!(bench.shows(Role::Image, &format!("Reach curve: {said}")), "{said}");
+    }
+}
+
+#[test]
+fn its_lines_are_named_and_examples_are_called_that() {
+    for (softness, stretch, names, note) in [
+        (0.0, 1.0, ["none", "soft 0.20", "stretch 1.50"], "soft and stretch are examples"),
+        (0.3, 1.0, ["none", "soft 0.30", "stretch 1.50"], "stretch is an example"),
+        (0.0, 1.2, ["none", "soft 0.20", "stretch 1.20"], "soft is an example"),
+        (0.4, 1.3, ["none", "soft 0.40", "stretch 1.30"], "This arm is soft and stretches"),
+    ] {
+        let bench = bench(softness, stretch, 300.0);
+        for name in names {
+            assert!(bench.shows(Role::Label, name), "{name}");
+        }
+        assert!(bench.says(note), "{note}");
+    }
+}
+
+#[test]
+fn hovering_reads_the_curve_at_the_pointer() {
+    let mut bench = bench(0.0, 1.0, 300.0);
+    let rect = plot(&bench);
+    let mut asked = Vec::new();
+    for part in [0.3, 0.5, 0.95] {
+        bench.move_to(rect.left_center() + vec2(rect.width() * part, 0.0));
+        bench.wait(0.7);
+        let texts = bench.harness.query_all_by_label_contains("Asked ");
+        let texts = texts.filter_map(|node| {
+            let node = node.accesskit_node();
+            node.label().or(node.value())
+        });
+        let others = texts.filter(|text| !text.contains("Asked 300.0"));
+        let text = others.last().expect("a tooltip");
+        let numbers: Vec<f32> = text
+            .split(|letter: char| !letter.is_ascii_digit() && letter != '.')
+            .filter_map(|number| number.parse().ok())
+            .collect();
+        let [cursor, actual, slope] = numbers[..] else { panic!("{text}") };
+        assert!((actual - cursor.clamp(100.0, 500.0)).abs() < 0.11, "{text}");
+        assert_eq!(slope, if (100.0..=500.0).contains(&cursor) { 1.0 } else { 0.0 }, "{text}");
+        asked.push(cursor);
+    }
+    assert!(asked.is_sorted() && asked[2] > 700.0, "{asked:?}");
+}
+
+#[test]
+fn what_is_far_or_tiny_does_not_upset_it() {
+    let mut bench = bench(0.2, 1.5, 300.0);
+    for hand in [Vec3::ZERO, Vec3::X * 1e30, Vec3::MAX, Vec3::splat(1e-30)] {
+        bench.apply([Action::SetHand(hand)]);
+        plot(&bench);
+    }
+    for length in [1e-20, 1e30] {
+        bench.apply([Action::SetUpper(length), Action::SetLower(length)]);
+        plot(&bench);
+    }
+}
