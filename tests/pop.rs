@@ -151,6 +151,17 @@ fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
 }
 
 #[test]
+fn near_the_shoulder_calm_is_what_it_is_at_a_fifth_of_the_reach() {
+    let bones = TwoBone::new(250.0, 250.0).expect("lengths");
+    let limit = |distance: f32| {
+        let ik = Ik { bones, ..arm(map(), 0.0) };
+        let at = Vec3::X * distance;
+        steps(ik, [at, at + Vec3::Y])[0].limit
+    };
+    assert_eq!([limit(10.0), limit(100.0), limit(125.0), limit(400.0)], [5.0, 5.0, 4.0, 2.0]);
+}
+
+#[test]
 fn a_step_too_short_to_tell_from_rounding_is_none() {
     let x = Vec3::new(300.0, 0.0, 0.0);
     let found = |length: f32| steps(arm(map(), 0.0), [x, x + Vec3::Y * length]).len();
@@ -247,6 +258,10 @@ proptest! {
         let step = steps(ik, [from, to])[0];
         let off = (f64::from(step.ratio) - expected).abs();
         prop_assert!(off < 1e-5 * 500.0 / went + 1e-6 * expected, "{} {expected}", step.ratio);
+        // Both are reached, and farther out than a fifth of the outer limit.
+        let limit = 2.0 * (200.0 / from64.length().min(to64.length())).max(1.0);
+        prop_assert!((f64::from(step.limit) - limit).abs() < 1e-5, "{} {limit}", step.limit);
+        prop_assert_eq!(step.pop.is_some(), step.ratio > step.limit);
     }
 
     #[test]

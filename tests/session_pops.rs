@@ -46,8 +46,8 @@ fn changes(session: &Session) -> Vec<Change> {
     session.pops().samples().filter_map(|sample| change(sample.what)).collect()
 }
 
-/// Drags, does what is said to help against the one pop, and drags again.
-fn is_cured(session: &mut Session, drag: fn(&mut Session)) -> Remedy {
+/// Drags, does what is said to help against the one pop, and drags again: what cured it.
+fn cure(session: &mut Session, drag: fn(&mut Session)) -> Remedy {
     drag(session);
     let spikes = standing(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
@@ -62,14 +62,11 @@ fn is_cured(session: &mut Session, drag: fn(&mut Session)) -> Remedy {
 
 #[test]
 fn each_remedy_cures_the_drag_that_asked_for_it() {
-    let remedies: [(fn(&mut Session), Remedy); 3] = [
-        (over_the_top, Remedy::Measure(Swivel::Stereographic)),
-        (into_the_limit, Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"))),
-        (fold_up, Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"))),
-    ];
-    for (drag, remedy) in remedies {
-        assert_eq!(is_cured(&mut Session::default(), drag), remedy);
-    }
+    let map = Remedy::Measure(Swivel::Stereographic);
+    assert_eq!(cure(&mut Session::default(), over_the_top), map);
+    let soft = Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"));
+    assert_eq!(cure(&mut Session::default(), into_the_limit), soft);
+    assert_eq!(cure(&mut Session::default(), fold_up), soft);
 }
 
 #[test]
@@ -77,7 +74,7 @@ fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
     let mut session = Session::default();
     session.apply(Action::SetPole(Vec3::new(0.0, 300.0, 10.0)));
     session.apply(Action::SetSwivel(Swivel::Pole));
-    assert_eq!(is_cured(&mut session, over_the_top), Remedy::Measure(Swivel::Stereographic));
+    assert_eq!(cure(&mut session, over_the_top), Remedy::Measure(Swivel::Stereographic));
 }
 
 #[test]
@@ -87,7 +84,7 @@ fn behind_the_body_the_map_pops_and_transport_cures_it() {
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
-    assert_eq!(is_cured(&mut session, behind), Remedy::Measure(Swivel::Transport));
+    assert_eq!(cure(&mut session, behind), Remedy::Measure(Swivel::Transport));
 }
 
 #[test]
@@ -96,7 +93,7 @@ fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let almost_hard = Softening::new(0.01, 1.2, 0.0).expect("soft");
     session.apply(Action::SetSoftening(almost_hard));
     let expected = Remedy::KeepOpen(Softening::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
-    assert_eq!(is_cured(&mut session, fold_up), expected);
+    assert_eq!(cure(&mut session, fold_up), expected);
 
     let spike = |pop, softening| {
         let arm = Arm { softening, ..Arm::default() };

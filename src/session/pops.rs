@@ -71,7 +71,7 @@ impl Pops {
         Self { samples: VecDeque::new(), last, run: 0 }
     }
 
-    /// The oldest first, [`Self::MOST`] at most.
+    /// The last 600, the oldest first.
     pub fn samples(&self) -> impl ExactSizeIterator<Item = &Sample> + Clone {
         self.samples.iter()
     }

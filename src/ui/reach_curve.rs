@@ -33,6 +33,9 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
     ui.horizontal_wrapped(|ui| curves.iter().for_each(|curve| legend(ui, curve)));
     ui.label(said);
     ui.weak(note(arm.softening));
+    if arm.weight < 1.0 {
+        ui.weak("As the hand alone would have it: the angles lead too");
+    }
 }
 
 /// The hand's distance over the cursor's, in parts of L.

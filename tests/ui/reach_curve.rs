@@ -61,6 +61,14 @@ fn its_lines_are_named_and_examples_are_called_that() {
 }
 
 #[test]
+fn it_says_when_the_hand_does_not_lead_alone() {
+    let mut bench = bench(0.0, 1.0, 300.0);
+    assert!(!bench.says("As the hand alone would have it"));
+    bench.apply([Action::SetWeight(0.5)]);
+    assert!(bench.says("As the hand alone would have it"));
+}
+
+#[test]
 fn hovering_reads_the_curve_at_the_pointer() {
     let mut bench = bench(0.0, 1.0, 300.0);
     let rect = plot(&bench);
@@ -73,8 +81,8 @@ fn hovering_reads_the_curve_at_the_pointer() {
             let node = node.accesskit_node();
             node.label().or(node.value())
         });
-        let others = texts.filter(|text| !text.contains("Asked 300.0"));
-        let text = others.last().expect("a tooltip");
+        let mut others = texts.filter(|text| !text.contains("Asked 300.0"));
+        let text = others.next_back().expect("a tooltip");
         let numbers: Vec<f32> = text
             .split(|letter: char| !letter.is_ascii_digit() && letter != '.')
             .filter_map(|number| number.parse().ok())
