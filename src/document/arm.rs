@@ -91,6 +91,21 @@ impl Arm {
         })
     }
 
+    /// How wide the grid's cells around it are: the power of ten nearest to what the seed's are for
+    /// its length, which go 1.6 to 16 times into it.
+    pub fn cell(&self) -> f32 {
+        /// Cells of 100 around an arm of 500.
+        const SEED: f32 = 100.0 / 500.0;
+        let cell = 10_f32.powf((self.bones.outer_limit() * SEED).log10().round());
+        if cell.is_normal() { cell } else { 1.0 }
+    }
+
+    /// A length of the arm in letters: to a thousandth of its cell.
+    pub fn length_in_words(&self, length: f32) -> String {
+        let digits = (3.0 - self.cell().log10().round()).clamp(0.0, 8.0) as usize;
+        format!("{length:.digits$}")
+    }
+
     /// Where the hand is asked to be, in Root space.
     pub fn cursor(&self) -> Vec3 {
         match self.goal {

@@ -65,17 +65,15 @@ impl Document {
         self.keys.follow(moved);
     }
 
-    /// How wide the grid's cells are, a power of ten: around the arm the one nearest to what the seed's
-    /// are for its length, which go 1.6 to 16 times into it; around a skeleton the one that goes 2 to
-    /// 20 times into its reach.
+    /// How wide the grid's cells are, a power of ten: around the arm [its own](Arm::cell); around a
+    /// skeleton the one that goes 2 to 20 times into its reach.
     pub fn cell(&self) -> f32 {
-        /// Cells of 100 around an arm of 500.
-        const SEED: f32 = 100.0 / 500.0;
-        let power = match self.rig {
-            RigKind::Arm => (self.arm.bones.outer_limit() * SEED).log10().round(),
-            RigKind::Skeleton => (self.skeleton.reach() * 0.5).log10().floor(),
-        };
-        let cell = 10_f32.powf(power);
-        if cell.is_normal() { cell } else { 1.0 }
+        match self.rig {
+            RigKind::Arm => self.arm.cell(),
+            RigKind::Skeleton => {
+                let cell = 10_f32.powf((self.skeleton.reach() * 0.5).log10().floor());
+                if cell.is_normal() { cell } else { 1.0 }
+            }
+        }
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
             add_pin(scene, arm.cursor_world(), thickness);
         }
         if pose.reach != Reach::Reached {
-            add_gap(scene, &rig, arm.cursor_world(), thickness);
+            add_gap(scene, &rig, arm, thickness);
         }
     }
     if arm.swivel == Swivel::Pole && arm.is_led_by_hand() {
@@ -128,15 +128,16 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
 }
 
 /// The way from the hand to a Cursor that it does not reach, with its length.
-fn add_gap(scene: &mut Scene, rig: &ArmRig, cursor: Vec3, thickness: f32) {
-    let hand = rig.origin(Part::Hand);
+fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
+    let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_world());
+    let text = arm.length_in_words(hand.distance(cursor));
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     scene.labels.push(Label {
         at: cursor,
         clearance: CURSOR_BALL * thickness,
         side: Side::Above,
-        text: format!("{:.1}", hand.distance(cursor)),
+        text,
         colour,
     });
 }

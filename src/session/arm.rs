@@ -100,7 +100,7 @@ impl Session {
         let is_led = handle == Handle::Free && arm.weight == 1.0;
         let is_at_hand = is_led && aside(hand) < aside(arm.cursor());
         let start = if is_at_hand { hand } else { arm.cursor() };
-        let drag = PointDrag::new(handle, start, arm.root, forward, ray);
+        let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
         self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: Way::Point(drag) }));
     }
 
@@ -108,6 +108,7 @@ impl Session {
         let arm = *self.arm();
         if arm.swivel == Swivel::Pole {
             let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
+            let drag = drag.with_step(self.snap());
             self.begin_edit(Some(Drag { grip: Grip::Pole(handle), way: Way::Point(drag) }));
         }
     }

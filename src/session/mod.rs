@@ -14,8 +14,8 @@ mod journey;
 mod keys;
 mod naming;
 mod point_drag;
-mod pose_line;
 mod pops;
+mod pose_line;
 mod preferences;
 mod race;
 mod remedy;
@@ -263,6 +263,12 @@ impl Session {
     /// Whether a change is under way that can be taken back.
     pub fn is_editing(&self) -> bool {
         self.edit.is_some()
+    }
+
+    /// What sliders of the arm go by, a hundredth of its cell: that of the arm as it was before the
+    /// change under way, so that no rail moves under the pointer.
+    pub fn arm_unit(&self) -> f32 {
+        self.edit.as_ref().map_or(&self.shown, |edit| &edit.shown).arm.cell() * 0.01
     }
 
     /// What is being dragged in the viewport.

@@ -50,7 +50,7 @@ impl Session {
     }
 
     /// A tenth of the grid.
-    fn snap(&self) -> f32 {
+    pub(super) fn snap(&self) -> f32 {
         self.shown.cell() * 0.1
     }
 

@@ -13,6 +13,7 @@ use crate::session::{Action, Session};
 /// Why what the hand leads cannot be set.
 pub(super) const ANGLES_LEAD: &str = "The joints' own angles lead: switch to IK to set this";
 
+/// Of an arm like the seed's.
 const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
@@ -42,7 +43,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         value: arm.cursor(),
         default: seed,
         range: arm.bones.outer_limit(),
-        step: 1.0,
+        step: session.arm_unit(),
         tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
         disabled,
     };
@@ -52,7 +53,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let pinned = Point {
                 value: pin,
                 default: arm.root + seed,
-                range: arm.bones.outer_limit().max(ROOT_RANGE),
+                range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
                 tooltip: "Where the Cursor is pinned, in the world",
                 ..hand
             };
@@ -77,8 +78,8 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         name: "Root",
         value: session.arm().root,
         default: Vec3::ZERO,
-        range: ROOT_RANGE,
-        step: 1.0,
+        range: ROOT_RANGE * session.arm_unit(),
+        step: session.arm_unit(),
         tooltip: "Where the Root, the shoulder, is in the world; the arm moves with it, but for a \
                   hand that is pinned",
         disabled: None,
@@ -88,17 +89,18 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (palette, bones) = (style::palette(ui), session.arm().bones);
-    let seed = Arm::default().bones;
+    let (seed, unit) = (Arm::default().bones, session.arm_unit());
+    let range = (LENGTH_RANGE.0 * unit, LENGTH_RANGE.1 * unit);
     let upper = Slider {
         name: "Upper length",
         label: "Upper d_1",
         colour: Some(style::colour(palette.upper)),
         tooltip: "The Upper Limb, from shoulder to elbow",
         value: bones.upper(),
-        range: LENGTH_RANGE,
+        range,
         default: seed.upper(),
         unit: "",
-        step: 1.0,
+        step: unit,
         disabled: None,
     };
     upper.show(ui, super::is_sliding(session), actions, Action::SetUpper);
@@ -108,10 +110,10 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         colour: Some(style::colour(palette.lower)),
         tooltip: "The Lower Limb, from elbow to hand",
         value: bones.lower(),
-        range: LENGTH_RANGE,
+        range,
         default: seed.lower(),
         unit: "",
-        step: 1.0,
+        step: unit,
         disabled: None,
     };
     lower.show(ui, super::is_sliding(session), actions, Action::SetLower);

@@ -81,7 +81,7 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         value: arm.pole,
         default: Arm::default().pole,
         range: arm.bones.outer_limit(),
-        step: 1.0,
+        step: session.arm_unit(),
         tooltip: "What the elbow points at, relative to the Root; it can be dragged in the view",
         disabled: None,
     };

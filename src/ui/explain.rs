@@ -3,6 +3,7 @@
 use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
 use super::{pops, reach_curve, references, row, status, style, symbol, triangle};
+use crate::document::Arm;
 use crate::session::{Action, Session};
 
 const FORMULA_SIZE: f32 = 13.5;
@@ -55,7 +56,7 @@ fn pointer(session: &Session) -> [Quantity; 4] {
         Quantity {
             symbol: "h_c",
             formula: "hypot(x_c, z_c)",
-            value: length(cursor.x.hypot(cursor.z)),
+            value: length(arm, cursor.x.hypot(cursor.z)),
             meaning: "How far the cursor is from the vertical through the root",
             colour: None,
         },
@@ -72,7 +73,7 @@ fn pointer(session: &Session) -> [Quantity; 4] {
                 true => "|c| within limits",
                 false => "|c| softened",
             },
-            value: length(pose.distance),
+            value: length(arm, pose.distance),
             meaning: "From shoulder to hand: the cursor's distance, held between the two limits",
             colour: None,
         },
@@ -80,27 +81,28 @@ fn pointer(session: &Session) -> [Quantity; 4] {
 }
 
 fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
-    let (bones, pose) = (session.arm().bones, session.pose());
+    let (arm, pose) = (session.arm(), session.pose());
+    let bones = arm.bones;
     let palette = style::palette(ui);
     [
         Quantity {
             symbol: "d_1",
             formula: "",
-            value: length(bones.upper() * pose.stretch),
+            value: length(arm, bones.upper() * pose.stretch),
             meaning: "Length of the Upper Limb",
             colour: Some(style::colour(palette.upper)),
         },
         Quantity {
             symbol: "d_2",
             formula: "",
-            value: length(bones.lower() * pose.stretch),
+            value: length(arm, bones.lower() * pose.stretch),
             meaning: "Length of the Lower Limb",
             colour: Some(style::colour(palette.lower)),
         },
         Quantity {
             symbol: "h_e",
             formula: "(D + δ L / D) / 2",
-            value: length(pose.along),
+            value: length(arm, pose.along),
             meaning: "How far along the Pointer the elbow is. L is the sum of the lengths, δ their \
                       difference",
             colour: None,
@@ -108,7 +110,7 @@ fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
         Quantity {
             symbol: "o_e",
             formula: "Heron's formula",
-            value: length(pose.out),
+            value: length(arm, pose.out),
             meaning: "How far out from the Pointer the elbow is: twice the triangle's area over D",
             colour: None,
         },
@@ -154,8 +156,10 @@ fn degrees(radians: f32) -> String {
     format!("{:.1}°", tidy(radians.to_degrees()))
 }
 
-fn length(length: f32) -> String {
-    format!("{:.1}", tidy(length))
+/// Without a sign on what is shown as nothing.
+fn length(arm: &Arm, length: f32) -> String {
+    let nothing = 0.0005 * arm.cell();
+    arm.length_in_words(if length.abs() < nothing { 0.0 } else { length })
 }
 
 /// Without a sign on what is shown as nothing.
@@ -170,6 +174,7 @@ fn meter(ui: &mut Ui, session: &Session) {
     const BEYOND: f32 = 1.25;
     let arm = session.arm();
     let (inner, outer) = arm.reach();
+    let digits = status::decimals(arm.cell());
     let (what, asked) = match arm.is_led_by_hand() {
         true => ("Cursor", arm.cursor().length()),
         false => ("Hand", session.pose().distance),
@@ -199,10 +204,11 @@ fn meter(ui: &mut Ui, session: &Session) {
     // The limits' figures would run into each other on a short bar.
     let apart = place(outer) - place(inner) > 60.0;
     if apart && inner > 0.0 {
-        written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.0}"));
+        written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));
     }
-    written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.0}"));
-    let summary = format!("{what} at {asked:.1}; the hand reaches from {inner:.1} to {outer:.1}");
+    written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.digits$}"));
+    let [asked, inner, outer] = [asked, inner, outer].map(|it| arm.length_in_words(it));
+    let summary = format!("{what} at {asked}; the hand reaches from {inner} to {outer}");
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))
     });

@@ -133,8 +133,8 @@ fn why_none(pop: Pop, arm: &Arm) -> String {
             match least > 1e-3 * arm.bones.outer_limit() {
                 true => format!(
                     "No remedy: from one side to the other the hand must jump by twice the least \
-                     reach, {:.1}.",
-                    2.0 * least
+                     reach, {}.",
+                    arm.length_in_words(2.0 * least)
                 ),
                 false => "No remedy: the whole arm must turn about.".to_owned(),
             }

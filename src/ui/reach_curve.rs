@@ -6,7 +6,7 @@ use egui_plot::{
     Points, VLine,
 };
 
-use super::{plot, style};
+use super::{plot, status, style};
 use crate::document::Arm;
 use crate::kinematics::reach::{Extent, Softening};
 use crate::session::Session;
@@ -93,7 +93,8 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
     let longest = curves.iter().map(|curve| curve.softening.max_stretch()).fold(1.0, f32::max);
     // No arm is stretched so far that its limits would be lost in a corner.
     let most = f64::from(longest.min(4.0)) + 0.2;
-    let length = move |part: f64| format!("{:.0}", part * outer);
+    let digits = status::decimals(arm.cell());
+    let length = move |part: f64| format!("{:.digits$}", part * outer);
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
     let weak = ui.visuals().weak_text_color();

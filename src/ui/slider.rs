@@ -258,14 +258,17 @@ impl Slider<'_> {
 
 /// How many digits behind the point show a tenth of a step.
 pub(super) fn decimals(step: f32) -> usize {
-    (1.0 - step.log10().floor()).clamp(0.0, 4.0) as usize
+    (1.0 - step.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
 /// In seven letters at most, which is what there is room for.
 pub(super) fn format(value: f64, decimals: usize) -> String {
+    const MOST: usize = 4;
     // Nothing has no sign.
     let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
     match value.abs() {
+        0.0 if decimals > MOST => "0".to_owned(),
+        _ if decimals > MOST => format!("{value:.2e}"),
         ..99.995 => format!("{value:.decimals$}"),
         ..9_999.95 => format!("{value:.0$}", decimals.min(1)),
         ..999_999.5 => format!("{value:.0}"),

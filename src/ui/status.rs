@@ -38,12 +38,12 @@ fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
 
 /// One sentence on why the arm is as it is.
 pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
-    let gap = pose.hand.distance(arm.cursor());
+    let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
     if !arm.is_led_by_hand() {
         return "FK: the joints' own angles place the hand.".to_owned();
     }
     if arm.weight < 1.0 {
-        return format!("Between FK and IK: the hand is {gap:.1} from the cursor.");
+        return format!("Between FK and IK: the hand is {gap} from the cursor.");
     }
     if pose.stretch > 1.0 {
         let reached = if pose.reach == Reach::Reached { "" } else { " as far as they may" };
@@ -52,18 +52,16 @@ pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
     match pose.reach {
         Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
         Reach::TooFar if arm.softening.softness() > 0.0 => {
-            format!(
-                "Soft: the hand lags {gap:.1} behind the cursor, so that the elbow does not snap."
-            )
+            format!("Soft: the hand lags {gap} behind the cursor, so that the elbow does not snap.")
         }
         Reach::TooClose if !arm.softening.is_hard() => {
-            format!("Soft: the hand keeps away from the shoulder, {gap:.1} from the cursor.")
+            format!("Soft: the hand keeps away from the shoulder, {gap} from the cursor.")
         }
         Reach::TooFar => {
-            format!("Too far: the arm is straight and points at the cursor, {gap:.1} short.")
+            format!("Too far: the arm is straight and points at the cursor, {gap} short.")
         }
         Reach::TooClose => {
-            format!("Too close: the arm is folded and points past the cursor, by {gap:.1}.")
+            format!("Too close: the arm is folded and points past the cursor, by {gap}.")
         }
     }
 }
@@ -129,10 +127,10 @@ fn describe_pose(session: &Session) -> String {
     };
     let hand = pose.hand;
     let (least, most) = arm.reach();
-    format!(
-        "{reach} · hand ({:.1}, {:.1}, {:.1}) · D {:.1} of {:.0}–{:.0}",
-        hand.x, hand.y, hand.z, pose.distance, least, most,
-    )
+    let [x, y, z] = hand.to_array().map(|coordinate| arm.length_in_words(coordinate));
+    let distance = arm.length_in_words(pose.distance);
+    let digits = decimals(arm.cell());
+    format!("{reach} · hand ({x}, {y}, {z}) · D {distance} of {least:.digits$}–{most:.digits$}")
 }
 
 fn describe_drag(session: &Session, drag: &Drag) -> String {
@@ -153,7 +151,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         _ => "Move",
     };
     let digits = match session.rig() {
-        RigKind::Arm => 1,
+        RigKind::Arm => decimals(session.shown().cell() * 0.1),
         RigKind::Skeleton => decimals(session.shown().cell()),
     };
     format!(

@@ -19,10 +19,10 @@ pub(super) fn ui(ui: &mut Ui, arm: &Arm, pose: &Pose) {
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| {
         let text = format!(
-            "Triangle: d 1 {:.1}, d 2 {:.1}, D {:.1}, theta e {:.1} degrees",
-            arm.bones.upper() * pose.stretch,
-            arm.bones.lower() * pose.stretch,
-            pose.distance,
+            "Triangle: d 1 {}, d 2 {}, D {}, theta e {:.1} degrees",
+            arm.length_in_words(arm.bones.upper() * pose.stretch),
+            arm.length_in_words(arm.bones.lower() * pose.stretch),
+            arm.length_in_words(pose.distance),
             pose.shoulder_angle().to_degrees(),
         );
         WidgetInfo::labeled(Role::Image, true, text)
