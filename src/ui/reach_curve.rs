@@ -14,7 +14,7 @@ use crate::session::Session;
 const HEIGHT: f32 = 168.0;
 const POINTS: u16 = 240;
 /// What is shown of an arm that has neither.
-const EXAMPLE_SOFTNESS: f32 = 0.2;
+const EXAMPLE_SOFTNESS: f32 = 0.5;
 const EXAMPLE_STRETCH: f32 = 1.5;
 
 pub(super) fn ui(ui: &mut Ui, session: &Session) {

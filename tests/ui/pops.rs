@@ -13,8 +13,8 @@ use crate::bench::Bench;
 
 const LEFT: PointerButton = PointerButton::Primary;
 /// High enough for all of the right panel, and wide enough for all that the hand can reach.
-const HUGE: Vec2 = vec2(2000.0, 1400.0);
-const HIGH: Vec2 = vec2(900.0, 1480.0);
+const HUGE: Vec2 = vec2(2000.0, 1640.0);
+const HIGH: Vec2 = vec2(900.0, 1720.0);
 
 /// Looks at all that the hand can reach from the front: there the hand is dragged in x and y.
 fn from_the_front() -> Bench {

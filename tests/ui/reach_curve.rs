@@ -47,9 +47,9 @@ fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
 #[test]
 fn its_lines_are_named_and_examples_are_called_that() {
     for (softness, stretch, names, note) in [
-        (0.0, 1.0, ["none", "soft 0.20", "stretch 1.50"], "soft and stretch are examples"),
+        (0.0, 1.0, ["none", "soft 0.50", "stretch 1.50"], "soft and stretch are examples"),
         (0.3, 1.0, ["none", "soft 0.30", "stretch 1.50"], "stretch is an example"),
-        (0.0, 1.2, ["none", "soft 0.20", "stretch 1.20"], "soft is an example"),
+        (0.0, 1.2, ["none", "soft 0.50", "stretch 1.20"], "soft is an example"),
         (0.4, 1.3, ["none", "soft 0.40", "stretch 1.30"], "This arm is soft and stretches"),
     ] {
         let bench = bench(softness, stretch, 300.0);
