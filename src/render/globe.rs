@@ -1,6 +1,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
+use super::uniforms::Uniforms;
 use super::{Gpu, pipeline};
 use crate::scene::{Colour, Globe, Palette, Scene};
 
@@ -29,44 +30,20 @@ const _: () = assert!(size_of::<Uniform>() == 2 * 16 + Palette::GAINS * 16 + 2 *
 #[derive(Debug)]
 pub(super) struct Globes {
     pipeline: wgpu::RenderPipeline,
-    buffer: wgpu::Buffer,
-    group: wgpu::BindGroup,
+    uniforms: Uniforms,
     shown: bool,
 }
 
 impl Globes {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("globe"),
-            size: size_of::<Uniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("globe"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("globe"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        });
+        let uniforms = Uniforms::new::<Uniform>(gpu, "globe");
         let pipeline = pipeline::build(
             gpu,
             &pipeline::Kind {
                 label: "globe",
                 shader: SHADER,
                 fragment: "fragment",
-                layouts: &[view, &layout],
+                layouts: &[view, &uniforms.layout],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,
@@ -74,22 +51,21 @@ impl Globes {
                 opaque: false,
             },
         );
-        Self { pipeline, buffer, group, shown: false }
+        Self { pipeline, uniforms, shown: false }
     }
 
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
         let globe = scene.globe.filter(Globe::has_size);
         self.shown = globe.is_some();
         if let Some(globe) = globe {
-            let uniform = Uniform::new(&globe, &scene.palette);
-            gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
+            self.uniforms.write(gpu, &Uniform::new(&globe, &scene.palette));
         }
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         if self.shown {
             pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(1, &self.group, &[]);
+            pass.set_bind_group(1, &self.uniforms.group, &[]);
             pass.draw(0..4, 0..SIDES);
         }
     }

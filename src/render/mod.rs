@@ -19,6 +19,7 @@ mod quads;
 mod renderer;
 mod shadow;
 mod solid;
+mod uniforms;
 mod view;
 
 pub use canvas::{Canvas, ReadError};

@@ -24,12 +24,12 @@ impl Renderer {
     pub fn new(gpu: &Gpu) -> Self {
         let view = View::new(gpu);
         Self {
-            solids: Solids::new(gpu, &view.layout),
-            backdrop: Backdrop::new(gpu, &view.layout),
-            shadows: Shadows::new(gpu, &view.layout),
-            globes: Globes::new(gpu, &view.layout),
-            lines: Lines::new(gpu, &view.layout),
-            labels: Labels::new(gpu, &view.layout),
+            solids: Solids::new(gpu, view.layout()),
+            backdrop: Backdrop::new(gpu, view.layout()),
+            shadows: Shadows::new(gpu, view.layout()),
+            globes: Globes::new(gpu, view.layout()),
+            lines: Lines::new(gpu, view.layout()),
+            labels: Labels::new(gpu, view.layout()),
             view,
         }
     }
@@ -68,7 +68,7 @@ impl Renderer {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.view.group, &[]);
+        pass.set_bind_group(0, self.view.group(), &[]);
         self.backdrop.draw(&mut pass);
         self.solids.draw(&mut pass);
         self.shadows.draw(&mut pass);

@@ -2,6 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::Gpu;
+use super::uniforms::Uniforms;
 use crate::scene::{Colour, Scene};
 
 /// The see-through spheres: the arm has two limits.
@@ -47,45 +48,24 @@ const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + SHELLS
 
 /// The uniform on the device.
 #[derive(Debug)]
-pub(super) struct View {
-    buffer: wgpu::Buffer,
-    pub layout: wgpu::BindGroupLayout,
-    pub group: wgpu::BindGroup,
-}
+pub(super) struct View(Uniforms);
 
 impl View {
     pub fn new(gpu: &Gpu) -> Self {
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("view"),
-            size: size_of::<Uniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("view"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        });
-        Self { buffer, layout, group }
+        Self(Uniforms::new::<Uniform>(gpu, "view"))
+    }
+
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.0.layout
+    }
+
+    pub fn group(&self) -> &wgpu::BindGroup {
+        &self.0.group
     }
 
     /// `scale` is how many pixels a point has.
     pub fn upload(&self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
-        let uniform = Uniform::new(scene, size, scale);
-        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
+        self.0.write(gpu, &Uniform::new(scene, size, scale));
     }
 }
 

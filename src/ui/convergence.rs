@@ -3,9 +3,9 @@
 use core::ops::RangeInclusive;
 
 use egui::{Rangef, Stroke, Ui, Vec2b};
-use egui_plot::{AxisHints, GridMark, HLine, Line, Plot, PlotBounds, PlotPoints};
+use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints};
 
-use super::{number, style};
+use super::{number, plot, style};
 use crate::kinematics::solve::Method;
 use crate::session::{History, Race, Session};
 
@@ -31,17 +31,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
 
     let palette = style::palette(ui);
     let weak = ui.visuals().weak_text_color();
-    let response = Plot::new("convergence")
-        .height(HEIGHT)
-        .show_background(false)
-        .show_x(false)
-        .show_y(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .set_margin_fraction(egui::Vec2::ZERO)
+    let response = plot::still("convergence", HEIGHT)
         .custom_x_axes(vec![
             AxisHints::new_x().formatter(iteration).label_spacing(Rangef::new(20.0, 28.0)),
         ])

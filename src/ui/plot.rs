@@ -1,4 +1,4 @@
-//! What the plots of the explain panel have in common.
+//! What plots have in common.
 
 use egui::{Rangef, Ui};
 use egui_plot::{AxisHints, GridMark, Plot, PlotBounds, PlotUi};
@@ -10,7 +10,6 @@ pub(super) fn still<'a>(id: &'static str, height: f32) -> Plot<'a> {
         .show_background(false)
         .show_x(false)
         .show_y(false)
-        .label_formatter(|_| None)
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)

@@ -150,6 +150,7 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
     let bounds = PlotBounds::from_min_max([-0.02 * room, *logs.start()], [1.03 * room, 2.25]);
     let colours = Colours::new(ui);
     let response = plot::still("pops", HEIGHT)
+        .label_formatter(|_| None)
         .show_grid(egui::Vec2b::new(false, true))
         .custom_x_axes(vec![])
         .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), times).min_thickness(30.0)])

@@ -104,6 +104,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
     let dot = Dot::new(arm, most);
     let text = ui.visuals().strong_text_color();
     plot::still("reach curve", HEIGHT)
+        .label_formatter(|_| None)
         .show_grid(false)
         .custom_x_axes(vec![plot::axis(ui, AxisHints::new_x(), length)])
         .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), length)])

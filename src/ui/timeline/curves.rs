@@ -4,14 +4,14 @@ use egui::{
     Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
 };
 use egui::{Rangef, Vec2b, pos2, vec2};
-use egui_plot::{AxisHints, Line, LineStyle, Plot, PlotBounds, PlotPoints, Points};
+use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 use super::scale::Scale;
 use super::{Areas, ROW, held, lanes, names, rows, ruler};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::solve::Method;
 use crate::session::{Action, Session};
-use crate::ui::{slider, style};
+use crate::ui::{plot, slider, style};
 
 /// More than these cannot be told apart.
 const MOST: usize = 24;
@@ -152,20 +152,10 @@ fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
     let left = areas.lanes.left() - VALUES;
     let rect = Rect::from_min_max(pos2(left, areas.lanes.top()), areas.lanes.max);
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
-    Plot::new("timeline curves")
+    plot::still("timeline curves", rect.height())
         .width(rect.width())
-        .height(rect.height())
-        .show_background(false)
-        .show_x(false)
-        .show_y(false)
         .show_grid(Vec2b::new(false, true))
         .show_axes(Vec2b::new(false, true))
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .set_margin_fraction(egui::Vec2::ZERO)
         .y_grid_spacer(egui_plot::uniform_grid_spacer(move |grid| {
             let lines = f64::from((rect.height() / BETWEEN_VALUES).max(1.0));
             let step = round_step((grid.bounds.1 - grid.bounds.0) / lines);

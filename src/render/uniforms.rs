@@ -1,0 +1,47 @@
+use bytemuck::Pod;
+
+use super::Gpu;
+
+/// A block of values that shaders read, alone in a bind group.
+#[derive(Debug)]
+pub(super) struct Uniforms {
+    buffer: wgpu::Buffer,
+    pub layout: wgpu::BindGroupLayout,
+    pub group: wgpu::BindGroup,
+}
+
+impl Uniforms {
+    /// Room for a `T`.
+    pub fn new<T: Pod>(gpu: &Gpu, label: &'static str) -> Self {
+        let label = Some(label);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label,
+            size: size_of::<T>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label,
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        Self { buffer, layout, group }
+    }
+
+    pub fn write<T: Pod>(&self, gpu: &Gpu, values: &T) {
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(values));
+    }
+}
