@@ -201,6 +201,28 @@ fn between_opposite_pointers_what_is_carried_stays() {
 }
 
 #[test]
+fn what_is_carried_nowhere_stays_bit_for_bit() {
+    for cursor in [Vec3::new(0.3, 0.9, -0.4), Vec3::new(-250.0, 1.0, 3.0), Vec3::Y] {
+        let carried = Carried::new(Facing::towards(cursor, Facing::default()));
+        assert_eq!(carried.to(carried.direction), carried);
+    }
+}
+
+#[test]
+fn beside_its_singular_direction_the_map_is_as_exact_as_elsewhere() {
+    for aside in [1e-2, 1e-3, 1e-4_f32] {
+        // Two directions that are the same but for the rounding of their lengths.
+        let w = Vec3::new(-1.0, aside, 0.7 * aside).normalize();
+        let longer =
+            Facing { direction: w * (1.0 + f32::EPSILON), heading: facing(w.as_dvec3()).heading };
+        let map = Reference::Stereographic(Stereographic::default());
+        let same = Facing { direction: w, ..longer };
+        let apart = map.outward(longer, None).distance(map.outward(same, None));
+        assert!(f64::from(apart) < 1e-6 / f64::from(aside), "{apart} at {aside}");
+    }
+}
+
+#[test]
 fn a_map_needs_two_directions() {
     assert_eq!(Stereographic::new(Vec3::ZERO, Vec3::Y), None);
     assert_eq!(Stereographic::new(Vec3::Y, Vec3::NEG_Y * 3.0), None);

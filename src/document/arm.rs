@@ -4,7 +4,9 @@ use super::Wrist;
 use crate::kinematics::fk::{Fk, blended};
 use crate::kinematics::ik::{Ik, Solved};
 use crate::kinematics::reach::Softening;
-use crate::kinematics::swivel::{Carried, Reference, Stereographic, angle_from_limb, respun};
+use crate::kinematics::swivel::{
+    Carried, Reference, Stereographic, angle_from_limb, respun, wrapped,
+};
 use crate::kinematics::two_bone::{Facing, LengthError, Pose, TwoBone};
 use crate::rig::ArmRig;
 
@@ -117,7 +119,7 @@ impl Arm {
     /// Where the hand is asked to be, in the world.
     pub fn cursor_world(&self) -> Vec3 {
         match self.goal {
-            Goal::Root(cursor) => self.root + cursor,
+            Goal::Root(cursor) => (self.root + cursor).clamp(Vec3::MIN, Vec3::MAX),
             Goal::World(cursor) => cursor,
         }
     }
@@ -148,6 +150,11 @@ impl Arm {
     pub fn reach(&self) -> (f32, f32) {
         let most = self.bones.outer_limit() * self.softening.max_stretch();
         (self.softening.least_distance(self.bones), most.min(f32::MAX))
+    }
+
+    /// Whether the limbs are, or can become, longer or shorter than at rest.
+    pub fn is_stretching(&self) -> bool {
+        self.softening.max_stretch() > 1.0 || self.fk.stretch != 1.0
     }
 
     /// Whether the hand leads, alone or with others.
@@ -268,7 +275,7 @@ impl Arm {
 
     /// Sets ψ as keys have it.
     pub(super) fn set_keyed_spin(&mut self, spin: f32) {
-        self.elbow_spin = spin.rem_euclid(core::f32::consts::TAU);
+        self.elbow_spin = wrapped(spin);
         if self.swivel == Swivel::Transport {
             self.carried = None;
         }

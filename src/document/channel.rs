@@ -29,6 +29,8 @@ pub enum Channel {
     Shoulder,
     /// The elbow's own bend in radians, unwrapped.
     Bend,
+    /// How many times as long as at rest the limbs are while their angles lead.
+    Stretch,
     /// The hand's angles in radians, unwrapped.
     Wrist,
     /// Where the skeleton's own origin is, in the world.
@@ -82,7 +84,7 @@ impl Channel {
             | Self::Translation
             | Self::Offset(_)
             | Self::Target(_) => Quantity::Point,
-            Self::Upper | Self::Lower => Quantity::Length,
+            Self::Upper | Self::Lower | Self::Stretch => Quantity::Length,
             Self::Weight => Quantity::Part,
             Self::ElbowSpin | Self::Bend => Quantity::Angle,
             Self::Shoulder | Self::Wrist | Self::Rotation(_) => Quantity::Angles,
@@ -95,7 +97,7 @@ impl Channel {
     }
 
     /// All that can shape a document's arm.
-    pub const OF_ARM: [Self; 11] = [
+    pub const OF_ARM: [Self; 12] = [
         Self::Hand,
         Self::Pin,
         Self::ElbowSpin,
@@ -106,8 +108,15 @@ impl Channel {
         Self::Weight,
         Self::Shoulder,
         Self::Bend,
+        Self::Stretch,
         Self::Wrist,
     ];
+
+    /// Whether it is where the arm's hand is to be, how its joints are turned, or which of the two leads.
+    pub fn leads_arm(self) -> bool {
+        use Channel::{Bend, ElbowSpin, Hand, Pin, Shoulder, Stretch, Weight};
+        matches!(self, Hand | Pin | ElbowSpin | Weight | Shoulder | Bend | Stretch)
+    }
 
     /// Whether it shapes an arm as that is set.
     pub fn shapes(self, arm: &Arm) -> bool {
@@ -116,6 +125,7 @@ impl Channel {
             Self::Pin => arm.is_pinned(),
             Self::Pole => arm.swivel == Swivel::Pole,
             Self::Weight | Self::Shoulder | Self::Bend => arm.weight < 1.0,
+            Self::Stretch => arm.weight < 1.0 && arm.is_stretching(),
             Self::Wrist => arm.wrist != Wrist::default(),
             other => other.rig() == Some(RigKind::Arm),
         }
@@ -151,6 +161,7 @@ impl Channel {
             | Self::Weight
             | Self::Shoulder
             | Self::Bend
+            | Self::Stretch
             | Self::Wrist => Some(RigKind::Arm),
             Self::Translation
             | Self::Rotation(_)
@@ -210,6 +221,7 @@ impl Channel {
             Self::Weight => number(arm.weight),
             Self::Shoulder => arm.fk.shoulder,
             Self::Bend => number(arm.fk.bend),
+            Self::Stretch => number(arm.fk.stretch),
             Self::Wrist => arm.wrist.angles,
             Self::Root => arm.root,
             Self::Upper => number(arm.bones.upper()),
@@ -248,6 +260,7 @@ impl Channel {
             Self::Weight => arm.weight = value.x.clamp(0.0, 1.0),
             Self::Shoulder => arm.fk.shoulder = value,
             Self::Bend => arm.fk.bend = value.x,
+            Self::Stretch => arm.fk.stretch = value.x.max(f32::MIN_POSITIVE),
             Self::Wrist => arm.wrist.angles = value,
             Self::Root => arm.root = value,
             Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),

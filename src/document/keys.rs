@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Arm, Channel, Document, Quantity, RigKind, Swivel};
+use super::{Arm, Channel, Document, Quantity, RigKind, Space, Swivel};
 use crate::kinematics::skeleton::Moved;
 use crate::kinematics::spline::Spline;
 
@@ -138,12 +138,12 @@ impl Document {
         slithers || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
     }
 
-    /// Keys a channel as it is now, at a time; an angle unwrapped to be near the keys that it has.
+    /// Keys a channel as it is now, at a time; the elbow's spin unwrapped to be near the keys that it has.
     pub fn key(&mut self, channel: Channel, time: f64) {
         let Some(mut value) = channel.value(self) else {
             return;
         };
-        if channel.quantity() == Quantity::Angle
+        if channel == Channel::ElbowSpin
             && let Some(near) = self.keys.value(channel, time)
         {
             value.x += ((near.x - value.x) / TAU).round() * TAU;
@@ -165,6 +165,23 @@ impl Document {
             let (old, turned) = (knot.value.x, measured - knot.value.x);
             shift = turned + ((shift - turned) / TAU).round() * TAU;
             after.keys.insert(Channel::ElbowSpin, knot.time, Vec3::new(old + shift, 0.0, 0.0));
+        }
+        after
+    }
+
+    /// Measures the hand's angles in another space and leaves the hand as it is turned, at every key of
+    /// its angles too.
+    #[must_use]
+    pub fn with_wrist_in(&self, space: Space) -> Self {
+        let mut after = self.clone();
+        after.arm.wrist = self.arm.wrist.measured_in(space, &self.arm.pose());
+        let mut last = None;
+        for knot in self.keys.track(Channel::Wrist).into_iter().flat_map(Spline::knots) {
+            let posed = self.at(knot.time).arm;
+            // Angles go on from those of the key before.
+            let wrist = posed.wrist.measured_in_from(space, &posed.pose(), last);
+            last = Some(wrist.angles);
+            after.keys.insert(Channel::Wrist, knot.time, wrist.angles);
         }
         after
     }

@@ -10,7 +10,8 @@ pub struct Wrist {
     pub space: Space,
     /// Angles about x, y and z in radians: see [`euler`].
     pub angles: Vec3,
-    /// τ as it was last, radians, whole turns included: the next one goes on from it.
+    /// τ as it was last, radians, whole turns included: where the hand keeps its orientation, the next
+    /// one goes on from it.
     pub roll: f32,
 }
 
@@ -37,16 +38,23 @@ impl Wrist {
     /// With the roll that it has in a pose.
     #[must_use]
     pub fn settled(self, pose: &Pose) -> Self {
-        let relative = match self.space {
-            Space::Lower => euler::rotation(self.angles),
-            Space::World => limb_rotations(pose).1.transpose() * euler::rotation(self.angles),
+        let own = euler::rotation(self.angles);
+        let roll = match self.space {
+            // The angle about the forearm says its turns itself.
+            Space::Lower => euler::roll(own, self.angles.x),
+            Space::World => euler::roll(limb_rotations(pose).1.transpose() * own, self.roll),
         };
-        Self { roll: euler::roll(relative, self.roll), ..self }
+        Self { roll, ..self }
     }
 
     /// Measured in another space, with the hand turned as it is.
     #[must_use]
     pub fn measured_in(self, space: Space, pose: &Pose) -> Self {
+        self.measured_in_from(space, pose, None)
+    }
+
+    /// As [`Self::measured_in`], with the angles nearest to the last ones.
+    pub(super) fn measured_in_from(self, space: Space, pose: &Pose, last: Option<Vec3>) -> Self {
         if space == self.space {
             return self;
         }
@@ -55,6 +63,7 @@ impl Wrist {
             Space::Lower => limb_rotations(pose).1.transpose() * rotation,
             Space::World => rotation,
         };
-        Self { space, angles: euler::angles(own, self.angles), ..self }.settled(pose)
+        Self { space, angles: euler::angles(own, last.unwrap_or(self.angles)), ..self }
+            .settled(pose)
     }
 }

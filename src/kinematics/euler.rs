@@ -15,10 +15,11 @@ pub fn rotation(angles: Vec3) -> DMat3 {
 }
 
 /// Angles of a rotation. Of all that there are those nearest to the last ones, so that they go on
-/// where they were, past half a turn too; straight up or down the last yaw is kept.
+/// where they were, past half a turn too; straight up or down the last yaw is kept. Of many turns only
+/// one is kept: larger angles in single precision would not say the rotation as exactly.
 pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
-    let (x, last) = (rotation.x_axis, last.as_dvec3());
+    let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));
     let level = x.x.hypot(x.z);
     let pitch = x.y.atan2(level);
     let yaw = if level < VERTICAL { last.y } else { (-x.z).atan2(x.x) };
@@ -31,6 +32,11 @@ pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     let other = near(DVec3::new(twist + PI, yaw + PI, PI - pitch));
     let far = |angles: DVec3| (angles - last).abs().element_sum();
     if far(other) < far(one) - 1e-6 { other.as_vec3() } else { one.as_vec3() }
+}
+
+/// The same angle, without its whole turns if it has gone farther than one and a half.
+pub(super) fn few_turns(angle: f64) -> f64 {
+    if angle.abs() > 3.0 * PI { angle % (2.0 * PI) } else { angle }
 }
 
 /// The roll about +x of a rotation, τ = 2·atan2(q·x̂, q_w), radians, of all that there are the one

@@ -48,14 +48,15 @@ impl Fk {
     #[must_use]
     pub fn matching(pose: &Pose, last: Self) -> Self {
         let turned = Turned::of_pose(pose);
+        let last_bend = euler::few_turns(f64::from(last.bend));
         // A bend that was negative stays so.
-        let is_back = (f64::from(last.bend) / TAU).round() * TAU > f64::from(last.bend);
+        let is_back = (last_bend / TAU).round() * TAU > last_bend;
         let (upper, bend) = if is_back && turned.bend > 0.0 {
             (turned.upper * DQuat::from_rotation_x(PI), -turned.bend)
         } else {
             (turned.upper, turned.bend)
         };
-        let turns = ((f64::from(last.bend) - bend) / TAU).round() * TAU;
+        let turns = ((last_bend - bend) / TAU).round() * TAU;
         Self {
             shoulder: euler::angles(DMat3::from_quat(upper), last.shoulder),
             bend: (bend + turns) as f32,
@@ -77,8 +78,8 @@ pub fn limb_rotations(pose: &Pose) -> (DMat3, DMat3) {
     (upper, upper * DMat3::from_rotation_z(-bend))
 }
 
-/// A pose between the angles and a solved one: limbs and elbow turn, and keep their lengths. The
-/// weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
+/// A pose between the angles and a solved one: limbs and elbow turn, and keep their lengths; those of
+/// an arm that is stretched in one of the two go from one length to the other. The weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
 ///
 /// The hand is [`Reach::Reached`] only when it is within 1e-6·L of the cursor.
 pub fn blended(fk: Fk, solved: &Pose, weight: f32, bones: TwoBone, cursor: Vec3) -> Pose {
@@ -109,7 +110,7 @@ struct Turned {
 
 impl Turned {
     fn of_fk(fk: Fk) -> Self {
-        let bend = f64::from(fk.bend);
+        let bend = f64::from(fk.bend) % TAU;
         let bend = bend - (bend / TAU).round() * TAU;
         let upper = DQuat::from_mat3(&euler::rotation(fk.shoulder));
         let upper = if bend < 0.0 { upper * DQuat::from_rotation_x(PI) } else { upper };

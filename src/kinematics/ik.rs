@@ -99,8 +99,9 @@ impl Ik {
     /// The cursor and the spin ψ, in [0, 2π), that give a pose: the hand where it is, the elbow out to
     /// the same side, also of a straight or folded arm.
     ///
-    /// A soft limit that the hand cannot have come to keeps it from there, and one that stretches the
-    /// limbs of a pose that is not stretched bends its elbow.
+    /// A soft limit that the hand cannot have come to keeps it from there. A limit that stretches says
+    /// how long the limbs are where the hand is: a pose with others keeps its hand and gets another
+    /// elbow.
     pub fn matching(&self, pose: &Pose, carried: Option<Carried>) -> (Vec3, f32) {
         let distance = self.softening.cursor_distance(self.bones, pose.distance);
         let cursor = if self.softening.is_hard() || distance == pose.distance {

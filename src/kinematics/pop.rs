@@ -23,7 +23,7 @@
 //! Twice, because that is what an arm without a pop can need: the sideways part of the bound in
 //! [`ik`](super::ik) is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer
 //! turns (gain g ≤ 1: 45° or more from the Limb's or a pole's line, all of the front of the map), and
-//! the bending of two equal bones stays below 2 up to D = 0.97·L. Nearer to the shoulder than a fifth
+//! the bending of two equal bones stays below 2 up to D = 0.968·L. Nearer to the shoulder than a fifth
 //! of the outer limit the turn itself has a name: there a cursor that goes past turns the whole arm
 //! about.
 //!

@@ -124,7 +124,7 @@ impl Softening {
 
     /// How far a cursor is from the shoulder that brings the hand to a distance: the inverse of
     /// [`Self::extent`]. The hand meets its limits only in the infinite: there, and beyond, a cursor
-    /// 12 soft zones away is as near as f32 tells. Where stretching begins, the cursor is at the hand.
+    /// 17 soft zones away brings it as near as f32 tells. Where stretching begins, the cursor is at the hand.
     pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
         let limits = Limits::new(self, bones);
         let (d, longest) = (f64::from(distance), f64::from(self.max_stretch));
@@ -204,7 +204,7 @@ impl Limits {
 
     /// The d that gives a d'.
     fn harden(self, softened: f64) -> f64 {
-        const ZONES: f64 = 12.0;
+        const ZONES: f64 = 17.0;
         let Self { least, most, width } = self;
         if width == 0.0 {
             softened.clamp(least, most)

@@ -116,6 +116,9 @@ impl Carried {
     #[must_use]
     pub fn to(self, direction: Vec3) -> Self {
         const OPPOSITE: f64 = 1e-6;
+        if direction == self.direction {
+            return self;
+        }
         let [w, to, e] = [self.direction, direction, self.outward].map(Vec3::as_dvec3);
         let nearness = 1.0 + w.dot(to);
         let carried = if nearness < OPPOSITE { e } else { e - (e.dot(to) / nearness) * (w + to) };
@@ -193,9 +196,18 @@ pub fn angle_from_limb(facing: Facing, outward: Vec3) -> f32 {
 /// ψ that leaves the elbow where it is when it is measured from another direction: `spin` is from
 /// `from`, both are angles from the Limb's +y. In [0, 2π).
 pub fn respun(spin: f32, from: f32, to: f32) -> f32 {
-    let spun = (spin + from - to).rem_euclid(TAU);
-    // Rounding may bring what is just below 0 to 2π itself.
-    if spun < TAU { spun } else { 0.0 }
+    wrapped_turn(f64::from(spin) + f64::from(from) - f64::from(to))
+}
+
+/// An angle without its whole turns, in [0, 2π).
+pub fn wrapped(angle: f32) -> f32 {
+    wrapped_turn(f64::from(angle))
+}
+
+fn wrapped_turn(angle: f64) -> f32 {
+    let wrapped = angle.rem_euclid(core::f64::consts::TAU) as f32;
+    // Rounding may bring what is just below 2π to it.
+    if wrapped < TAU { wrapped } else { 0.0 }
 }
 
 /// From the Pointer towards a pole; nothing where the pole is on the Pointer's line or at the

@@ -82,7 +82,7 @@ pub struct LengthError {
 /// Whether the hand is at the cursor, and if not, which limit holds it back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// The hand is the cursor, bit for bit.
+    /// The hand is the cursor, bit for bit; where it is softened, within 1e-6·L.
     Reached,
     /// The cursor is beyond the outer limit L: the arm is straight and points at it.
     TooFar,

@@ -45,8 +45,8 @@ impl Session {
                 self.set_point("hand angles", angles, |arm, angles| arm.wrist.angles = angles);
             }
             Action::SetWristSpace(space) => {
-                let wrist = self.arm().wrist.measured_in(space, &self.pose);
-                self.replace_arm(Arm { wrist, ..*self.arm() });
+                self.message = None;
+                self.commit(self.shown.with_wrist_in(space));
             }
             Action::StartJourney => self.journey = Journey::new(self.arm()),
             Action::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),

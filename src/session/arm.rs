@@ -1,11 +1,10 @@
-use core::f32::consts::TAU;
-
 use glam::{Mat3, Vec3};
 
 use super::drag::Way;
 use super::{Drag, Grip, Handle, Lead, PointDrag, Ring, Session, TurnDrag};
-use crate::document::{Arm, Document, Ray, Swivel};
+use crate::document::{Arm, Channel, Document, Ray, Swivel};
 use crate::kinematics::euler;
+use crate::kinematics::swivel::wrapped;
 use crate::kinematics::two_bone::TwoBone;
 
 /// What actions do to the arm.
@@ -22,7 +21,7 @@ impl Session {
 
     pub(super) fn set_elbow_spin(&mut self, spin: f32) {
         if spin.is_finite() {
-            self.replace_arm(Arm { elbow_spin: spin.rem_euclid(TAU), ..*self.arm() });
+            self.replace_arm(Arm { elbow_spin: wrapped(spin), ..*self.arm() });
         } else {
             self.message = Some(format!("The elbow spin must be a finite number, not {spin}"));
         }
@@ -37,8 +36,19 @@ impl Session {
 
     /// The elbow stays where it is, at the keys of its spin too.
     pub(super) fn set_swivel(&mut self, swivel: Swivel) {
+        const SAME: f32 = 1e-4;
+        let was_held = self.is_overridden(Channel::ElbowSpin);
         self.message = None;
         self.commit(self.shown.measured_from(swivel));
+        // At a key the keys, measured anew, say the same.
+        let spin = |document: &Document| Channel::ElbowSpin.value(document).unwrap_or_default().x;
+        let keyed = spin(&self.document.at(self.clock.time));
+        let apart = wrapped(keyed - spin(&self.shown) + SAME);
+        if !was_held && apart < 2.0 * SAME && self.document.keys.has(Channel::ElbowSpin) {
+            self.overrides.remove(&Channel::ElbowSpin);
+            self.message = None;
+            self.refresh();
+        }
     }
 
     pub(super) fn set_weight(&mut self, weight: f32) {

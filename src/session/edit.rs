@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 
 use super::history::State;
 use super::{Drag, Session};
-use crate::document::{Channel, Document};
+use crate::document::{Channel, Document, Swivel};
 use crate::kinematics::skeleton::Skeleton;
 
 /// A change that is not finished: it can still be taken back.
@@ -52,7 +52,10 @@ impl Session {
             self.hold_changes(&mut after);
             self.keep_rest(&mut after);
         }
-        self.overrides.retain(|channel, _| after.keys.has(*channel));
+        self.overrides.retain(|channel, _| {
+            let goes_along = *channel == Channel::ElbowSpin && is_carried_along(&after);
+            goes_along || after.keys.has(*channel)
+        });
         self.document = after;
         self.refresh();
         self.forget_trail();
@@ -73,10 +76,21 @@ impl Session {
                 .flat_map(Channel::of_rig)
                 .chain(switches)
                 .collect();
-            all.into_iter().filter(changed).collect()
+            // A switch between hand and angles is a pose of both.
+            let switched = changed(&Channel::Weight);
+            let leads = |channel: &Channel| switched && channel.leads_arm();
+            all.into_iter().filter(|channel| changed(channel) || leads(channel)).collect()
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
+        if !self.auto_key
+            && is_carried_along(after)
+            && after.arm.cursor() != self.shown.arm.cursor()
+        {
+            // The elbow has gone along, and comes back with the hand.
+            let spin = Channel::ElbowSpin.value(after).unwrap_or_default();
+            self.overrides.insert(Channel::ElbowSpin, spin);
+        }
         for channel in channels {
             if self.auto_key {
                 after.key(channel, self.clock.time);
@@ -100,12 +114,12 @@ impl Session {
             let (rest, arm) = (&self.document.arm, &mut after.arm);
             match channel {
                 Channel::Hand | Channel::Pin => arm.facing = rest.facing,
-                Channel::ElbowSpin => {
-                    arm.elbow_spin = rest.elbow_spin;
-                    arm.carried = rest.carried;
-                }
                 _ => {}
             }
+        }
+        if self.overrides.contains_key(&Channel::ElbowSpin) || is_keyed(&Channel::ElbowSpin) {
+            after.arm.elbow_spin = self.document.arm.elbow_spin;
+            after.arm.carried = self.document.arm.carried;
         }
     }
 
@@ -234,6 +248,13 @@ impl Session {
         self.revision != self.saved_revision
             || changing.is_some_and(|before| before.differs_from(&self.document))
     }
+}
+
+/// Whether the arm's elbow is carried along by a hand that has keys, and has none itself.
+fn is_carried_along(document: &Document) -> bool {
+    let Document { arm, keys, .. } = document;
+    let leads = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };
+    arm.swivel == Swivel::Transport && keys.has(leads) && !keys.has(Channel::ElbowSpin)
 }
 
 /// Whether joints have gone, been hung from others or changed their places.

@@ -43,14 +43,19 @@ impl Session {
     }
 
     /// What K keys: the selected channels, else those of the selected joints, else all that shapes
-    /// the rig; of the arm without a selection hand and elbow spin.
+    /// the rig; of the arm without a selection what leads it, and what is shown against its keys.
     pub fn channels_to_key(&self) -> Vec<Channel> {
         let is_there = |channel: &Channel| channel.value(&self.shown).is_some();
         if !self.selected_channels.is_empty() {
             return self.selected_channels.iter().copied().filter(is_there).collect();
         }
         match self.rig() {
-            RigKind::Arm => self.leading_channels(),
+            RigKind::Arm => {
+                // What was said to be shown only until the time changes, too.
+                let held = self.overrides.keys().copied().filter(is_there);
+                let all: BTreeSet<_> = self.leading_channels().into_iter().chain(held).collect();
+                all.into_iter().collect()
+            }
             RigKind::Skeleton if self.selection.is_empty() => self.all_channels(),
             RigKind::Skeleton => {
                 let is_selected = |channel: &Channel| {
@@ -65,7 +70,7 @@ impl Session {
     fn leading_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
         let hand = [Channel::Hand, Channel::Pin, Channel::ElbowSpin];
-        let angles = [Channel::Weight, Channel::Shoulder, Channel::Bend];
+        let angles = [Channel::Weight, Channel::Shoulder, Channel::Bend, Channel::Stretch];
         let leading = hand.into_iter().filter(|_| arm.is_led_by_hand()).chain(angles);
         leading.filter(|channel| channel.shapes(arm)).collect()
     }

@@ -2,8 +2,11 @@ use serde_json::{Map, Value, json};
 
 use crate::document::{Arm, Swivel};
 use crate::kinematics::reach::Softening;
+use crate::kinematics::swivel::{angle_from_limb, respun, wrapped};
+use crate::kinematics::two_bone::Facing;
 
 /// A line that `ik-arm solve` reads, and that gives the arm as its hand would lead it to where it is.
+/// A hand at the shoulder itself has no direction in a line.
 pub(super) fn of(arm: &Arm) -> String {
     let arm = if arm.weight < 1.0 { arm.led_by_hand() } else { *arm };
     // A line of its own has no past to be carried along from.
@@ -17,21 +20,36 @@ pub(super) fn of(arm: &Arm) -> String {
     say("upper", json!(arm.bones.upper()));
     say("lower", json!(arm.bones.lower()));
     say("root", json!(arm.root.to_array()));
-    say("elbow_spin_deg", json!(arm.elbow_spin.to_degrees()));
+    say("elbow_spin_deg", json!(spin_alone(&arm).to_degrees()));
     match arm.swivel {
         Swivel::Limb => None,
         Swivel::Pole => say("swivel", json!({ "pole": arm.pole.to_array() })),
         Swivel::Stereographic | Swivel::Transport => say("swivel", json!("stereographic")),
     };
     let (softening, seed) = (arm.softening, Softening::default());
+    // Just below a half turn in radians may be one in degrees.
+    let min_elbow_deg = softening.min_elbow_angle().to_degrees().min(180.0_f32.next_down());
     for (field, value, usual) in [
         ("softness", softening.softness(), seed.softness()),
         ("max_stretch", softening.max_stretch(), seed.max_stretch()),
-        ("min_elbow_deg", softening.min_elbow_angle().to_degrees(), seed.min_elbow_angle()),
+        ("min_elbow_deg", min_elbow_deg, seed.min_elbow_angle()),
     ] {
         if value != usual {
             say(field, json!(value));
         }
     }
     Value::Object(line).to_string()
+}
+
+/// The spin that leaves the elbow where it is for who does not know where the arm last faced.
+fn spin_alone(arm: &Arm) -> f32 {
+    const SAME: f32 = 1e-6;
+    let (cursor, outward) = (arm.cursor(), arm.solve().pose.outward());
+    let spin = wrapped(arm.elbow_spin);
+    let alone = arm.ik().solve(cursor, spin, Facing::default(), None).pose;
+    if alone.outward().distance(outward) < SAME {
+        return spin;
+    }
+    let facing = Facing::towards(cursor, Facing::default());
+    respun(angle_from_limb(facing, outward), 0.0, arm.reference().angle(facing, None))
 }

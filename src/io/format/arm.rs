@@ -16,6 +16,7 @@ use crate::kinematics::two_bone::{self, TwoBone};
 
 /// How far a unit vector's length may be from 1, and two of them from perpendicular.
 const UNIT: f32 = 1e-3;
+const EXACT: f32 = 1e-6;
 
 #[derive(Serialize, Deserialize)]
 pub struct Arm {
@@ -207,6 +208,12 @@ fn facing(at: &Field, file: &Facing) -> Result<two_bone::Facing, Wrong> {
     let (direction, heading) = (file.direction.0, Vec2::from_array(file.heading.0));
     unit(at.clone().key("direction"), direction.length())?;
     unit(at.clone().key("heading"), heading.length())?;
+    let (direction, heading) = (exactly(direction), exactly_flat(heading));
+    let flat = Vec2::new(direction.x, direction.z);
+    if flat.length() > UNIT && flat.normalize().distance(heading) > UNIT {
+        let reason = "must be `direction` as seen from above";
+        return Err(Wrong::new(at.clone().key("heading"), reason));
+    }
     Ok(two_bone::Facing { direction, heading })
 }
 
@@ -241,7 +248,7 @@ fn carried(at: &Field, file: &Carried) -> Result<swivel::Carried, Wrong> {
         let reason = "must be perpendicular to `direction`";
         return Err(Wrong::new(at.clone().key("outward"), reason));
     }
-    Ok(swivel::Carried { direction, outward })
+    Ok(swivel::Carried { direction: exactly(direction), outward: exactly(outward) })
 }
 
 fn softening(at: &Field, file: Option<&Object<Softening>>) -> Result<reach::Softening, Wrong> {
@@ -305,6 +312,15 @@ fn unit(at: Field, length: f32) -> Result<(), Wrong> {
         true => Ok(()),
         false => Err(Wrong::new(at, format!("its length is {length}, not 1"))),
     }
+}
+
+/// One that is a unit vector as far as numbers go keeps its bits; one written by hand becomes one.
+fn exactly(v: Vec3) -> Vec3 {
+    if (v.length() - 1.0).abs() <= EXACT { v } else { v.normalize() }
+}
+
+fn exactly_flat(v: Vec2) -> Vec2 {
+    if (v.length() - 1.0).abs() <= EXACT { v } else { v.normalize() }
 }
 
 fn part(at: Field, value: f32) -> Result<f32, Wrong> {

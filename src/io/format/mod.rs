@@ -37,12 +37,12 @@
 //! matrix likewise. A limit is `[from, to]`.
 //!
 //! An arm's `cursor` and `pole` are relative to its root; a `pin` is in the world, and the hand stays
-//! there when the root moves. `weight` is 1 where the hand leads and 0 where the angles of `fk` do.
+//! there when the root moves, and what counts where both are given. `weight` is 1 where the hand leads and 0 where the angles of `fk` do.
 //! `elbow_spin` is measured from the `reference`; keys of it likewise, but with `transport` from
 //! `stereographic`.
 //!
 //! Keys are of the channels `hand`, `pin`, `elbow_spin`, `pole`, `root`, `upper`, `lower`, `weight`,
-//! `shoulder`, `bend`, `wrist`, `translation`, of a joint's `rotation`, `offset`, `target` and `enabled`, and of a `layer` that is shown or not. A knot has a
+//! `shoulder`, `bend`, `stretch`, `wrist`, `translation`, of a joint's `rotation`, `offset`, `target` and `enabled`, and of a `layer` that is shown or not. A knot has a
 //! time in seconds and the value at it: one number or three, as the channel has; switches are 0 or 1.
 //! Between knots values are as [`spline`](crate::kinematics::spline) has it. `metres_per_unit` is how
 //! long a unit is for other programs; absent, a millimetre for the arm and a metre for a skeleton.

@@ -18,6 +18,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Weight => "IK weight".to_owned(),
         Channel::Shoulder => "Shoulder angles".to_owned(),
         Channel::Bend => "Elbow bend".to_owned(),
+        Channel::Stretch => "Stretch of the angles' limbs".to_owned(),
         Channel::Wrist => "Hand angles".to_owned(),
         Channel::Root => "Shoulder".to_owned(),
         Channel::Upper => "Upper length".to_owned(),

@@ -102,7 +102,7 @@ impl Figure {
     fn limbs(&self) -> Vec<Bone> {
         let Document { arm, keys, .. } = &self.document;
         let rig = arm.rig(&arm.pose());
-        let stretches = arm.softening.max_stretch() > 1.0;
+        let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
         let radii = |limb: Cone| {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
         };

@@ -1,0 +1,123 @@
+//! Poses in time.
+
+use std::f64::consts::PI;
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Space, Swivel};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::session::{Action, Lead, Session};
+
+use crate::*;
+
+#[test]
+fn hand_keys_rest_while_the_hand_is_pinned() {
+    let mut session = Session::default();
+    for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::Key(vec![Channel::Hand]));
+    }
+    session.apply(Action::PinHand(true));
+    session.apply(Action::SetTime(0.5));
+    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
+    session.apply(Action::PinHand(false));
+    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0, "it stays until the time changes");
+    session.apply(Action::SetTime(0.0));
+    assert_eq!(session.arm().cursor(), Vec3::X * 200.0);
+}
+
+#[test]
+fn k_keeps_what_is_shown_only_until_the_time_changes() {
+    let mut session = session([Action::SetWeight(0.0), Action::Key(vec![Channel::Weight])]);
+    session.apply(Action::SetTime(1.0));
+    session.apply(Action::SetWeight(1.0));
+    assert!(session.message().is_some_and(|message| message.contains("press K")));
+    session.apply(Action::Key(session.channels_to_key()));
+    session.apply(Action::SetTime(0.0));
+    session.apply(Action::SetTime(1.0));
+    assert_eq!(session.arm().weight, 1.0);
+}
+
+#[test]
+fn a_keyed_switch_keeps_how_far_its_limbs_are_stretched() {
+    let stretch = Softening::new(0.0, 2.0, 0.0).expect("a softening");
+    let mut session = session([Action::SetSoftening(stretch), Action::SetAutoKey(true)]);
+    session.apply(Action::SetHand(Vec3::X * 750.0));
+    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SetTime(1.0));
+    session.apply(Action::SwitchTo(Lead::Hand));
+    session.apply(Action::SetHand(Vec3::new(300.0, 50.0, 0.0)));
+    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SetTime(0.0));
+    assert!(session.pose().hand.distance(Vec3::X * 750.0) < 1e-2, "{}", session.pose().hand);
+}
+
+#[test]
+fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
+    let mut session = Session::default();
+    for (time, hand, angles) in [
+        (0.0, Vec3::new(250.0, 120.0, 60.0), Vec3::new(0.3, 0.2, 0.1)),
+        (2.0, Vec3::new(-150.0, 220.0, 160.0), Vec3::new(0.9, -0.2, 0.4)),
+    ] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::SetWrist(angles));
+        session.apply(Action::Key(vec![Channel::Hand, Channel::Wrist]));
+    }
+    let turned = |session: &Session, time: f64| {
+        let arm = session.document().at(time).arm;
+        arm.hand_rotation(&arm.pose())
+    };
+    let before = [0.0, 2.0].map(|time| turned(&session, time));
+    session.apply(Action::SetWristSpace(Space::World));
+    for (before, time) in before.into_iter().zip([0.0, 2.0]) {
+        let now = turned(&session, time);
+        assert!(
+            before.x_axis.distance(now.x_axis) < 1e-5 && before.y_axis.distance(now.y_axis) < 1e-5
+        );
+    }
+}
+
+#[test]
+fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
+    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+    for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::Key(vec![Channel::Hand]));
+    }
+    session.apply(Action::SetTime(1.0));
+    let (document, pose) = (session.document().clone(), *session.pose());
+    for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
+        session.apply(Action::SetHand(hand * 300.0));
+    }
+    assert_eq!(session.document(), &document);
+    session.apply(Action::SetTime(0.5));
+    session.apply(Action::SetTime(1.0));
+    assert_eq!(session.pose(), &pose);
+}
+
+#[test]
+fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
+    let mut session = Session::default();
+    for (time, roll) in [(0.0, 0.0), (2.0, 2.0 * PI as f32)] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetWrist(Vec3::X * roll));
+        session.apply(Action::Key(vec![Channel::Wrist]));
+    }
+    let roll = |frame: i32| {
+        let arm = session.document().at(f64::from(frame) / 50.0).arm;
+        arm.roll(&arm.pose())
+    };
+    for frame in 0..100 {
+        assert!((0.0..0.2).contains(&(roll(frame + 1) - roll(frame) + 0.02)), "at {frame}");
+    }
+}
+
+#[test]
+fn changing_the_reference_at_a_key_shows_nothing_against_the_keys() {
+    let mut session = session([Action::SetElbowSpin(1.0)]);
+    session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
+    session.apply(Action::SetSwivel(Swivel::Pole));
+    assert!(!session.is_overridden(Channel::ElbowSpin) && session.message().is_none());
+}

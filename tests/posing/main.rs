@@ -1,0 +1,53 @@
+//! An arm in a session: pinned, measured from elsewhere, led by its angles, its hand turned, in time.
+#![cfg(feature = "document")]
+
+mod always;
+mod cases;
+mod keyed;
+
+use glam::Vec3;
+use ik_arm::document::Swivel;
+use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::session::{Action, Session};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+pub fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x0b0d_01e5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+pub fn points(size: f32) -> impl Strategy<Value = Vec3> {
+    [-size..size, -size..size, -size..size].prop_map(Vec3::from_array)
+}
+
+pub fn swivels() -> impl Strategy<Value = Swivel> {
+    (0..Swivel::ALL.len()).prop_map(|index| Swivel::ALL[index])
+}
+
+pub fn session(actions: impl IntoIterator<Item = Action>) -> Session {
+    let mut session = Session::default();
+    for action in actions {
+        session.apply(action);
+    }
+    session
+}
+
+pub fn bits(point: Vec3) -> [u32; 3] {
+    point.to_array().map(f32::to_bits)
+}
+
+/// In f64, and exact for small angles, which the arc cosine is not.
+pub fn angle(a: Vec3, b: Vec3) -> f64 {
+    let [a, b] = [a, b].map(Vec3::as_dvec3);
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+/// How far elbow and hand of two poses are apart, in parts of the seed's arm.
+pub fn apart(a: &Pose, b: &Pose) -> f32 {
+    a.elbow.distance(b.elbow).max(a.hand.distance(b.hand)) / 500.0
+}
