@@ -454,6 +454,27 @@ fn a_value_that_cannot_be_is_named_with_what_would_be_right() {
             "line 2, column 16: arm.lower: lower length is -3; it must be a finite number above 0",
         ),
         (
+            "\"arm\":{\"facing\":{\"direction\":[1,0,0],\"heading\":[0,1]}}".to_owned(),
+            "line 2, column 48: arm.facing.heading: must be `direction` as seen from above",
+        ),
+        (
+            "\"arm\":{\"swivel\":{\"carried\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
+                .to_owned(),
+            "line 2, column 59: arm.swivel.carried.outward: must be perpendicular to `direction`",
+        ),
+        (
+            "\"arm\":{\"softening\":{\"softness\":1}}".to_owned(),
+            "line 2, column 32: arm.softening.softness: is 1; it must be from 0 to less than 1",
+        ),
+        (
+            "\"arm\":{\"weight\":1.5}".to_owned(),
+            "line 2, column 17: arm.weight: is 1.5; it must be from 0 to 1",
+        ),
+        (
+            "\"arm\":{\"fk\":{\"stretch\":0}}".to_owned(),
+            "line 2, column 24: arm.fk.stretch: is 0; it must be above 0",
+        ),
+        (
             "\"arm\":{\"facing\":{\"direction\":[2,0,0],\"heading\":[1,0]}}".to_owned(),
             "line 2, column 30: arm.facing.direction: its length is 2, not 1",
         ),

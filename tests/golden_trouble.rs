@@ -259,10 +259,11 @@ fn the_ramp_of_gains_reads_without_its_hues() {
     }
 }
 
-/// The default arm with stripes on both limbs, from near.
+/// The default arm, without its hand, with stripes on both limbs, from near.
 fn striped(upper: Option<f32>, lower: Option<f32>) -> Scene {
     let mut document = Document::default();
     document.camera = Camera { distance: 720.0, ..document.camera };
+    document.display = document.display.with(Layer::Hand, false);
     let mut scene = scene(&document, Theme::Dark);
     let colours = [scene.palette.upper, scene.palette.lower];
     for (colour, stripes) in colours.into_iter().zip([upper, lower]) {

@@ -353,3 +353,33 @@ fn too_close_folds_the_arm_along_the_line_to_the_cursor() {
         assert!(pose.hand.distance(way * (upper - lower).abs()) <= bound, "{pose:?}");
     }
 }
+
+/// Of the bits of elbows and hands.
+fn digest(poses: impl Iterator<Item = Pose>) -> u64 {
+    let coordinates = poses.flat_map(|pose| [pose.elbow, pose.hand]).flat_map(|it| it.to_array());
+    // FNV-1a.
+    coordinates.fold(0xcbf2_9ce4_8422_2325, |digest, coordinate| {
+        (digest ^ u64::from(coordinate.to_bits())).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[test]
+fn the_plain_arm_is_bit_for_bit_what_it_was_before_it_could_be_softened() {
+    // Sums, products and roots alone, which every machine rounds alike.
+    let arms = [(200.0, 300.0), (1.0, 1.0), (300.0, 10.0), (0.3, 0.3001)];
+    let digests = arms.map(|(upper, lower)| {
+        let arm = TwoBone::new(upper, lower).expect("lengths");
+        let place = |step: u32| (step as f32 / 20.0 - 1.0) * 1.2 * (upper + lower);
+        let places = (0..41 * 41 * 41_u32).map(move |index| {
+            Vec3::new(place(index % 41), place(index / 41 % 41), place(index / 1681))
+        });
+        digest(places.map(|cursor| arm.solve(cursor, 0.0)))
+    });
+    let recorded = [
+        0xa4fc_d155_d1af_1acb,
+        0x85d5_3328_1e5b_cfb9,
+        0x51ec_5b02_170e_68a6,
+        0x39ba_5ce6_3225_ac2d,
+    ];
+    assert_eq!(digests, recorded, "{digests:x?}");
+}

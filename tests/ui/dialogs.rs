@@ -4,6 +4,9 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
+use ik_arm::document::Swivel;
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::session::{Action, Dialog, Effect};
 use serde_json::json;
 
@@ -146,6 +149,41 @@ fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
         assert_eq!(pose, expected);
         assert!(bench.says("Pose copied"));
     }
+}
+
+/// What a session puts on the clipboard.
+fn copied(actions: impl IntoIterator<Item = Action>) -> serde_json::Value {
+    let mut bench = Bench::after(actions);
+    bench.frame([Event::Copy]);
+    let effects = bench.effects();
+    let [Effect::CopyText(line)] = &effects[..] else { panic!("{effects:?}") };
+    serde_json::from_str(line).expect("JSON")
+}
+
+#[test]
+fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
+    let softening = Softening::new(0.25, 1.5, 0.5).expect("a softening");
+    let line = copied([
+        Action::SetSwivel(Swivel::Pole),
+        Action::SetPole(Vec3::new(1.0, 2.0, 3.0)),
+        Action::SetSoftening(softening),
+    ]);
+    assert_eq!(line["swivel"], json!({ "pole": [1.0, 2.0, 3.0] }));
+    assert_eq!(line["softness"], json!(0.25_f32));
+    assert_eq!(line["max_stretch"], json!(1.5_f32));
+    assert_eq!(line["min_elbow_deg"], json!(0.5_f32.to_degrees()));
+    let carried = copied([Action::SetSwivel(Swivel::Transport)]);
+    assert_eq!(carried["swivel"], json!("stereographic"), "a line has no past");
+}
+
+#[test]
+fn a_copied_pose_has_its_elbow_where_only_the_arms_past_says() {
+    // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
+    let upwards = [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(Action::SetHand);
+    let spin = copied(upwards)["elbow_spin_deg"].as_f64().expect("a number");
+    let elbow = TwoBone::new(200.0, 300.0).expect("lengths");
+    let elbow = elbow.solve(Vec3::Y * 300.0, spin.to_radians() as f32).elbow;
+    assert!(elbow.z < -100.0 && elbow.x.abs() < 1e-3, "{elbow}");
 }
 
 #[test]
