@@ -275,7 +275,10 @@ fn the_panels_of_a_measured_and_of_a_led_arm_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut bench = Bench::after([Action::SetTheme(theme), Action::SetSwivel(Swivel::Pole)]);
-        let options = SnapshotOptions::new();
+        let options = SnapshotOptions::new()
+            .threshold(2.0)
+            .max_failed_pixels(600)
+            .output_path("tests/ui/snapshots");
         results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
         bench.apply([Action::SwitchTo(Lead::Angles)]);
         results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));
