@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::point::Point;
 use super::slider::Slider;
-use super::{elbow, lead, limits, row, style, wrist};
+use super::{elbow, lead, limits, point, row, style, wrist};
 use crate::document::{Arm, Goal};
 use crate::session::{Action, Session};
 
@@ -40,6 +40,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
     let hand = Point {
         name: "Hand",
+        labels: point::AXES,
         value: arm.cursor(),
         default: seed,
         range: arm.bones.outer_limit(),
@@ -76,6 +77,7 @@ fn pin(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let root = Point {
         name: "Root",
+        labels: point::AXES,
         value: session.arm().root,
         default: Vec3::ZERO,
         range: ROOT_RANGE * session.arm_unit(),

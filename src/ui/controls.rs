@@ -4,7 +4,7 @@ use egui::{ScrollArea, Ui};
 use glam::Vec3;
 
 use super::point::Point;
-use super::{arm, joint, joints, motion, row, targets};
+use super::{arm, joint, joints, motion, point, row, targets};
 use crate::document::{Layer, RigKind};
 use crate::session::{Action, Session};
 
@@ -71,6 +71,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let rig = session.skeleton();
     let place = Point {
         name: "Skeleton",
+        labels: point::AXES,
         value: rig.skeleton.transform().translation.into(),
         default: Vec3::ZERO,
         range: 2.0 * rig.reach(),

@@ -78,12 +78,13 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let arm = session.arm();
     let pole = Point {
         name: "Pole",
+        labels: ["Pole x", "Pole y", "Pole z"],
         value: arm.pole,
         default: Arm::default().pole,
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
         tooltip: "What the elbow points at, relative to the Root; it can be dragged in the view",
-        disabled: None,
+        disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
     };
     pole.show(ui, session, actions, Action::SetPole);
 }

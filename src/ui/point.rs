@@ -12,6 +12,8 @@ pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 pub(super) struct Point<'a> {
     /// What it is called where there is nothing else to see: "Hand", of which the first is "Hand x".
     pub name: &'a str,
+    /// What stands before the rails.
+    pub labels: [&'a str; 3],
     pub value: Vec3,
     pub default: Vec3,
     /// Of every coordinate, to either side.
@@ -31,9 +33,9 @@ impl Point<'_> {
         set: impl Fn(Vec3) -> Action,
     ) {
         let colours = style::palette(ui).axes;
-        for (axis, label) in AXES.into_iter().enumerate() {
+        for (axis, label) in self.labels.into_iter().enumerate() {
             let slider = Slider {
-                name: &format!("{} {label}", self.name),
+                name: &format!("{} {}", self.name, AXES[axis]),
                 label,
                 colour: Some(style::colour(colours[axis])),
                 tooltip: self.tooltip,

@@ -4,7 +4,7 @@ use egui::{ComboBox, RichText, Ui};
 
 use super::point::Point;
 use super::row::{self, Field};
-use super::{number, slider};
+use super::{number, point, slider};
 use crate::document::{Motion, Path, Target};
 use crate::session::{Action, Session};
 
@@ -64,6 +64,7 @@ pub(super) fn selected(ui: &mut Ui, session: &Session, target: Target, actions: 
 fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
     let place = Point {
         name: "Target",
+        labels: point::AXES,
         value: target.home,
         default: session.skeleton_pose().tip(target.joint),
         range: 1.5 * session.skeleton().reach(),
