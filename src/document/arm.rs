@@ -206,7 +206,7 @@ impl Arm {
     #[must_use]
     pub fn going_on_from(self, other: &Self) -> Self {
         let begins = self.swivel == Swivel::Transport && self.carried.is_none();
-        if begins && other.swivel == self.swivel {
+        if begins && other.swivel == self.swivel && other.cursor() != self.cursor() {
             return Self { carried: Some(other.solve().carried), ..self };
         }
         self
@@ -218,7 +218,10 @@ impl Arm {
     pub fn settled(self) -> Self {
         let solved = self.solve();
         let pose = blended(self.fk, &solved.pose, self.weight, self.bones, self.cursor());
-        let carried = (self.swivel != Swivel::Limb).then_some(solved.carried);
+        let carried = match (self.swivel, self.carried) {
+            (Swivel::Limb, _) | (Swivel::Transport, None) => None,
+            _ => Some(solved.carried),
+        };
         let wrist = self.wrist.settled(&pose);
         Self { facing: solved.pose.facing, carried, wrist, ..self }
     }
@@ -291,7 +294,11 @@ impl Arm {
     #[must_use]
     pub fn led_by_hand(self) -> Self {
         let pose = self.pose();
-        let carried = self.carried.map(|carried| carried.to(pose.facing.direction));
+        let past = match self.swivel {
+            Swivel::Transport => Some(self.solve().carried),
+            _ => self.carried,
+        };
+        let carried = past.map(|carried| carried.to(pose.facing.direction));
         let (cursor, elbow_spin) = self.ik().matching(&pose, carried);
         let mut arm = Self { elbow_spin, weight: 1.0, facing: pose.facing, carried, ..self };
         arm.set_cursor(cursor);

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 
 use super::history::State;
 use super::{Drag, Session};
-use crate::document::{Channel, Document, Swivel};
+use crate::document::{Arm, Channel, Document, Swivel};
 use crate::kinematics::skeleton::Skeleton;
 
 /// A change that is not finished: it can still be taken back.
@@ -83,13 +83,14 @@ impl Session {
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
-        if !self.auto_key
-            && is_carried_along(after)
-            && after.arm.cursor() != self.shown.arm.cursor()
-        {
-            // The elbow has gone along, and comes back with the hand.
-            let spin = Channel::ElbowSpin.value(after).unwrap_or_default();
-            self.overrides.insert(Channel::ElbowSpin, spin);
+        if !self.auto_key && is_carried_along(after) {
+            if after.arm.cursor() != self.shown.arm.cursor() {
+                // The elbow has gone along, and comes back with the hand.
+                let spin = Channel::ElbowSpin.value(after).unwrap_or_default();
+                self.overrides.insert(Channel::ElbowSpin, spin);
+            } else if changed(&Channel::ElbowSpin) {
+                self.overrides.remove(&Channel::ElbowSpin);
+            }
         }
         for channel in channels {
             if self.auto_key {
@@ -111,15 +112,21 @@ impl Session {
             if let Some(value) = channel.value(&self.document) {
                 channel.set(after, value);
             }
-            let (rest, arm) = (&self.document.arm, &mut after.arm);
-            match channel {
-                Channel::Hand | Channel::Pin => arm.facing = rest.facing,
-                _ => {}
+            if matches!(channel, Channel::Hand | Channel::Pin) {
+                after.arm.facing = self.document.arm.facing;
             }
         }
-        if self.overrides.contains_key(&Channel::ElbowSpin) || is_keyed(&Channel::ElbowSpin) {
-            after.arm.elbow_spin = self.document.arm.elbow_spin;
-            after.arm.carried = self.document.arm.carried;
+        let goes_along =
+            is_carried_along(after) && self.overrides.contains_key(&Channel::ElbowSpin);
+        if goes_along || is_keyed(&Channel::ElbowSpin) {
+            let rest = self.document.arm.measured_from(after.arm.swivel);
+            after.arm.elbow_spin = rest.elbow_spin;
+            after.arm.carried = rest.carried;
+        }
+        if is_keyed(&Channel::Wrist) {
+            let Arm { wrist, .. } = self.document.arm;
+            let space = after.arm.wrist.space;
+            after.arm.wrist.angles = wrist.measured_in(space, &self.document.arm.pose()).angles;
         }
     }
 

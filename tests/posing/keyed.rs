@@ -78,6 +78,68 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
     }
 }
 
+/// A hand with keys, whose elbow has none and is carried along, looked at off its keys.
+fn looked_at_off_the_keys() -> Session {
+    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+    for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::Key(vec![Channel::Hand]));
+    }
+    session.apply(Action::SetTime(1.0));
+    for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
+        session.apply(Action::SetHand(hand * 300.0));
+    }
+    session
+}
+
+#[test]
+fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
+    let mut session = looked_at_off_the_keys();
+    session.apply(Action::SetElbowSpin(2.0));
+    assert_eq!(session.arm().elbow_spin, 2.0);
+    session.apply(Action::SetUpper(210.0));
+    session.apply(Action::SetTime(0.5));
+    assert_eq!(session.arm().elbow_spin, 2.0, "it has no keys to come back to");
+}
+
+#[test]
+fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere() {
+    for swivel in [Swivel::Limb, Swivel::Pole, Swivel::Stereographic] {
+        let mut session = looked_at_off_the_keys();
+        let before = *session.pose();
+        session.apply(Action::SetSwivel(swivel));
+        assert!(apart(&before, session.pose()) < 1e-5, "{swivel:?}");
+    }
+}
+
+#[test]
+fn another_edit_leaves_a_keyed_carried_spin_as_its_keys_have_it() {
+    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+    for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 90.0))] {
+        session.apply(Action::SetTime(time));
+        session.apply(Action::SetHand(hand));
+        session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
+    }
+    session.apply(Action::SetTime(0.7));
+    session.apply(Action::SetUpper(210.0));
+    assert!(!session.is_overridden(Channel::ElbowSpin) && session.message().is_none());
+}
+
+#[test]
+fn what_is_beneath_the_keys_is_measured_anew_too() {
+    let mut session = session([Action::SetElbowSpin(1.0)]);
+    let pose = *session.pose();
+    session.apply(Action::Key(vec![Channel::ElbowSpin, Channel::Wrist]));
+    session.apply(Action::SetSwivel(Swivel::Stereographic));
+    session.apply(Action::SetWristSpace(Space::World));
+    let hand = session.arm().hand_rotation(session.pose());
+    session.apply(Action::ClearChannels(vec![Channel::ElbowSpin, Channel::Wrist]));
+    assert!(apart(&pose, session.pose()) < 1e-5);
+    let now = session.arm().hand_rotation(session.pose());
+    assert!(now.x_axis.distance(hand.x_axis) < 1e-5 && now.y_axis.distance(hand.y_axis) < 1e-5);
+}
+
 #[test]
 fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
     let mut session = session([Action::SetSwivel(Swivel::Transport)]);
