@@ -4,9 +4,7 @@ use super::Wrist;
 use crate::kinematics::fk::{Fk, blended};
 use crate::kinematics::ik::{Ik, Solved};
 use crate::kinematics::reach::Softening;
-use crate::kinematics::swivel::{
-    Carried, Reference, Stereographic, angle_from_limb, respun, wrapped,
-};
+use crate::kinematics::swivel::{Carried, Reference, Stereographic, respun, wrapped};
 use crate::kinematics::two_bone::{Facing, LengthError, Pose, TwoBone};
 use crate::rig::ArmRig;
 
@@ -195,7 +193,12 @@ impl Arm {
     }
 
     pub fn pose(&self) -> Pose {
-        blended(self.fk, &self.solve().pose, self.weight, self.bones, self.cursor())
+        self.blended_with(&self.solve().pose)
+    }
+
+    /// Between its angles and a solved pose.
+    fn blended_with(&self, solved: &Pose) -> Pose {
+        blended(self.fk, solved, self.weight, self.bones, self.cursor())
     }
 
     pub fn rig(&self, pose: &Pose) -> ArmRig {
@@ -217,7 +220,7 @@ impl Arm {
     #[must_use]
     pub fn settled(self) -> Self {
         let solved = self.solve();
-        let pose = blended(self.fk, &solved.pose, self.weight, self.bones, self.cursor());
+        let pose = self.blended_with(&solved.pose);
         let carried = match (self.swivel, self.carried) {
             (Swivel::Limb, _) | (Swivel::Transport, None) => None,
             _ => Some(solved.carried),
@@ -244,9 +247,7 @@ impl Arm {
         }
         let pose = self.solve().pose;
         let to = Self { swivel, carried: None, facing: pose.facing, ..self };
-        let outward = to.reference().outward(pose.facing, None);
-        let measured = angle_from_limb(pose.facing, outward);
-        let elbow_spin = respun(pose.spin, 0.0, measured);
+        let elbow_spin = respun(pose.spin, 0.0, to.reference().angle(pose.facing, None));
         Self { elbow_spin, ..to }.settled()
     }
 

@@ -112,11 +112,11 @@ impl Channel {
         Self::Wrist,
     ];
 
-    /// Whether it is where the arm's hand is to be, how its joints are turned, or which of the two leads.
-    pub fn leads_arm(self) -> bool {
-        use Channel::{Bend, ElbowSpin, Hand, Pin, Shoulder, Stretch, Weight};
-        matches!(self, Hand | Pin | ElbowSpin | Weight | Shoulder | Bend | Stretch)
-    }
+    /// What the arm's hand leads by.
+    pub const OF_HAND: [Self; 3] = [Self::Hand, Self::Pin, Self::ElbowSpin];
+
+    /// What the arm's joints lead by, and which of the two does.
+    pub const OF_JOINTS: [Self; 4] = [Self::Weight, Self::Shoulder, Self::Bend, Self::Stretch];
 
     /// Whether it shapes an arm as that is set.
     pub fn shapes(self, arm: &Arm) -> bool {

@@ -78,7 +78,11 @@ impl Session {
                 .collect();
             // A switch between hand and angles is a pose of both.
             let switched = changed(&Channel::Weight);
-            let leads = |channel: &Channel| switched && channel.leads_arm();
+            let leads = |channel: &Channel| {
+                let is_leading =
+                    Channel::OF_HAND.contains(channel) || Channel::OF_JOINTS.contains(channel);
+                switched && is_leading
+            };
             all.into_iter().filter(|channel| changed(channel) || leads(channel)).collect()
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()

@@ -69,9 +69,8 @@ impl Session {
     /// What leads the arm: hand and elbow spin, or the joints' own angles.
     fn leading_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
-        let hand = [Channel::Hand, Channel::Pin, Channel::ElbowSpin];
-        let angles = [Channel::Weight, Channel::Shoulder, Channel::Bend, Channel::Stretch];
-        let leading = hand.into_iter().filter(|_| arm.is_led_by_hand()).chain(angles);
+        let hand = Channel::OF_HAND.into_iter().filter(|_| arm.is_led_by_hand());
+        let leading = hand.chain(Channel::OF_JOINTS);
         leading.filter(|channel| channel.shapes(arm)).collect()
     }
 

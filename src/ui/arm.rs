@@ -101,9 +101,8 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         value: bones.upper(),
         range,
         default: seed.upper(),
-        unit: "",
         step: unit,
-        disabled: None,
+        ..Slider::default()
     };
     upper.show(ui, super::is_sliding(session), actions, Action::SetUpper);
     let lower = Slider {
@@ -114,9 +113,8 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         value: bones.lower(),
         range,
         default: seed.lower(),
-        unit: "",
         step: unit,
-        disabled: None,
+        ..Slider::default()
     };
     lower.show(ui, super::is_sliding(session), actions, Action::SetLower);
 }

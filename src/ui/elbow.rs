@@ -37,7 +37,6 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let slider = Slider {
         name: "Elbow spin",
         label: "Spin",
-        colour: None,
         tooltip: "How far the Socket is turned about the Pointer from the reference: it takes the \
                   elbow around and leaves the hand",
         value: arm.elbow_spin.to_degrees(),
@@ -46,6 +45,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         unit: "°",
         step: 1.0,
         disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
+        ..Slider::default()
     };
     slider.show(ui, super::is_sliding(session), actions, |degrees| {
         Action::SetElbowSpin((degrees % 360.0).to_radians())

@@ -25,15 +25,13 @@ pub(super) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) 
     let blend = Slider {
         name: "IK weight",
         label: "IK weight",
-        colour: None,
         tooltip: "How far the hand leads: 1 is IK, 0 is FK, and between them limbs and elbow turn \
                   part of the way and keep their lengths",
         value: weight,
         range: (0.0, 1.0),
         default: 1.0,
-        unit: "",
         step: 0.1,
-        disabled: None,
+        ..Slider::default()
     };
     let is_sliding = super::is_sliding(session);
     blend.show_after(ui, is_sliding, actions, Action::SetWeight, |ui, actions| {
@@ -93,14 +91,13 @@ pub(super) fn angle<'a>(name: &'a str, tooltip: &'a str, radians: f32) -> Slider
     Slider {
         name,
         label: name,
-        colour: None,
         tooltip,
         value: radians.to_degrees(),
         range: (-180.0, 180.0),
         default: 0.0,
         unit: "°",
         step: 1.0,
-        disabled: None,
+        ..Slider::default()
     }
 }
 

@@ -4,6 +4,7 @@ use core::f32::consts::PI;
 
 use egui::Ui;
 
+use super::lead;
 use super::slider::Slider;
 use crate::kinematics::reach::Softening;
 use crate::session::{Action, Session};
@@ -26,44 +27,35 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         );
         Action::SetSoftening(softening.unwrap_or(seed))
     };
-    let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
-        name,
-        label,
-        colour: None,
-        tooltip,
-        value,
-        range,
-        default,
-        unit,
-        step,
-        disabled: None,
-    };
     let is_sliding = super::is_sliding(session);
-    let tooltip = "The hand lags behind the Cursor before it comes to a limit, so that the elbow does \
-                   not snap; 0 is exact, and stops dead";
-    slider("Softness", "Softness", tooltip, softness, (0.0, MOST_SOFT), 0.0, "", 0.1).show(
-        ui,
-        is_sliding,
-        actions,
-        |softness| set(softness, stretch, angle),
-    );
-    let tooltip = "How many times as long the limbs may become to bring the hand to the Cursor";
-    slider("Stretch", "Stretch", tooltip, stretch, (1.0, MOST_STRETCHED), 1.0, "", 0.1).show(
-        ui,
-        is_sliding,
-        actions,
-        |stretch| set(softness, stretch, angle),
-    );
+    let slider = Slider {
+        name: "Softness",
+        label: "Softness",
+        tooltip: "The hand lags behind the Cursor before it comes to a limit, so that the elbow does \
+                  not snap; 0 is exact, and stops dead",
+        value: softness,
+        range: (0.0, MOST_SOFT),
+        default: seed.softness(),
+        step: 0.1,
+        ..Slider::default()
+    };
+    slider.show(ui, is_sliding, actions, |softness| set(softness, stretch, angle));
+    let slider = Slider {
+        name: "Stretch",
+        label: "Stretch",
+        tooltip: "How many times as long the limbs may become to bring the hand to the Cursor",
+        value: stretch,
+        range: (1.0, MOST_STRETCHED),
+        default: seed.max_stretch(),
+        step: 0.1,
+        ..Slider::default()
+    };
+    slider.show(ui, is_sliding, actions, |stretch| set(softness, stretch, angle));
     let tooltip = "How far the elbow is open at least: the hand comes no nearer to the shoulder";
-    slider(
-        "Smallest elbow angle",
-        "φ_min",
-        tooltip,
-        angle.to_degrees(),
-        (0.0, 179.0),
-        0.0,
-        "°",
-        1.0,
-    )
-    .show(ui, is_sliding, actions, |degrees| set(softness, stretch, degrees.to_radians()));
+    let slider = Slider {
+        label: "φ_min",
+        range: (0.0, 179.0),
+        ..lead::angle("Smallest elbow angle", tooltip, angle)
+    };
+    slider.show(ui, is_sliding, actions, |degrees| set(softness, stretch, degrees.to_radians()));
 }

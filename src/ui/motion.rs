@@ -36,14 +36,13 @@ fn sliders(ui: &mut Ui, session: &Session, slither: Slither, actions: &mut Vec<A
     let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
         name,
         label,
-        colour: None,
         tooltip,
         value,
         range,
         default,
         unit,
         step,
-        disabled: None,
+        ..Slider::default()
     };
     let tooltip = "How far from the middle the way is";
     slider("Ring", "Ring", tooltip, slither.radius, (0.0, 2.0 * reach), first.radius, "", step)

@@ -28,14 +28,11 @@ pub(super) fn section_with(
     aside: impl FnOnce(&mut Ui),
     contents: impl FnOnce(&mut Ui),
 ) {
-    let heading = cut(ui, title);
-    let header = CollapsingHeader::new(heading).id_salt(title).default_open(true);
-    let shown = header.show_unindented(ui, contents);
-    let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), shown.header_response.rect.y_range());
+    let header = show_section(ui, title, title, true, contents);
+    let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), header.y_range());
     let right = Layout::right_to_left(Align::Center);
     // Beside what is there: it takes no room.
     aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
-    ui.add_space(SPACE);
 }
 
 /// A section that is folded at first.
@@ -48,10 +45,19 @@ pub(super) fn named_section(ui: &mut Ui, id: &str, title: &str, contents: impl F
     show_section(ui, id, title, true, contents);
 }
 
-fn show_section(ui: &mut Ui, id: &str, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+/// Gives where the title is.
+fn show_section(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    open: bool,
+    contents: impl FnOnce(&mut Ui),
+) -> Rect {
     let heading = cut(ui, title);
-    CollapsingHeader::new(heading).id_salt(id).default_open(open).show_unindented(ui, contents);
+    let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
+    let shown = header.show_unindented(ui, contents);
     ui.add_space(SPACE);
+    shown.header_response.rect
 }
 
 /// A title in one line no wider than the panel, whatever a joint is called: a header would make the

@@ -10,6 +10,7 @@ use crate::session::Action;
 /// A number that is shown and set: a name, a rail with a thumb, and the value, which can be typed.
 ///
 /// It shows any value and never changes one by showing it; the range is the thumb's alone.
+#[derive(Default)]
 pub(super) struct Slider<'a> {
     /// What it is called where there is nothing else to see: "Hand x".
     pub name: &'a str,

@@ -78,8 +78,8 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
     }
 }
 
-/// A hand with keys, whose elbow has none and is carried along, looked at off its keys.
-fn looked_at_off_the_keys() -> Session {
+/// A hand with keys, whose elbow has none and is carried along, between two of them.
+fn carried_between_keys() -> Session {
     let mut session = session([Action::SetSwivel(Swivel::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
         session.apply(Action::SetTime(time));
@@ -87,6 +87,11 @@ fn looked_at_off_the_keys() -> Session {
         session.apply(Action::Key(vec![Channel::Hand]));
     }
     session.apply(Action::SetTime(1.0));
+    session
+}
+
+/// Takes the hand around, off its keys.
+fn look_off(mut session: Session) -> Session {
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
         session.apply(Action::SetHand(hand * 300.0));
     }
@@ -95,7 +100,7 @@ fn looked_at_off_the_keys() -> Session {
 
 #[test]
 fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
-    let mut session = looked_at_off_the_keys();
+    let mut session = look_off(carried_between_keys());
     session.apply(Action::SetElbowSpin(2.0));
     assert_eq!(session.arm().elbow_spin, 2.0);
     session.apply(Action::SetUpper(210.0));
@@ -106,7 +111,7 @@ fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
 #[test]
 fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere() {
     for swivel in [Swivel::Limb, Swivel::Pole, Swivel::Stereographic] {
-        let mut session = looked_at_off_the_keys();
+        let mut session = look_off(carried_between_keys());
         let before = *session.pose();
         session.apply(Action::SetSwivel(swivel));
         assert!(apart(&before, session.pose()) < 1e-5, "{swivel:?}");
@@ -142,17 +147,9 @@ fn what_is_beneath_the_keys_is_measured_anew_too() {
 
 #[test]
 fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
-    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
-    for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand]));
-    }
-    session.apply(Action::SetTime(1.0));
+    let session = carried_between_keys();
     let (document, pose) = (session.document().clone(), *session.pose());
-    for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
-        session.apply(Action::SetHand(hand * 300.0));
-    }
+    let mut session = look_off(session);
     assert_eq!(session.document(), &document);
     session.apply(Action::SetTime(0.5));
     session.apply(Action::SetTime(1.0));

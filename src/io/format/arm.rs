@@ -5,6 +5,7 @@ use core::f32::consts::PI;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::check::above_0;
 use crate::document::{self, Goal};
 use crate::io::field::Field;
 use crate::io::source::Wrong;
@@ -208,7 +209,7 @@ fn facing(at: &Field, file: &Facing) -> Result<two_bone::Facing, Wrong> {
     let (direction, heading) = (file.direction.0, Vec2::from_array(file.heading.0));
     unit(at.clone().key("direction"), direction.length())?;
     unit(at.clone().key("heading"), heading.length())?;
-    let (direction, heading) = (exactly(direction), exactly_flat(heading));
+    let (direction, heading) = (exactly(direction), exactly(heading.extend(0.0)).truncate());
     let flat = Vec2::new(direction.x, direction.z);
     if flat.length() > UNIT && flat.normalize().distance(heading) > UNIT {
         let reason = "must be `direction` as seen from above";
@@ -276,11 +277,7 @@ fn fk(at: &Field, file: Option<&Object<Fk>>) -> Result<fk::Fk, Wrong> {
     let Some(Object(file)) = file else {
         return Ok(seed);
     };
-    let stretch = number(file.stretch, seed.stretch);
-    if stretch <= 0.0 {
-        let reason = format!("is {stretch}; it must be above 0");
-        return Err(Wrong::new(at.clone().key("stretch"), reason));
-    }
+    let stretch = above_0(at.clone().key("stretch"), number(file.stretch, seed.stretch))?;
     Ok(fk::Fk {
         shoulder: file.shoulder.map_or(seed.shoulder, |Point(shoulder)| shoulder),
         bend: number(file.bend, seed.bend),
@@ -316,10 +313,6 @@ fn unit(at: Field, length: f32) -> Result<(), Wrong> {
 
 /// One that is a unit vector as far as numbers go keeps its bits; one written by hand becomes one.
 fn exactly(v: Vec3) -> Vec3 {
-    if (v.length() - 1.0).abs() <= EXACT { v } else { v.normalize() }
-}
-
-fn exactly_flat(v: Vec2) -> Vec2 {
     if (v.length() - 1.0).abs() <= EXACT { v } else { v.normalize() }
 }
 

@@ -260,7 +260,7 @@ fn first_view(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     }
 }
 
-fn above_0(at: Field, value: f32) -> Result<f32, Wrong> {
+pub(super) fn above_0(at: Field, value: f32) -> Result<f32, Wrong> {
     if value > 0.0 {
         return Ok(value);
     }
