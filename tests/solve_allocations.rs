@@ -4,7 +4,11 @@
 mod rigs;
 
 use allocation_counter::measure;
+use ik_arm::kinematics::batch::{
+    Arms, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
+};
 use ik_arm::kinematics::solve::{Method, Options, Solve};
+use ik_arm::kinematics::two_bone::TwoBone;
 use rigs::{Random, reachable, tree};
 
 #[test]
@@ -28,4 +32,26 @@ fn iterations_after_the_first_allocate_nothing() {
             assert_eq!(counted.count_total, 0, "{method:?}, limits: {is_limited}");
         }
     }
+}
+
+#[test]
+fn a_batch_allocates_nothing() {
+    let arms = 10_000;
+    let (cursor, angle) = (vec![100.0; arms], vec![1.0; arms]);
+    let places = || [(); 3].map(|()| vec![0.0; arms]);
+    let turns = || [(); 4].map(|()| vec![0.0; arms]);
+    let (mut elbow, mut hand, mut upper, mut lower) = (places(), places(), turns(), turns());
+    let counted = measure(|| {
+        let bones = Bones::Same(TwoBone::new(200.0, 300.0).expect("lengths"));
+        let points = Points { x: &cursor, y: &cursor, z: &cursor };
+        let arms = Arms::new(bones, points, Spin::Angle(&angle)).expect("a batch");
+        let places = Places { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
+        let rotations = Rotations {
+            upper: QuaternionsMut::of(&mut upper),
+            lower: QuaternionsMut::of(&mut lower),
+        };
+        arms.solve(places, Some(rotations)).expect("room");
+    });
+    assert_eq!(counted.count_total, 0);
+    assert_eq!(hand[0][arms - 1], 100.0);
 }

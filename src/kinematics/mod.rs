@@ -1,6 +1,7 @@
 //! Pure numbers: solvers that know nothing of files, windows or GPUs.
 
 mod arc;
+pub mod batch;
 pub mod euler;
 pub mod fk;
 pub mod follow;

@@ -43,10 +43,15 @@
 //! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles
 //! of a Needle-like Triangle*, 2014 (why Heron's formula must be factored).
 
+mod placing;
+
 use core::f32::consts::PI;
 
 use glam::{Mat3, Vec2, Vec3};
 use thiserror::Error;
+
+pub(super) use placing::Placed;
+use placing::{Scaled, Sight};
 
 /// Two bones joined at an elbow, with the shoulder at the origin.
 ///
@@ -65,8 +70,8 @@ use thiserror::Error;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBone {
-    upper: f32,
-    lower: f32,
+    pub(super) upper: f32,
+    pub(super) lower: f32,
 }
 
 /// A bone length that no arm can have.
@@ -183,19 +188,9 @@ impl TwoBone {
     pub fn solve_from(self, cursor: Vec3, elbow_spin: f32, last: Facing) -> Pose {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
         debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
-
-        let scaled = Scaled::new(self);
-        let facing = Facing::towards(cursor, last);
-        let asked = (cursor * scaled.scale).length();
-        let pose = scaled.pose(facing, asked, elbow_spin);
-
-        if asked > scaled.sum {
-            Pose { reach: Reach::TooFar, ..pose }
-        } else if asked < scaled.difference.abs() {
-            Pose { reach: Reach::TooClose, ..pose }
-        } else {
-            Pose { hand: cursor, ..pose }
-        }
+        let (sin, cos) = elbow_spin.sin_cos();
+        let placed = Placed::new::<true>(self, cursor, cos, sin, last);
+        Pose { hand: placed.hand_of(cursor), ..placed.pose(elbow_spin) }
     }
 
     /// The pose with the hand at a distance from the shoulder, brought between the limits, in the
@@ -207,63 +202,10 @@ impl TwoBone {
     pub fn solve_at(self, facing: Facing, distance: f32, elbow_spin: f32) -> Pose {
         debug_assert!(distance.is_finite(), "distance is {distance}");
         debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
+        let (sin, cos) = elbow_spin.sin_cos();
         let scaled = Scaled::new(self);
-        scaled.pose(facing, distance * scaled.scale, elbow_spin)
-    }
-}
-
-/// Bones near 1 long, so that nothing overflows or vanishes.
-#[derive(Clone, Copy)]
-struct Scaled {
-    upper: f32,
-    /// L and δ.
-    sum: f32,
-    difference: f32,
-    unit: f32,
-    scale: f32,
-}
-
-impl Scaled {
-    fn new(bones: TwoBone) -> Self {
-        let (unit, scale) = power_of_two_near(bones.upper.max(bones.lower));
-        let (upper, lower) = (bones.upper * scale, bones.lower * scale);
-        Self { upper, sum: upper + lower, difference: upper - lower, unit, scale }
-    }
-
-    /// The hand as far out as it is asked to be and can be.
-    fn pose(self, facing: Facing, asked: f32, spin: f32) -> Pose {
-        let Self { unit, .. } = self;
-        let distance = asked.clamp(self.difference.abs(), self.sum);
-        let (along, out) = self.elbow_in_socket(distance);
-        let limb = facing.limb_frame();
-        let (sin, cos) = spin.sin_cos();
-        let elbow = limb.x_axis * along + (limb.y_axis * cos + limb.z_axis * sin) * out;
-        Pose {
-            elbow: saturate(elbow, unit),
-            hand: saturate(facing.direction * distance, unit),
-            reach: Reach::Reached,
-            distance: (distance * unit).min(f32::MAX),
-            along: along * unit,
-            out: out * unit,
-            spin,
-            stretch: 1.0,
-            facing,
-        }
-    }
-
-    /// (h_e, o_e).
-    fn elbow_in_socket(self, distance: f32) -> (f32, f32) {
-        let Self { upper, sum, difference, .. } = self;
-        if distance == 0.0 {
-            return (0.0, upper);
-        }
-        // L·(δ/D) rather than δ·(L/D): D is never less than |δ|, but it may be tiny beside L.
-        let along = 0.5 * (distance + sum * (difference / distance));
-        let squared = (sum + distance)
-            * (sum - distance)
-            * ((distance + difference) / distance)
-            * ((distance - difference) / distance);
-        (along.clamp(-upper, upper), 0.5 * squared.max(0.0).sqrt())
+        let placed = Placed::at::<true>(scaled, facing, distance * scaled.scale, cos, sin);
+        Pose { reach: Reach::Reached, ..placed.pose(elbow_spin) }
     }
 }
 
@@ -318,17 +260,12 @@ impl Facing {
     /// A cursor at the shoulder keeps the last direction, one straight above or below it the last
     /// heading.
     pub fn towards(cursor: Vec3, last: Self) -> Self {
-        if cursor == Vec3::ZERO {
-            return last;
-        }
-        Self {
-            direction: (cursor * power_of_two_near(cursor.abs().max_element()).1).normalize(),
-            heading: heading(cursor).unwrap_or(last.heading),
-        }
+        Sight::new::<true>(cursor, last).facing
     }
 
     /// The Limb's rotation, R_y(−θ_z)·R_z(θ_y): its +x is the Pointer, its +y the direction in
     /// which the elbow stands out when it is not spun, its +z level.
+    #[inline(always)]
     pub fn limb_frame(self) -> Mat3 {
         let Vec2 { x: cos_yaw, y: sin_yaw } = self.heading;
         let sin_pitch = self.direction.y;
@@ -339,25 +276,4 @@ impl Facing {
             Vec3::new(-sin_yaw, 0.0, cos_yaw),
         )
     }
-}
-
-/// The vector seen from above, scaled before it is squared: it may be tiny beside the height.
-fn heading(v: Vec3) -> Option<Vec2> {
-    let flat = Vec2::new(v.x, v.z);
-    (flat != Vec2::ZERO).then(|| (flat * power_of_two_near(flat.abs().max_element()).1).normalize())
-}
-
-/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that
-/// reciprocal. To scale by them is exact.
-fn power_of_two_near(value: f32) -> (f32, f32) {
-    const EXPONENT: u32 = 0xff << 23;
-    const LEAST: u32 = 1 << 23;
-    const MOST: u32 = 253 << 23;
-    let power = (value.to_bits() & EXPONENT).clamp(LEAST, MOST);
-    (f32::from_bits(power), f32::from_bits(LEAST + MOST - power))
-}
-
-/// Back to the caller's unit; a result that rounds past the largest number is that number.
-fn saturate(v: Vec3, unit: f32) -> Vec3 {
-    (v * unit).clamp(Vec3::MIN, Vec3::MAX)
 }
