@@ -102,8 +102,12 @@ impl Arm {
 
     /// A length of the arm in letters: to a thousandth of its cell.
     pub fn length_in_words(&self, length: f32) -> String {
-        let digits = (3.0 - self.cell().log10().round()).clamp(0.0, 8.0) as usize;
-        format!("{length:.digits$}")
+        format!("{length:.*}", self.length_digits())
+    }
+
+    /// How many digits behind the point a length in letters has.
+    pub(crate) fn length_digits(&self) -> usize {
+        (3.0 - self.cell().log10().round()).clamp(0.0, 8.0) as usize
     }
 
     /// Where the hand is asked to be, in Root space.

@@ -70,10 +70,7 @@ impl Document {
     pub fn cell(&self) -> f32 {
         match self.rig {
             RigKind::Arm => self.arm.cell(),
-            RigKind::Skeleton => {
-                let cell = 10_f32.powf((self.skeleton.reach() * 0.5).log10().floor());
-                if cell.is_normal() { cell } else { 1.0 }
-            }
+            RigKind::Skeleton => SkeletonRig::cell(self.skeleton.reach()),
         }
     }
 }

@@ -146,8 +146,14 @@ impl SkeletonRig {
     /// How far the skeleton's bones and the offsets between them reach from its roots, in the world:
     /// what its size is measured by.
     pub fn reach(&self) -> f32 {
+        self.reach_in(&mut Vec::new())
+    }
+
+    /// [`SkeletonRig::reach`], worked out in some memory.
+    pub(crate) fn reach_in(&self, reach: &mut Vec<f32>) -> f32 {
         let joints = self.skeleton.joints();
-        let mut reach = vec![0.0_f32; joints.len()];
+        reach.clear();
+        reach.resize(joints.len(), 0.0);
         let mut farthest = 0.0_f32;
         for (index, joint) in joints.iter().enumerate() {
             let above = joint.parent.map_or(0.0, |parent| reach[parent] + joint.offset.length());
@@ -160,13 +166,25 @@ impl SkeletonRig {
         if reach.is_finite() && reach > 0.0 { reach } else { 1.0 }
     }
 
+    /// How wide a grid's cells are around a skeleton that reaches so far: the power of ten that goes 2
+    /// to 20 times into it.
+    pub(crate) fn cell(reach: f32) -> f32 {
+        let cell = 10_f32.powf((reach * 0.5).log10().floor());
+        if cell.is_normal() { cell } else { 1.0 }
+    }
+
     /// A sphere around a pose and the targets, in the world: centre and radius.
     pub fn bounds(&self, pose: &Pose, time: f64) -> (Vec3, f32) {
+        self.bounds_with(self.reach(), pose, time)
+    }
+
+    /// [`SkeletonRig::bounds`] of one whose reach is known.
+    pub(crate) fn bounds_with(&self, reach: f32, pose: &Pose, time: f64) -> (Vec3, f32) {
         let targets = self.targets.iter().map(|target| target.at(time));
         let way = self.slither.iter().flat_map(|slither| slither.corners(&self.skeleton));
         let all = pose.points().chain(targets).chain(way);
         let (centre, radius) = around(all).unwrap_or_default();
-        (centre, radius.max(0.25 * self.reach()))
+        (centre, radius.max(0.25 * reach))
     }
 
     /// A sphere around the bones of some joints, if there are any.

@@ -35,33 +35,38 @@ impl Slither {
     /// The skeleton with its first root at the head's place at a time, and the chain of first
     /// children below it along the way that the head has gone.
     pub fn pose(&self, skeleton: &Skeleton, time: f64) -> Skeleton {
+        let mut posed = Skeleton::default();
+        self.write_pose(skeleton, time, &mut posed);
+        posed
+    }
+
+    /// [`Slither::pose`] in the memory that another skeleton has.
+    pub fn write_pose(&self, skeleton: &Skeleton, time: f64, posed: &mut Skeleton) {
         const STRIDES_PER_WAVE: f64 = 64.0;
-        let mut posed = skeleton.clone();
-        let chain = chain(skeleton);
-        let Some(&root) = chain.first() else {
-            return posed;
+        posed.clone_from(skeleton);
+        let Some(root) = chain(skeleton).next() else {
+            return;
         };
         let height = skeleton.joints()[root].offset.y;
-        let lengths = chain.iter().map(|joint| skeleton.joints()[*joint].axis.length());
+        let lengths = chain(skeleton).map(|joint| skeleton.joints()[joint].axis.length());
         let stride = 1.0 / (STRIDES_PER_WAVE * f64::from(self.waves.max(1)));
-        let points = follow::along(|s| self.path(s), self.head(time), stride, lengths);
+        let head = self.head(time);
+        let tips = follow::behind(|s| self.path(s), head, stride, lengths);
 
+        let mut base = self.path(head);
         let mut above = Mat3A::IDENTITY;
-        for (index, &joint) in chain.iter().enumerate() {
-            let (base, tip) = (points[index], points[index + 1]);
+        for (joint, tip) in chain(skeleton).zip(tips) {
             let before = &skeleton.joints()[joint];
             let turn = arc(before.axis.into(), above.transpose() * Vec3A::from(tip - base));
-            let rotation = before.angles_of(Mat3A::from_quat(turn));
-            // Refused where a bone is too long for numbers: it then stays as it is.
-            let _ = posed.change(joint, |joint| {
-                joint.rotation = rotation;
-                if index == 0 {
-                    joint.offset = base + Vec3::Y * height;
-                }
-            });
+            let rotation = before.clamped(before.angles_of(Mat3A::from_quat(turn)));
+            let offset = if joint == root { base + Vec3::Y * height } else { before.offset };
+            // Where a bone is too long for numbers it stays as it is.
+            if rotation.is_finite() && offset.is_finite() {
+                posed.turn(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+            }
             above *= posed.joints()[joint].local_rotation();
+            base = tip;
         }
-        posed
     }
 
     /// Points of the world that are around all of the path.
@@ -72,18 +77,23 @@ impl Slither {
     }
 
     /// Where the path is, in the world, from `from` to `to` turns.
-    pub fn trail(&self, transform: Affine3A, height: f32, from: f64, to: f64) -> Vec<Vec3> {
+    pub fn trail(
+        &self,
+        transform: Affine3A,
+        height: f32,
+        from: f64,
+        to: f64,
+    ) -> impl Iterator<Item = Vec3> {
         const POINTS: usize = 256;
-        let at = |part: f64| from + (to - from) * part;
+        let at = move |part: f64| from + (to - from) * part;
         (0..=POINTS)
-            .map(|index| self.path(at(index as f64 / POINTS as f64)) + Vec3::Y * height)
-            .map(|point| transform.transform_point3(point))
-            .collect()
+            .map(move |index| self.path(at(index as f64 / POINTS as f64)) + Vec3::Y * height)
+            .map(move |point| transform.transform_point3(point))
     }
 }
 
 /// The first root, its first child, and so on.
-fn chain(skeleton: &Skeleton) -> Vec<usize> {
+fn chain(skeleton: &Skeleton) -> impl Iterator<Item = usize> {
     let root = skeleton.joints().iter().position(|joint| joint.parent.is_none());
-    std::iter::successors(root, |joint| skeleton.children(*joint).next()).collect()
+    std::iter::successors(root, |joint| skeleton.children(*joint).next())
 }

@@ -18,14 +18,23 @@ pub fn along(
     stride: f64,
     lengths: impl IntoIterator<Item = f32>,
 ) -> Vec<Vec3> {
+    let first = path(head);
+    core::iter::once(first).chain(behind(path, head, stride, lengths)).collect()
+}
+
+/// The same one after the other, without the head.
+pub(crate) fn behind(
+    path: impl Fn(f64) -> Vec3,
+    head: f64,
+    stride: f64,
+    lengths: impl IntoIterator<Item = f32>,
+) -> impl Iterator<Item = Vec3> {
     let mut at = head;
-    let mut points = vec![path(head)];
-    for length in lengths {
+    lengths.into_iter().map(move |length| {
         let from = path(at);
         at = back_by(|s| path(s).distance(from) - length, at, stride);
-        points.push(path(at));
-    }
-    points
+        path(at)
+    })
 }
 
 /// The parameter before `start` at which `beyond` becomes positive.

@@ -74,12 +74,12 @@ impl Globes {
 impl Uniform {
     fn new(globe: &Globe, palette: &Palette) -> Self {
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
-        let singular = globe.singular();
+        let mut singular = globe.singular();
         Self {
             centre: globe.centre,
             radius: globe.radius,
-            axis: singular.first().copied().unwrap_or(Vec3::Y),
-            singular: singular.len() as f32,
+            singular: singular.clone().count() as f32,
+            axis: singular.next().unwrap_or(Vec3::Y),
             ramp: palette.gains.map(screen),
             line: screen(palette.guide),
             hot: Palette::HOT,

@@ -1,7 +1,7 @@
 use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
-use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid};
+use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid, Words};
 use crate::document::{Arm, Display, Layer, Swivel};
 use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::{ArmRig, Cone, Part};
@@ -102,8 +102,9 @@ fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display
     scene.guide_balls.push(Ball { centre: pole, radius, colour });
     scene.lines.push(Line { from: rig.origin(Part::Elbow), to: pole, colour, dashed: true });
     if display.shows(Layer::Labels) {
-        let text = "Pole".to_owned();
-        scene.labels.push(Label { at: pole, clearance: radius, side: Side::Above, text, colour });
+        let (clearance, side, words) = (radius, Side::Above, Words::default());
+        let label = Label { at: pole, clearance, side, words, colour };
+        scene.add_label(label, format_args!("Pole"));
     }
 }
 
@@ -130,16 +131,17 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
 /// The way from the hand to a Cursor that it does not reach, with its length.
 fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
     let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_world());
-    let text = arm.length_in_words(hand.distance(cursor));
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
-    scene.labels.push(Label {
+    let label = Label {
         at: cursor,
         clearance: CURSOR_BALL * thickness,
         side: Side::Above,
-        text,
+        words: Words::default(),
         colour,
-    });
+    };
+    let (length, digits) = (hand.distance(cursor), arm.length_digits());
+    scene.add_label(label, format_args!("{length:.digits$}"));
 }
 
 /// The elbow says what it is measured from where that is shown.
@@ -151,13 +153,10 @@ fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: b
         (Part::Hand, HAND_BALL, Side::Below, "Hand"),
     ];
     let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == Part::Elbow));
-    scene.labels.extend(named.map(|(part, radius, side, name)| Label {
-        at: rig.origin(part),
-        clearance: radius * thickness,
-        side,
-        text: name.to_owned(),
-        colour,
-    }));
+    for (part, radius, side, name) in named {
+        let (at, clearance, words) = (rig.origin(part), radius * thickness, Words::default());
+        scene.add_label(Label { at, clearance, side, words, colour }, format_args!("{name}"));
+    }
 }
 
 fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ball, Label, Palette, Scene, Side};
+use super::{Ball, Label, Palette, Scene, Side, Words};
 use crate::kinematics::swivel::Reference;
 
 /// The mark of a singular direction, as a part of the globe's radius.
@@ -23,17 +23,18 @@ impl Globe {
     ///
     /// A pole at the shoulder gives the elbow no direction anywhere, so that it is carried along, as
     /// with [`Reference::Transport`]: none either.
-    pub fn singular(&self) -> Vec<Vec3> {
-        let both = |axis: Vec3| vec![axis, -axis];
-        match self.reference {
+    pub fn singular(&self) -> impl Iterator<Item = Vec3> + Clone {
+        let both = |axis: Vec3| [Some(axis), Some(-axis)];
+        let directions = match self.reference {
             Reference::Limb => both(Vec3::Y),
             Reference::Pole(pole) => {
                 let axis = pole.as_dvec3().try_normalize();
-                axis.map_or_else(Vec::new, |axis| both(axis.as_vec3()))
+                axis.map_or([None; 2], |axis| both(axis.as_vec3()))
             }
-            Reference::Stereographic(map) => vec![map.singular()],
-            Reference::Transport => Vec::new(),
-        }
+            Reference::Stereographic(map) => [Some(map.singular()), None],
+            Reference::Transport => [None; 2],
+        };
+        directions.into_iter().flatten()
     }
 
     /// Whether there is something to see: a finite place and a finite radius above 0.
@@ -52,12 +53,8 @@ pub(super) fn add(scene: &mut Scene, globe: Globe) {
     for direction in globe.singular() {
         let (centre, radius) = (globe.centre + direction * globe.radius, MARK * globe.radius);
         scene.balls.push(Ball { centre, radius, colour: ball });
-        scene.labels.push(Label {
-            at: centre,
-            clearance: radius,
-            side: Side::Above,
-            text: "singular".to_owned(),
-            colour: text,
-        });
+        let (clearance, side, words) = (radius, Side::Above, Words::default());
+        let label = Label { at: centre, clearance, side, words, colour: text };
+        scene.add_label(label, format_args!("singular"));
     }
 }

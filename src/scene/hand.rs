@@ -90,12 +90,12 @@ impl Hand<'_> {
     fn add_finger(&mut self, finger: &Finger) {
         let mut turn = Quat::from_rotation_y(-finger.spread);
         let mut joint = finger.knuckle;
-        let mut joints = vec![(joint, finger.radius)];
+        let mut joints = [(joint, finger.radius); 4];
         for (step, (bone, bend)) in finger.bones.iter().zip(finger.bends).enumerate() {
             turn *= Quat::from_rotation_z(-bend);
             joint += turn * Vec3::X * *bone;
             let radius = finger.radius * (1.0 - (1.0 - TAPER) * (step + 1) as f32 / 3.0);
-            joints.push((joint, radius));
+            joints[step + 1] = (joint, radius);
         }
         self.add_chain(&joints);
     }

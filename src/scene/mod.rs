@@ -5,22 +5,28 @@
 mod arm;
 mod globe;
 mod hand;
+mod label;
 mod motion;
 mod palette;
 mod references;
+mod scratch;
 mod shadow;
 mod skeleton;
 
 use glam::{Affine3A, Vec3};
 
 pub use globe::Globe;
+pub use label::{Label, Side, Words};
 pub use palette::{Colour, Palette};
+use scratch::Scratch;
 
 use crate::document::{Camera, Display, Document, Layer, RigKind, Theme};
 use crate::rig::Cone;
 use crate::session::Staging;
 
 /// A picture to be drawn.
+///
+/// Made anew in place, by [`Scene::refill`], it takes no memory that it has not had before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub camera: Camera,
@@ -38,6 +44,9 @@ pub struct Scene {
     pub globe: Option<Globe>,
     pub lines: Vec<Line>,
     pub labels: Vec<Label>,
+    /// What all labels say, one after the other.
+    letters: String,
+    scratch: Scratch,
 }
 
 /// The planes around the arm: which are drawn, and the middle and radius within which they are.
@@ -88,24 +97,6 @@ pub struct Line {
     pub dashed: bool,
 }
 
-/// Words beside a point.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Label {
-    pub at: Vec3,
-    /// What the words must not cover: a ball of this radius around the point.
-    pub clearance: f32,
-    /// Whether the words stand above the ball's right side or below it.
-    pub side: Side,
-    pub text: String,
-    pub colour: Colour,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    Above,
-    Below,
-}
-
 /// A limb as its shadow sees it: two balls and what is between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadow {
@@ -118,15 +109,45 @@ pub struct Shadow {
 impl Scene {
     /// The document as it stands, with what goes on around it.
     pub fn new(document: &Document, staging: &Staging, theme: Theme) -> Self {
+        let mut scene = Self::empty(document, theme);
+        scene.refill(document, staging, theme);
+        scene
+    }
+
+    /// Becomes what [`Scene::new`] would make, in the memory that it has.
+    pub fn refill(&mut self, document: &Document, staging: &Staging, theme: Theme) {
+        self.clear();
         let display = document.display;
-        let (centre, reach) = match document.rig {
-            RigKind::Arm => (document.arm.root, document.arm.bones.outer_limit()),
-            RigKind::Skeleton => skeleton::stage(&document.skeleton),
+        let (centre, reach, cell) = match document.rig {
+            RigKind::Arm => {
+                let arm = &document.arm;
+                (arm.root, arm.bones.outer_limit(), arm.cell())
+            }
+            RigKind::Skeleton => skeleton::stage(&document.skeleton, &mut self.scratch),
         };
-        let mut scene = Self {
+        self.camera = document.camera;
+        self.palette = Palette::new(theme);
+        self.stage = Stage::around(centre, reach, cell, display);
+        if display.shows(Layer::Axes) {
+            self.add_axes(reach);
+        }
+        match document.rig {
+            RigKind::Arm => {
+                arm::add(self, &document.arm, &document.arm.pose(), display);
+                if display.shows(Layer::References) {
+                    references::add(self, &document.arm, staging.carried);
+                }
+            }
+            RigKind::Skeleton => skeleton::add(self, &document.skeleton, staging, display),
+        }
+        motion::add(self, document, staging, reach);
+    }
+
+    fn empty(document: &Document, theme: Theme) -> Self {
+        Self {
             camera: document.camera,
             palette: Palette::new(theme),
-            stage: Stage::around(centre, reach, document.cell(), display),
+            stage: Stage::around(Vec3::ZERO, 0.0, 1.0, document.display),
             shadows: Vec::new(),
             solids: Vec::new(),
             balls: Vec::new(),
@@ -136,21 +157,22 @@ impl Scene {
             globe: None,
             lines: Vec::new(),
             labels: Vec::new(),
-        };
-        if display.shows(Layer::Axes) {
-            scene.add_axes(reach);
+            letters: String::new(),
+            scratch: Scratch::default(),
         }
-        match document.rig {
-            RigKind::Arm => {
-                arm::add(&mut scene, &document.arm, &document.arm.pose(), display);
-                if display.shows(Layer::References) {
-                    references::add(&mut scene, &document.arm, staging.carried);
-                }
-            }
-            RigKind::Skeleton => skeleton::add(&mut scene, &document.skeleton, staging, display),
-        }
-        motion::add(&mut scene, document, staging, reach);
-        scene
+    }
+
+    fn clear(&mut self) {
+        self.shadows.clear();
+        self.solids.clear();
+        self.balls.clear();
+        self.guide_solids.clear();
+        self.guide_balls.clear();
+        self.shells.clear();
+        self.globe = None;
+        self.lines.clear();
+        self.labels.clear();
+        self.letters.clear();
     }
 
     /// Shows the globe, and marks each singular direction on it with a ball and a label.

@@ -1,3 +1,5 @@
+use glam::Vec3;
+
 use super::{Ball, Colour, Line, Scene};
 use crate::document::{Document, RigKind};
 use crate::rig::Part;
@@ -32,22 +34,22 @@ fn add_trail(scene: &mut Scene, staging: &Staging, radius: f32) {
 }
 
 fn add_skin(scene: &mut Scene, skin: &OnionSkin, rig: RigKind, colour: Colour, radius: f32) {
-    let points: Vec<_> = match rig {
-        RigKind::Arm => {
-            let rig = skin.arm.rig(&skin.arm.pose());
-            let [root, elbow, hand] =
-                [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
-            vec![(root, elbow), (elbow, hand)]
-        }
-        RigKind::Skeleton => {
-            let joints = 0..skin.pose.len();
-            joints.map(|joint| (skin.pose.base(joint), skin.pose.tip(joint))).collect()
-        }
-    };
-    for (base, tip) in points {
+    let mut add = |base: Vec3, tip: Vec3| {
         if base != tip {
             scene.add_solid(base, tip, radius, radius, colour);
         }
         scene.balls.push(Ball { centre: tip, radius, colour });
+    };
+    match rig {
+        RigKind::Arm => {
+            let rig = skin.arm.rig(&skin.arm.pose());
+            let [root, elbow, hand] =
+                [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
+            add(root, elbow);
+            add(elbow, hand);
+        }
+        RigKind::Skeleton => {
+            (0..skin.pose.len()).for_each(|joint| add(skin.pose.base(joint), skin.pose.tip(joint)));
+        }
     }
 }

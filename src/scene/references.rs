@@ -1,4 +1,6 @@
-use super::{Ball, Label, Scene, Side, arm};
+use core::fmt::{self, Display, Formatter};
+
+use super::{Ball, Label, Scene, Side, Words, arm};
 use crate::document::{Arm, Swivel};
 use crate::kinematics::swivel::Carried;
 use crate::kinematics::two_bone::Pose;
@@ -55,25 +57,35 @@ impl Ghost {
 fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
     let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
     let Some(ghost) = shown else { return };
-    let name = |ghost: &Ghost| match ghost.is_own {
-        true => ghost.swivel.name().to_owned(),
-        // A nothing has no sign.
-        false => {
-            let turn = format!("{:+.0}°", ghost.turn.to_degrees().round() + 0.0);
-            format!("{} {}", ghost.swivel.name(), turn.replace('-', "−"))
-        }
-    };
-    let mut names: Vec<_> = group.iter().filter(|ghost| ghost.is_own).map(name).collect();
-    names.extend(group.iter().filter(|ghost| !ghost.is_own).map(name));
     let (ball, colour) = match ghost.is_own {
         true => (arm::ELBOW_BALL, scene.palette.text),
         false => (ELBOW, scene.palette.swivel(ghost.swivel)),
     };
-    scene.labels.push(Label {
+    let label = Label {
         at: arm.root + ghost.pose.elbow,
         clearance: ball * ArmRig::thickness(arm.bones),
         side: Side::Above,
-        text: names.join(" · "),
+        words: Words::default(),
         colour,
-    });
+    };
+    scene.add_label(label, format_args!("{}", Names(group)));
+}
+
+/// The names of elbows that share a label, the arm's own first.
+struct Names<'a>(&'a [Ghost]);
+
+impl Display for Names<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let own = self.0.iter().filter(|ghost| ghost.is_own);
+        let others = self.0.iter().filter(|ghost| !ghost.is_own);
+        for (index, ghost) in own.chain(others).enumerate() {
+            let between = if index > 0 { " · " } else { "" };
+            write!(f, "{between}{}", ghost.swivel.name())?;
+            if !ghost.is_own {
+                let turn = ghost.turn.to_degrees().round();
+                write!(f, " {}{:.0}°", if turn < 0.0 { '−' } else { '+' }, turn.abs())?;
+            }
+        }
+        Ok(())
+    }
 }

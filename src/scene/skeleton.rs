@@ -1,7 +1,8 @@
 use glam::Vec3;
 
+use super::scratch::Scratch;
 use super::shadow::above_ground;
-use super::{Ball, Colour, Label, Line, Scene, Shadow, Side};
+use super::{Ball, Colour, Label, Line, Scene, Shadow, Side, Words};
 use crate::document::{Display, Layer, Path, SkeletonRig, Slither, Target};
 use crate::kinematics::skeleton::{Joint, Pose, Skeleton};
 use crate::session::Staging;
@@ -22,19 +23,32 @@ const TARGET: f32 = 0.014;
 /// How many seconds a target's trail is long, and how finely it is drawn.
 const TRAIL: (f64, usize) = (1.2, 48);
 
-/// Where the ground's middle is, and how far the skeleton reaches.
-pub(super) fn stage(rig: &SkeletonRig) -> (Vec3, f32) {
-    let (centre, radius) = rig.bounds(&rig.skeleton.pose(), 0.0);
-    (Vec3 { y: 0.0, ..centre }, rig.reach().max(radius))
+/// Where the ground's middle is, how far the skeleton reaches, and how wide a grid's cells are.
+pub(super) fn stage(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
+    let reach = rig.reach_in(&mut scratch.distances);
+    rig.skeleton.write_pose(&mut scratch.pose);
+    let (centre, radius) = rig.bounds_with(reach, &scratch.pose, 0.0);
+    (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::cell(reach))
 }
 
 /// Adds the bones, targets with their trails and gaps, ghosts, and the bones' shadows.
 pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, display: Display) {
-    let skeleton = rig.at(staging.time);
-    let pose = skeleton.pose();
-    let tree = Tree::new(skeleton.joints());
-    let figure = Figure::new(&skeleton, &pose, &tree, rig.reach());
-    for joint in 0..pose.len() {
+    let mut scratch = core::mem::take(&mut scene.scratch);
+    let Scratch { posed, pose, distances, depths, are_leaves, named } = &mut scratch;
+    let skeleton = match &rig.slither {
+        None => &rig.skeleton,
+        Some(slither) => {
+            slither.write_pose(&rig.skeleton, staging.time, posed);
+            posed
+        }
+    };
+    skeleton.write_pose(pose);
+    read_tree(skeleton.joints(), depths, are_leaves);
+    let reach = rig.reach_in(distances);
+    let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
+    let joints = skeleton.joints();
+    let figure = Figure { joints, pose, depths, are_leaves, reach, scale };
+    for joint in 0..joints.len() {
         let colour = figure.colour(scene, joint, staging);
         figure.add_bone(scene, joint, colour);
         if display.shows(Layer::Shadow) {
@@ -53,32 +67,27 @@ pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, displ
     if let Some(slither) = &rig.slither
         && display.shows(Layer::Pointer)
     {
-        add_way(scene, slither, &skeleton, staging.time);
+        add_way(scene, slither, skeleton, staging.time);
     }
     if display.shows(Layer::Labels) {
-        figure.add_labels(scene, staging);
+        figure.add_labels(scene, staging, named);
     }
+    scene.scratch = scratch;
 }
 
-/// What a way through all joints tells of each.
-struct Tree {
-    /// How many bones are above it; points do not count.
-    depths: Vec<usize>,
-    /// Whether nothing hangs from it.
-    are_leaves: Vec<bool>,
-}
-
-impl Tree {
-    fn new(joints: &[Joint]) -> Self {
-        let mut tree = Self { depths: vec![0; joints.len()], are_leaves: vec![true; joints.len()] };
-        for (joint, parent) in joints.iter().map(|joint| joint.parent).enumerate() {
-            if let Some(parent) = parent {
-                let is_bone = joints[parent].axis != Vec3::ZERO;
-                tree.depths[joint] = tree.depths[parent] + usize::from(is_bone);
-                tree.are_leaves[parent] = false;
-            }
+/// Goes through all joints: how many bones are above each, where points do not count, and whether
+/// nothing hangs from it.
+fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
+    depths.clear();
+    depths.resize(joints.len(), 0);
+    are_leaves.clear();
+    are_leaves.resize(joints.len(), true);
+    for (joint, parent) in joints.iter().map(|joint| joint.parent).enumerate() {
+        if let Some(parent) = parent {
+            let is_bone = joints[parent].axis != Vec3::ZERO;
+            depths[joint] = depths[parent] + usize::from(is_bone);
+            are_leaves[parent] = false;
         }
-        tree
     }
 }
 
@@ -87,19 +96,15 @@ impl Tree {
 struct Figure<'a> {
     joints: &'a [Joint],
     pose: &'a Pose,
-    tree: &'a Tree,
+    depths: &'a [usize],
+    are_leaves: &'a [bool],
     /// In the world.
     reach: f32,
     /// From the skeleton's units to the world's.
     scale: f32,
 }
 
-impl<'a> Figure<'a> {
-    fn new(skeleton: &'a Skeleton, pose: &'a Pose, tree: &'a Tree, reach: f32) -> Self {
-        let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
-        Self { joints: skeleton.joints(), pose, tree, reach, scale }
-    }
-
+impl Figure<'_> {
     /// How thick a bone is drawn where it begins.
     fn radius(&self, joint: usize) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
@@ -121,7 +126,7 @@ impl<'a> Figure<'a> {
     fn colour(&self, scene: &Scene, joint: usize, staging: &Staging) -> Colour {
         let palette = &scene.palette;
         let plain =
-            if self.tree.depths[joint].is_multiple_of(2) { palette.upper } else { palette.lower };
+            if self.depths[joint].is_multiple_of(2) { palette.upper } else { palette.lower };
         let colour = match self.joints[joint].locked {
             true => palette.joint,
             false => plain,
@@ -142,7 +147,7 @@ impl<'a> Figure<'a> {
         }
         let ball = if base == tip { colour } else { scene.palette.joint };
         scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
-        if self.tree.are_leaves[joint] && base != tip {
+        if self.are_leaves[joint] && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
         }
@@ -180,38 +185,35 @@ impl<'a> Figure<'a> {
         let gap = tip.distance(at);
         if gap > 1.5 * radius {
             scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
-            scene.labels.push(Label {
-                at,
-                clearance: radius,
-                side: Side::Above,
-                text: residual(gap, self.reach),
-                colour: accent,
-            });
+            let (clearance, side, words) = (radius, Side::Above, Words::default());
+            let label = Label { at, clearance, side, words, colour: accent };
+            let decimals = residual_decimals(self.reach);
+            scene.add_label(label, format_args!("{gap:.decimals$}"));
         }
     }
 
     /// The name of what is selected or pointed at.
-    fn add_labels(&self, scene: &mut Scene, staging: &Staging) {
-        let mut named: Vec<usize> =
-            staging.selection.iter().copied().chain(staging.pointed).collect();
+    fn add_labels(&self, scene: &mut Scene, staging: &Staging, named: &mut Vec<usize>) {
+        named.clear();
+        named.extend(staging.selection.iter().copied().chain(staging.pointed));
         named.sort_unstable();
         named.dedup();
-        for joint in named.into_iter().filter(|joint| *joint < self.joints.len()) {
-            scene.labels.push(Label {
+        for joint in named.iter().copied().filter(|joint| *joint < self.joints.len()) {
+            let label = Label {
                 at: self.pose.base(joint).midpoint(self.pose.tip(joint)),
                 clearance: self.radius(joint),
                 side: Side::Below,
-                text: self.joints[joint].name.clone(),
+                words: Words::default(),
                 colour: scene.palette.text,
-            });
+            };
+            scene.add_label(label, format_args!("{}", self.joints[joint].name));
         }
     }
 }
 
-/// A distance with as many digits as a skeleton of such a reach needs.
-fn residual(gap: f32, reach: f32) -> String {
-    let decimals = (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{gap:.decimals$}")
+/// With how many digits behind the point a distance is written for a skeleton of such a reach.
+fn residual_decimals(reach: f32) -> usize {
+    (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize
 }
 
 /// Where a moving target has just been, fading.
@@ -233,9 +235,8 @@ fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
 fn add_way(scene: &mut Scene, slither: &Slither, skeleton: &Skeleton, time: f64) {
     let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
     let head = slither.head(time);
-    let way = slither.trail(skeleton.transform(), height, head, head + 1.0);
+    let way = || slither.trail(skeleton.transform(), height, head, head + 1.0);
     let colour = scene.palette.guide.with_opacity(0.35);
-    for ends in way.windows(2) {
-        scene.lines.push(Line { from: ends[0], to: ends[1], colour, dashed: false });
-    }
+    let pieces = way().zip(way().skip(1));
+    scene.lines.extend(pieces.map(|(from, to)| Line { from, to, colour, dashed: false }));
 }

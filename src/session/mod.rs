@@ -241,21 +241,6 @@ impl Session {
         &self.skeleton_pose
     }
 
-    /// What a picture shows beside the document.
-    pub fn staging(&self) -> Staging {
-        let runners = self.race.iter().flat_map(Race::runners);
-        let ghost = |runner: &Runner| Ghost::new(runner.method, &runner.skeleton);
-        Staging {
-            time: self.clock.time,
-            selection: self.selection.clone(),
-            pointed: self.pointed,
-            ghosts: runners.filter(|runner| runner.report().is_ok()).map(ghost).collect(),
-            carried: Some(self.journey.carried()),
-            trail: self.trail().to_vec(),
-            onion_skins: trail::onion_skins(&self.document, &self.shown, self.clock.time),
-        }
-    }
-
     pub fn preferences(&self) -> &Preferences {
         &self.preferences
     }

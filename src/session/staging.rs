@@ -1,7 +1,9 @@
 use glam::Vec3;
 
+use super::trail::write_onion_skins;
+use super::{Race, Session};
 use crate::document::Arm;
-use crate::kinematics::skeleton::{Pose, Skeleton};
+use crate::kinematics::skeleton::Pose;
 use crate::kinematics::solve::Method;
 use crate::kinematics::swivel::Carried;
 
@@ -24,7 +26,7 @@ pub struct Staging {
 }
 
 /// The rig as it stands somewhat before or after.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnionSkin {
     pub arm: Arm,
     pub pose: Pose,
@@ -41,8 +43,42 @@ pub struct Ghost {
     pub pose: Pose,
 }
 
-impl Ghost {
-    pub(super) fn new(method: Method, skeleton: &Skeleton) -> Self {
-        Self { method, pose: skeleton.pose() }
+impl Session {
+    /// What a picture shows beside the document.
+    pub fn staging(&self) -> Staging {
+        let mut staging = Staging::default();
+        self.restage(&mut staging);
+        staging
     }
+
+    /// [`Session::staging`] in the memory that another staging has: none is taken anew, except that
+    /// onion skins take a copy of a document with keys.
+    pub fn restage(&self, staging: &mut Staging) {
+        staging.time = self.clock.time;
+        staging.selection.clone_from(&self.selection);
+        staging.pointed = self.pointed;
+        staging.carried = Some(self.journey.carried());
+        staging.trail.clear();
+        staging.trail.extend_from_slice(self.trail());
+        write_ghosts(self.race.as_ref(), &mut staging.ghosts);
+        let (document, skins) = (&self.document, &mut staging.onion_skins);
+        write_onion_skins(document, &self.shown, self.clock.time, skins);
+    }
+}
+
+fn write_ghosts(race: Option<&Race>, ghosts: &mut Vec<Ghost>) {
+    let runners = race.into_iter().flat_map(Race::runners);
+    let mut count = 0;
+    for runner in runners.filter(|runner| runner.report().is_ok()) {
+        let method = runner.method;
+        match ghosts.get_mut(count) {
+            Some(ghost) => {
+                ghost.method = method;
+                runner.skeleton.write_pose(&mut ghost.pose);
+            }
+            None => ghosts.push(Ghost { method, pose: runner.skeleton.pose() }),
+        }
+        count += 1;
+    }
+    ghosts.truncate(count);
 }

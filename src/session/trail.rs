@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use glam::Vec3;
 
 use super::{OnionSkin, Session, Staging};
@@ -25,18 +27,21 @@ impl Staging {
     pub fn new(document: &Document, time: f64) -> Self {
         let shown = document.at(time);
         let has_trail = has_trail(document, &shown);
-        Self {
+        let mut staging = Self {
             time,
             trail: if has_trail { walk(document, None) } else { Vec::new() },
-            onion_skins: onion_skins(document, &shown, time),
             ..Self::default()
-        }
+        };
+        write_onion_skins(document, &shown, time, &mut staging.onion_skins);
+        staging
     }
 
     /// The same at another time, at which the document is.
     #[must_use]
-    pub fn at(self, document: &Document, time: f64) -> Self {
-        Self { time, onion_skins: onion_skins(document, document, time), ..self }
+    pub fn at(mut self, document: &Document, time: f64) -> Self {
+        self.time = time;
+        write_onion_skins(document, document, time, &mut self.onion_skins);
+        self
     }
 }
 
@@ -44,30 +49,40 @@ fn has_trail(document: &Document, shown: &Document) -> bool {
     document.is_posed_by_time() && shown.display.shows(Layer::Trail)
 }
 
-/// The rig some frames before and after, as far as the timeline goes.
-pub(super) fn onion_skins(document: &Document, shown: &Document, time: f64) -> Vec<OnionSkin> {
+/// The rig some frames before and after, as far as the timeline goes, in the memory that `skins` have.
+pub(super) fn write_onion_skins(
+    document: &Document,
+    shown: &Document,
+    time: f64,
+    skins: &mut Vec<OnionSkin>,
+) {
     /// How many there are before and after, and how many frames lie between two.
     const SKINS: (isize, f64) = (3, 5.0);
     if !shown.display.shows(Layer::OnionSkins) || !document.is_posed_by_time() {
-        return Vec::new();
+        return skins.clear();
     }
     let (count, frames) = SKINS;
     let timeline = document.timeline;
     let step = frames / f64::from(timeline.frame_rate);
-    let skin = |place: isize| {
-        let time = time + place as f64 * step;
-        let is_played = time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
-        is_played.then(|| {
-            let posed = document.at(time);
-            OnionSkin {
-                arm: posed.arm,
-                pose: posed.skeleton.at(time).pose(),
-                past: place < 0,
-                opacity: 1.0 / place.unsigned_abs() as f32,
-            }
-        })
-    };
-    (-count..=count).filter(|place| *place != 0).filter_map(skin).collect()
+    let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
+    let all = (-count..=count).filter(|place| *place != 0);
+    let times = all.map(|place| (place, time + place as f64 * step));
+    let mut posed = document.at(time);
+    let mut made = 0;
+    for (place, time) in times.filter(|(_, time)| is_played(*time)) {
+        if let Cow::Owned(posed) = &mut posed {
+            posed.keys_to(time);
+        }
+        if made == skins.len() {
+            skins.push(OnionSkin::default());
+        }
+        let skin = &mut skins[made];
+        skin.arm = posed.arm;
+        posed.skeleton.at(time).write_pose(&mut skin.pose);
+        (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
+        made += 1;
+    }
+    skins.truncate(made);
 }
 
 /// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.

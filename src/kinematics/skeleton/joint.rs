@@ -3,7 +3,7 @@ use glam::{Affine3A, Mat3, Mat3A, Vec3};
 use super::{EulerAngles, SkeletonError, nearest_angles};
 
 /// A ball joint and its bone.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Joint {
     /// No two joints of a skeleton have the same.
     pub name: String,
@@ -24,6 +24,19 @@ pub struct Joint {
     pub locked: bool,
     /// How thick the bone is drawn.
     pub radius: f32,
+}
+
+/// A copy into another joint takes its name's memory.
+impl Clone for Joint {
+    fn clone(&self) -> Self {
+        Self { name: self.name.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let mut name = core::mem::take(&mut self.name);
+        name.clone_from(&source.name);
+        *self = Self { name, ..*source };
+    }
 }
 
 /// From and to, in radians, both included.

@@ -52,10 +52,22 @@ pub(crate) use joint::within;
 /// assert!(skeleton.tip(shin).distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6);
 /// # Ok::<(), ik_arm::kinematics::skeleton::SkeletonError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Skeleton {
     joints: Vec<Joint>,
     transform: Affine3A,
+}
+
+/// A copy into another skeleton takes its memory.
+impl Clone for Skeleton {
+    fn clone(&self) -> Self {
+        Self { joints: self.joints.clone(), transform: self.transform }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.joints.clone_from(&source.joints);
+        self.transform = source.transform;
+    }
 }
 
 impl Default for Skeleton {
@@ -173,6 +185,11 @@ impl Skeleton {
     /// Every joint as it is turned now, in the world.
     pub fn pose(&self) -> Pose {
         Pose::new(&self.joints, self.transform, Joint::local_rotation)
+    }
+
+    /// [`Skeleton::pose`] in the memory that another pose has: for as many joints none is taken.
+    pub fn write_pose(&self, pose: &mut Pose) {
+        pose.refill(&self.joints, self.transform, Joint::local_rotation);
     }
 
     /// Every joint as it is without rotations, in the world.

@@ -3,7 +3,7 @@ use glam::{Affine3A, Mat3A, Vec3};
 use super::Joint;
 
 /// Where every joint of a skeleton is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     joints: Vec<Posed>,
 }
@@ -20,14 +20,27 @@ impl Pose {
         transform: Affine3A,
         rotation: impl Fn(&Joint) -> Mat3A,
     ) -> Self {
-        let mut posed: Vec<Posed> = Vec::with_capacity(joints.len());
+        let mut pose = Self::default();
+        pose.refill(joints, transform, rotation);
+        pose
+    }
+
+    /// Becomes what [`Pose::new`] would make, in the memory that it has.
+    pub(super) fn refill(
+        &mut self,
+        joints: &[Joint],
+        transform: Affine3A,
+        rotation: impl Fn(&Joint) -> Mat3A,
+    ) {
+        let posed = &mut self.joints;
+        posed.clear();
+        posed.reserve(joints.len());
         for joint in joints {
             let above = joint.parent.map_or(transform, |parent| posed[parent].full);
             let local = Affine3A { matrix3: rotation(joint), translation: joint.offset.into() };
             let full = above * local;
             posed.push(Posed { full, tip: full.transform_point3(joint.axis) });
         }
-        Self { joints: posed }
     }
 
     pub fn len(&self) -> usize {

@@ -1,0 +1,151 @@
+//! In a binary of its own, whose allocator counts: what is drawn changes, and the memory it is in
+//! stays.
+#![cfg(feature = "document")]
+
+use allocation_counter::measure;
+use glam::Vec3;
+use ik_arm::document::{Channel, Display, Document, Layer, Path, Swivel, Theme};
+use ik_arm::io::Example;
+use ik_arm::scene::Scene;
+use ik_arm::session::{Action, Preferences, Session, Staging};
+
+/// What the window does between two frames, with what it keeps for it.
+struct Stage {
+    session: Session,
+    staging: Staging,
+    scene: Scene,
+    shown: Scene,
+}
+
+impl Stage {
+    fn new(document: Document) -> Self {
+        let session = Session::with_document(Preferences::default(), document);
+        let staging = session.staging();
+        let scene = Scene::new(session.shown(), &staging, Theme::Dark);
+        Self { session, staging, shown: scene.clone(), scene }
+    }
+
+    /// Takes an action and makes the next scene: how often memory was taken for it, and whether it is
+    /// another scene than the one before.
+    fn frame(&mut self, action: Action) -> (u64, bool) {
+        self.session.apply(action);
+        // Walked when it is first asked for.
+        self.session.staging();
+        let counted = measure(|| {
+            self.session.restage(&mut self.staging);
+            self.scene.refill(self.session.shown(), &self.staging, Theme::Dark);
+        });
+        let has_changed = self.scene != self.shown;
+        std::mem::swap(&mut self.scene, &mut self.shown);
+        (counted.count_total, has_changed)
+    }
+
+    /// Once warm, every action changes the picture and takes no memory.
+    fn assert_takes_nothing(&mut self, actions: &[Action]) {
+        for round in 0..3 {
+            for action in actions {
+                let (taken, has_changed) = self.frame(action.clone());
+                assert!(has_changed, "{action:?} is seen");
+                assert!(round < 2 || taken == 0, "{action:?} takes memory {taken} times");
+            }
+        }
+    }
+}
+
+fn all_layers_but_onion_skins() -> Display {
+    Layer::all().filter(|layer| *layer != Layer::OnionSkins).collect()
+}
+
+#[test]
+fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
+    for swivel in Swivel::ALL {
+        let mut document =
+            Document { display: all_layers_but_onion_skins(), ..Document::default() };
+        document.arm.swivel = swivel;
+        document.arm = document.arm.pinned(true).settled();
+        for (time, hand) in [(0.0, Vec3::X), (1.0, Vec3::Y)] {
+            document.arm.set_cursor(hand * 300.0);
+            document.key(Channel::Pin, time);
+        }
+        // Within reach, out of it, too close, and turned.
+        Stage::new(document).assert_takes_nothing(&[
+            Action::SetHand(Vec3::new(250.0, 120.0, 60.0)),
+            Action::SetHand(Vec3::new(-900.5, 120.25, 60.0)),
+            Action::SetHand(Vec3::new(12.0, -40.0, 9.0)),
+            Action::SetElbowSpin(1.25),
+            Action::SetElbowSpin(-0.5),
+            Action::SetTime(0.5),
+            Action::SetTime(0.25),
+        ]);
+    }
+}
+
+#[test]
+fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
+    let opened = Example::find("ten-joints").expect("an example").open().expect("it opens");
+    let mut document = opened.document;
+    document.display = all_layers_but_onion_skins();
+    let joints = document.skeleton.skeleton.joints().len();
+    assert!(joints >= 10);
+    let target = document.skeleton.targets.first_mut().expect("a target");
+    target.motion.path = Path::FigureEight;
+    for (time, angle) in [(0.0, 0.2), (1.0, 0.9)] {
+        let turned = Vec3::splat(angle);
+        document.skeleton.skeleton.set_rotation(3, turned).expect("a joint");
+        document.key(Channel::Rotation(3), time);
+    }
+    let mut stage = Stage::new(document);
+    stage.session.apply(Action::Select(vec![joints - 1]));
+    assert!(stage.session.staging().trail.len() > 10, "a motion path");
+    stage.assert_takes_nothing(&[
+        Action::SetTime(0.1),
+        Action::SetTime(0.6),
+        Action::Step,
+        Action::Point(Some(2)),
+        Action::Point(None),
+        Action::Select(vec![joints - 1, 4]),
+        Action::Select(vec![3]),
+        Action::Select(vec![joints - 1]),
+    ]);
+}
+
+#[test]
+fn solvers_that_race_take_no_memory() {
+    let opened = Example::find("human").expect("an example").open().expect("it opens");
+    let mut stage = Stage::new(opened.document);
+    stage.session.apply(Action::Race(true));
+    stage.frame(Action::Advance(0.0));
+    for frame in 1..8 {
+        let (taken, has_changed) = stage.frame(Action::Advance(f64::from(frame) / 60.0));
+        assert!(has_changed && (frame < 3 || taken == 0), "frame {frame}: {taken}");
+    }
+}
+
+#[test]
+fn a_snake_on_its_way_takes_no_memory() {
+    let opened = Example::find("snake").expect("an example").open().expect("it opens");
+    let times = [0.1, 0.4, 1.7, 2.3].map(Action::SetTime);
+    Stage::new(opened.document).assert_takes_nothing(&times);
+}
+
+#[test]
+fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
+    let mut scene: Option<Scene> = None;
+    for example in Example::ALL {
+        let mut document = example.open().expect("it opens").document;
+        for layers in [document.display, Layer::all().collect(), Display::from_iter([])] {
+            document.display = layers;
+            for theme in [Theme::Dark, Theme::Light] {
+                let staging = Staging::new(&document, 0.3);
+                let anew = Scene::new(&document, &staging, theme);
+                let scene = scene.get_or_insert_with(|| anew.clone());
+                scene.refill(&document, &staging, theme);
+                assert_eq!(*scene, anew, "{}", example.name);
+                for (label, same) in scene.labels.iter().zip(&anew.labels) {
+                    assert_eq!(scene.text(label), anew.text(same));
+                    assert!(!scene.text(label).is_empty());
+                }
+            }
+        }
+    }
+}
