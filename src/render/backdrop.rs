@@ -14,6 +14,9 @@ pub(super) struct Backdrop {
 }
 
 impl Backdrop {
+    /// One covers the picture.
+    pub const TRIANGLES: u32 = 1;
+
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let pipeline = pipeline::build(
             gpu,

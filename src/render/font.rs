@@ -86,11 +86,11 @@ impl Font {
     }
 
     /// The letters of a text whose baseline starts at `pen`: where each stands, and its source.
-    pub fn lay_out(
-        &self,
-        text: &str,
+    pub fn lay_out<'a>(
+        &'a self,
+        text: &'a str,
         mut pen: Vec2,
-    ) -> impl Iterator<Item = (Rectangle, Rectangle)> {
+    ) -> impl Iterator<Item = (Rectangle, Rectangle)> + use<'a> {
         let scaled = self.font.as_scaled(self.size);
         let mut last: Option<GlyphId> = None;
         text.chars().filter_map(move |letter| {

@@ -12,7 +12,7 @@ pub(super) const SHADER: &str =
 const SIDES: u32 = 2;
 
 #[repr(C)]
-#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Uniform {
     centre: Vec3,
     radius: f32,
@@ -30,13 +30,13 @@ const _: () = assert!(size_of::<Uniform>() == 2 * 16 + Palette::GAINS * 16 + 2 *
 #[derive(Debug)]
 pub(super) struct Globes {
     pipeline: wgpu::RenderPipeline,
-    uniforms: Uniforms,
+    uniforms: Uniforms<Uniform>,
     shown: bool,
 }
 
 impl Globes {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
-        let uniforms = Uniforms::new::<Uniform>(gpu, "globe");
+        let uniforms = Uniforms::new(gpu, "globe");
         let pipeline = pipeline::build(
             gpu,
             &pipeline::Kind {
@@ -54,12 +54,15 @@ impl Globes {
         Self { pipeline, uniforms, shown: false }
     }
 
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
+    /// How many bytes were sent.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         let globe = scene.globe.filter(Globe::has_size);
         self.shown = globe.is_some();
-        if let Some(globe) = globe {
-            self.uniforms.write(gpu, &Uniform::new(&globe, &scene.palette));
-        }
+        globe.map_or(0, |globe| self.uniforms.upload(gpu, Uniform::new(&globe, &scene.palette)))
+    }
+
+    pub fn triangles(&self) -> u32 {
+        if self.shown { 2 * SIDES } else { 0 }
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

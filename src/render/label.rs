@@ -75,16 +75,21 @@ impl Labels {
         Self { letters, atlas_layout, atlas: None }
     }
 
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
+    /// How many bytes were sent, the letters at a new scale aside.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
         let atlas = match self.atlas.take() {
             Some(atlas) if atlas.scale == scale => atlas,
             _ => Atlas::new(gpu, &self.atlas_layout, scale),
         };
         let size = Vec2::new(size.0 as f32, size.1 as f32);
-        let letters: Vec<_> =
-            scene.labels.iter().flat_map(|label| atlas.write(scene, label, size)).collect();
-        self.letters.upload(gpu, letters.iter().copied());
+        let letters = scene.labels.iter().flat_map(|label| atlas.write(scene, label, size));
+        let sent = self.letters.upload(gpu, letters);
         self.atlas = Some(atlas);
+        sent
+    }
+
+    pub fn triangles(&self) -> u32 {
+        self.letters.triangles()
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -143,11 +148,28 @@ impl Atlas {
     }
 
     /// The letters of a label and of the halo under them; none if its point is not in the picture.
-    fn write(&self, scene: &Scene, label: &Label, size: Vec2) -> Vec<Instance> {
+    fn write<'a>(
+        &'a self,
+        scene: &'a Scene,
+        label: &Label,
+        size: Vec2,
+    ) -> impl Iterator<Item = Instance> + use<'a> {
+        let (text, colour) = (scene.text(label), label.colour.channels());
+        let halo = scene.palette.sky_bottom.with_opacity(0.55).channels();
+        let around = HALO.into_iter().map(move |offset| (offset * self.scale, halo));
+        let laid = self.pen(scene, label, size).into_iter().flat_map(move |pen| {
+            around.clone().chain([(Vec2::ZERO, colour)]).map(move |layer| (pen, layer))
+        });
+        laid.flat_map(move |(pen, (offset, colour))| {
+            let letters = self.font.lay_out(text, pen);
+            letters.map(move |letter| self.letter(letter, offset, colour))
+        })
+    }
+
+    /// Where a label begins, in pixels, unless its point is not in the picture.
+    fn pen(&self, scene: &Scene, label: &Label, size: Vec2) -> Option<Vec2> {
         let projection = scene.camera.projection(size.x / size.y);
-        let Some(at) = projection.project(label.at) else {
-            return Vec::new();
-        };
+        let at = projection.project(label.at)?;
         let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
         let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
         let away = ball * DIAGONAL + GAP * self.scale;
@@ -155,19 +177,7 @@ impl Atlas {
             Side::Above => -away,
             Side::Below => away + 0.6 * SIZE * self.scale,
         };
-        let pen = point + Vec2::new(away, drop);
-        let palette = &scene.palette;
-        let halo = palette.sky_bottom.with_opacity(0.55).channels();
-        let colour = label.colour.channels();
-        let around = HALO.into_iter().map(|offset| (offset * self.scale, halo));
-        around
-            .chain([(Vec2::ZERO, colour)])
-            .flat_map(|(offset, colour)| {
-                self.font
-                    .lay_out(&label.text, pen)
-                    .map(move |letter| self.letter(letter, offset, colour))
-            })
-            .collect()
+        Some(point + Vec2::new(away, drop))
     }
 
     fn letter(

@@ -37,8 +37,13 @@ impl Lines {
         ))
     }
 
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) {
-        self.0.upload(gpu, scene.lines.iter().map(Instance::new));
+    /// How many bytes were sent.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
+        self.0.upload(gpu, scene.lines.iter().map(Instance::new))
+    }
+
+    pub fn triangles(&self) -> u32 {
+        self.0.triangles()
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -37,6 +37,10 @@ impl Mesh {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
         pass.draw_indexed(0..self.count, 0, 0..count);
     }
+
+    pub fn triangles(&self) -> u32 {
+        self.count / 3
+    }
 }
 
 /// Points around a unit circle, the first again at the end.

@@ -25,7 +25,7 @@ mod view;
 pub use canvas::{Canvas, ReadError};
 pub use gpu::{DeviceError, Gpu, GpuError};
 pub use picture::{DrawError, Picture, SaveError, Timings, save};
-pub use renderer::Renderer;
+pub use renderer::{Counts, Renderer};
 
 /// Every shader with the name of its file, whole as it is compiled.
 pub fn shaders() -> [(&'static str, &'static str); 6] {

@@ -42,8 +42,13 @@ impl<T: Pod + PartialEq> Quads<T> {
         Self { pipeline, instances: Instances::new(kind.label) }
     }
 
-    pub fn upload(&mut self, gpu: &Gpu, instances: impl Iterator<Item = T> + Clone) {
-        self.instances.upload(gpu, instances);
+    /// How many bytes were sent.
+    pub fn upload(&mut self, gpu: &Gpu, instances: impl Iterator<Item = T>) -> u64 {
+        self.instances.upload(gpu, instances)
+    }
+
+    pub fn triangles(&self) -> u32 {
+        2 * self.instances.count()
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

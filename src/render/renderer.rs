@@ -18,9 +18,25 @@ pub struct Renderer {
     globes: Globes,
     lines: Lines,
     labels: Labels,
+    counts: Counts,
+}
+
+/// What a renderer drew last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Cones and balls.
+    pub solids: u32,
+    pub lines: u32,
+    pub labels: u32,
+    pub triangles: u32,
+    /// How many bytes were sent to the device, which keeps what does not change.
+    pub uploaded: u64,
 }
 
 impl Renderer {
+    /// How many lists and blocks of values are kept on the device.
+    pub const LISTS: usize = 5 + Solids::LISTS;
+
     pub fn new(gpu: &Gpu) -> Self {
         let view = View::new(gpu);
         Self {
@@ -31,19 +47,61 @@ impl Renderer {
             lines: Lines::new(gpu, view.layout()),
             labels: Labels::new(gpu, view.layout()),
             view,
+            counts: Counts::default(),
         }
+    }
+
+    /// What was drawn last.
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
     /// Draws a scene and hands it to the device. `scale` is how many pixels a point has: lines and
     /// letters are so many times as large.
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
-        self.view.upload(gpu, scene, canvas.size(), scale);
-        self.solids.upload(gpu, scene, canvas.size());
-        self.shadows.upload(gpu, scene);
-        self.globes.upload(gpu, scene);
-        self.lines.upload(gpu, scene);
-        self.labels.upload(gpu, scene, canvas.size(), scale);
+        self.upload(gpu, scene, canvas.size(), scale);
+        gpu.queue.submit([self.encode(gpu, canvas, None)]);
+    }
 
+    /// Sends what the device does not have of a scene already, for a picture of some size. Once the
+    /// lists are as long as they get it takes no memory of its own; `wgpu` takes some for every list
+    /// of which anything is sent, however long it is, and there are never more than
+    /// [`Renderer::LISTS`].
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
+        let uploaded = self.view.upload(gpu, scene, size, scale)
+            + self.solids.upload(gpu, scene, size)
+            + self.shadows.upload(gpu, scene)
+            + self.globes.upload(gpu, scene)
+            + self.lines.upload(gpu, scene)
+            + self.labels.upload(gpu, scene, size, scale);
+        let count = |lengths: &[usize]| lengths.iter().sum::<usize>() as u32;
+        let guides = [scene.guide_solids.len(), scene.guide_balls.len()];
+        self.counts = Counts {
+            solids: count(&[scene.solids.len(), scene.balls.len()]) + count(&guides),
+            lines: count(&[scene.lines.len()]),
+            labels: count(&[scene.labels.len()]),
+            triangles: self.triangles(),
+            uploaded,
+        };
+    }
+
+    fn triangles(&self) -> u32 {
+        Backdrop::TRIANGLES
+            + self.solids.triangles()
+            + self.shadows.triangles()
+            + self.globes.triangles()
+            + self.lines.triangles()
+            + self.labels.triangles()
+    }
+
+    /// The orders to draw what was uploaded last. `wgpu` takes the memory that it needs for them:
+    /// as much for every picture, whatever is in it.
+    pub fn encode(
+        &self,
+        gpu: &Gpu,
+        canvas: &Canvas,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::CommandBuffer {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("scene") });
@@ -66,6 +124,7 @@ impl Renderer {
                 }),
                 stencil_ops: None,
             }),
+            timestamp_writes: timestamps,
             ..Default::default()
         });
         pass.set_bind_group(0, self.view.group(), &[]);
@@ -77,6 +136,6 @@ impl Renderer {
         self.lines.draw(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+        encoder.finish()
     }
 }

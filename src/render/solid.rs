@@ -74,6 +74,9 @@ struct Meshes {
 }
 
 impl Solids {
+    /// Cones, balls, and those of the guides, at each level.
+    pub const LISTS: usize = 4 * LEVELS.len();
+
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let vertex = wgpu::vertex_attr_array![0 => Float32, 1 => Float32x3, 2 => Float32x3];
         let instance = wgpu::vertex_attr_array![
@@ -120,8 +123,8 @@ impl Solids {
         }
     }
 
-    /// `size` is the picture's, in pixels.
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) {
+    /// How many bytes were sent. `size` is the picture's, in pixels.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> u64 {
         let (width, height) = (size.0 as f32, size.1 as f32);
         let projection = scene.camera.projection(width / height);
         let level_of = |instance: &Instance| {
@@ -131,17 +134,24 @@ impl Solids {
             let radius = if radius > 0.0 { radius } else { f32::INFINITY };
             LEVELS.iter().position(|level| radius <= level.radius)
         };
+        let mut sent = 0;
         for (index, level) in self.levels.iter_mut().enumerate() {
             let here = |instance: &Instance| level_of(instance) == Some(index);
             let cones = scene.solids.iter().map(Instance::of_solid).filter(here);
             let balls = scene.balls.iter().map(Instance::of_ball).filter(here);
             let guide_cones = scene.guide_solids.iter().map(Instance::of_solid).filter(here);
             let guide_balls = scene.guide_balls.iter().map(Instance::of_ball).filter(here);
-            level.cones.upload(gpu, cones);
-            level.balls.upload(gpu, balls);
-            level.guide_cones.upload(gpu, guide_cones);
-            level.guide_balls.upload(gpu, guide_balls);
+            sent += level.cones.upload(gpu, cones);
+            sent += level.balls.upload(gpu, balls);
+            sent += level.guide_cones.upload(gpu, guide_cones);
+            sent += level.guide_balls.upload(gpu, guide_balls);
         }
+        sent
+    }
+
+    /// How many are drawn; guides are drawn twice.
+    pub fn triangles(&self) -> u32 {
+        self.levels.iter().map(Meshes::triangles).sum()
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -172,6 +182,12 @@ impl Meshes {
             guide_cones: Instances::new("guide cones"),
             guide_balls: Instances::new("guide balls"),
         }
+    }
+
+    fn triangles(&self) -> u32 {
+        let cones = self.cones.count() + 2 * self.guide_cones.count();
+        let balls = self.balls.count() + 2 * self.guide_balls.count();
+        cones * self.cone.triangles() + balls * self.ball.triangles()
     }
 
     fn draw_guides(&self, pass: &mut wgpu::RenderPass<'_>) {

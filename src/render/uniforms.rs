@@ -2,17 +2,17 @@ use bytemuck::Pod;
 
 use super::Gpu;
 
-/// A block of values that shaders read, alone in a bind group.
+/// A block of values that shaders read, alone in a bind group; sent again only when it changes.
 #[derive(Debug)]
-pub(super) struct Uniforms {
+pub(super) struct Uniforms<T> {
+    sent: Option<T>,
     buffer: wgpu::Buffer,
     pub layout: wgpu::BindGroupLayout,
     pub group: wgpu::BindGroup,
 }
 
-impl Uniforms {
-    /// Room for a `T`.
-    pub fn new<T: Pod>(gpu: &Gpu, label: &'static str) -> Self {
+impl<T: Pod + PartialEq> Uniforms<T> {
+    pub fn new(gpu: &Gpu, label: &'static str) -> Self {
         let label = Some(label);
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label,
@@ -38,10 +38,16 @@ impl Uniforms {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
         });
-        Self { buffer, layout, group }
+        Self { sent: None, buffer, layout, group }
     }
 
-    pub fn write<T: Pod>(&self, gpu: &Gpu, values: &T) {
-        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(values));
+    /// How many bytes were sent.
+    pub fn upload(&mut self, gpu: &Gpu, values: T) -> u64 {
+        if self.sent == Some(values) {
+            return 0;
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&values));
+        self.sent = Some(values);
+        size_of::<T>() as u64
     }
 }

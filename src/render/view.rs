@@ -10,7 +10,7 @@ const SHELLS: usize = 2;
 
 /// What every shader of the scene sees, as `view.wgsl` has it.
 #[repr(C)]
-#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Uniform {
     clip_from_world: Mat4,
     eye: Vec3,
@@ -36,7 +36,7 @@ struct Uniform {
 }
 
 #[repr(C)]
-#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Sphere {
     centre: Vec3,
     radius: f32,
@@ -48,11 +48,11 @@ const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + SHELLS
 
 /// The uniform on the device.
 #[derive(Debug)]
-pub(super) struct View(Uniforms);
+pub(super) struct View(Uniforms<Uniform>);
 
 impl View {
     pub fn new(gpu: &Gpu) -> Self {
-        Self(Uniforms::new::<Uniform>(gpu, "view"))
+        Self(Uniforms::new(gpu, "view"))
     }
 
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
@@ -63,9 +63,9 @@ impl View {
         &self.0.group
     }
 
-    /// `scale` is how many pixels a point has.
-    pub fn upload(&self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
-        self.0.write(gpu, &Uniform::new(scene, size, scale));
+    /// How many bytes were sent. `scale` is how many pixels a point has.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
+        self.0.upload(gpu, Uniform::new(scene, size, scale))
     }
 }
 

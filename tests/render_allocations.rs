@@ -1,0 +1,110 @@
+//! In a binary of its own, whose allocator counts: what a picture costs in memory once all has been
+//! drawn that is drawn.
+#![cfg(feature = "render")]
+
+use allocation_counter::measure;
+use glam::Vec3;
+use ik_arm::document::{Arm, Display, Document, Goal, Layer, Theme};
+use ik_arm::render::{Canvas, Gpu, Renderer};
+use ik_arm::scene::{Ball, Line, Scene};
+use ik_arm::session::Staging;
+
+const SIZE: (u32, u32) = (480, 300);
+
+/// An arm with all its guides, and `more` balls and lines around it.
+fn scene(hand: Vec3, more: usize) -> Scene {
+    let arm = Arm { goal: Goal::Root(hand), ..Arm::default() };
+    let display: Display = Layer::all().collect();
+    let document = Document { arm, display, ..Document::default() };
+    let mut scene = Scene::new(&document, &Staging::default(), Theme::Dark);
+    let colour = scene.palette.joint;
+    for index in 0..more {
+        let at = hand + Vec3::splat(index as f32 / more as f32);
+        scene.balls.push(Ball { centre: at, radius: 3.0, colour });
+        scene.lines.push(Line { from: at, to: Vec3::ZERO, colour, dashed: false });
+    }
+    scene
+}
+
+struct Bench {
+    gpu: Gpu,
+    canvas: Canvas,
+    renderer: Renderer,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let gpu = Gpu::headless().expect("a graphics adapter");
+        let canvas = Canvas::new(&gpu, SIZE.0, SIZE.1);
+        let renderer = Renderer::new(&gpu);
+        Self { gpu, canvas, renderer }
+    }
+
+    /// How often memory is taken to upload a scene and to encode the orders to draw it.
+    fn frame(&mut self, scene: &Scene) -> (u64, u64) {
+        let Self { gpu, canvas, renderer } = self;
+        let uploading = measure(|| renderer.upload(gpu, scene, SIZE, 1.0));
+        let mut commands = None;
+        let encoding = measure(|| commands = Some(renderer.encode(gpu, canvas, None)));
+        gpu.queue.submit(commands);
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("drawn");
+        (uploading.count_total, encoding.count_total)
+    }
+}
+
+const HANDS: [Vec3; 3] =
+    [Vec3::new(250.0, 120.0, 60.0), Vec3::new(180.0, 260.0, -90.0), Vec3::new(40.0, 330.0, 70.0)];
+
+#[test]
+fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
+    let mut bench = Bench::new();
+    let scene = scene(HANDS[0], 1000);
+    bench.frame(&scene);
+    assert!(bench.renderer.counts().uploaded > 1000 * 80);
+    for _ in 0..5 {
+        let (uploading, _) = bench.frame(&scene);
+        assert_eq!((uploading, bench.renderer.counts().uploaded), (0, 0));
+    }
+}
+
+#[test]
+fn what_changes_is_sent_alone() {
+    let mut bench = Bench::new();
+    let mut scene = scene(HANDS[0], 1000);
+    bench.frame(&scene);
+    let last = scene.balls.last_mut().expect("a ball");
+    last.centre += Vec3::Y;
+    bench.frame(&scene);
+    let a_ball = bench.renderer.counts().uploaded;
+    assert!(a_ball > 0 && a_ball < 200, "{a_ball} bytes for a ball");
+    scene.camera.yaw += 0.1;
+    scene.labels.clear();
+    bench.frame(&scene);
+    let a_view = bench.renderer.counts().uploaded;
+    assert!(a_view > 0 && a_view < 1000, "{a_view} bytes for a view");
+}
+
+#[test]
+fn what_a_changed_picture_takes_does_not_depend_on_how_much_is_in_it() {
+    let mut bench = Bench::new();
+    let mut costs = Vec::new();
+    for more in [20, 200, 2_000] {
+        let scenes = HANDS.map(|hand| scene(hand, more));
+        for scene in scenes.iter().chain(&scenes) {
+            bench.frame(scene);
+        }
+        costs.push(scenes.each_ref().map(|scene| bench.frame(scene)));
+        assert!(bench.renderer.counts().uploaded > more as u64 * 80, "all of it has changed");
+    }
+    assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");
+}
+
+#[test]
+fn a_picture_takes_as_much_as_the_one_before() {
+    let mut bench = Bench::new();
+    let scenes = HANDS.map(|hand| scene(hand, 100));
+    let frames: Vec<_> =
+        (0..60).map(|frame| bench.frame(&scenes[frame % scenes.len()]).1).collect();
+    let warm = &frames[20..];
+    assert!(warm.iter().all(|taken| *taken == warm[0]), "{frames:?}");
+}
