@@ -14,9 +14,13 @@ pub(super) const SHADER: &str = concat!(
 );
 
 /// How finely solids are divided, from the thinnest on screen to the thickest.
-const LEVELS: [Level; 4] = [
+const LEVELS: [Level; 8] = [
+    Level { segments: 10, radius: 3.0 },
     Level { segments: 14, radius: 6.0 },
+    Level { segments: 20, radius: 14.0 },
+    Level { segments: 26, radius: 26.0 },
     Level { segments: 32, radius: 48.0 },
+    Level { segments: 48, radius: 105.0 },
     Level { segments: 64, radius: 190.0 },
     Level { segments: 128, radius: f32::INFINITY },
 ];
@@ -156,8 +160,10 @@ impl Solids {
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.visible);
-        for level in &self.levels {
+        for level in self.levels.iter().rev() {
             draw(pass, &level.cone, &level.cones);
+        }
+        for level in self.levels.iter().rev() {
             draw(pass, &level.ball, &level.balls);
             level.draw_guides(pass);
         }

@@ -58,6 +58,8 @@ const CUFF: (f32, [f32; 2]) = (0.1, [0.165, 0.185]);
 /// How far apart the bones of the palm are at the wrist, to how far at the knuckles.
 const WRIST: f32 = 0.5;
 const PALM_RADIUS: f32 = 0.085;
+/// How thick the palm is at a knuckle, beside the finger.
+const KNUCKLE: f32 = 1.15;
 /// A finger's tip is so thin beside its knuckle.
 const TAPER: f32 = 0.84;
 
@@ -69,7 +71,8 @@ pub(super) fn add(scene: &mut Scene, place: Affine3A, size: f32, colour: Colour)
         hand.add_palm(finger);
         hand.add_finger(finger);
     }
-    hand.add_chain(&THUMB);
+    hand.add_balls(&THUMB);
+    hand.add_cones(&THUMB);
     hand.add_cuff();
 }
 
@@ -84,7 +87,9 @@ impl Hand<'_> {
     /// The bone of the palm that a finger stands on.
     fn add_palm(&mut self, finger: &Finger) {
         let wrist = Vec3::new(0.06, 0.0, finger.knuckle.z * WRIST);
-        self.add_chain(&[(wrist, PALM_RADIUS), (finger.knuckle, finger.radius * 1.15)]);
+        let joints = [(wrist, PALM_RADIUS), (finger.knuckle, finger.radius * KNUCKLE)];
+        self.add_balls(&joints);
+        self.add_cones(&joints);
     }
 
     fn add_finger(&mut self, finger: &Finger) {
@@ -97,7 +102,9 @@ impl Hand<'_> {
             let radius = finger.radius * (1.0 - (1.0 - TAPER) * (step + 1) as f32 / 3.0);
             joints[step + 1] = (joint, radius);
         }
-        self.add_chain(&joints);
+        // The knuckle's ball, which is larger, hides the first.
+        self.add_balls(&joints[1..]);
+        self.add_cones(&joints);
     }
 
     fn add_cuff(&mut self) {
@@ -107,13 +114,17 @@ impl Hand<'_> {
         self.scene.add_solid(at(0.0), at(length), base * self.size, tip * self.size, colour);
     }
 
-    /// Balls and the cones between them.
-    fn add_chain(&mut self, joints: &[(Vec3, f32)]) {
-        let at = |point| self.place.transform_point3(point * self.size);
+    fn add_balls(&mut self, joints: &[(Vec3, f32)]) {
         for (point, radius) in joints {
-            let (centre, radius) = (at(*point), radius * self.size);
+            let centre = self.place.transform_point3(*point * self.size);
+            let radius = radius * self.size;
             self.scene.balls.push(Ball { centre, radius, colour: self.colour });
         }
+    }
+
+    /// From each joint to the next.
+    fn add_cones(&mut self, joints: &[(Vec3, f32)]) {
+        let at = |point| self.place.transform_point3(point * self.size);
         for ends in joints.windows(2) {
             let [(base, base_radius), (tip, tip_radius)] = [ends[0], ends[1]];
             let (base_radius, tip_radius) = (base_radius * self.size, tip_radius * self.size);
