@@ -1,6 +1,9 @@
 //! The window: winit's event loop, the surface, and the frames drawn on it.
 
+mod debug;
 mod effects;
+mod failures;
+mod graphics;
 mod jobs;
 mod present;
 mod recovery;
@@ -19,8 +22,8 @@ use winit::window::WindowId;
 
 use crate::document::Document;
 use crate::io::{OpenError, Opened};
-use crate::render::GpuError;
 use crate::session::{Action, Dialog, Session};
+pub use graphics::GraphicsError;
 use jobs::Choice;
 use recovery::{Found, Recovery};
 use settings::Settings;
@@ -39,12 +42,12 @@ pub enum AppError {
     EventLoop(EventLoopError),
     #[error("the system does not open a window: {0}")]
     Window(#[from] winit::error::OsError),
-    #[error("the window cannot be drawn in: {0}")]
-    Surface(#[from] wgpu::CreateSurfaceError),
-    #[error("the graphics adapter {0} cannot draw in this window")]
-    Unsupported(String),
     #[error(transparent)]
-    Gpu(#[from] GpuError),
+    Graphics(#[from] GraphicsError),
+    #[error(
+        "the graphics device was lost, and three tries to make it anew failed: {source}\n{kept}"
+    )]
+    GraphicsLost { source: GraphicsError, kept: String },
 }
 
 fn why_no_display() -> String {
@@ -69,6 +72,8 @@ enum UserEvent {
     Exported(String),
     /// The document is safe, as far as it was changed by then.
     Kept,
+    /// The device is good for nothing more.
+    GraphicsFailed,
     /// The path that a dialog asked the system for.
     Chosen(Dialog, Choice),
     /// A file was read, with one of its skeletons chosen or not.
@@ -144,7 +149,7 @@ impl App {
         let State::Active(window) = &mut self.state else {
             return;
         };
-        let drawn = window.redraw(&mut self.session, &self.proxy);
+        let drawn = window.redraw(event_loop, &mut self.session, &self.proxy);
         if window.frames() == 1 {
             log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
         }
@@ -152,6 +157,7 @@ impl App {
         self.leave_recovered();
         let again = match drawn {
             Repaint::Quit => return event_loop.exit(),
+            Repaint::Failed(error) => return self.give_up(event_loop, error),
             Repaint::At(time) => Some(time),
             Repaint::OnInput => None,
         };
@@ -159,6 +165,31 @@ impl App {
             Some(time) => ControlFlow::WaitUntil(time),
             None => ControlFlow::Wait,
         });
+    }
+
+    /// Nothing more can be shown: ends with what is not saved kept for the next start.
+    fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
+        let kept = match self.recovery.leave(&self.session) {
+            Ok(None) => "All changes were saved".to_owned(),
+            Ok(Some(path)) => format!(
+                "What was not saved is kept in {}\nik-arm offers to open it when it starts again",
+                path.display()
+            ),
+            Err(error) => format!("What was not saved could not be kept: {error}"),
+        };
+        self.close();
+        self.state = State::Failed(AppError::GraphicsLost { source, kept });
+        event_loop.exit();
+    }
+
+    /// What is done last in a window.
+    fn close(&mut self) {
+        self.session.apply(Action::CancelExport);
+        if let State::Active(window) = &mut self.state {
+            window.await_export();
+            log::info!("{} frames drawn", window.frames());
+            window.settings(&self.session).save();
+        }
     }
 
     /// What another run left goes once it was declined, or this run keeps it.
@@ -217,7 +248,7 @@ impl ApplicationHandler<UserEvent> for App {
                 }
                 return;
             }
-            WindowEvent::Resized(size) => window.resize(size.width, size.height),
+            WindowEvent::Resized(size) => window.resize(*size),
             _ => {}
         }
         if window.on_event(&event) {
@@ -231,7 +262,7 @@ impl ApplicationHandler<UserEvent> for App {
         };
         match event {
             UserEvent::Accesskit(event) => window.on_accesskit(event),
-            UserEvent::Kept => {}
+            UserEvent::Kept | UserEvent::GraphicsFailed => {}
             UserEvent::Report(message) => {
                 self.session.apply(Action::Report(message));
             }
@@ -254,11 +285,6 @@ impl ApplicationHandler<UserEvent> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.recovery.end();
-        self.session.apply(Action::CancelExport);
-        if let State::Active(window) = &mut self.state {
-            window.await_export();
-            log::info!("{} frames drawn", window.frames());
-            window.settings(&self.session).save();
-        }
+        self.close();
     }
 }

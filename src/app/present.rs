@@ -1,51 +1,77 @@
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::Duration;
 
-use egui::{FullOutput, TextureId};
+use egui::TextureId;
+use egui::epaint::{ClippedPrimitive, ImageDelta};
 use egui_wgpu::ScreenDescriptor;
+use winit::dpi::PhysicalSize;
+use winit::window::Window;
 
-use super::window::AppWindow;
+use super::graphics::{Graphics, GraphicsError};
+
+/// What became of a frame.
+pub(super) enum Presented {
+    Shown,
+    /// The surface has no place for it now. After how long to try again; without, the system says
+    /// when.
+    Later(Option<Duration>),
+}
 
 /// The panels' way to the screen.
-impl AppWindow {
-    /// Lets the panels show a new canvas under the same name.
-    pub(super) fn show_canvas(&mut self) {
-        self.egui_renderer.update_egui_texture_from_wgpu_texture(
-            &self.gpu.device,
-            self.picture.canvas.view(),
-            wgpu::FilterMode::Nearest,
-            self.picture.texture,
-        );
-    }
+impl Graphics {
+    /// Frames that nobody sees come no faster.
+    pub const PAUSE: Duration = Duration::from_millis(100);
 
-    pub(super) fn update_textures(&mut self, output: &mut FullOutput) {
-        for (id, deltas) in output.textures_delta.set.drain() {
+    pub fn update_textures(
+        &mut self,
+        changed: impl IntoIterator<Item = (TextureId, impl IntoIterator<Item = ImageDelta>)>,
+    ) {
+        for (id, deltas) in changed {
             for delta in deltas {
                 self.egui_renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
             }
         }
     }
 
-    pub(super) fn free_textures(&mut self, freed: impl IntoIterator<Item = TextureId>) {
+    pub fn free_textures(&mut self, freed: impl IntoIterator<Item = TextureId>) {
         for id in freed {
             self.egui_renderer.free_texture(&id);
         }
     }
 
-    /// Draws the panels on the surface and shows it. A surface that is not there now is drawn on
-    /// at the next frame.
-    pub(super) fn present(&mut self, output: FullOutput, started: Instant) {
+    /// A window of no size, as a minimised one is, keeps what it has.
+    pub fn resize(&mut self, size: PhysicalSize<u32>) {
+        if size.width > 0 && size.height > 0 {
+            let longest = self.gpu.longest_side();
+            self.config.width = size.width.min(longest);
+            self.config.height = size.height.min(longest);
+            self.surface.configure(&self.gpu.device, &self.config);
+        }
+    }
+
+    /// Draws the panels on the surface and shows it.
+    ///
+    /// # Errors
+    ///
+    /// If nothing can be drawn any more, as far as the device says so; see [`Self::finish`].
+    pub fn present(
+        &mut self,
+        panels: &[ClippedPrimitive],
+        scale: f32,
+        window: &Arc<Window>,
+    ) -> Result<Presented, GraphicsError> {
         if std::mem::take(&mut self.stale) {
             self.surface.configure(&self.gpu.device, &self.config);
         }
-        let Some(frame) = self.acquire() else {
-            return;
+        let frame = match self.acquire(window)? {
+            Ok(frame) => frame,
+            Err(again) => return Ok(Presented::Later(again)),
         };
+        self.check()?;
         let screen = ScreenDescriptor {
             size_in_pixels: [self.config.width, self.config.height],
-            pixels_per_point: output.pixels_per_point,
+            pixels_per_point: scale,
         };
-        let primitives = self.egui.egui_ctx().tessellate(output.shapes, output.pixels_per_point);
         let mut encoder = self
             .gpu
             .device
@@ -54,7 +80,7 @@ impl AppWindow {
             &self.gpu.device,
             &self.gpu.queue,
             &mut encoder,
-            &primitives,
+            panels,
             &screen,
         );
         let view = frame.texture.create_view(&Default::default());
@@ -71,54 +97,68 @@ impl AppWindow {
             })],
             ..Default::default()
         });
-        self.egui_renderer.render(&mut pass.forget_lifetime(), &primitives, &screen);
+        self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
         commands.push(encoder.finish());
         self.gpu.queue.submit(commands);
-        self.window.pre_present_notify();
+        window.pre_present_notify();
         self.gpu.queue.present(frame);
-
-        self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
-        self.frames += 1;
+        self.check()?;
+        Ok(Presented::Shown)
     }
 
-    fn acquire(&mut self) -> Option<wgpu::SurfaceTexture> {
+    /// Waits until the device has done all that it was told.
+    ///
+    /// # Errors
+    ///
+    /// If it does not do it.
+    pub fn finish(&self) -> Result<(), GraphicsError> {
+        let timeout = Some(Duration::from_secs(10));
+        self.gpu
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: None, timeout })
+            .map_err(|error| GraphicsError::Device(error.to_string()))?;
+        self.check()
+    }
+
+    /// The next frame, or after how long to ask again. What the surface lacks is mended once.
+    fn acquire(
+        &mut self,
+        window: &Arc<Window>,
+    ) -> Result<Result<wgpu::SurfaceTexture, Option<Duration>>, GraphicsError> {
         use wgpu::CurrentSurfaceTexture as Current;
-        match self.surface.get_current_texture() {
-            Current::Success(frame) => Some(frame),
+        let mut current = self.surface.get_current_texture();
+        match current {
+            Current::Outdated => self.resize(window.inner_size()),
+            Current::Lost => self.renew_surface(window)?,
+            _ => {}
+        }
+        if matches!(current, Current::Outdated | Current::Lost) {
+            current = self.surface.get_current_texture();
+        }
+        match current {
+            Current::Success(frame) => Ok(Ok(frame)),
             Current::Suboptimal(frame) => {
                 self.stale = true;
-                Some(frame)
+                Ok(Ok(frame))
             }
-            Current::Outdated => {
-                self.surface.configure(&self.gpu.device, &self.config);
-                self.window.request_redraw();
-                None
-            }
-            Current::Lost => {
-                self.recreate_surface();
-                self.window.request_redraw();
-                None
-            }
-            Current::Timeout => {
-                self.window.request_redraw();
-                None
-            }
+            Current::Outdated | Current::Timeout => Ok(Err(Some(Self::PAUSE))),
             // Nobody sees it; the system says when somebody does.
-            Current::Occluded => None,
+            Current::Occluded => Ok(Err(None)),
+            Current::Lost => Err(GraphicsError::SurfaceLost),
             Current::Validation => {
-                log::error!("the surface gives no frame");
-                None
+                // A lost device says so when it is asked.
+                let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+                self.check()?;
+                Err(GraphicsError::NoFrame)
             }
         }
     }
 
-    fn recreate_surface(&mut self) {
-        match self.gpu.instance.create_surface(Arc::clone(&self.window)) {
-            Ok(surface) => {
-                surface.configure(&self.gpu.device, &self.config);
-                self.surface = surface;
-            }
-            Err(error) => log::error!("the surface was lost, and no other is given: {error}"),
-        }
+    fn renew_surface(&mut self, window: &Arc<Window>) -> Result<(), GraphicsError> {
+        log::warn!("the window's surface was lost and is made anew");
+        // The old one goes before the new one is configured: a window is shown one at a time.
+        self.surface = self.gpu.instance.create_surface(Arc::clone(window))?;
+        self.resize(window.inner_size());
+        Ok(())
     }
 }

@@ -9,6 +9,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant, SystemTime};
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 use winit::event_loop::EventLoopProxy;
 
 use super::UserEvent;
@@ -39,6 +40,15 @@ pub(super) struct Found {
     pub kept: Kept,
     /// Where it is.
     pub path: PathBuf,
+}
+
+/// Why what is not saved is not kept.
+#[derive(Debug, Error)]
+pub(super) enum LeaveError {
+    #[error("there is no folder for it")]
+    NoPlace,
+    #[error(transparent)]
+    Save(#[from] SaveError),
 }
 
 /// The place of this run, which no other takes for left behind while its lock is held.
@@ -187,6 +197,24 @@ impl Recovery {
         if let Some(place) = &self.place {
             let _ = fs::remove_file(&place.path);
         }
+    }
+
+    /// Writes what is not saved, for the next start to find when this run has ended. Where, if
+    /// there is anything.
+    pub fn leave(&mut self, session: &Session) -> Result<Option<PathBuf>, LeaveError> {
+        if !session.is_unsaved() {
+            return Ok(None);
+        }
+        if let Some((_, writing)) = self.writing.take() {
+            let _ = writing.join();
+        }
+        self.note(session);
+        // Not kept in a place any more, it is not taken away at the end.
+        let place = self.place.take().ok_or(LeaveError::NoPlace)?;
+        if let Some(kept) = self.newest.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
+            kept.write(&place.path)?;
+        }
+        Ok(Some(place.path.clone()))
     }
 
     /// The program ends as it should.

@@ -4,18 +4,21 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use egui::{FullOutput, RawInput, Rect, TextureId, ViewportId};
+use egui::{FullOutput, RawInput, Rect, ViewportId};
 use egui_winit::WindowSettings;
-use winit::dpi::LogicalSize;
+use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{Icon, Window, WindowAttributes};
 
+use super::debug::Debug;
+use super::failures::Failures;
+use super::graphics::{Graphics, GraphicsError, guarded};
+use super::present::Presented;
 use super::settings::Settings;
 use super::{AppError, UserEvent};
-use crate::render::{Canvas, Gpu, Renderer};
 use crate::scene::Scene;
-use crate::session::{Effect, Session};
+use crate::session::{Action, Effect, Session};
 use crate::ui::{self, Machine, style};
 
 const TITLE: &str = "ik-arm";
@@ -29,35 +32,28 @@ pub(super) enum Repaint {
     OnInput,
     At(Instant),
     Quit,
+    /// There is nothing left to draw with.
+    Failed(GraphicsError),
 }
 
 /// The window with all that draws in it.
 pub(super) struct AppWindow {
+    /// Nothing while they are lost.
+    pub(super) graphics: Option<Graphics>,
+    failures: Failures,
+    /// When lost graphics are made anew.
+    dark_until: Instant,
+    debug: Debug,
     pub(super) window: Arc<Window>,
-    pub(super) gpu: Gpu,
-    pub(super) surface: wgpu::Surface<'static>,
-    pub(super) config: wgpu::SurfaceConfiguration,
-    /// Whether the surface still works but should be configured anew.
-    pub(super) stale: bool,
     pub(super) egui: egui_winit::State,
-    pub(super) egui_renderer: egui_wgpu::Renderer,
-    renderer: Renderer,
-    pub(super) picture: Shown,
-    pub(super) machine: Machine,
-    pub(super) frames: u64,
+    machine: Machine,
+    frames: u64,
     title: String,
     /// Where the scene is, in points.
     pub(super) viewport: Rect,
     /// Whether the program is to end at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
-}
-
-/// The scene as it was last drawn, for the panels to show.
-pub(super) struct Shown {
-    pub canvas: Canvas,
-    pub texture: TextureId,
-    scene: Option<Scene>,
 }
 
 impl AppWindow {
@@ -67,47 +63,36 @@ impl AppWindow {
         proxy: EventLoopProxy<UserEvent>,
     ) -> Result<Self, AppError> {
         let window = Arc::new(event_loop.create_window(attributes(event_loop, settings.window))?);
-        let display = event_loop.owned_display_handle();
-        let descriptor =
-            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
-        let instance = wgpu::Instance::new(descriptor);
-        let surface = instance.create_surface(window.clone())?;
-        let gpu = Gpu::new(instance, Some(&surface))?;
-        let config = configuration(&gpu, &surface, &window)?;
-
         let ctx = egui::Context::default();
         style::install(&ctx);
         ctx.data_mut(|data| *data = settings.layout);
+        let display = event_loop.owned_display_handle();
+        let graphics = Graphics::new(display, &window, &ctx, proxy.clone())?;
         let mut egui = egui_winit::State::new(
             ctx,
             ViewportId::ROOT,
             event_loop,
             Some(window.scale_factor() as f32),
             None,
-            Some(gpu.longest_side() as usize),
+            Some(graphics.gpu.longest_side() as usize),
         );
         egui.init_accesskit(event_loop, &window, proxy);
         window.set_visible(true);
         window.request_redraw();
-        let mut egui_renderer =
-            egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
-        let canvas = Canvas::new(&gpu, 1, 1);
-        let texture = egui_renderer.register_native_texture(
-            &gpu.device,
-            canvas.view(),
-            wgpu::FilterMode::Nearest,
-        );
+        let debug = Debug::from_env();
+        let machine = Machine {
+            adapter: graphics.gpu.name(),
+            frame_ms: None,
+            shows_debug_actions: debug.shows_actions,
+        };
         Ok(Self {
-            egui_renderer,
-            renderer: Renderer::new(&gpu),
-            machine: Machine { adapter: gpu.name(), frame_ms: None },
+            graphics: Some(graphics),
+            failures: Failures::default(),
+            dark_until: Instant::now(),
+            debug,
             window,
-            gpu,
-            surface,
-            config,
             egui,
-            stale: false,
-            picture: Shown { canvas, texture, scene: None },
+            machine,
             frames: 0,
             title: TITLE.to_owned(),
             viewport: Rect::ZERO,
@@ -139,13 +124,9 @@ impl AppWindow {
         }
     }
 
-    /// A window of no size, as a minimised one is, keeps what it has.
-    pub fn resize(&mut self, width: u32, height: u32) {
-        if width > 0 && height > 0 {
-            let longest = self.gpu.longest_side();
-            self.config.width = width.min(longest);
-            self.config.height = height.min(longest);
-            self.surface.configure(&self.gpu.device, &self.config);
+    pub fn resize(&mut self, size: PhysicalSize<u32>) {
+        if let Some(graphics) = &mut self.graphics {
+            graphics.resize(size);
         }
     }
 
@@ -161,35 +142,98 @@ impl AppWindow {
     }
 
     /// Takes the input, lets the session follow, and draws what it is then: all in one frame.
-    pub fn redraw(&mut self, session: &mut Session, proxy: &EventLoopProxy<UserEvent>) -> Repaint {
+    pub fn redraw(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        session: &mut Session,
+        proxy: &EventLoopProxy<UserEvent>,
+    ) -> Repaint {
+        if let Some(later) = self.restore(event_loop, session, proxy) {
+            return later;
+        }
         let started = Instant::now();
-        let size = self.window.inner_size();
         let input = self.egui.take_egui_input(&self.window);
         style::apply(self.egui.egui_ctx(), session.preferences().theme);
         let (mut output, viewport, effects) = self.run(input, session);
         self.viewport = viewport;
         if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
+            output.textures_delta.clear();
             return Repaint::Quit;
         }
         self.entitle(session);
         let platform = std::mem::take(&mut output.platform_output);
         self.egui.handle_platform_output(&self.window, platform);
-        self.update_textures(&mut output);
-        let freed = std::mem::take(&mut output.textures_delta.free);
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
-        if size.width > 0 && size.height > 0 {
-            self.draw_scene(session, viewport, output.pixels_per_point);
-            self.present(output, started);
-        }
-        self.free_textures(freed);
+        let delay = match self.draw(session, output) {
+            Ok(Presented::Shown) => {
+                self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
+                self.frames += 1;
+                self.failures.forget();
+                delay
+            }
+            // What moves would go on as fast as it can, were it not seen.
+            Ok(Presented::Later(again)) => {
+                let delay = delay.map(|delay| delay.max(Graphics::PAUSE));
+                delay.into_iter().chain(again).min()
+            }
+            Err(error) => return self.lose(error),
+        };
         delay.and_then(|delay| started.checked_add(delay)).map_or(Repaint::OnInput, Repaint::At)
+    }
+
+    /// Makes graphics anew that were lost. What to do instead of a frame, if there are none.
+    fn restore(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        session: &mut Session,
+        proxy: &EventLoopProxy<UserEvent>,
+    ) -> Option<Repaint> {
+        if let Some(graphics) = &self.graphics {
+            return graphics.check().err().map(|error| self.lose(error));
+        }
+        if Instant::now() < self.dark_until {
+            return Some(Repaint::At(self.dark_until));
+        }
+        let display = event_loop.owned_display_handle();
+        let made = guarded(|| match self.debug.fails_device() {
+            true => Err(GraphicsError::Asked),
+            false => Graphics::new(display, &self.window, self.egui.egui_ctx(), proxy.clone()),
+        });
+        let graphics = match made {
+            Ok(graphics) => self.graphics.insert(graphics),
+            Err(error) => return Some(self.lose(error)),
+        };
+        self.machine.adapter = graphics.gpu.name();
+        self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
+        session.apply(Action::Report(
+            "The graphics device was lost and has been made anew; nothing is lost.".to_owned(),
+        ));
+        None
+    }
+
+    /// Lets go of graphics that have failed, to make them anew.
+    fn lose(&mut self, error: GraphicsError) -> Repaint {
+        log::error!("{error}");
+        let lost = self.graphics.take();
+        // Not even to be dropped is safe for what was in use when the device was lost.
+        if let Err(error) = guarded(|| {
+            drop(lost);
+            Ok(())
+        }) {
+            log::warn!("{error}");
+        }
+        let Some(pause) = self.failures.pause() else {
+            return Repaint::Failed(error);
+        };
+        self.dark_until = Instant::now() + pause;
+        Repaint::At(self.dark_until)
     }
 
     /// Runs the panels, applies what they ask for, and if that was anything, runs them once more,
     /// so that none shows the state before.
     fn run(&mut self, input: RawInput, session: &mut Session) -> (FullOutput, Rect, Vec<Effect>) {
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
-        let picture = Some(self.picture.texture);
+        let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
         let mut viewport = Rect::ZERO;
         let mut actions = Vec::new();
@@ -222,19 +266,36 @@ impl AppWindow {
         }
     }
 
-    /// Draws the scene for the panels to show, if it is not what they show already.
-    fn draw_scene(&mut self, session: &Session, viewport: Rect, scale: f32) {
-        let (width, height) = pixels(viewport, scale);
+    /// Draws the scene, and the panels around it.
+    fn draw(&mut self, session: &Session, output: FullOutput) -> Result<Presented, GraphicsError> {
+        let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
+            output;
+        // Taken out first: egui panics where they are dropped unheeded.
+        let changed = std::mem::take(&mut textures.set);
+        let freed = std::mem::take(&mut textures.free);
+        let Some(graphics) = &mut self.graphics else {
+            return Ok(Presented::Later(None));
+        };
+        let size = self.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return guarded(|| {
+                graphics.update_textures(changed);
+                graphics.free_textures(freed);
+                Ok(Presented::Later(None))
+            });
+        }
         let scene = Scene::new(session.shown(), &session.staging(), session.preferences().theme);
-        if self.picture.canvas.size() != (width, height) {
-            self.picture.canvas = Canvas::new(&self.gpu, width, height);
-            self.picture.scene = None;
-            self.show_canvas();
-        }
-        if self.picture.scene.as_ref() != Some(&scene) {
-            self.renderer.draw(&self.gpu, &scene, &self.picture.canvas, scale);
-            self.picture.scene = Some(scene);
-        }
+        let panels = self.egui.egui_ctx().tessellate(shapes, scale);
+        guarded(|| {
+            graphics.update_textures(changed);
+            graphics.draw_scene(scene, pixels(self.viewport, scale), scale);
+            let presented = graphics.present(&panels, scale, &self.window)?;
+            graphics.free_textures(freed);
+            if self.failures.is_trying() && matches!(presented, Presented::Shown) {
+                graphics.finish()?;
+            }
+            Ok(presented)
+        })
     }
 }
 
@@ -283,27 +344,6 @@ fn icon() -> Option<Icon> {
     let image = image::load_from_memory(ICON).ok()?.into_rgba8();
     let (width, height) = image.dimensions();
     Icon::from_rgba(image.into_raw(), width, height).ok()
-}
-
-/// egui blends in what is stored, so the format does not convert.
-fn configuration(
-    gpu: &Gpu,
-    surface: &wgpu::Surface<'_>,
-    window: &Window,
-) -> Result<wgpu::SurfaceConfiguration, AppError> {
-    let size = window.inner_size();
-    let longest = gpu.longest_side();
-    let side = |length: u32| length.clamp(1, longest);
-    let unsupported = || AppError::Unsupported(gpu.name());
-    let mut config = surface
-        .get_default_config(&gpu.adapter, side(size.width), side(size.height))
-        .ok_or_else(unsupported)?;
-    let formats = surface.get_capabilities(&gpu.adapter).formats;
-    config.format = egui_wgpu::preferred_framebuffer_format(&formats).map_err(|_| unsupported())?;
-    config.present_mode = wgpu::PresentMode::AutoVsync;
-    config.desired_maximum_frame_latency = 1;
-    surface.configure(&gpu.device, &config);
-    Ok(config)
 }
 
 pub(super) fn pixels(viewport: Rect, scale: f32) -> (u32, u32) {

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use thiserror::Error;
 
 /// A graphics device and the way to it.
@@ -61,11 +63,26 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|source| GpuError::NoDevice { adapter: adapter.get_info().name, source })?;
-        device.on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
-        device.set_device_lost_callback(|reason, message| {
-            log::error!("the graphics device was lost ({reason:?}): {message}");
+        let gpu = Self { instance, adapter, device, queue };
+        gpu.on_fault(|why| log::error!("the graphics device failed: {why}"));
+        Ok(gpu)
+    }
+
+    /// Has it told, from whatever thread notices it, why the device is good for nothing more: it is
+    /// lost, or has no memory left. Where it only finds fault with what it is told, that is logged.
+    /// Takes the place of what was to be told before.
+    pub fn on_fault(&self, tell: impl Fn(String) + Send + Sync + 'static) {
+        let tell = Arc::new(tell);
+        let lost = Arc::clone(&tell);
+        self.device.set_device_lost_callback(move |reason, message| {
+            lost(format!("it was lost ({reason:?}) {message}").trim_end().to_owned());
         });
-        Ok(Self { instance, adapter, device, queue })
+        self.device.on_uncaptured_error(Arc::new(move |error| match error {
+            wgpu::Error::Validation { .. } => log::error!("graphics: {error}"),
+            wgpu::Error::OutOfMemory { .. } | wgpu::Error::Internal { .. } => {
+                tell(error.to_string());
+            }
+        }));
     }
 
     /// The adapter's name and the interface it is reached by: "llvmpipe (Vulkan)".

@@ -230,6 +230,8 @@ pub enum Action {
     OpenExample(Example),
     /// A root to hang joints from.
     NewSkeleton,
+    /// Takes the graphics device away, as a driver's reset does; for tests of what then happens.
+    LoseDevice,
     Quit,
 }
 
@@ -265,5 +267,6 @@ pub enum Effect {
     ChoosePath(Dialog),
     Open { path: PathBuf, skeleton: Option<String> },
     Save(PathBuf),
+    LoseDevice,
     Quit,
 }

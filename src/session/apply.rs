@@ -238,6 +238,7 @@ impl Session {
             }
             Action::OpenExample(example) => self.open_example(example),
             Action::NewSkeleton => self.new_skeleton(),
+            Action::LoseDevice => return Some(Effect::LoseDevice),
             Action::Quit => return Some(Effect::Quit),
         }
         None

@@ -2,18 +2,18 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use super::{status, timeline};
+use super::{Machine, status, timeline};
 use crate::document::{AxisView, Camera, Channel, Layer, RigKind, Theme};
 use crate::io::{Example, Group};
 use crate::session::{Action, Dialog, Navigation, Session};
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, session, actions));
         ui.menu_button("Edit", |ui| edit(ui, session, actions));
         ui.menu_button("View", |ui| view(ui, session, actions));
         ui.menu_button("Examples", |ui| examples(ui, actions));
-        ui.menu_button("Help", |ui| help(ui, actions));
+        ui.menu_button("Help", |ui| help(ui, machine, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rig = match session.rig() {
                 RigKind::Arm => match session.arm().weight {
@@ -247,11 +247,17 @@ fn examples_of(group: Group, ui: &mut Ui, actions: &mut Vec<Action>) {
     }
 }
 
-fn help(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn help(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
     if item(ui, "Shortcuts", "F1") {
         actions.push(Action::OpenDialog(Dialog::Shortcuts));
     }
     if item(ui, "About", "") {
         actions.push(Action::OpenDialog(Dialog::About));
+    }
+    if machine.shows_debug_actions {
+        ui.separator();
+        if item(ui, "Lose the graphics device", "") {
+            actions.push(Action::LoseDevice);
+        }
     }
 }

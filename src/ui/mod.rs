@@ -52,6 +52,8 @@ pub struct Machine {
     pub adapter: String,
     /// How long the last drawn frame took, in milliseconds.
     pub frame_ms: Option<f32>,
+    /// Whether the menu Help has what is for tests of the program.
+    pub shows_debug_actions: bool,
 }
 
 /// Shows everything. Returns where the scene is to be drawn, in points; `picture` is the scene as
@@ -64,7 +66,7 @@ pub fn show(
     actions: &mut Vec<Action>,
 ) -> Rect {
     keyboard::global(ui, session, actions);
-    Panel::top("menu").show(ui, |ui| menu::ui(ui, session, actions));
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, session, machine, actions));
     Panel::bottom("status").show(ui, |ui| status::ui(ui, session, machine, actions));
     if session.preferences().timeline {
         Panel::bottom("timeline")

@@ -48,7 +48,11 @@ impl Bench {
     pub fn liking(size: Vec2, preferences: Preferences) -> Self {
         let app = App {
             session: Session::new(preferences),
-            machine: Machine { adapter: "Test adapter".to_owned(), frame_ms: Some(12.0) },
+            machine: Machine {
+                adapter: "Test adapter".to_owned(),
+                frame_ms: Some(12.0),
+                ..Machine::default()
+            },
             viewport: Rect::ZERO,
             actions: Vec::new(),
             effects: Vec::new(),

@@ -1,0 +1,180 @@
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Arc, OnceLock};
+
+use egui::epaint::{ImageDelta, TextureAtlas};
+use egui::{Context, TextureId};
+use thiserror::Error;
+use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
+use winit::window::Window;
+
+use super::UserEvent;
+use crate::render::{Canvas, Gpu, GpuError, Renderer};
+use crate::scene::Scene;
+
+/// Why nothing can be drawn in the window.
+#[derive(Debug, Error)]
+pub enum GraphicsError {
+    #[error("the window cannot be drawn in: {0}")]
+    Surface(#[from] wgpu::CreateSurfaceError),
+    #[error("the graphics adapter {0} cannot draw in this window")]
+    Unsupported(String),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error("the window's surface was lost, and so was the one after it")]
+    SurfaceLost,
+    #[error("the window's surface gives no frame")]
+    NoFrame,
+    #[error("the graphics device failed: {0}")]
+    Device(String),
+    #[error("the graphics failed by a fault: {0}")]
+    Fault(String),
+    #[error("the graphics device failed, as IK_ARM_DEBUG asks for")]
+    Asked,
+}
+
+/// All that lives on the graphics device: lost with it, and made anew.
+pub(super) struct Graphics {
+    pub(super) egui_renderer: egui_wgpu::Renderer,
+    renderer: Renderer,
+    picture: Shown,
+    pub(super) surface: wgpu::Surface<'static>,
+    pub(super) config: wgpu::SurfaceConfiguration,
+    /// Whether the surface still works but should be configured anew.
+    pub(super) stale: bool,
+    pub(super) gpu: Gpu,
+    /// Why the device is good for nothing more, from when it is.
+    fault: Arc<OnceLock<String>>,
+}
+
+/// The scene as it was last drawn, for the panels to show.
+struct Shown {
+    canvas: Canvas,
+    texture: TextureId,
+    scene: Option<Scene>,
+}
+
+impl Graphics {
+    /// The window must have no other: it has one surface at a time. The panels find their letters
+    /// there, whatever they have drawn before.
+    pub fn new(
+        display: OwnedDisplayHandle,
+        window: &Arc<Window>,
+        panels: &Context,
+        proxy: EventLoopProxy<UserEvent>,
+    ) -> Result<Self, GraphicsError> {
+        let descriptor =
+            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
+        let instance = wgpu::Instance::new(descriptor);
+        let surface = instance.create_surface(Arc::clone(window))?;
+        let gpu = Gpu::new(instance, Some(&surface))?;
+        let fault = Arc::new(OnceLock::new());
+        let found = Arc::clone(&fault);
+        gpu.on_fault(move |why| {
+            if found.set(why).is_ok() {
+                // Nobody hears it once the window is closed.
+                let _ = proxy.send_event(UserEvent::GraphicsFailed);
+            }
+        });
+        let config = configuration(&gpu, &surface, window)?;
+        let mut egui_renderer =
+            egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
+        upload_letters(&mut egui_renderer, &gpu, panels);
+        let canvas = Canvas::new(&gpu, 1, 1);
+        let texture = egui_renderer.register_native_texture(
+            &gpu.device,
+            canvas.view(),
+            wgpu::FilterMode::Nearest,
+        );
+        let graphics = Self {
+            egui_renderer,
+            renderer: Renderer::new(&gpu),
+            picture: Shown { canvas, texture, scene: None },
+            surface,
+            config,
+            stale: false,
+            gpu,
+            fault,
+        };
+        graphics.check()?;
+        Ok(graphics)
+    }
+
+    /// # Errors
+    ///
+    /// If the device is good for nothing more, as far as it has said so.
+    pub fn check(&self) -> Result<(), GraphicsError> {
+        self.fault.get().map_or(Ok(()), |why| Err(GraphicsError::Device(why.clone())))
+    }
+
+    /// The picture of the scene, among egui's.
+    pub fn picture(&self) -> TextureId {
+        self.picture.texture
+    }
+
+    /// Draws the scene for the panels to show, if it is not what they show already.
+    pub fn draw_scene(&mut self, scene: Scene, (width, height): (u32, u32), scale: f32) {
+        if self.picture.canvas.size() != (width, height) {
+            self.picture.canvas = Canvas::new(&self.gpu, width, height);
+            self.picture.scene = None;
+            self.show_canvas();
+        }
+        if self.picture.scene.as_ref() != Some(&scene) {
+            self.renderer.draw(&self.gpu, &scene, &self.picture.canvas, scale);
+            self.picture.scene = Some(scene);
+        }
+    }
+
+    /// Lets the panels show a new canvas under the same name.
+    fn show_canvas(&mut self) {
+        self.egui_renderer.update_egui_texture_from_wgpu_texture(
+            &self.gpu.device,
+            self.picture.canvas.view(),
+            wgpu::FilterMode::Nearest,
+            self.picture.texture,
+        );
+    }
+}
+
+/// Draws, or makes what draws. A device that dies meanwhile lets `wgpu` and `egui_wgpu` panic here
+/// and there, where they get no memory or no answer from it: one more way to fail.
+pub(super) fn guarded<T>(
+    draw: impl FnOnce() -> Result<T, GraphicsError>,
+) -> Result<T, GraphicsError> {
+    panic::catch_unwind(AssertUnwindSafe(draw)).unwrap_or_else(|fault| {
+        let said = fault.downcast_ref::<String>().map(String::as_str);
+        let said = said.or_else(|| fault.downcast_ref().copied());
+        Err(GraphicsError::Fault(said.unwrap_or("it says nothing").to_owned()))
+    })
+}
+
+/// egui tells what changes in its letters, and a new renderer has none to change.
+fn upload_letters(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Context) {
+    // egui has fonts from its first frame on.
+    if panels.cumulative_pass_nr() == 0 {
+        return;
+    }
+    let letters = panels.fonts(|fonts| fonts.image());
+    let all = ImageDelta::full(letters, TextureAtlas::texture_options());
+    renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
+}
+
+/// egui blends in what is stored, so the format does not convert.
+fn configuration(
+    gpu: &Gpu,
+    surface: &wgpu::Surface<'_>,
+    window: &Window,
+) -> Result<wgpu::SurfaceConfiguration, GraphicsError> {
+    let size = window.inner_size();
+    let longest = gpu.longest_side();
+    let side = |length: u32| length.clamp(1, longest);
+    let unsupported = || GraphicsError::Unsupported(gpu.name());
+    let mut config = surface
+        .get_default_config(&gpu.adapter, side(size.width), side(size.height))
+        .ok_or_else(unsupported)?;
+    let formats = surface.get_capabilities(&gpu.adapter).formats;
+    config.format = egui_wgpu::preferred_framebuffer_format(&formats).map_err(|_| unsupported())?;
+    config.present_mode = wgpu::PresentMode::AutoVsync;
+    config.desired_maximum_frame_latency = 1;
+    surface.configure(&gpu.device, &config);
+    Ok(config)
+}
