@@ -5,8 +5,9 @@
 //! `cargo test --test window -- --ignored`.
 #![cfg(all(feature = "app", target_os = "linux"))]
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -28,16 +29,20 @@ struct Places {
     rail_end: egui::Pos2,
     hand: egui::Pos2,
     elbow: egui::Pos2,
+    help: egui::Pos2,
+    /// In the menu Help, while that is open.
+    lose_device: egui::Pos2,
 }
 
 impl Places {
     fn new() -> Self {
         let session = Session::default();
-        let harness = Harness::builder()
+        let machine = Machine { shows_debug_actions: true, ..Machine::default() };
+        let mut harness = Harness::builder()
             .with_size(egui::vec2(SIZE.0, SIZE.1) + 2.0 * HARNESS_MARGIN)
             .with_context_setup(ui::style::install)
             .build_ui(|ui| {
-                ui::show(ui, &Session::default(), &Machine::default(), None, &mut Vec::new());
+                ui::show(ui, &Session::default(), &machine, None, &mut Vec::new());
             });
         let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
         let rail = rail.translate(-HARNESS_MARGIN);
@@ -48,6 +53,11 @@ impl Places {
             })
             .rect()
             .translate(-HARNESS_MARGIN);
+        let help = harness.get_by_label("Help");
+        let help_place = help.rect().center() - HARNESS_MARGIN;
+        help.click();
+        harness.run();
+        let lose_device = harness.get_by_label("Lose the graphics device").rect().center();
         let projection = session.camera().projection(viewport.aspect_ratio());
         let place = |point| {
             let at = projection.project(point).expect("in the picture");
@@ -60,6 +70,8 @@ impl Places {
             rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
             hand: place(session.arm().root + session.pose().hand),
             elbow: place(session.arm().root + session.pose().elbow),
+            help: help_place,
+            lose_device: lose_device - HARNESS_MARGIN,
         }
     }
 }
@@ -69,13 +81,32 @@ struct Program(Child);
 
 impl Program {
     fn start(settings: &Path) -> Self {
-        let child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+        Self(Self::command(settings).spawn().expect("started"))
+    }
+
+    /// With what `IK_ARM_DEBUG` asks for, and its errors kept.
+    fn start_to_debug(settings: &Path, asked: &str) -> Self {
+        let mut command = Self::command(settings);
+        let command = command.env("IK_ARM_DEBUG", asked).stderr(Stdio::piped());
+        Self(command.spawn().expect("started"))
+    }
+
+    fn command(settings: &Path) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+        command
             .env("XDG_CONFIG_HOME", settings)
             .env("XDG_DATA_HOME", settings)
-            .env_remove("WAYLAND_DISPLAY")
-            .spawn()
-            .expect("started");
-        Self(child)
+            .env_remove("IK_ARM_DEBUG")
+            .env_remove("WAYLAND_DISPLAY");
+        command
+    }
+
+    /// What it has said on stderr until its end.
+    fn errors(&mut self) -> String {
+        let mut said = String::new();
+        let mut stderr = self.0.stderr.take().expect("kept");
+        stderr.read_to_string(&mut said).expect("text");
+        said
     }
 
     fn end(&mut self) -> Option<i32> {
@@ -152,6 +183,13 @@ fn changed(a: &RgbImage, b: &RgbImage, at: egui::Pos2, radius: f32) -> usize {
     pixels.filter(|((x, y, a), b)| near(*x, *y) && differs(a, b)).count()
 }
 
+/// Puts the window where the screen begins, and gives it the keyboard.
+fn place_window() {
+    let window = await_window();
+    xdotool(&["windowmove", &window, "0", "0"]);
+    xdotool(&["windowfocus", &window]);
+}
+
 fn await_window() -> String {
     let given_up = Instant::now() + PATIENCE;
     while Instant::now() < given_up {
@@ -170,9 +208,7 @@ fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
     let mut program = Program::start(folder.path());
-    let window = await_window();
-    xdotool(&["windowmove", &window, "0", "0"]);
-    xdotool(&["windowfocus", &window]);
+    place_window();
     let first = settled(folder.path());
 
     drag(places.thumb, places.rail_end);
@@ -218,9 +254,8 @@ fn document_of(kept: &Path) -> Document {
 }
 
 /// The hand, dragged to the left end of its slider.
-fn change(window: &str, places: &Places, folder: &Path) {
-    xdotool(&["windowmove", window, "0", "0"]);
-    xdotool(&["windowfocus", window]);
+fn change(places: &Places, folder: &Path) {
+    place_window();
     settled(folder);
     drag(places.thumb, places.rail_end);
     settled(folder);
@@ -232,7 +267,7 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
     let mut program = Program::start(folder.path());
-    change(&await_window(), &places, folder.path());
+    change(&places, folder.path());
     assert!(kept(folder.path()).is_empty(), "half a minute is not over");
     let ended = Command::new("kill").arg(program.0.id().to_string()).status().expect("kill runs");
     assert!(ended.success());
@@ -242,9 +277,7 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
     let mut program = Program::start(folder.path());
-    let window = await_window();
-    xdotool(&["windowmove", &window, "0", "0"]);
-    xdotool(&["windowfocus", &window]);
+    place_window();
     let offered = settled(folder.path());
     // Opened by the keyboard: the dialog has it.
     xdotool(&["key", "Return"]);
@@ -262,4 +295,112 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
     program.0.kill().expect("killed");
     program.end();
     assert_eq!(document_of(&second).arm.cursor(), hand);
+}
+
+/// Through the menu Help, until that is seen no more; the pointer stays where it was.
+fn lose_device(places: &Places, folder: &Path) {
+    mouse_to(places.help);
+    xdotool(&["click", "1"]);
+    sleep(Duration::from_millis(700));
+    mouse_to(places.lose_device);
+    let open = settled(folder);
+    xdotool(&["click", "1"]);
+    let given_up = Instant::now() + PATIENCE;
+    let in_menu = places.help + (places.lose_device - places.help) / 2.0;
+    while changed(&open, &screenshot(folder), in_menu, 30.0) == 0 {
+        assert!(Instant::now() < given_up, "nothing is drawn any more");
+    }
+}
+
+/// How many pixels differ above the line at the bottom, which says what has happened.
+fn changed_above_the_status(a: &RgbImage, b: &RgbImage) -> usize {
+    const STATUS: u32 = 30;
+    let pixels = a.enumerate_pixels().zip(b.pixels());
+    pixels.filter(|((_, y, a), b)| *y + STATUS < SIZE.1 as u32 && a != b).count()
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_intact() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let places = Places::new();
+    let mut program = Program::start_to_debug(folder.path(), "1");
+    place_window();
+    let first = settled(folder.path());
+    drag(places.thumb, places.rail_end);
+    // Pressed twice, the menu is closed again; then all is as after the device is lost.
+    mouse_to(places.help);
+    xdotool(&["click", "1", "sleep", "1", "click", "1"]);
+    mouse_to(places.lose_device);
+    let before = settled(folder.path());
+    assert!(changed(&first, &before, places.elbow, 40.0) > 300, "the elbow has not followed");
+
+    for time in 1..=4 {
+        lose_device(&places, folder.path());
+        let after = settled(folder.path());
+        let differing = changed_above_the_status(&before, &after);
+        assert_eq!(differing, 0, "pixels are others after the device was lost {time} times");
+    }
+    drag(places.rail_end, places.thumb);
+    let dragged = settled(folder.path());
+    assert!(changed(&before, &dragged, places.elbow, 40.0) > 300, "nothing moves any more");
+    for _ in 0..2 {
+        xdotool(&["key", "ctrl+z"]);
+        settled(folder.path());
+    }
+    let undone = settled(folder.path());
+    assert!(
+        changed(&first, &undone, places.elbow, 40.0) < 40,
+        "what was done before the loss is not undone"
+    );
+    xdotool(&["key", "ctrl+q"]);
+    assert_eq!(program.end(), Some(0), "the program ends cleanly");
+    let errors = program.errors();
+    assert_eq!(errors.matches("ERROR").count(), 4, "{errors}");
+    assert!(!errors.contains("panicked"), "{errors}");
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let places = Places::new();
+    let mut program = Program::start_to_debug(folder.path(), "fail-devices:2");
+    place_window();
+    settled(folder.path());
+    mouse_to(places.help);
+    xdotool(&["click", "1", "sleep", "1", "click", "1"]);
+    mouse_to(places.lose_device);
+    let before = settled(folder.path());
+    lose_device(&places, folder.path());
+    let after = settled(folder.path());
+    assert_eq!(changed_above_the_status(&before, &after), 0);
+    xdotool(&["key", "ctrl+q"]);
+    assert_eq!(program.end(), Some(0), "the program ends cleanly");
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_all_kept() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let places = Places::new();
+    let mut program = Program::start_to_debug(folder.path(), "fail-devices:3");
+    change(&places, folder.path());
+    lose_device(&places, folder.path());
+    assert_eq!(program.end(), Some(1));
+    let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
+    let errors = program.errors();
+    assert!(errors.contains("three tries to make it anew failed"), "{errors}");
+    assert!(errors.contains(&first.display().to_string()), "{errors}");
+    let hand = document_of(first).arm.cursor();
+    assert!(hand.x < 0.0, "{hand} is not where it was dragged");
+
+    let mut program = Program::start(folder.path());
+    place_window();
+    let offered = settled(folder.path());
+    xdotool(&["key", "Return"]);
+    let opened = settled(folder.path());
+    assert!(changed(&offered, &opened, places.thumb, 6.0) > 40, "the document is not opened");
+    program.0.kill().expect("killed");
+    program.end();
 }
