@@ -58,6 +58,8 @@ impl Gpu {
         ))?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ik-arm"),
+            // To time frames, where the adapter has a clock.
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
             ..Default::default()
         };

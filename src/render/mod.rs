@@ -19,6 +19,7 @@ mod quads;
 mod renderer;
 mod shadow;
 mod solid;
+mod stopwatch;
 mod uniforms;
 mod view;
 
@@ -26,6 +27,7 @@ pub use canvas::{Canvas, ReadError};
 pub use gpu::{DeviceError, Gpu, GpuError};
 pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::{Counts, Renderer};
+pub use stopwatch::{Lap, Stopwatch};
 
 /// Every shader with the name of its file, whole as it is compiled.
 pub fn shaders() -> [(&'static str, &'static str); 6] {

@@ -1,0 +1,72 @@
+//! How long the device works on a frame, by its own clock.
+#![cfg(feature = "render")]
+
+use std::time::{Duration, Instant};
+
+use ik_arm::document::{Document, Theme};
+use ik_arm::render::{Canvas, Gpu, Lap, Renderer, Stopwatch};
+use ik_arm::scene::Scene;
+use ik_arm::session::Staging;
+
+const SIZE: (u32, u32) = (640, 400);
+
+/// Draws a picture and waits for it: how long that took, and the frame with what the stopwatch says.
+fn timed(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    stopwatch: &mut Stopwatch,
+    frame: u64,
+) -> (Duration, Option<(u64, Duration)>) {
+    let scene = Scene::new(&Document::default(), &Staging::default(), Theme::Dark);
+    let canvas = Canvas::new(gpu, SIZE.0, SIZE.1);
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("idle");
+    let started = Instant::now();
+    renderer.upload(gpu, &scene, SIZE, 1.0);
+    stopwatch.start();
+    let drawn = renderer.encode(gpu, &canvas, Some(stopwatch.lap(Lap::Scene)));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    stopwatch.stop(&mut encoder, frame);
+    gpu.queue.submit([drawn, encoder.finish()]);
+    stopwatch.fetch();
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("drawn");
+    let took = started.elapsed();
+    (took, stopwatch.read(gpu))
+}
+
+#[test]
+fn a_frame_is_timed_within_the_time_that_it_took() {
+    let gpu = Gpu::headless().expect("a graphics adapter");
+    let has_clock = gpu.adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+    let Some(mut stopwatch) = Stopwatch::new(&gpu) else {
+        assert!(!has_clock, "an adapter with a clock has a stopwatch");
+        return;
+    };
+    let mut renderer = Renderer::new(&gpu);
+    for frame in 0..12 {
+        let (took, read) = timed(&gpu, &mut renderer, &mut stopwatch, frame);
+        let (of, time) = read.expect("it is there once all is done");
+        assert_eq!(of, frame);
+        assert!(time > Duration::ZERO && time < took, "{time:?} of {took:?}");
+        assert_eq!(stopwatch.read(&gpu), None, "it is told once");
+    }
+}
+
+#[test]
+fn frames_that_nobody_reads_are_left_out_and_nothing_waits() {
+    let gpu = Gpu::headless().expect("a graphics adapter");
+    let Some(mut stopwatch) = Stopwatch::new(&gpu) else { return };
+    let mut read = 0;
+    for frame in 0..20 {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        stopwatch.start();
+        stopwatch.stop(&mut encoder, frame);
+        gpu.queue.submit([encoder.finish()]);
+        stopwatch.fetch();
+    }
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("done");
+    while let Some((frame, time)) = stopwatch.read(&gpu) {
+        assert!(frame < 20 && time == Duration::ZERO, "no lap was run");
+        read += 1;
+    }
+    assert!(read > 0);
+}
