@@ -9,6 +9,7 @@ use winit::window::Window;
 
 use super::UserEvent;
 use crate::render::{Canvas, Gpu, GpuError, Renderer};
+use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
 /// Why nothing can be drawn in the window.
@@ -104,6 +105,11 @@ impl Graphics {
     /// If the device is good for nothing more, as far as it has said so.
     pub fn check(&self) -> Result<(), GraphicsError> {
         self.fault.get().map_or(Ok(()), |why| Err(GraphicsError::Device(why.clone())))
+    }
+
+    /// How long the crowd took that is shown, if there is one.
+    pub fn crowd_times(&self) -> Option<CrowdTimes> {
+        self.renderer.crowd_times()
     }
 
     /// The picture of the scene, among egui's.

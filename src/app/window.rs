@@ -83,6 +83,7 @@ impl AppWindow {
         let machine = Machine {
             adapter: graphics.gpu.name(),
             frame_ms: None,
+            crowd: None,
             shows_debug_actions: debug.shows_actions,
         };
         Ok(Self {
@@ -166,6 +167,7 @@ impl AppWindow {
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
         let delay = match self.draw(session, output) {
             Ok(Presented::Shown) => {
+                self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
                 self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
                 self.frames += 1;
                 self.failures.forget();

@@ -108,14 +108,7 @@ impl Canvas {
         );
         gpu.queue.submit([encoder.finish()]);
 
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody waits any more only if the wait itself failed.
-            let _ = sender.send(result);
-        });
-        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
-        receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
-        let mapped = buffer.get_mapped_range(..)?;
+        let mapped = fetch(gpu, &buffer)?;
         let pixels = mapped
             .chunks_exact(padded_row as usize)
             .flat_map(|padded| &padded[..row as usize])
@@ -123,4 +116,16 @@ impl Canvas {
             .collect();
         RgbaImage::from_raw(self.width, self.height, pixels).ok_or(ReadError::Size)
     }
+}
+
+/// Waits for the device to have done what it was told, and shows what is in a buffer then.
+pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        // Nobody waits any more only if the wait itself failed.
+        let _ = sender.send(result);
+    });
+    gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+    receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
+    Ok(buffer.get_mapped_range(..)?)
 }

@@ -6,6 +6,8 @@
 
 mod backdrop;
 mod canvas;
+mod compute;
+mod crowd;
 mod font;
 mod globe;
 mod gpu;
@@ -19,6 +21,7 @@ mod quads;
 mod renderer;
 mod shadow;
 mod solid;
+mod solve;
 mod stopwatch;
 mod uniforms;
 mod view;
@@ -27,16 +30,20 @@ pub use canvas::{Canvas, ReadError};
 pub use gpu::{DeviceError, Gpu, GpuError};
 pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::{Counts, Renderer};
+pub use solve::Solver;
 pub use stopwatch::{Lap, Stopwatch};
 
 /// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 6] {
+pub fn shaders() -> [(&'static str, &'static str); 9] {
     [
+        ("arms", crowd::ARMS),
         ("backdrop", backdrop::SHADER),
+        ("cull", crowd::CULL),
         ("globe", globe::SHADER),
         ("line", line::SHADER),
         ("label", label::SHADER),
         ("shadow", shadow::SHADER),
         ("solid", solid::SHADER),
+        ("solve", solve::SHADER),
     ]
 }

@@ -28,6 +28,8 @@ pub struct Timings {
     pub cpu: Duration,
     /// Until it had carried them out.
     pub frame: Duration,
+    /// What of it was the solving of a crowd, where there was one.
+    pub solve: Option<Duration>,
 }
 
 /// Why there is no picture.
@@ -84,7 +86,8 @@ impl<'a> Picture<'a> {
         Ok(image?)
     }
 
-    /// Draws the scene that `scene` makes anew `frames` times, waiting for the device each time.
+    /// Draws the scenes that `scene` makes, the first, second and so on of `frames`, waiting for the
+    /// device each time.
     ///
     /// # Errors
     ///
@@ -92,17 +95,19 @@ impl<'a> Picture<'a> {
     pub fn time(
         &mut self,
         frames: u32,
-        mut scene: impl FnMut() -> Scene,
+        mut scene: impl FnMut(u32) -> Scene,
     ) -> Result<Timings, ReadError> {
-        let (mut cpu, mut frame) = (Vec::new(), Vec::new());
-        for _ in 0..frames {
+        let (mut cpu, mut frame, mut solve) = (Vec::new(), Vec::new(), Vec::new());
+        for number in 0..frames {
             let start = Instant::now();
-            self.renderer.draw(self.gpu, &scene(), &self.canvas, self.scale);
+            self.renderer.draw(self.gpu, &scene(number), &self.canvas, self.scale);
             cpu.push(start.elapsed());
             self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
             frame.push(start.elapsed());
+            solve.extend(self.renderer.crowd_times().map(|times| times.solve));
         }
-        Ok(Timings { frames, cpu: median(cpu), frame: median(frame) })
+        let solve = (!solve.is_empty()).then(|| median(solve));
+        Ok(Timings { frames, cpu: median(cpu), frame: median(frame), solve })
     }
 }
 

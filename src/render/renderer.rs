@@ -1,4 +1,5 @@
 use super::backdrop::Backdrop;
+use super::crowd::Crowds;
 use super::globe::Globes;
 use super::label::Labels;
 use super::line::Lines;
@@ -6,6 +7,7 @@ use super::shadow::Shadows;
 use super::solid::Solids;
 use super::view::View;
 use super::{Canvas, Gpu};
+use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
 /// Draws scenes. Made once for a device; its pipelines never change.
@@ -18,6 +20,7 @@ pub struct Renderer {
     globes: Globes,
     lines: Lines,
     labels: Labels,
+    crowds: Crowds,
     counts: Counts,
 }
 
@@ -46,6 +49,7 @@ impl Renderer {
             globes: Globes::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
             labels: Labels::new(gpu, view.layout()),
+            crowds: Crowds::default(),
             view,
             counts: Counts::default(),
         }
@@ -54,6 +58,11 @@ impl Renderer {
     /// What was drawn last.
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// How long the crowd took that was drawn last, if there was one.
+    pub fn crowd_times(&self) -> Option<CrowdTimes> {
+        self.crowds.times()
     }
 
     /// Draws a scene and hands it to the device. `scale` is how many pixels a point has: lines and
@@ -73,7 +82,8 @@ impl Renderer {
             + self.shadows.upload(gpu, scene)
             + self.globes.upload(gpu, scene)
             + self.lines.upload(gpu, scene)
-            + self.labels.upload(gpu, scene, size, scale);
+            + self.labels.upload(gpu, scene, size, scale)
+            + self.crowds.upload(gpu, self.view.layout(), scene, size);
         let count = |lengths: &[usize]| lengths.iter().sum::<usize>() as u32;
         let guides = [scene.guide_solids.len(), scene.guide_balls.len()];
         self.counts = Counts {
@@ -105,6 +115,7 @@ impl Renderer {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("scene") });
+        self.crowds.cull(&mut encoder);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -129,6 +140,7 @@ impl Renderer {
         });
         pass.set_bind_group(0, self.view.group(), &[]);
         self.backdrop.draw(&mut pass);
+        self.crowds.draw(&mut pass);
         self.solids.draw(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);

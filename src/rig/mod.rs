@@ -2,6 +2,8 @@
 
 mod arm;
 mod cone;
+mod crowd;
 
 pub use arm::{ArmRig, Part};
 pub use cone::Cone;
+pub use crowd::{Crowd, CrowdTimes, Ranks, SolvedBy};

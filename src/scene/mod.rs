@@ -21,7 +21,7 @@ pub use palette::{Colour, Palette};
 use scratch::Scratch;
 
 use crate::document::{Camera, Display, Document, Layer, RigKind, Theme};
-use crate::rig::Cone;
+use crate::rig::{Cone, Crowd};
 use crate::session::Staging;
 
 /// A picture to be drawn.
@@ -42,6 +42,8 @@ pub struct Scene {
     pub shells: Vec<Shell>,
     /// Drawn over everything solid.
     pub globe: Option<Globe>,
+    /// Many arms in the rig's place, solved where they are drawn.
+    pub crowd: Option<Crowd>,
     pub lines: Vec<Line>,
     pub labels: Vec<Label>,
     /// What all labels say, one after the other.
@@ -127,6 +129,11 @@ impl Scene {
         };
         self.camera = document.camera;
         self.palette = Palette::new(theme);
+        if let Some(crowd) = staging.crowd {
+            self.stage = Stage::around_crowd(&crowd, display);
+            self.crowd = Some(crowd);
+            return;
+        }
         self.stage = Stage::around(centre, reach, cell, display);
         if display.shows(Layer::Axes) {
             self.add_axes(reach);
@@ -155,6 +162,7 @@ impl Scene {
             guide_balls: Vec::new(),
             shells: Vec::new(),
             globe: None,
+            crowd: None,
             lines: Vec::new(),
             labels: Vec::new(),
             letters: String::new(),
@@ -170,6 +178,7 @@ impl Scene {
         self.guide_balls.clear();
         self.shells.clear();
         self.globe = None;
+        self.crowd = None;
         self.lines.clear();
         self.labels.clear();
         self.letters.clear();
@@ -215,6 +224,20 @@ impl Scene {
 impl Stage {
     /// The planes reach well past the rig, so that it has ground to stand on wherever it points.
     const RADIUS: f32 = 1.7;
+
+    /// As far as there are arms, on the ground alone, with cells as large as an arm's share of it or
+    /// tens of times as large.
+    fn around_crowd(crowd: &Crowd, display: Display) -> Self {
+        const CELLS: f32 = 200.0;
+        let (centre, radius) = crowd.bounds();
+        let reach = crowd.bones.outer_limit();
+        let tens = (radius / (CELLS * reach)).max(1.0).log10().ceil();
+        Self {
+            grid_xy: false,
+            grid_yz: false,
+            ..Self::around(centre, radius, reach * 10_f32.powf(tens), display)
+        }
+    }
 
     fn around(centre: Vec3, reach: f32, cell: f32, display: Display) -> Self {
         Self {

@@ -10,6 +10,7 @@ use crate::io::Example;
 use crate::kinematics::reach::Softening;
 use crate::kinematics::skeleton::Limit;
 use crate::kinematics::solve::Options;
+use crate::rig::SolvedBy;
 
 /// Everything that can happen. Values are absolute, so that an action said twice is harmless.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,6 +181,13 @@ pub enum Action {
     SetNavigation(Navigation),
     ShowExplain(bool),
     ShowTimeline(bool),
+    /// Shows many arms in the rig's place.
+    ShowCrowd(bool),
+    /// How many arms; from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).
+    SetCrowd(u32),
+    SolveCrowd(SolvedBy),
+    /// Lets the crowd follow its targets, or stand.
+    MoveCrowd(bool),
     /// Shows the keys as curves.
     ShowCurves(bool),
     OpenDialog(Dialog),

@@ -170,6 +170,10 @@ impl Session {
             Action::SetTheme(theme) => self.preferences.theme = theme,
             Action::SetNavigation(navigation) => self.preferences.navigation = navigation,
             Action::ShowExplain(shown) => self.preferences.explain = shown,
+            Action::ShowCrowd(shown) => self.show_crowd(shown),
+            Action::SetCrowd(arms) => self.set_crowd(arms),
+            Action::SolveCrowd(solved_by) => self.solve_crowd(solved_by),
+            Action::MoveCrowd(moving) => self.move_crowd(moving),
             Action::ShowTimeline(shown) => self.preferences.timeline = shown,
             Action::ShowCurves(shown) => self.preferences.curves = shown,
             Action::OpenDialog(dialog) => {

@@ -74,6 +74,7 @@ impl Session {
     pub(super) fn advance_clock(&mut self, seconds: f64) {
         let passed = self.clock.last.map_or(0.0, |last| (seconds - last).max(0.0));
         self.clock.last = Some(seconds);
+        self.advance_crowd(passed);
         if !self.clock.playing || passed == 0.0 {
             return;
         }

@@ -5,6 +5,7 @@ mod action;
 mod apply;
 mod arm;
 mod clock;
+mod crowd;
 mod drag;
 mod edit;
 mod export;
@@ -53,6 +54,7 @@ use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::kinematics::skeleton::Pose as SkeletonPose;
 use crate::kinematics::two_bone::Pose;
 use clock::Clock;
+use crowd::Crowding;
 use edit::Edit;
 use history::{Overrides, State};
 use keys::Clipboard;
@@ -93,6 +95,7 @@ pub struct Session {
     selection: Vec<usize>,
     pointed: Option<usize>,
     clock: Clock,
+    crowding: Crowding,
     solving: Option<Solving>,
     /// How everything was before the solver that is running.
     run_before: Option<State>,
@@ -185,6 +188,7 @@ impl Session {
             selection: Vec::new(),
             pointed: None,
             clock: Clock::default(),
+            crowding: Crowding::default(),
             solving: None,
             run_before: None,
             race: None,
@@ -308,12 +312,16 @@ impl Session {
     pub fn is_moving(&self) -> bool {
         self.is_gliding()
             || self.clock.playing
+            || self.crowding.is_going_on()
             || self.is_running()
             || self.race.as_ref().is_some_and(Race::is_running)
     }
 
     /// The view that shows what is worked on: the selected joints, else the rig as it stands.
     pub fn framing_selection(&self) -> Camera {
+        if self.crowd().is_some() {
+            return self.framing_all();
+        }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => self.arm().bounds(&self.pose),
             RigKind::Skeleton => self
@@ -324,8 +332,13 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
-    /// The view that shows all that the arm's hand can reach, or the skeleton with its targets.
+    /// The view that shows all that the arm's hand can reach, or the skeleton with its targets; of a
+    /// crowd all arms.
     pub fn framing_all(&self) -> Camera {
+        if let Some(crowd) = self.crowd() {
+            let (centre, radius) = crowd.bounds();
+            return self.settled_camera().framing(centre, radius, ASPECT);
+        }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
             RigKind::Skeleton => self.skeleton().bounds(&self.skeleton_pose, self.clock.time),

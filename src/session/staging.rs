@@ -6,6 +6,7 @@ use crate::document::Arm;
 use crate::kinematics::skeleton::Pose;
 use crate::kinematics::solve::Method;
 use crate::kinematics::swivel::Carried;
+use crate::rig::Crowd;
 
 /// What a picture shows beside the document.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +24,8 @@ pub struct Staging {
     /// Where the hand or the selected joint's tip is at every frame, in the world.
     pub trail: Vec<Vec3>,
     pub onion_skins: Vec<OnionSkin>,
+    /// What is shown in the rig's place.
+    pub crowd: Option<Crowd>,
 }
 
 /// The rig as it stands somewhat before or after.
@@ -55,6 +58,7 @@ impl Session {
     /// onion skins take a copy of a document with keys.
     pub fn restage(&self, staging: &mut Staging) {
         staging.time = self.clock.time;
+        staging.crowd = self.crowd();
         staging.selection.clone_from(&self.selection);
         staging.pointed = self.pointed;
         staging.carried = Some(self.journey.carried());

@@ -11,10 +11,15 @@ use crate::session::{Grip, Session};
 pub(super) enum Grips {
     Arm(ArmGrips),
     Skeleton(Figure),
+    /// A crowd has none.
+    None,
 }
 
 impl Grips {
     pub fn new(picture: &Picture, session: &Session) -> Self {
+        if session.crowd().is_some() {
+            return Self::None;
+        }
         match session.rig() {
             RigKind::Arm => Self::Arm(ArmGrips::new(picture, session)),
             RigKind::Skeleton => Self::Skeleton(Figure::new(picture, session)),
@@ -26,13 +31,14 @@ impl Grips {
         match self {
             Self::Arm(arm) => arm.at(pointer),
             Self::Skeleton(figure) => figure.at(pointer),
+            Self::None => None,
         }
     }
 
     /// The joint whose bone is under a point of the screen.
     pub fn joint_at(&self, pointer: Pos2) -> Option<usize> {
         match self {
-            Self::Arm(_) => None,
+            Self::Arm(_) | Self::None => None,
             Self::Skeleton(figure) => figure.joint_at(pointer),
         }
     }
@@ -42,6 +48,7 @@ impl Grips {
         match self {
             Self::Arm(arm) => arm.paint(painter, ui, pointed, held),
             Self::Skeleton(figure) => figure.paint(painter, ui, pointed, held),
+            Self::None => {}
         }
     }
 }

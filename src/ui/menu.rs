@@ -194,6 +194,11 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             actions.push(Action::Show(layer, shown));
         }
     }
+    let mut crowd = session.crowd().is_some();
+    let tooltip = "Up to a million arms like this one, each after a target of its own";
+    if ui.checkbox(&mut crowd, "Crowd").on_hover_text(tooltip).changed() {
+        actions.push(Action::ShowCrowd(crowd));
+    }
     let mut explain = session.preferences().explain;
     let name = match session.rig() {
         RigKind::Arm => "Explain panel",

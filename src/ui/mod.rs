@@ -5,6 +5,7 @@ mod arm_grips;
 mod compass;
 mod controls;
 mod convergence;
+mod crowd;
 mod dialogs;
 mod elbow;
 mod explain;
@@ -43,6 +44,7 @@ mod wrist;
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
 use crate::document::RigKind;
+use crate::rig::CrowdTimes;
 use crate::session::{Action, Session};
 
 /// What the panels show of the machine they run on.
@@ -50,6 +52,8 @@ use crate::session::{Action, Session};
 pub struct Machine {
     /// The graphics adapter.
     pub adapter: String,
+    /// How long the crowd took that is shown.
+    pub crowd: Option<CrowdTimes>,
     /// How long the last drawn frame took, in milliseconds.
     pub frame_ms: Option<f32>,
     /// Whether the menu Help has what is for tests of the program.
@@ -91,6 +95,7 @@ pub fn show(
     }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    crowd::ui(ui, viewport, session, machine, actions);
     dialogs::ui(ui, session, machine, actions);
     keyboard::remember(ui);
     viewport

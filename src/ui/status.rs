@@ -6,6 +6,7 @@ use super::Machine;
 use crate::document::{Arm, RigKind};
 use crate::kinematics::solve::Method;
 use crate::kinematics::two_bone::{Pose, Reach};
+use crate::rig::Crowd;
 use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, Solving, TurnDrag};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
@@ -75,6 +76,9 @@ fn line(session: &Session) -> String {
 
 /// How the rig stands, for those who do not see it.
 pub(super) fn summary(session: &Session) -> String {
+    if let Some(crowd) = session.crowd() {
+        return describe_crowd(&crowd);
+    }
     match session.rig() {
         RigKind::Arm => sentence(session.arm(), session.pose()),
         RigKind::Skeleton => describe_skeleton(session),
@@ -82,10 +86,33 @@ pub(super) fn summary(session: &Session) -> String {
 }
 
 fn describe(session: &Session) -> String {
+    if let Some(crowd) = session.crowd() {
+        return describe_crowd(&crowd);
+    }
     match session.rig() {
         RigKind::Arm => describe_pose(session),
         RigKind::Skeleton => describe_skeleton(session),
     }
+}
+
+fn describe_crowd(crowd: &Crowd) -> String {
+    match crowd.arms {
+        1 => "A crowd of 1 arm".to_owned(),
+        arms => format!("A crowd of {} arms", grouped(arms)),
+    }
+}
+
+/// With thousands apart: "1,000,000".
+pub(super) fn grouped(number: u32) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
 }
 
 fn describe_skeleton(session: &Session) -> String {

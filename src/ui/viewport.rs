@@ -98,7 +98,8 @@ pub(super) fn ui(
     if over && matches!(held, Held::Nothing) {
         point(session, grips.joint_at(pointer), actions);
     }
-    if session.rig() == RigKind::Skeleton && response.clicked() && !on_compass {
+    let has_joints = session.rig() == RigKind::Skeleton && session.crowd().is_none();
+    if has_joints && response.clicked() && !on_compass {
         select(ui, session, &picture, &grips, pointer, actions);
     }
     if response.double_clicked() && !on_compass {
@@ -106,8 +107,8 @@ pub(super) fn ui(
             Some(_) => menu::frame_selection(session),
             None if grips.joint_at(pointer).is_some() => menu::frame_selection(session),
             None => Action::GlideTo(match session.rig() {
-                RigKind::Arm => Camera::default(),
-                RigKind::Skeleton => session.framing_all(),
+                RigKind::Arm if session.crowd().is_none() => Camera::default(),
+                _ => session.framing_all(),
             }),
         });
     }

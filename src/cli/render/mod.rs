@@ -1,8 +1,11 @@
-//! `ik-arm render`: the arm or a file as a picture.
+//! `ik-arm render`: the arm, a file or a crowd as a picture.
+
+mod crowd;
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::ValueEnum;
 use glam::Vec3;
@@ -15,6 +18,7 @@ use crate::document::{Arm, AxisView, Camera, Display, Document, Goal, Layer, Rig
 use crate::io::OpenError;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, DrawError, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
+use crate::rig::Crowd;
 use crate::scene::Scene;
 use crate::session::Staging;
 
@@ -22,7 +26,9 @@ use crate::session::Staging;
 #[command(after_help = "Without FILE the arm is drawn as --hand and the like have it:
   ik-arm render -o arm.png --hand 250,120,60
 With FILE what it shows, from where it is looked at there, unless --view says otherwise:
-  ik-arm render human.json -o human.png --view front")]
+  ik-arm render human.json -o human.png --view front
+How long a crowd takes, without a window:
+  ik-arm render --crowd 100000 --frames 60 --timings --solve gpu")]
 pub struct Args {
     /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
     #[arg(
@@ -66,6 +72,17 @@ pub struct Args {
     view: Option<View>,
     #[arg(long, value_enum, default_value_t = ThemeName::Dark)]
     theme: ThemeName,
+    /// Draws so many arms in the arm's place, each after a target of its own
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with_all = ["file", "hand", "elbow_spin", "root", "guides"],
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Crowd::MOST))
+    )]
+    crowd: Option<u32>,
+    /// What solves them
+    #[arg(long, value_enum, requires = "crowd", default_value_t = SolverName::Cpu)]
+    solve: SolverName,
     /// How many frames to time
     #[arg(
         long,
@@ -78,6 +95,14 @@ pub struct Args {
     /// Print how long a frame takes, as JSON
     #[arg(long)]
     timings: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SolverName {
+    /// The batch solver, on all cores
+    Cpu,
+    /// The same mathematics in a shader
+    Gpu,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -101,6 +126,8 @@ enum RenderError {
     Draw(#[from] DrawError),
     #[error(transparent)]
     Read(#[from] ReadError),
+    #[error("the graphics adapter {0} draws no crowd: it has no compute shaders")]
+    NoCrowd(String),
     #[error(transparent)]
     Save(#[from] SaveError),
     #[error("the timings could not be written: {0}")]
@@ -126,6 +153,9 @@ pub fn run(args: &Args) -> ExitCode {
 }
 
 fn render(args: &Args) -> Result<(), RenderError> {
+    if let Some(arms) = args.crowd {
+        return crowd::render(args, arms);
+    }
     let document = args.document()?;
     let theme = args.theme.into();
     let staging = Staging::new(&document, args.time.0);
@@ -137,20 +167,28 @@ fn render(args: &Args) -> Result<(), RenderError> {
         render::save(&image, path)?;
     }
     if args.timings {
-        print(picture.time(args.frames, scene)?, &gpu.name())?;
+        print(&TimingsLine::new(picture.time(args.frames, |_| scene())?, &gpu.name()))?;
     }
     Ok(())
 }
 
-fn print(timings: Timings, adapter: &str) -> Result<(), io::Error> {
-    let milliseconds = |time: std::time::Duration| (time.as_secs_f64() * 1e6).round() / 1e3;
-    let line = serde_json::to_string(&TimingsLine {
-        frames: timings.frames,
-        cpu_ms_median: milliseconds(timings.cpu),
-        frame_ms_median: milliseconds(timings.frame),
-        adapter,
-    })?;
-    writeln!(io::stdout(), "{line}")
+impl<'a> TimingsLine<'a> {
+    fn new(timings: Timings, adapter: &'a str) -> Self {
+        Self {
+            frames: timings.frames,
+            cpu_ms_median: milliseconds(timings.cpu),
+            frame_ms_median: milliseconds(timings.frame),
+            adapter,
+        }
+    }
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    (time.as_secs_f64() * 1e6).round() / 1e3
+}
+
+fn print(line: &impl Serialize) -> Result<(), io::Error> {
+    writeln!(io::stdout(), "{}", serde_json::to_string(line)?)
 }
 
 impl Args {

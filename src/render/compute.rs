@@ -1,0 +1,115 @@
+use super::Gpu;
+
+/// What a shader reads or writes at a place of a group.
+#[derive(Clone, Copy)]
+pub(super) enum Slot {
+    Uniform,
+    Read,
+    Write,
+}
+
+/// A group of buffers in this order, as the stages see them.
+pub(super) fn layout(
+    gpu: &Gpu,
+    label: &str,
+    stages: wgpu::ShaderStages,
+    slots: &[Slot],
+) -> wgpu::BindGroupLayout {
+    let entry = |(binding, slot): (u32, &Slot)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: stages,
+        ty: wgpu::BindingType::Buffer {
+            ty: match slot {
+                Slot::Uniform => wgpu::BufferBindingType::Uniform,
+                Slot::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                Slot::Write => wgpu::BufferBindingType::Storage { read_only: false },
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &(0..).zip(slots).map(entry).collect::<Vec<_>>(),
+    })
+}
+
+pub(super) fn group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[&wgpu::Buffer],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(buffers)
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &entries,
+    })
+}
+
+pub(super) fn pipeline(
+    gpu: &Gpu,
+    label: &str,
+    shader: &'static str,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+) -> wgpu::ComputePipeline {
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(shader.into()),
+    });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some("compute"),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+/// How many arms one workgroup of a shader takes.
+const GROUP: u32 = 256;
+
+/// Has a shader run once for each arm.
+pub(super) fn run_for_each(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &str,
+    pipeline: &wgpu::ComputePipeline,
+    (index, group): (u32, &wgpu::BindGroup),
+    arms: u32,
+) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some(label),
+        timestamp_writes: None,
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(index, group, &[]);
+    pass.dispatch_workgroups(arms.div_ceil(GROUP), 1, 1);
+}
+
+pub(super) fn buffer(
+    gpu: &Gpu,
+    label: &str,
+    size: u64,
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
