@@ -159,8 +159,8 @@ fn upload_letters(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Contex
     if panels.cumulative_pass_nr() == 0 {
         return;
     }
-    let letters = panels.fonts(|fonts| fonts.image());
-    let all = ImageDelta::full(letters, TextureAtlas::texture_options());
+    let all =
+        panels.fonts(|fonts| ImageDelta::full(fonts.image(), TextureAtlas::texture_options()));
     renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
 }
 
