@@ -5,6 +5,7 @@ set -euo pipefail
 source scripts/display.sh
 
 target=${CARGO_TARGET_DIR:-target}
+program=${PROGRAM:-$target/release/ik-arm}
 program_pid=
 settings=
 
@@ -26,7 +27,7 @@ open_window() {
     # Remembered settings could move the arm or the panels away from hand_path.
     settings=$(mktemp -d)
     XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
-        "$target/release/ik-arm" &
+        "$program" &
     program_pid=$!
     window=$(wait_for_window)
     # No window manager gives it the keyboard.

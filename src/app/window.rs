@@ -170,6 +170,7 @@ impl AppWindow {
                 self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
                 self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
                 self.frames += 1;
+                log::trace!("frame {} drawn", self.frames);
                 self.failures.forget();
                 delay
             }

@@ -22,6 +22,10 @@ pub enum GpuError {
          Arch:            pacman -S vulkan-swrast vulkan-icd-loader"
     )]
     NoAdapter(#[from] wgpu::RequestAdapterError),
+    #[error(
+        "no graphics adapter is called {wanted:?}, as WGPU_ADAPTER_NAME asks for; here are {found:?}"
+    )]
+    NoSuchAdapter { wanted: String, found: Vec<String> },
     #[error("the graphics adapter {adapter} gives no device: {source}")]
     NoDevice { adapter: String, source: wgpu::RequestDeviceError },
 }
@@ -53,9 +57,7 @@ impl Gpu {
         instance: wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<Self, GpuError> {
-        let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env_or_default(
-            &instance, surface,
-        ))?;
+        let adapter = adapter(&instance, surface)?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ik-arm"),
             // To time frames, where the adapter has a clock.
@@ -116,6 +118,29 @@ impl Gpu {
         match found.collect::<Vec<_>>().first() {
             Some(error) => Err(DeviceError(error.to_string())),
             None => Ok(told),
+        }
+    }
+}
+
+/// The one that `WGPU_ADAPTER_NAME` names, or else the best. So does `wgpu::util`, which panics where
+/// there is none of that name.
+fn adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+) -> Result<wgpu::Adapter, GpuError> {
+    let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME") else {
+        let best = wgpu::util::initialize_adapter_from_env_or_default(instance, surface);
+        return Ok(pollster::block_on(best)?);
+    };
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    adapters.retain(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)));
+    let name = |adapter: &wgpu::Adapter| adapter.get_info().name;
+    let is_wanted = |name: String| name.to_lowercase().contains(&wanted.to_lowercase());
+    match adapters.iter().position(|adapter| is_wanted(name(adapter))) {
+        Some(index) => Ok(adapters.swap_remove(index)),
+        None => {
+            let found = adapters.iter().map(name).collect();
+            Err(GpuError::NoSuchAdapter { wanted, found })
         }
     }
 }
