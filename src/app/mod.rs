@@ -189,6 +189,7 @@ impl App {
             window.await_export();
             log::info!("{} frames drawn", window.frames());
             window.settings(&self.session).save();
+            window.drop_graphics();
         }
     }
 

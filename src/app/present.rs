@@ -17,6 +17,12 @@ pub(super) enum Presented {
     Later(Option<Duration>),
 }
 
+/// What the surface gives to draw on; [`Presented::Later`] if nothing.
+enum Acquired {
+    Frame(wgpu::SurfaceTexture),
+    Later(Option<Duration>),
+}
+
 /// The panels' way to the screen.
 impl Graphics {
     /// Frames that nobody sees come no faster.
@@ -64,8 +70,8 @@ impl Graphics {
             self.surface.configure(&self.gpu.device, &self.config);
         }
         let frame = match self.acquire(window)? {
-            Ok(frame) => frame,
-            Err(again) => return Ok(Presented::Later(again)),
+            Acquired::Frame(frame) => frame,
+            Acquired::Later(again) => return Ok(Presented::Later(again)),
         };
         self.check()?;
         let screen = ScreenDescriptor {
@@ -120,11 +126,8 @@ impl Graphics {
         self.check()
     }
 
-    /// The next frame, or after how long to ask again. What the surface lacks is mended once.
-    fn acquire(
-        &mut self,
-        window: &Arc<Window>,
-    ) -> Result<Result<wgpu::SurfaceTexture, Option<Duration>>, GraphicsError> {
+    /// What the surface lacks is mended once.
+    fn acquire(&mut self, window: &Arc<Window>) -> Result<Acquired, GraphicsError> {
         use wgpu::CurrentSurfaceTexture as Current;
         let mut current = self.surface.get_current_texture();
         match current {
@@ -136,14 +139,14 @@ impl Graphics {
             current = self.surface.get_current_texture();
         }
         match current {
-            Current::Success(frame) => Ok(Ok(frame)),
+            Current::Success(frame) => Ok(Acquired::Frame(frame)),
             Current::Suboptimal(frame) => {
                 self.stale = true;
-                Ok(Ok(frame))
+                Ok(Acquired::Frame(frame))
             }
-            Current::Outdated | Current::Timeout => Ok(Err(Some(Self::PAUSE))),
+            Current::Outdated | Current::Timeout => Ok(Acquired::Later(Some(Self::PAUSE))),
             // Nobody sees it; the system says when somebody does.
-            Current::Occluded => Ok(Err(None)),
+            Current::Occluded => Ok(Acquired::Later(None)),
             Current::Lost => Err(GraphicsError::SurfaceLost),
             Current::Validation => {
                 // A lost device says so when it is asked.

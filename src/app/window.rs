@@ -126,8 +126,15 @@ impl AppWindow {
     }
 
     pub fn resize(&mut self, size: PhysicalSize<u32>) {
-        if let Some(graphics) = &mut self.graphics {
+        let Some(graphics) = &mut self.graphics else {
+            return;
+        };
+        let resized = guarded(|| {
             graphics.resize(size);
+            Ok(())
+        });
+        if let Err(error) = resized {
+            self.lose(error);
         }
     }
 
@@ -217,19 +224,24 @@ impl AppWindow {
     /// Lets go of graphics that have failed, to make them anew.
     fn lose(&mut self, error: GraphicsError) -> Repaint {
         log::error!("{error}");
-        let lost = self.graphics.take();
-        // Not even to be dropped is safe for what was in use when the device was lost.
-        if let Err(error) = guarded(|| {
-            drop(lost);
-            Ok(())
-        }) {
-            log::warn!("{error}");
-        }
+        self.drop_graphics();
         let Some(pause) = self.failures.pause() else {
             return Repaint::Failed(error);
         };
         self.dark_until = Instant::now() + pause;
         Repaint::At(self.dark_until)
+    }
+
+    /// Not even to be dropped is safe for what was in use when the device was lost.
+    pub fn drop_graphics(&mut self) {
+        let lost = self.graphics.take();
+        let dropped = guarded(|| {
+            drop(lost);
+            Ok(())
+        });
+        if let Err(error) = dropped {
+            log::warn!("{error}");
+        }
     }
 
     /// Runs the panels, applies what they ask for, and if that was anything, runs them once more,
