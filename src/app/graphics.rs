@@ -1,5 +1,6 @@
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use egui::epaint::{ImageDelta, TextureAtlas};
 use egui::{Context, TextureId};
@@ -8,7 +9,7 @@ use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
 use winit::window::Window;
 
 use super::UserEvent;
-use crate::render::{Canvas, Gpu, GpuError, Renderer};
+use crate::render::{Canvas, Counts, Gpu, GpuError, Lap, Renderer, Stopwatch};
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
@@ -38,6 +39,7 @@ pub(super) struct Graphics {
     pub(super) egui_renderer: egui_wgpu::Renderer,
     renderer: Renderer,
     picture: Shown,
+    pub(super) stopwatch: Option<Stopwatch>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
     /// Whether the surface still works but should be configured anew.
@@ -52,6 +54,8 @@ struct Shown {
     canvas: Canvas,
     texture: TextureId,
     scene: Option<Scene>,
+    /// Whether the scene is on the canvas.
+    drawn: bool,
 }
 
 impl Graphics {
@@ -89,7 +93,8 @@ impl Graphics {
         let graphics = Self {
             egui_renderer,
             renderer: Renderer::new(&gpu),
-            picture: Shown { canvas, texture, scene: None },
+            picture: Shown { canvas, texture, scene: None, drawn: false },
+            stopwatch: Stopwatch::new(&gpu),
             surface,
             config,
             stale: false,
@@ -117,17 +122,45 @@ impl Graphics {
         self.picture.texture
     }
 
-    /// Draws the scene for the panels to show, if it is not what they show already.
-    pub fn draw_scene(&mut self, scene: Scene, (width, height): (u32, u32), scale: f32) {
+    /// Whether the device measures how long it works.
+    pub fn has_clock(&self) -> bool {
+        self.stopwatch.is_some()
+    }
+
+    /// A frame and how long the device worked on it, if that is known by now.
+    pub fn read_clock(&mut self) -> Option<(u64, Duration)> {
+        self.stopwatch.as_mut()?.read(&self.gpu)
+    }
+
+    /// Draws the scene for the panels to show, if it is not what they show already; leaves another
+    /// one for it, to be refilled. What is in it, and what was uploaded for it now.
+    pub fn draw_scene(
+        &mut self,
+        scene: &mut Scene,
+        (width, height): (u32, u32),
+        scale: f32,
+    ) -> Counts {
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.start();
+        }
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
-            self.picture.scene = None;
+            self.picture.drawn = false;
             self.show_canvas();
         }
-        if self.picture.scene.as_ref() != Some(&scene) {
-            self.renderer.draw(&self.gpu, &scene, &self.picture.canvas, scale);
-            self.picture.scene = Some(scene);
+        if self.picture.drawn && self.picture.scene.as_ref() == Some(scene) {
+            return Counts { uploaded: 0, ..self.renderer.counts() };
         }
+        let canvas = &self.picture.canvas;
+        self.renderer.upload(&self.gpu, scene, canvas.size(), scale);
+        let lap = self.stopwatch.as_mut().map(|stopwatch| stopwatch.lap(Lap::Scene));
+        self.gpu.queue.submit([self.renderer.encode(&self.gpu, canvas, lap)]);
+        self.picture.drawn = true;
+        match &mut self.picture.scene {
+            Some(shown) => std::mem::swap(shown, scene),
+            None => self.picture.scene = Some(scene.clone()),
+        }
+        self.renderer.counts()
     }
 
     /// Lets the panels show a new canvas under the same name.
@@ -179,7 +212,8 @@ fn configuration(
         .ok_or_else(unsupported)?;
     let formats = surface.get_capabilities(&gpu.adapter).formats;
     config.format = egui_wgpu::preferred_framebuffer_format(&formats).map_err(|_| unsupported())?;
-    config.present_mode = wgpu::PresentMode::AutoVsync;
+    // At the screen's own pace, and never torn; every surface has it.
+    config.present_mode = wgpu::PresentMode::Fifo;
     config.desired_maximum_frame_latency = 1;
     surface.configure(&gpu.device, &config);
     Ok(config)

@@ -1,5 +1,5 @@
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use egui::TextureId;
 use egui::epaint::{ClippedPrimitive, ImageDelta};
@@ -8,6 +8,7 @@ use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
 use super::graphics::{Graphics, GraphicsError};
+use crate::render::Lap;
 
 /// What became of a frame.
 pub(super) enum Presented {
@@ -55,7 +56,8 @@ impl Graphics {
         }
     }
 
-    /// Draws the panels on the surface and shows it.
+    /// Draws the panels on the surface and shows it; `drawn` is how many frames there have been. How
+    /// much of the time went by in waiting, too.
     ///
     /// # Errors
     ///
@@ -65,14 +67,17 @@ impl Graphics {
         panels: &[ClippedPrimitive],
         scale: f32,
         window: &Arc<Window>,
-    ) -> Result<Presented, GraphicsError> {
+        drawn: u64,
+    ) -> Result<(Presented, Duration), GraphicsError> {
         if std::mem::take(&mut self.stale) {
             self.surface.configure(&self.gpu.device, &self.config);
         }
+        let asked = Instant::now();
         let frame = match self.acquire(window)? {
             Acquired::Frame(frame) => frame,
-            Acquired::Later(again) => return Ok(Presented::Later(again)),
+            Acquired::Later(again) => return Ok((Presented::Later(again), asked.elapsed())),
         };
+        let mut waited = asked.elapsed();
         self.check()?;
         let screen = ScreenDescriptor {
             size_in_pixels: [self.config.width, self.config.height],
@@ -101,15 +106,24 @@ impl Graphics {
                     store: wgpu::StoreOp::Store,
                 },
             })],
+            timestamp_writes: self.stopwatch.as_mut().map(|stopwatch| stopwatch.lap(Lap::Panels)),
             ..Default::default()
         });
         self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.stop(&mut encoder, drawn);
+        }
         commands.push(encoder.finish());
         self.gpu.queue.submit(commands);
+        if let Some(stopwatch) = &self.stopwatch {
+            stopwatch.fetch();
+        }
         window.pre_present_notify();
+        let handed_over = Instant::now();
         self.gpu.queue.present(frame);
+        waited += handed_over.elapsed();
         self.check()?;
-        Ok(Presented::Shown)
+        Ok((Presented::Shown, waited))
     }
 
     /// Waits until the device has done all that it was told.

@@ -2,7 +2,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use egui::{FullOutput, RawInput, Rect, ViewportId};
 use egui_winit::WindowSettings;
@@ -18,8 +18,8 @@ use super::present::Presented;
 use super::settings::Settings;
 use super::{AppError, UserEvent};
 use crate::scene::Scene;
-use crate::session::{Action, Effect, Session};
-use crate::ui::{self, Machine, style};
+use crate::session::{Action, Effect, Session, Staging};
+use crate::ui::{self, Frame, Machine, style};
 
 const TITLE: &str = "ik-arm";
 const APP_ID: &str = "ik-arm";
@@ -47,6 +47,11 @@ pub(super) struct AppWindow {
     pub(super) window: Arc<Window>,
     pub(super) egui: egui_winit::State,
     machine: Machine,
+    staging: Staging,
+    /// The scene as it is to be drawn; the memory is that of the one before last.
+    scene: Option<Scene>,
+    /// When the last frame began, if it asked for another one at once.
+    moving_since: Option<Instant>,
     frames: u64,
     title: String,
     /// Where the scene is, in points.
@@ -82,9 +87,9 @@ impl AppWindow {
         let debug = Debug::from_env();
         let machine = Machine {
             adapter: graphics.gpu.name(),
-            frame_ms: None,
-            crowd: None,
+            has_clock: graphics.has_clock(),
             shows_debug_actions: debug.shows_actions,
+            ..Machine::default()
         };
         Ok(Self {
             graphics: Some(graphics),
@@ -94,6 +99,9 @@ impl AppWindow {
             window,
             egui,
             machine,
+            staging: Staging::default(),
+            scene: None,
+            moving_since: None,
             frames: 0,
             title: TITLE.to_owned(),
             viewport: Rect::ZERO,
@@ -162,7 +170,9 @@ impl AppWindow {
         let started = Instant::now();
         let input = self.egui.take_egui_input(&self.window);
         style::apply(self.egui.egui_ctx(), session.preferences().theme);
-        let (mut output, viewport, effects) = self.run(input, session);
+        let interval = self.moving_since.take().map(|last| started - last);
+        let mut frame = Frame { interval, ..Frame::default() };
+        let (mut output, viewport, effects) = self.run(input, session, &mut frame);
         self.viewport = viewport;
         if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
             output.textures_delta.clear();
@@ -172,10 +182,11 @@ impl AppWindow {
         let platform = std::mem::take(&mut output.platform_output);
         self.egui.handle_platform_output(&self.window, platform);
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
-        let delay = match self.draw(session, output) {
+        let delay = match self.draw(session, output, &mut frame) {
             Ok(Presented::Shown) => {
                 self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
-                self.machine.frame_ms = Some(started.elapsed().as_secs_f32() * 1000.0);
+                self.machine.times.push(frame);
+                self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
                 log::trace!("frame {} drawn", self.frames);
                 self.failures.forget();
@@ -214,6 +225,7 @@ impl AppWindow {
             Err(error) => return Some(self.lose(error)),
         };
         self.machine.adapter = graphics.gpu.name();
+        self.machine.has_clock = graphics.has_clock();
         self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
         session.apply(Action::Report(
             "The graphics device was lost and has been made anew; nothing is lost.".to_owned(),
@@ -246,7 +258,13 @@ impl AppWindow {
 
     /// Runs the panels, applies what they ask for, and if that was anything, runs them once more,
     /// so that none shows the state before.
-    fn run(&mut self, input: RawInput, session: &mut Session) -> (FullOutput, Rect, Vec<Effect>) {
+    fn run(
+        &mut self,
+        input: RawInput,
+        session: &mut Session,
+        frame: &mut Frame,
+    ) -> (FullOutput, Rect, Vec<Effect>) {
+        let mut lap = lap_from(Instant::now());
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
         let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
@@ -255,14 +273,17 @@ impl AppWindow {
         let mut output = ctx.run_ui(input, |ui| {
             viewport = ui::show(ui, session, machine, picture, &mut actions);
         });
+        frame.panels += lap();
         if actions.is_empty() {
             return (output, viewport, Vec::new());
         }
         let effects = actions.drain(..).filter_map(|action| session.apply(action)).collect();
+        frame.solve += lap();
         style::apply(ctx, session.preferences().theme);
         output.append(ctx.run_ui(again, |ui| {
             viewport = ui::show(ui, session, machine, picture, &mut actions);
         }));
+        frame.panels += lap();
         (output, viewport, effects)
     }
 
@@ -282,7 +303,12 @@ impl AppWindow {
     }
 
     /// Draws the scene, and the panels around it.
-    fn draw(&mut self, session: &Session, output: FullOutput) -> Result<Presented, GraphicsError> {
+    fn draw(
+        &mut self,
+        session: &Session,
+        output: FullOutput,
+        frame: &mut Frame,
+    ) -> Result<Presented, GraphicsError> {
         let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
             output;
         // Taken out first: egui panics where they are dropped unheeded.
@@ -299,18 +325,46 @@ impl AppWindow {
                 Ok(Presented::Later(None))
             });
         }
-        let scene = Scene::new(session.shown(), &session.staging(), session.preferences().theme);
+        let mut lap = lap_from(Instant::now());
+        let (document, theme) = (session.shown(), session.preferences().theme);
+        session.restage(&mut self.staging);
+        match &mut self.scene {
+            Some(scene) => scene.refill(document, &self.staging, theme),
+            None => self.scene = Some(Scene::new(document, &self.staging, theme)),
+        }
+        frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);
+        frame.panels += lap();
+        let machine = &mut self.machine;
         guarded(|| {
+            // Of earlier frames.
+            while let Some((frame, time)) = graphics.read_clock() {
+                machine.times.set_gpu(frame, time);
+            }
             graphics.update_textures(changed);
-            graphics.draw_scene(scene, pixels(self.viewport, scale), scale);
-            let presented = graphics.present(&panels, scale, &self.window)?;
+            if let Some(scene) = &mut self.scene {
+                machine.counts =
+                    Some(graphics.draw_scene(scene, pixels(self.viewport, scale), scale));
+            }
+            frame.encode += lap();
+            let drawn = machine.times.drawn();
+            let (presented, waited) = graphics.present(&panels, scale, &self.window, drawn)?;
+            frame.wait += waited;
+            frame.encode += lap().saturating_sub(waited);
             graphics.free_textures(freed);
             if self.failures.is_trying() && matches!(presented, Presented::Shown) {
                 graphics.finish()?;
             }
             Ok(presented)
         })
+    }
+}
+
+/// Tells how long it is since it was last asked.
+fn lap_from(mut last: Instant) -> impl FnMut() -> Duration {
+    move || {
+        let now = Instant::now();
+        now - std::mem::replace(&mut last, now)
     }
 }
 

@@ -118,6 +118,8 @@ pub struct Session {
 pub enum Dialog {
     About,
     Shortcuts,
+    /// What frames cost; it lets the rest go on.
+    Statistics,
     /// An earlier run of the program ended without saving this.
     Recover {
         document: Box<Document>,

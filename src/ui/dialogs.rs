@@ -2,17 +2,26 @@
 
 use std::path::Path;
 
-use egui::{Align2, Grid, Key, ScrollArea, TextEdit, Ui, Window, vec2};
+use egui::{Align2, Grid, Key, Rect, ScrollArea, TextEdit, Ui, Window, pos2, vec2};
 
-use super::{Machine, export, shortcuts};
+use super::{Machine, export, shortcuts, statistics};
 use crate::document::Document;
 use crate::session::{Action, Dialog, Session};
 
-pub(super) fn ui(ui: &Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
+pub(super) fn ui(
+    ui: &Ui,
+    session: &Session,
+    machine: &Machine,
+    viewport: Rect,
+    actions: &mut Vec<Action>,
+) {
     match session.dialog() {
         Some(Dialog::About) => window(ui, "About ik-arm", actions, |ui, _| about(ui, machine)),
         Some(Dialog::Shortcuts) => {
             window(ui, "Shortcuts", actions, |ui, _| shortcuts::ui(ui, session));
+        }
+        Some(Dialog::Statistics) => {
+            beside(ui, "Statistics", viewport, actions, |ui| statistics::ui(ui, machine));
         }
         Some(Dialog::SavePicture { path }) => {
             window(ui, "Save picture", actions, |ui, actions| {
@@ -61,6 +70,30 @@ fn window(
         .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
         .open(&mut open)
         .show(ui.ctx(), |ui| contents(ui, actions));
+    if !open {
+        actions.push(Action::CloseDialog);
+    }
+}
+
+/// One that is looked at while the rest goes on: at the right, where it hides the least of the
+/// viewport, until it is moved.
+fn beside(
+    ui: &Ui,
+    title: &str,
+    viewport: Rect,
+    actions: &mut Vec<Action>,
+    contents: impl FnOnce(&mut Ui),
+) {
+    let mut open = true;
+    let right = ui.ctx().content_rect().right();
+    Window::new(title)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(statistics::WIDTH)
+        .pivot(Align2::RIGHT_TOP)
+        .default_pos(pos2(right - 8.0, viewport.top() + 8.0))
+        .open(&mut open)
+        .show(ui.ctx(), contents);
     if !open {
         actions.push(Action::CloseDialog);
     }

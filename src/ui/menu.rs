@@ -256,6 +256,9 @@ fn help(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
     if item(ui, "Shortcuts", "F1") {
         actions.push(Action::OpenDialog(Dialog::Shortcuts));
     }
+    if item(ui, "Statistics", "") {
+        actions.push(Action::OpenDialog(Dialog::Statistics));
+    }
     if item(ui, "About", "") {
         actions.push(Action::OpenDialog(Dialog::About));
     }

@@ -11,6 +11,7 @@ mod elbow;
 mod explain;
 mod export;
 mod figure;
+mod frame_times;
 mod grips;
 mod handles;
 mod joint;
@@ -32,6 +33,7 @@ mod row;
 mod shortcuts;
 mod slider;
 mod solver;
+mod statistics;
 mod status;
 pub mod style;
 mod symbol;
@@ -43,7 +45,10 @@ mod wrist;
 
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
+pub use frame_times::{Frame, FrameTimes, Spread};
+
 use crate::document::RigKind;
+use crate::render::Counts;
 use crate::rig::CrowdTimes;
 use crate::session::{Action, Session};
 
@@ -52,10 +57,14 @@ use crate::session::{Action, Session};
 pub struct Machine {
     /// The graphics adapter.
     pub adapter: String,
+    /// Whether it measures its own time.
+    pub has_clock: bool,
+    /// How long the last drawn frames took.
+    pub times: FrameTimes,
+    /// What is in the scene that was drawn last.
+    pub counts: Option<Counts>,
     /// How long the crowd took that is shown.
     pub crowd: Option<CrowdTimes>,
-    /// How long the last drawn frame took, in milliseconds.
-    pub frame_ms: Option<f32>,
     /// Whether the menu Help has what is for tests of the program.
     pub shows_debug_actions: bool,
 }
@@ -96,7 +105,7 @@ pub fn show(
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
     crowd::ui(ui, viewport, session, machine, actions);
-    dialogs::ui(ui, session, machine, actions);
+    dialogs::ui(ui, session, machine, viewport, actions);
     keyboard::remember(ui);
     viewport
 }

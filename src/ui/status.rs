@@ -232,8 +232,8 @@ pub(super) fn method_name(method: Method) -> &'static str {
 
 fn describe_machine(machine: &Machine) -> String {
     let adapter = machine.adapter.split(" (").next().unwrap_or_default();
-    match machine.frame_ms {
-        Some(frame_ms) => format!("{adapter} · {frame_ms:.0} ms"),
+    match machine.times.last() {
+        Some(frame) => format!("{adapter} · {:.0} ms", frame.total().as_secs_f64() * 1e3),
         None => adapter.to_owned(),
     }
 }

@@ -1,5 +1,7 @@
 //! A window without a window: runs the panels as `src/app/window.rs` does, on a clock of its own.
 
+use std::time::Duration;
+
 use egui::accesskit::Role;
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, TouchPhase,
@@ -9,7 +11,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
 use ik_arm::session::{Action, Effect, Preferences, Session};
-use ik_arm::ui::{self, Machine, style};
+use ik_arm::ui::{self, Frame, FrameTimes, Machine, style};
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
 pub const SMALL: Vec2 = vec2(960.0, 600.0);
@@ -18,10 +20,17 @@ pub const SECONDS_PER_FRAME: f64 = 1.0 / 60.0;
 /// What the window keeps.
 pub struct App {
     pub session: Session,
-    machine: Machine,
+    pub machine: Machine,
     viewport: Rect,
     actions: Vec<Action>,
     effects: Vec<Effect>,
+}
+
+/// One frame of 12 milliseconds.
+fn times() -> FrameTimes {
+    let mut times = FrameTimes::default();
+    times.push(Frame { panels: Duration::from_millis(12), ..Frame::default() });
+    times
 }
 
 pub struct Bench {
@@ -50,7 +59,7 @@ impl Bench {
             session: Session::new(preferences),
             machine: Machine {
                 adapter: "Test adapter".to_owned(),
-                frame_ms: Some(12.0),
+                times: times(),
                 ..Machine::default()
             },
             viewport: Rect::ZERO,

@@ -20,6 +20,7 @@ mod skeleton_keys;
 mod skeleton_panel;
 mod skeleton_view;
 mod sliders;
+mod statistics;
 mod timeline;
 mod timeline_keys;
 mod timeline_looks;

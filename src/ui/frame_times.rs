@@ -1,0 +1,188 @@
+use core::time::Duration;
+
+/// What one frame took, part by part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// The session: actions, solvers, time.
+    pub solve: Duration,
+    /// The panels, laid out and cut into triangles.
+    pub panels: Duration,
+    pub scene: Duration,
+    /// What the device is sent, and its orders.
+    pub encode: Duration,
+    /// Until the screen, or the device with an earlier frame, let this one go on.
+    pub wait: Duration,
+    /// The device's own time, where its adapter measures it; it is known some frames later.
+    pub gpu: Option<Duration>,
+    /// Since the frame before began, where that one asked for this one at once.
+    pub interval: Option<Duration>,
+}
+
+impl Frame {
+    /// All that the processor did for it.
+    pub fn work(&self) -> Duration {
+        self.solve + self.panels + self.scene + self.encode
+    }
+
+    /// From its beginning until it was on its way to the screen.
+    pub fn total(&self) -> Duration {
+        self.work() + self.wait
+    }
+}
+
+/// How long the last frames took. Takes no memory of its own as they go by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTimes {
+    /// A ring: frame n is at n modulo its length.
+    frames: [Frame; Self::MOST],
+    drawn: u64,
+}
+
+/// Of many times, the one in the middle and the one that only a hundredth exceeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spread {
+    pub median: Duration,
+    pub slowest: Duration,
+}
+
+impl Default for FrameTimes {
+    fn default() -> Self {
+        Self { frames: [Frame::default(); Self::MOST], drawn: 0 }
+    }
+}
+
+impl FrameTimes {
+    /// How many frames are kept.
+    pub const MOST: usize = 240;
+
+    pub fn push(&mut self, frame: Frame) {
+        let place = self.place(self.drawn);
+        self.frames[place] = frame;
+        self.drawn += 1;
+    }
+
+    /// How many frames have been drawn in all; the next one is so called.
+    pub fn drawn(&self) -> u64 {
+        self.drawn
+    }
+
+    /// What the device took for a frame, unless that is forgotten already.
+    pub fn set_gpu(&mut self, frame: u64, time: Duration) {
+        let is_kept = frame < self.drawn && self.drawn - frame <= Self::MOST as u64;
+        if is_kept {
+            let place = self.place(frame);
+            self.frames[place].gpu = Some(time);
+        }
+    }
+
+    /// The frames that are kept, the first one first.
+    pub fn frames(&self) -> impl ExactSizeIterator<Item = &Frame> {
+        let count = self.drawn.min(Self::MOST as u64);
+        let first = self.drawn - count;
+        (0..count as usize).map(move |index| &self.frames[self.place(first + index as u64)])
+    }
+
+    pub fn last(&self) -> Option<&Frame> {
+        self.frames().last()
+    }
+
+    /// How a part of the frames is spread; nothing where no frame has it.
+    pub fn spread(&self, part: impl Fn(&Frame) -> Option<Duration>) -> Option<Spread> {
+        let mut times = [Duration::ZERO; Self::MOST];
+        let mut count = 0;
+        for time in self.frames().filter_map(part) {
+            times[count] = time;
+            count += 1;
+        }
+        let times = &mut times[..count];
+        times.sort_unstable();
+        // The smallest that at least such a part of all does not exceed.
+        let at = |hundredths: usize| (count * hundredths).div_ceil(100).saturating_sub(1);
+        Some(Spread { median: *times.get(at(50))?, slowest: *times.get(at(99))? })
+    }
+
+    /// How many frames a second there are while something moves, by the median.
+    pub fn per_second(&self) -> Option<f64> {
+        let interval = self.spread(|frame| frame.interval)?.median.as_secs_f64();
+        (interval > 0.0).then(|| interval.recip())
+    }
+
+    fn place(&self, frame: u64) -> usize {
+        (frame % Self::MOST as u64) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_millis(solve: u64) -> Frame {
+        Frame { solve: Duration::from_millis(solve), ..Frame::default() }
+    }
+
+    fn after(count: u64) -> FrameTimes {
+        let mut times = FrameTimes::default();
+        (0..count).for_each(|frame| times.push(of_millis(frame)));
+        times
+    }
+
+    #[test]
+    fn the_last_frames_are_kept_in_the_order_in_which_they_were_drawn() {
+        for count in [0, 1, 3, 239, 240, 241, 1000] {
+            let times = after(count);
+            let kept: Vec<_> = times.frames().copied().collect();
+            let first = count.saturating_sub(FrameTimes::MOST as u64);
+            assert_eq!(kept, (first..count).map(of_millis).collect::<Vec<_>>());
+            assert_eq!(times.last(), kept.last());
+            assert_eq!(times.drawn(), count);
+        }
+    }
+
+    #[test]
+    fn the_devices_time_finds_its_frame_as_long_as_that_is_kept() {
+        let time = Duration::from_millis(7);
+        for (frame, place) in [(700, Some(200)), (739, Some(239)), (500, Some(0)), (499, None)] {
+            let mut times = after(740);
+            times.set_gpu(frame, time);
+            let found = times.frames().position(|frame| frame.gpu == Some(time));
+            assert_eq!(found, place, "{frame}");
+        }
+        let mut times = after(740);
+        times.set_gpu(740, time);
+        assert_eq!(times, after(740), "it is not drawn yet");
+    }
+
+    #[test]
+    fn a_spread_has_half_of_all_below_its_median_and_all_but_a_hundredth_below_its_slowest() {
+        for count in [1_u64, 2, 3, 100, 101, 200, 240] {
+            let times = after(count);
+            let spread = times.spread(|frame| Some(frame.solve)).expect("there are frames");
+            let below = |bound: Duration| times.frames().filter(|it| it.solve <= bound).count();
+            let most = |bound: Duration| times.frames().filter(|it| it.solve < bound).count();
+            let count = count as usize;
+            assert!(2 * below(spread.median) >= count && 2 * most(spread.median) <= count);
+            let (reached, before) = (below(spread.slowest), most(spread.slowest));
+            assert!(100 * reached >= 99 * count && 100 * before < 99 * count, "{count}");
+        }
+        assert_eq!(after(3).spread(|frame| frame.gpu), None);
+        assert_eq!(FrameTimes::default().spread(|frame| Some(frame.solve)), None);
+    }
+
+    #[test]
+    fn frames_a_second_are_counted_only_while_something_moves() {
+        let mut times = after(5);
+        assert_eq!(times.per_second(), None);
+        let interval = Some(Duration::from_millis(20));
+        (0..5).for_each(|_| times.push(Frame { interval, ..Frame::default() }));
+        let per_second = times.per_second().expect("something moves");
+        assert!((per_second - 50.0).abs() < 1e-9, "{per_second}");
+    }
+
+    #[test]
+    fn a_frame_is_its_parts() {
+        let [solve, panels, scene, encode, wait] = [1, 2, 4, 8, 16].map(Duration::from_millis);
+        let frame = Frame { solve, panels, scene, encode, wait, ..Frame::default() };
+        assert_eq!(frame.work(), Duration::from_millis(15));
+        assert_eq!(frame.total(), Duration::from_millis(31));
+    }
+}

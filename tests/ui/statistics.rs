@@ -1,0 +1,178 @@
+//! Help → Statistics: what frames cost, and that showing it costs none.
+
+use std::time::Duration;
+
+use egui::accesskit::Role;
+use egui::{Key, PointerButton, Vec2, vec2};
+use egui_kittest::{SnapshotOptions, SnapshotResults};
+use glam::Vec3;
+use ik_arm::document::Theme;
+use ik_arm::render::Counts;
+use ik_arm::session::{Action, Dialog};
+use ik_arm::ui::{Frame, FrameTimes, Machine};
+
+use crate::bench::{Bench, LARGE, SMALL};
+
+/// A frame in which everything takes a part of a unit; every tenth takes three times as long.
+fn frame(index: u64) -> Frame {
+    let unit = if index.is_multiple_of(10) { 3_000 } else { 1_000 + 40 * (index % 7) };
+    let part = |hundredths: u64| Duration::from_micros(unit * hundredths / 100);
+    Frame {
+        solve: part(30),
+        panels: part(200),
+        scene: part(20),
+        encode: part(120),
+        wait: part(400),
+        gpu: Some(part(250)),
+        interval: Some(Duration::from_micros(16_667)),
+    }
+}
+
+fn machine(frames: u64, has_clock: bool) -> Machine {
+    let mut times = FrameTimes::default();
+    for index in 1..=frames {
+        let gpu = frame(index).gpu.filter(|_| has_clock);
+        times.push(Frame { gpu, ..frame(index) });
+    }
+    Machine {
+        adapter: "Test adapter (of tests) (vulkan)".to_owned(),
+        has_clock,
+        times,
+        counts: Some(Counts {
+            solids: 57,
+            lines: 12,
+            labels: 3,
+            triangles: 10_871,
+            uploaded: 1_234_567,
+        }),
+        ..Machine::default()
+    }
+}
+
+fn opened(size: Vec2, machine: Machine) -> Bench {
+    let mut bench = Bench::of_size(size);
+    bench.harness.state_mut().machine = machine;
+    bench.choose(&["Help", "Statistics"]);
+    bench
+}
+
+#[test]
+fn the_help_menu_opens_the_statistics_and_esc_closes_them() {
+    let mut bench = opened(LARGE, machine(3, true));
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
+    assert!(bench.says("Frame times: the last took 8.6 ms"));
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+    assert!(!bench.says("Frame times"));
+}
+
+#[test]
+fn every_part_has_its_median_and_its_slowest() {
+    let bench = opened(LARGE, machine(240, true));
+    // The median frame has a unit of 1.12 ms, the slowest of 3.
+    for (part, median, slowest) in [
+        ("Solve", "0.336", "0.900"),
+        ("Panels", "2.240", "6.000"),
+        ("Scene", "0.224", "0.600"),
+        ("Encode", "1.344", "3.600"),
+        ("Wait", "4.480", "12.000"),
+        ("Total", "8.624", "23.100"),
+        ("GPU", "2.800", "7.500"),
+    ] {
+        let row = bench.rect(Role::Label, part);
+        for figure in [median, slowest] {
+            let figure = bench.rect(Role::Label, figure);
+            assert!((figure.center().y - row.center().y).abs() < 3.0, "{part}: {figure:?}");
+        }
+    }
+    for figure in ["60", "57", "12", "3", "10 871", "1 234 567"] {
+        assert!(bench.shows(Role::Label, figure), "{figure}");
+    }
+    assert!(bench.shows(Role::Label, "Test adapter (of tests)"));
+    assert!(bench.shows(Role::Label, "Backend: vulkan"));
+}
+
+#[test]
+fn an_adapter_without_a_clock_is_said_to_have_none() {
+    let bench = opened(LARGE, machine(10, false));
+    assert!(bench.shows(Role::Label, "not measured by this adapter"));
+}
+
+#[test]
+fn before_the_first_frame_there_is_nothing_to_tell() {
+    let bench = opened(LARGE, Machine::default());
+    assert!(bench.says("Frame times: no frame has been drawn"));
+    assert!(bench.shows(Role::Label, "–"));
+}
+
+#[test]
+fn nothing_moves_when_the_figures_change_their_widths() {
+    let places = |bench: &Bench| {
+        let names = ["Solve", "Total", "GPU", "Frames a second", "Bytes uploaded"];
+        names.map(|name| bench.rect(Role::Label, name))
+    };
+    let mut bench = opened(LARGE, machine(240, true));
+    let before = places(&bench);
+    for frames in [0, 1, 17] {
+        bench.harness.state_mut().machine = machine(frames, true);
+        bench.settle();
+        assert_eq!(places(&bench), before, "{frames} frames");
+    }
+    let slow = Frame { panels: Duration::from_millis(9_876), ..Frame::default() };
+    bench.harness.state_mut().machine.times.push(slow);
+    bench.harness.state_mut().machine.counts =
+        Some(Counts { uploaded: 9_999_999, ..Counts::default() });
+    bench.settle();
+    assert_eq!(places(&bench), before);
+}
+
+#[test]
+fn the_statistics_ask_for_no_frame_and_the_rest_goes_on_beside_them() {
+    let mut bench = opened(LARGE, machine(240, true));
+    assert!(!bench.asks_for_a_frame());
+    bench.wait(1.0);
+    assert!(!bench.asks_for_a_frame());
+    let before = bench.hand();
+    let at = bench.cursor_place();
+    assert!(at.x < bench.rect(Role::Label, "Solve").left(), "the hand is not hidden");
+    bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
+    assert_ne!(bench.hand(), before, "the hand is dragged");
+    bench.apply([
+        Action::Key(bench.session().all_channels()),
+        Action::SetTime(1.0),
+        Action::SetHand(Vec3::new(100.0, 200.0, 0.0)),
+        Action::Key(bench.session().all_channels()),
+    ]);
+    bench.key(Key::Space);
+    assert!(bench.session().is_playing(), "Space plays");
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
+}
+
+#[test]
+fn the_statistics_fit_the_smallest_window() {
+    let bench = opened(SMALL, machine(240, true));
+    let screen = bench.harness.ctx.content_rect();
+    for name in ["Solve", "Total", "Bytes uploaded", "Backend: vulkan"] {
+        let rect = bench.rect(Role::Label, name);
+        assert!(screen.contains_rect(rect), "{name}: {rect:?}");
+    }
+}
+
+#[test]
+fn the_statistics_look_as_they_did() {
+    let mut results = SnapshotResults::new();
+    for theme in [Theme::Dark, Theme::Light] {
+        let mut bench = opened(LARGE, machine(240, true));
+        bench.apply([Action::SetTheme(theme)]);
+        bench.move_to(bench.empty_place());
+        bench.settle();
+        let options = SnapshotOptions::new()
+            .threshold(2.0)
+            .max_failed_pixels(600)
+            .output_path("tests/ui/snapshots");
+        let name = format!("statistics_{}", format!("{theme:?}").to_lowercase());
+        bench.harness.snapshot_options(name, &options);
+        results.extend_harness(&mut bench.harness);
+    }
+}
