@@ -76,12 +76,13 @@ fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
 fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
     let times = machine.crowd.filter(|times| times.arms == crowd.arms);
     let solve_ms = times.map(|times| times.solve.as_secs_f64() * 1e3);
-    let draw_ms = solve_ms.zip(machine.frame_ms).map(|(solve, frame)| f64::from(frame) - solve);
+    let work_ms = machine.times.last().map(|frame| frame.work().as_secs_f64() * 1e3);
+    let rest_ms = work_ms.zip(solve_ms).map(|(work, solve)| (work - solve).max(0.0));
     let per_arm = solve_ms.map(|solve| solve * 1e6 / f64::from(crowd.arms));
     let rows = [
         ("Solve", solve_ms, "ms", "From cursors to elbows and hands"),
         ("Each arm", per_arm, "ns", "Solving, divided by the arms"),
-        ("The rest of the frame", draw_ms, "ms", "Targets, sending, drawing, panels"),
+        ("The rest of the frame", rest_ms, "ms", "Targets, sending, drawing, panels"),
     ];
     for (name, value, unit, tooltip) in rows {
         ui.horizontal(|ui| {
