@@ -5,6 +5,7 @@ mod effects;
 mod failures;
 mod graphics;
 mod jobs;
+mod laps;
 mod present;
 mod recovery;
 mod settings;

@@ -14,6 +14,7 @@ use winit::window::{Icon, Window, WindowAttributes};
 use super::debug::Debug;
 use super::failures::Failures;
 use super::graphics::{Graphics, GraphicsError, guarded};
+use super::laps::laps;
 use super::present::Presented;
 use super::settings::Settings;
 use super::{AppError, UserEvent};
@@ -264,7 +265,7 @@ impl AppWindow {
         session: &mut Session,
         frame: &mut Frame,
     ) -> (FullOutput, Rect, Vec<Effect>) {
-        let mut lap = lap_from(Instant::now());
+        let mut lap = laps();
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
         let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
@@ -325,7 +326,7 @@ impl AppWindow {
                 Ok(Presented::Later(None))
             });
         }
-        let mut lap = lap_from(Instant::now());
+        let mut lap = laps();
         let (document, theme) = (session.shown(), session.preferences().theme);
         session.restage(&mut self.staging);
         match &mut self.scene {
@@ -357,14 +358,6 @@ impl AppWindow {
             }
             Ok(presented)
         })
-    }
-}
-
-/// Tells how long it is since it was last asked.
-fn lap_from(mut last: Instant) -> impl FnMut() -> Duration {
-    move || {
-        let now = Instant::now();
-        now - std::mem::replace(&mut last, now)
     }
 }
 
