@@ -1,0 +1,60 @@
+//! A session under any actions whatever, many of them, watched after each.
+#![cfg(feature = "document")]
+
+mod actions;
+mod kinds;
+mod past;
+mod pictured;
+mod posed;
+#[path = "../common/rigs.rs"]
+mod rigs;
+mod run;
+mod sound;
+mod values;
+mod watch;
+
+use run::{Every, Run};
+
+/// The invariant that does not hold, in a sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken(pub String);
+
+/// Says what is broken unless it holds.
+#[macro_export]
+macro_rules! hold {
+    ($holds:expr, $($words:tt)*) => {
+        if !$holds {
+            return Err($crate::Broken(format!($($words)*)));
+        }
+    };
+}
+
+#[test]
+fn a_session_stays_one_under_a_few_thousand_of_any_actions() {
+    let run = Run { seed: 1, actions: 4_000, every: Every::RARE, is_told: false };
+    let (least, name) = run.run().least();
+    assert!(least > 0, "{name} was never done");
+}
+
+#[test]
+fn a_session_stays_one_when_all_is_checked_after_every_action() {
+    let run = Run { seed: 2, actions: 300, every: Every::EACH, is_told: false };
+    run.run();
+}
+
+/// As many actions as `IK_ARM_SOAK_ACTIONS` says, from the seed `IK_ARM_SOAK_SEED`; the last fiftieth
+/// of them with all checks after each.
+#[test]
+#[ignore = "takes a quarter of an hour: scripts/soak.sh"]
+fn a_session_stays_one_under_a_million_of_any_actions() {
+    let said = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
+    let actions = said("IK_ARM_SOAK_ACTIONS").unwrap_or(1_000_000);
+    let seed = said("IK_ARM_SOAK_SEED").unwrap_or(1) as u64;
+    let each = Run { seed: !seed, actions: actions / 50, every: Every::EACH, is_told: true };
+    let rare = Run { seed, actions, every: Every::RARE, is_told: true };
+    each.run();
+    let counts = rare.run();
+    eprintln!("{}", counts.table());
+    let (least, name) = counts.least();
+    assert!(least >= actions / 2000, "{name} was done only {least} times");
+}

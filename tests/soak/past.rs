@@ -1,0 +1,92 @@
+//! What holds for the past and the future: undo and redo, and what is saved.
+
+use ik_arm::document::Document;
+use ik_arm::io;
+use ik_arm::session::{Action, Session};
+
+use crate::{Broken, hold};
+
+/// All but the view, which is not undone.
+pub fn is_same(a: &Document, b: &Document) -> bool {
+    let Document { rig, arm, skeleton, keys, timeline, camera: _, display, metres } = a;
+    *rig == b.rig
+        && *arm == b.arm
+        && *skeleton == b.skeleton
+        && *keys == b.keys
+        && *timeline == b.timeline
+        && *display == b.display
+        && *metres == b.metres
+}
+
+/// As it is saved, with a view of no importance.
+pub fn saved(document: &Document) -> Result<String, Broken> {
+    let camera = Document::default().camera;
+    let document = Document { camera, ..document.clone() };
+    io::to_json(&document).map_err(|error| Broken(format!("a document can be saved: {error}")))
+}
+
+/// What is saved is opened again as the same, to the last bit.
+pub fn saving(document: &Document) -> Result<(), Broken> {
+    let text =
+        io::to_json(document).map_err(|error| Broken(format!("it can be saved: {error}")))?;
+    let opened = io::parse("soak.json", &text, None)
+        .map_err(|error| Broken(format!("what is saved can be opened: {error}")))?;
+    hold!(opened.warnings.is_empty(), "nothing is odd in what is saved: {:?}", opened.warnings);
+    hold!(opened.document == *document, "what is saved is opened as it was");
+    let again = io::to_json(&opened.document).ok();
+    hold!(again.as_ref() == Some(&text), "what is opened is saved as it was, to the last byte");
+    Ok(())
+}
+
+/// How often a session can be taken back, and that it comes to where it began and back again.
+pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken> {
+    let mut session = session.clone();
+    for action in [Action::CommitEdit, Action::Run(false)] {
+        session.apply(action);
+    }
+    let present = (session.shown().clone(), saved(session.document())?);
+    way(&mut session, &Action::Redo, &Action::Undo)?;
+    let mut first = session.clone();
+    let steps = way(&mut session, &Action::Undo, &Action::Redo)?;
+    while first.undo_name().is_some() {
+        first.apply(Action::Undo);
+    }
+    if let Some(began) = began {
+        hold!(is_same(first.document(), began), "all undone, it is the document of the beginning");
+        let same = saved(first.document())? == saved(began)?;
+        hold!(same, "all undone, it is saved as the document of the beginning");
+    }
+    hold!(is_same(session.shown(), &present.0), "undone and done again, it is shown as it was");
+    let same = saved(session.document())? == present.1;
+    hold!(same, "undone and done again, it is saved as it was");
+    Ok(steps)
+}
+
+/// Goes all the way there and all the way back, by the same documents.
+fn way(session: &mut Session, there: &Action, back: &Action) -> Result<usize, Broken> {
+    const ENDLESS: usize = 3000;
+    let mut passed: Vec<(Document, Document)> = Vec::new();
+    loop {
+        let state = (session.document().clone(), session.shown().clone());
+        session.apply(there.clone());
+        if session.message().is_none_or(|message| message.starts_with("There is nothing")) {
+            hold!(is_same(session.document(), &state.0), "nothing to {there:?} changes nothing");
+            break;
+        }
+        passed.push(state);
+        hold!(passed.len() < ENDLESS, "{there:?} comes to an end");
+    }
+    let steps = passed.len();
+    for (step, (document, shown)) in passed.into_iter().enumerate().rev() {
+        session.apply(back.clone());
+        let name = session.message().unwrap_or_default().to_owned();
+        let same = is_same(session.document(), &document);
+        hold!(
+            same,
+            "{there:?} and {back:?} are the same document, at step {step} of {steps}, {name}"
+        );
+        let same = is_same(session.shown(), &shown);
+        hold!(same, "{there:?} and {back:?} are shown the same, at step {step} of {steps}, {name}");
+    }
+    Ok(steps)
+}

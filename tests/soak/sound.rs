@@ -1,0 +1,145 @@
+//! What holds for every document, and for what is shown of it.
+
+use std::collections::HashSet;
+use std::f32::consts::FRAC_PI_2;
+
+use glam::Vec3;
+use ik_arm::document::{
+    Arm, Camera, Channel, Document, Quantity, SkeletonRig, Slither, Target, Wrist,
+};
+use ik_arm::kinematics::skeleton::{Joint, Limit};
+use ik_arm::kinematics::solve::Options;
+use ik_arm::session::Session;
+
+use crate::{Broken, hold};
+
+/// Everything that a file could hold is finite and in its range.
+pub fn document(document: &Document) -> Result<(), Broken> {
+    let Document { rig: _, arm, skeleton, keys: _, timeline, camera, display: _, metres } =
+        document;
+    self::arm(arm)?;
+    self::skeleton(skeleton)?;
+    self::camera(camera)?;
+    hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
+    hold!(metres.is_none_or(is_above_0), "a unit is longer than nothing: {metres:?}");
+    keys(document)
+}
+
+/// What is shown at a time has all of it too.
+pub fn shown(session: &Session) -> Result<(), Broken> {
+    let shown = session.shown();
+    arm(&shown.arm)?;
+    skeleton(&shown.skeleton)?;
+    hold!(shown.camera == session.document().camera, "the shown camera is the document's");
+    hold!(shown.keys == session.document().keys, "the shown keys are the document's");
+    Ok(())
+}
+
+fn is_above_0(value: f32) -> bool {
+    value.is_finite() && value > 0.0
+}
+
+fn arm(arm: &Arm) -> Result<(), Broken> {
+    const UNIT: f32 = 1e-5;
+    let is_unit = |length: f32| (length - 1.0).abs() < UNIT;
+    let Arm {
+        elbow_spin, root, bones, facing, pole, carried, softening: _, weight, fk, wrist, ..
+    } = arm;
+    hold!(arm.cursor().is_finite() && arm.cursor_world().is_finite(), "the cursor is finite");
+    hold!(elbow_spin.is_finite(), "the elbow's spin is finite: {elbow_spin}");
+    hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
+    hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
+    hold!(is_unit(facing.direction.length()), "the arm faces somewhere: {facing:?}");
+    hold!(is_unit(facing.heading.length()), "the arm heads somewhere: {facing:?}");
+    if let Some(it) = carried {
+        let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
+        hold!(are_units, "what is carried are unit vectors: {it:?}");
+        let across = it.direction.dot(it.outward);
+        hold!(across.abs() < UNIT, "what is carried is across the Pointer: {it:?}");
+    }
+    hold!((0.0..=1.0).contains(weight), "the weight is from 0 to 1: {weight}");
+    hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
+    hold!(is_above_0(fk.stretch), "limbs are stretched by a factor: {fk:?}");
+    let Wrist { angles, roll, .. } = wrist;
+    hold!(angles.is_finite() && roll.is_finite(), "the wrist's angles are finite: {wrist:?}");
+    Ok(())
+}
+
+fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
+    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, slither } = rig;
+    let joints = skeleton.joints();
+    hold!(skeleton.transform().is_finite(), "the skeleton is somewhere");
+    let mut names = HashSet::new();
+    for (index, joint) in joints.iter().enumerate() {
+        self::joint(joint, index)?;
+        hold!(names.insert(joint.name.as_str()), "no two joints are called {:?}", joint.name);
+    }
+    let mut aimed = HashSet::new();
+    for target in targets {
+        self::target(target, joints.len())?;
+        hold!(aimed.insert(target.joint), "joint {} has one target", target.joint);
+    }
+    let Options { iterations, tolerance, damping, step, .. } = *solver;
+    hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
+    hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");
+    hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
+    let per_frame = 1..=SkeletonRig::MOST_ITERATIONS_PER_FRAME;
+    hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
+    if let Some(Slither { radius, amplitude, period, .. }) = slither {
+        let is_way = radius.is_finite() && amplitude.is_finite() && is_above_0(*period);
+        hold!(is_way, "the snake has a way: {slither:?}");
+    }
+    Ok(())
+}
+
+fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
+    let Joint { name, parent, offset, axis, rotation, frame, limits, locked: _, radius } = joint;
+    hold!(!name.trim().is_empty(), "joint {index} has a name");
+    hold!(parent.is_none_or(|parent| parent < index), "{name:?} hangs from one before it");
+    let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
+    hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
+    hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
+    for limit in limits.iter().flatten() {
+        let Limit { min, max } = limit;
+        hold!(min.is_finite() && max.is_finite() && min <= max, "{name:?} has limits: {limit:?}");
+    }
+    hold!(joint.clamped(*rotation) == *rotation, "{name:?} is within its limits: {joint:?}");
+    Ok(())
+}
+
+fn target(target: &Target, joints: usize) -> Result<(), Broken> {
+    let Target { joint, home, weight, enabled: _, motion } = target;
+    hold!(*joint < joints, "a target is of a joint: {joint} of {joints}");
+    hold!(home.is_finite() && is_above_0(*weight), "a target can be aimed at: {target:?}");
+    hold!(motion.radius.is_finite() && is_above_0(motion.period), "a target goes: {target:?}");
+    Ok(())
+}
+
+fn camera(camera: &Camera) -> Result<(), Broken> {
+    let Camera { target, yaw, pitch, distance, orthographic: _ } = camera;
+    hold!(target.is_finite() && yaw.is_finite(), "the camera looks somewhere: {camera:?}");
+    hold!((-FRAC_PI_2..=FRAC_PI_2).contains(pitch), "the camera is upright: {camera:?}");
+    hold!(is_above_0(*distance), "the camera is away from what it looks at: {camera:?}");
+    Ok(())
+}
+
+fn keys(document: &Document) -> Result<(), Broken> {
+    for (channel, track) in document.keys.tracks() {
+        let knots = track.knots();
+        hold!(!knots.is_empty(), "{channel:?} has keys");
+        hold!(knots.is_sorted_by(|a, b| a.time < b.time), "keys of {channel:?} are in order");
+        let are_finite = knots.iter().all(|knot| knot.time.is_finite() && knot.value.is_finite());
+        hold!(are_finite, "keys of {channel:?} are finite: {knots:?}");
+        let is_right = |value: Vec3| match channel.quantity() {
+            Quantity::Length => value.x > 0.0,
+            Quantity::Part => (0.0..=1.0).contains(&value.x),
+            Quantity::Switch => value.x == 0.0 || value.x == 1.0,
+            Quantity::Point | Quantity::Angle | Quantity::Angles => true,
+        };
+        let values = knots.iter().map(|knot| knot.value);
+        hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");
+        let goes = matches!(channel, Channel::Hand | Channel::Pin);
+        hold!(goes || channel.value(document).is_some(), "{channel:?} is of something");
+    }
+    Ok(())
+}

@@ -1,0 +1,244 @@
+//! A session with what a watcher knows of it: after every action it is still what it has to be.
+
+use std::collections::HashMap;
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use ik_arm::document::Document;
+use ik_arm::session::{Action, Dialog, Session};
+
+use crate::kinds::{KINDS, Sort, kind};
+use crate::past::is_same;
+use crate::{Broken, hold, past, pictured, posed, sound};
+
+/// How thoroughly to look after an action.
+#[derive(Clone, Copy, Debug)]
+pub struct Care {
+    /// Whether this action alone is undone and done again.
+    pub step: bool,
+    pub saving: bool,
+    pub scene: bool,
+    /// Whether everything is undone and done again.
+    pub walk: bool,
+}
+
+impl Care {
+    pub const FULL: Self = Self { step: true, saving: true, scene: true, walk: true };
+}
+
+pub struct Watch {
+    pub session: Session,
+    /// What the history began with.
+    pub began: Document,
+    /// How many actions ago that was.
+    pub age: usize,
+    /// As it was saved last; nothing of a document that never was.
+    saved: Option<Document>,
+    /// How it was before the change under way.
+    before_edit: Option<Document>,
+    /// What a revision looks like, saved.
+    revisions: HashMap<u64, u64>,
+    /// How often it could be undone, if that has just been counted.
+    steps: Option<usize>,
+}
+
+impl Watch {
+    /// So many steps are never forgotten: one action makes two at most, its own and a solver's.
+    const WHOLE: usize = 450;
+
+    pub fn new(document: Document) -> Self {
+        let session = Session::with_document(Default::default(), document.clone());
+        Self {
+            session,
+            began: document.clone(),
+            age: 0,
+            saved: Some(document),
+            before_edit: None,
+            revisions: HashMap::new(),
+            steps: None,
+        }
+    }
+
+    /// Whether the action was done, and not asked about.
+    pub fn apply(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
+        let before = Before::new(&self.session, care.step);
+        let applied = catch_unwind(AssertUnwindSafe(|| self.session.apply(action.clone())));
+        if let Err(panic) = applied {
+            let text = panic.downcast_ref::<String>().cloned();
+            let text = text.or(panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+            return Err(Broken(format!("nothing panics: {}", text.unwrap_or_default())));
+        }
+        self.age += 1;
+        let waits = Some(&Dialog::Unsaved { then: Box::new(action.clone()) });
+        let is_done = self.session.dialog() != waits || before.dialog.as_ref() == waits;
+        let is_replaced = self.follow(action, &before);
+        sound::document(self.session.document())?;
+        sound::shown(&self.session)?;
+        posed::all(&self.session)?;
+        self.check_documents(action, &before, is_replaced)?;
+        self.check_saved(action, is_replaced)?;
+        if care.step && !is_replaced {
+            self.check_step(&before)?;
+        }
+        if care.saving {
+            past::saving(self.session.document())?;
+            self.check_revision()?;
+        }
+        if care.scene {
+            pictured::all(&self.session)?;
+        }
+        self.check_past(action, &before, is_replaced, care.walk)?;
+        Ok(is_done)
+    }
+
+    /// Keeps up with what is saved and what has been opened. Whether it is another document.
+    fn follow(&mut self, action: &Action, before: &Before) -> bool {
+        let session = &self.session;
+        let can_replace = matches!(
+            action,
+            Action::Opened { .. }
+                | Action::OpenExample(_)
+                | Action::NewSkeleton
+                | Action::Recover { .. }
+                | Action::Discard(_)
+                | Action::Saved(_)
+        );
+        let is_fresh = session.undo_name().is_none() && session.redo_name().is_none();
+        let is_replaced = can_replace
+            && is_fresh
+            && session.revision() != before.revision
+            && !session.is_changing();
+        if let Action::Saved(_) = action {
+            self.saved = Some(before.document.clone());
+        }
+        if is_replaced {
+            self.began = session.document().clone();
+            self.saved = (!session.is_unsaved()).then(|| self.began.clone());
+            self.age = 0;
+            self.revisions.clear();
+        }
+        is_replaced
+    }
+
+    /// Who leaves the document alone does, and what is taken back is.
+    fn check_documents(
+        &mut self,
+        action: &Action,
+        before: &Before,
+        is_replaced: bool,
+    ) -> Result<(), Broken> {
+        let document = self.session.document();
+        let is_left = is_same(document, &before.document);
+        let solves = matches!(action, Action::Advance(_)) && before.is_running;
+        if matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time) && !solves {
+            hold!(is_left, "it leaves the document alone");
+        }
+        if matches!(action, Action::Advance(_) | Action::Step) {
+            let [was, is] = [&before.document, document].map(|it| &it.skeleton.skeleton);
+            posed::locked(was, is)?;
+        }
+        let takes_back = matches!(action, Action::CancelEdit | Action::Undo);
+        if let Some(before) = self.before_edit.as_ref().filter(|_| takes_back && !is_replaced) {
+            hold!(is_same(document, before), "a change taken back leaves no trace");
+            let same = past::saved(document)? == past::saved(before)?;
+            hold!(same, "a change taken back leaves no trace in a file");
+        }
+        self.before_edit = match self.session.is_editing() {
+            true => Some(self.before_edit.take().unwrap_or_else(|| before.document.clone())),
+            false => None,
+        };
+        Ok(())
+    }
+
+    fn check_saved(&self, action: &Action, is_replaced: bool) -> Result<(), Broken> {
+        let session = &self.session;
+        if !session.is_unsaved() {
+            let is_saved = self.saved.as_ref().is_some_and(|it| is_same(it, session.document()));
+            hold!(is_saved, "what counts as saved is as it was saved");
+        }
+        let is_written = matches!(action, Action::Saved(_)) && !is_replaced;
+        hold!(!is_written || !session.is_unsaved(), "what has just been saved is saved");
+        Ok(())
+    }
+
+    /// The same revision, the same document.
+    fn check_revision(&mut self) -> Result<(), Broken> {
+        if self.session.is_changing() {
+            return Ok(());
+        }
+        let mut hasher = DefaultHasher::new();
+        past::saved(self.session.document())?.hash(&mut hasher);
+        let (revision, hash) = (self.session.revision(), hasher.finish());
+        let known = *self.revisions.entry(revision).or_insert(hash);
+        hold!(known == hash, "revision {revision} is one document");
+        Ok(())
+    }
+
+    /// A change that is one action is undone by one Undo, and done again by one Redo.
+    fn check_step(&self, before: &Before) -> Result<(), Broken> {
+        let Some(was) = before.session.as_deref() else { return Ok(()) };
+        let session = &self.session;
+        let is_whole = !was.is_changing() && !session.is_changing();
+        if !is_whole || is_same(session.document(), was.document()) {
+            return Ok(());
+        }
+        let mut copy = session.clone();
+        copy.apply(Action::Undo);
+        hold!(is_same(copy.document(), was.document()), "one Undo leads to before the action");
+        let same = past::saved(copy.document())? == past::saved(was.document())?;
+        hold!(same, "one Undo leads to what was saved before the action");
+        let is_same_time = session.time() == was.time();
+        let same = is_same(copy.shown(), was.shown());
+        hold!(!is_same_time || same, "one Undo shows what was shown before the action");
+        copy.apply(Action::Redo);
+        hold!(is_same(copy.document(), session.document()), "one Redo leads to after the action");
+        hold!(is_same(copy.shown(), session.shown()), "one Redo shows what the action did");
+        Ok(())
+    }
+
+    fn check_past(
+        &mut self,
+        action: &Action,
+        before: &Before,
+        is_replaced: bool,
+        is_due: bool,
+    ) -> Result<(), Broken> {
+        let last = self.steps.take();
+        if !is_due {
+            return Ok(());
+        }
+        let began = (self.age < Self::WHOLE).then_some(&self.began);
+        let steps = past::walk(&self.session, began)?;
+        self.steps = Some(steps);
+        let Some(last) = last.filter(|_| !is_replaced) else { return Ok(()) };
+        // Steps that show something at a time only are none at another.
+        let is_elsewhen = before.time != self.session.time();
+        let moves = matches!(action, Action::Undo | Action::Redo) || is_elsewhen;
+        hold!(moves || steps <= last + 1, "an action is one step: {steps} after {last}");
+        Ok(())
+    }
+}
+
+/// What is compared with afterwards.
+struct Before {
+    document: Document,
+    session: Option<Box<Session>>,
+    dialog: Option<Dialog>,
+    revision: u64,
+    time: f64,
+    is_running: bool,
+}
+
+impl Before {
+    fn new(session: &Session, whole: bool) -> Self {
+        Self {
+            document: session.document().clone(),
+            session: whole.then(|| Box::new(session.clone())),
+            dialog: session.dialog().cloned(),
+            revision: session.revision(),
+            time: session.time(),
+            is_running: session.is_running(),
+        }
+    }
+}
