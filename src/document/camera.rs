@@ -65,6 +65,14 @@ impl Camera {
     /// Room around what is framed.
     const MARGIN: f32 = 1.2;
 
+    /// Whether it looks from somewhere at something: finite numbers, a pitch within ±π/2, a distance
+    /// above 0.
+    pub fn is_valid(&self) -> bool {
+        let looks = self.target.is_finite() && self.yaw.is_finite();
+        let is_upright = (-FRAC_PI_2..=FRAC_PI_2).contains(&self.pitch);
+        looks && is_upright && self.distance.is_finite() && self.distance > 0.0
+    }
+
     pub fn projection(&self, aspect: f32) -> Projection {
         let (back, right, up) = self.basis();
         let half_height = (Self::FIELD_OF_VIEW / 2.0).tan();

@@ -1,7 +1,9 @@
 use glam::Vec3;
 
 use super::drag::Way;
-use super::{Action, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming};
+use super::{
+    Action, Constraint, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming,
+};
 use crate::document::{Arm, Camera, Display, Document, Goal, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
@@ -63,7 +65,7 @@ impl Session {
             Action::ShowRig(rig) => self.show_rig(rig),
 
             Action::Select(joints) => self.select(joints),
-            Action::Point(joint) => self.pointed = joint,
+            Action::Point(joint) => self.point(joint),
             Action::AddChild { parent, tip } => self.add_joint(Some(parent), tip),
             Action::AddRoot => self.add_joint(None, None),
             Action::Delete(joints) => self.remove_joints(&joints),
@@ -78,9 +80,7 @@ impl Session {
             Action::SetAxis { joint, axis } => {
                 self.edit_skeleton(|rig| rig.skeleton.set_axis(joint, axis));
             }
-            Action::SetLimit { joint, axis, limit } => {
-                self.change_joint(joint, |joint| joint.limits[axis] = limit);
-            }
+            Action::SetLimit { joint, axis, limit } => self.set_limit(joint, axis, limit),
             Action::SetLocked { joint, locked } => {
                 self.change_joint(joint, |joint| joint.locked = locked);
             }
@@ -140,16 +140,20 @@ impl Session {
             Action::CancelEdit => self.cancel_edit(),
             Action::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
             Action::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
-            Action::ConstrainDrag(constraint) => {
+            Action::ConstrainDrag(constraint) if constraint.is_none_or(Constraint::is_possible) => {
                 self.drag_by(|drag| drag.set_constraint(constraint));
             }
+            Action::ConstrainDrag(_) => {}
             Action::TypeOffset(typed) => self.drag_by(|drag| drag.set_typed(typed)),
 
             Action::SetCamera(camera) => {
                 self.glide = None;
                 self.set_camera(camera);
             }
-            Action::GlideTo(camera) => self.glide = Some(Glide::new(self.document.camera, camera)),
+            Action::GlideTo(camera) if camera.is_valid() => {
+                self.glide = Some(Glide::new(self.document.camera, camera));
+            }
+            Action::GlideTo(_) => {}
             Action::Advance(seconds) => self.advance(seconds),
             Action::GrabView(motion, at) => {
                 self.glide = None;
@@ -288,6 +292,9 @@ impl Session {
     }
 
     fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {
+        if !grip.is_possible() {
+            return;
+        }
         self.glide = None;
         match grip {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
@@ -346,6 +353,9 @@ impl Session {
     }
 
     fn advance(&mut self, seconds: f64) {
+        if !seconds.is_finite() {
+            return;
+        }
         if let Some(glide) = &mut self.glide {
             let (camera, arrived) = glide.at(seconds);
             if arrived {

@@ -20,6 +20,20 @@ pub enum Grip {
     Ring(usize, usize),
 }
 
+impl Grip {
+    /// Whether what it says of axes are three.
+    pub(super) fn is_possible(self) -> bool {
+        match self {
+            Self::Hand(handle)
+            | Self::Pole(handle)
+            | Self::Target(_, handle)
+            | Self::Tip(_, handle) => handle.is_possible(),
+            Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
+            Self::Bend => true,
+        }
+    }
+}
+
 /// What is held, and where it has been taken.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {

@@ -365,15 +365,22 @@ impl Session {
         self.retain_keys();
     }
 
+    /// A view that is none leaves the last one: so far away, numbers end.
     fn set_camera(&mut self, camera: Camera) {
-        self.document.camera = camera;
-        self.shown.camera = camera;
+        if camera.is_valid() {
+            self.document.camera = camera;
+            self.shown.camera = camera;
+        }
     }
 
     fn select(&mut self, joints: Vec<usize>) {
         self.selection = joints;
         self.selection.retain(|joint| *joint < self.skeleton_pose.len());
         self.forget_trail();
+    }
+
+    fn point(&mut self, joint: Option<usize>) {
+        self.pointed = joint.filter(|joint| *joint < self.skeleton_pose.len());
     }
 
     pub fn dialog(&self) -> Option<&Dialog> {

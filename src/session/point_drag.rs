@@ -15,11 +15,29 @@ pub enum Handle {
     Plane(usize),
 }
 
+impl Handle {
+    /// Whether its axis is one of three.
+    pub(super) fn is_possible(self) -> bool {
+        match self {
+            Self::Free => true,
+            Self::Axis(axis) | Self::Plane(axis) => axis < 3,
+        }
+    }
+}
+
 /// What a key makes of a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constraint {
     Axis(usize),
     Plane(usize),
+}
+
+impl Constraint {
+    /// Whether its axis is one of three.
+    pub(super) fn is_possible(self) -> bool {
+        let (Self::Axis(axis) | Self::Plane(axis)) = self;
+        axis < 3
+    }
 }
 
 /// Where the pointer is now, and the keys that change what that means.

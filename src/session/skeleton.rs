@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::Session;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Slither, Target};
-use crate::kinematics::skeleton::{Joint, SkeletonError};
+use crate::kinematics::skeleton::{Joint, Limit, SkeletonError};
 use crate::kinematics::solve::Options;
 
 /// What actions do to the skeleton.
@@ -80,6 +80,14 @@ impl Session {
             self.follow_keys(&moved, selected);
             self.pointed = self.pointed.and_then(|joint| moved.get(joint));
             self.select(before.iter().filter_map(|joint| moved.get(*joint)).collect());
+        }
+    }
+
+    pub(super) fn set_limit(&mut self, joint: usize, axis: usize, limit: Option<Limit>) {
+        if axis < 3 {
+            self.change_joint(joint, |joint| joint.limits[axis] = limit);
+        } else {
+            self.message = Some(format!("A joint has angles 0, 1 and 2, not {axis}"));
         }
     }
 

@@ -37,10 +37,10 @@ impl Session {
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: Way::Turn(drag) }));
     }
 
-    /// What a joint's angle turns about, in the world.
+    /// What a joint's angle x, y or z (0, 1, 2) turns about, in the world.
     pub fn ring(&self, joint: usize, axis: usize) -> Option<Ring> {
         let skeleton = &self.skeleton().skeleton;
-        skeleton.joint(joint)?;
+        skeleton.joint(joint).filter(|_| axis < 3)?;
         let world = skeleton.transform_to_base(joint);
         let local = skeleton.joints()[joint].rotation_axis(axis);
         // A mirror turns every rotation around.

@@ -1,0 +1,99 @@
+//! What cannot be leaves a session as it is.
+#![cfg(feature = "document")]
+
+use glam::{Vec2, Vec3};
+use ik_arm::document::{Camera, Ray};
+use ik_arm::session::{Action, Constraint, Grip, Handle, Motion, Session};
+
+fn ray() -> Ray {
+    Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
+}
+
+#[test]
+fn a_camera_that_looks_from_nowhere_is_not_taken() {
+    let camera = Camera::default();
+    for wrong in [
+        Camera { target: Vec3::NAN, ..camera },
+        Camera { yaw: f32::INFINITY, ..camera },
+        Camera { pitch: 1.6, ..camera },
+        Camera { distance: 0.0, ..camera },
+        Camera { distance: f32::NAN, ..camera },
+    ] {
+        let mut session = Session::default();
+        session.apply(Action::SetCamera(wrong));
+        session.apply(Action::GlideTo(wrong));
+        for seconds in [0.0, 0.1, 1.0] {
+            session.apply(Action::Advance(seconds));
+        }
+        assert_eq!(session.camera(), &camera, "after {wrong:?}");
+    }
+}
+
+#[test]
+fn a_view_that_is_dragged_to_nowhere_stays() {
+    for (motion, to, aspect) in [
+        (Motion::Pan, Vec2::NAN, 1.0),
+        (Motion::Pan, Vec2::splat(f32::MAX), 2.0),
+        (Motion::Zoom, Vec2::NAN, 1.0),
+        (Motion::Orbit, Vec2::X, f32::INFINITY),
+    ] {
+        let mut session = Session::default();
+        session.apply(Action::GrabView(motion, Vec2::ZERO));
+        session.apply(Action::DragView { to, aspect });
+        assert_eq!(session.camera(), &Camera::default(), "after {motion:?} to {to}");
+    }
+}
+
+#[test]
+fn a_picture_at_no_time_changes_nothing() {
+    let mut session = Session::default();
+    let to = Camera { yaw: 3.0, ..Camera::default() };
+    session.apply(Action::GlideTo(to));
+    session.apply(Action::Play(true));
+    for seconds in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        session.apply(Action::Advance(seconds));
+        assert_eq!((session.camera(), session.time()), (&Camera::default(), 0.0));
+    }
+    for seconds in [2.0, 4.0] {
+        session.apply(Action::Advance(seconds));
+    }
+    assert_eq!((session.camera(), session.time()), (&to, 2.0));
+}
+
+#[test]
+fn what_is_about_a_fourth_axis_is_not_done() {
+    for axis in [3, usize::MAX] {
+        let mut session = Session::default();
+        let before = session.document().clone();
+        session.apply(Action::SetLimit { joint: 0, axis, limit: None });
+        assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
+        let (line, plane) = (Handle::Axis(axis), Handle::Plane(axis));
+        for grip in
+            [Grip::Hand(line), Grip::Pole(plane), Grip::Target(0, line), Grip::Tip(0, plane)]
+                .into_iter()
+                .chain([Grip::Shoulder(axis), Grip::Ring(0, axis)])
+        {
+            session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            assert!(!session.is_editing(), "{grip:?} holds nothing");
+        }
+        assert_eq!(session.ring(0, axis), None);
+        let grip = Grip::Hand(Handle::Free);
+        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
+            session.apply(Action::ConstrainDrag(Some(constraint)));
+            session.apply(Action::TypeOffset("1".to_owned()));
+            assert_eq!(session.point_drag().and_then(|drag| drag.constraint()), None);
+        }
+        session.apply(Action::CancelEdit);
+        assert_eq!(session.document(), &before);
+    }
+}
+
+#[test]
+fn a_pointer_is_on_no_joint_that_is_not_there() {
+    let mut session = Session::default();
+    for (joint, expected) in [(Some(0), Some(0)), (Some(1), None), (Some(usize::MAX), None)] {
+        session.apply(Action::Point(joint));
+        assert_eq!(session.pointed(), expected);
+    }
+}
