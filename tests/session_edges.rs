@@ -2,7 +2,7 @@
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Ray};
+use ik_arm::document::{Camera, Channel, Ray};
 use ik_arm::session::{Action, Constraint, Grip, Handle, Motion, Session};
 
 fn ray() -> Ray {
@@ -95,5 +95,55 @@ fn a_pointer_is_on_no_joint_that_is_not_there() {
     for (joint, expected) in [(Some(0), Some(0)), (Some(1), None), (Some(usize::MAX), None)] {
         session.apply(Action::Point(joint));
         assert_eq!(session.pointed(), expected);
+    }
+}
+
+#[test]
+fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
+    let mut session = Session::default();
+    session.apply(Action::AddChild { parent: 0, tip: None });
+    session.apply(Action::Key(vec![Channel::Rotation(1), Channel::Hand]));
+    session.apply(Action::BeginEdit);
+    session.apply(Action::Delete(vec![1]));
+    let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(1), 0.0)];
+    session.apply(Action::MoveKeys { keys, by: 1.0 });
+    let tracks = session.document().keys.tracks();
+    let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
+    assert_eq!(left, [(Channel::Hand, 1.0)]);
+}
+
+#[test]
+fn keys_that_are_made_while_others_move_stay() {
+    let mut session = Session::default();
+    session.apply(Action::Key(vec![Channel::Hand]));
+    session.apply(Action::BeginEdit);
+    let keys = vec![(Channel::Hand, 0.0)];
+    session.apply(Action::MoveKeys { keys: keys.clone(), by: 1.0 });
+    session.apply(Action::MoveKeys { keys: keys.clone(), by: 2.0 });
+    assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
+    session.apply(Action::Key(vec![Channel::Root]));
+    session.apply(Action::MoveKeys { keys: vec![(Channel::Hand, 2.0)], by: 1.0 });
+    let tracks = session.document().keys.tracks();
+    let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
+    assert_eq!(left, [(Channel::Hand, 3.0), (Channel::Root, 0.0)]);
+}
+
+#[test]
+fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
+    let hang = Action::AddChild { parent: 0, tip: Some(Vec3::Y) };
+    for change in
+        [Action::Delete(vec![2]), Action::AddRoot, Action::Reparent { joint: 2, parent: None }]
+    {
+        let mut session = Session::default();
+        session.apply(hang.clone());
+        session.apply(Action::AddChild { parent: 1, tip: None });
+        let grip = Grip::Tip(1, Handle::Free);
+        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        assert!(session.drag().is_some());
+        session.apply(change);
+        let joints = session.skeleton().skeleton.joints().len();
+        session.apply(Action::TypeOffset("0.1".to_owned()));
+        assert!(session.drag().is_none() && session.is_editing());
+        assert_eq!(session.skeleton().skeleton.joints().len(), joints);
     }
 }

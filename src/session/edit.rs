@@ -10,7 +10,7 @@ use crate::kinematics::skeleton::Skeleton;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Edit {
     pub before: State,
-    /// The document as it was shown before.
+    /// The document as it was shown before, with what has been changed of it otherwise since.
     pub shown: Document,
     /// What has been done, once something has.
     pub name: Option<&'static str>,
@@ -45,7 +45,11 @@ impl Session {
         if after == self.shown {
             return;
         }
-        if is_rebuilt(&self.shown.skeleton.skeleton, &after.skeleton.skeleton) {
+        let [joints_before, joints] =
+            [&self.shown, &after].map(|it| it.skeleton.skeleton.joints().len());
+        let is_rebuilt = is_rebuilt(&self.shown.skeleton.skeleton, &after.skeleton.skeleton);
+        let has_other_joints = is_rebuilt || joints != joints_before;
+        if is_rebuilt {
             self.overrides.clear();
             self.solving = None;
         } else {
@@ -59,6 +63,20 @@ impl Session {
         self.document = after;
         self.refresh();
         self.forget_trail();
+        self.go_on_with_edit(has_other_joints);
+    }
+
+    /// What goes back to how everything was when the edit began does not go back beyond what has been
+    /// changed meanwhile by other means: to keys, or to joints that are no longer the same.
+    fn go_on_with_edit(&mut self, has_other_joints: bool) {
+        let Some(edit) = &mut self.edit else { return };
+        if has_other_joints {
+            // What is held may be another one now.
+            edit.drag = None;
+            edit.shown.clone_from(&self.shown);
+        } else if edit.shown.keys != self.document.keys {
+            edit.shown.keys.clone_from(&self.document.keys);
+        }
     }
 
     fn hold_changes(&mut self, after: &mut Document) {

@@ -147,12 +147,14 @@ impl Session {
             })
             .collect();
         self.selected_keys = moved.iter().map(|(channel, time, _)| (*channel, *time)).collect();
-        let keys = keys.to_vec();
-        self.edit_keys(|document| {
-            document.keys = before;
-            document.keys.remove_all(&keys);
-            insert(&mut document.keys, &moved);
-        });
+        let mut after = before.clone();
+        after.remove_all(keys);
+        insert(&mut after, &moved);
+        self.edit_keys(|document| document.keys = after);
+        if let Some(edit) = &mut self.edit {
+            // The next move begins there, too.
+            edit.shown.keys = before;
+        }
     }
 
     /// Where a key goes that is moved: a time that has been on a frame stays on one, bit for bit.
