@@ -2,8 +2,10 @@
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Channel, Ray};
-use ik_arm::session::{Action, Constraint, Grip, Handle, Motion, Session};
+use ik_arm::document::{Camera, Channel, Ray, RigKind, Theme};
+use ik_arm::io::Example;
+use ik_arm::scene::Scene;
+use ik_arm::session::{Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, Session};
 
 fn ray() -> Ray {
     Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
@@ -145,5 +147,73 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
         session.apply(Action::TypeOffset("0.1".to_owned()));
         assert!(session.drag().is_none() && session.is_editing());
         assert_eq!(session.skeleton().skeleton.joints().len(), joints);
+    }
+}
+
+#[test]
+fn a_race_ends_when_the_joints_become_others() {
+    for change in [Action::Delete(vec![3]), Action::AddRoot, Action::Undo] {
+        let mut session = Session::default();
+        session.apply(Action::OpenExample(Example::find("ten-joints").expect("an example")));
+        session.apply(Action::AddChild { parent: 0, tip: None });
+        session.apply(Action::Race(true));
+        session.apply(Action::Advance(1.0));
+        assert_eq!(session.staging().ghosts.len(), 6);
+        session.apply(Action::SetRotation { joint: 1, rotation: Vec3::X });
+        assert!(session.race().is_some());
+        if change == Action::Undo {
+            session.apply(Action::Undo);
+        }
+        session.apply(change);
+        assert!(session.race().is_none(), "{:?}", session.message());
+        let _ = Scene::new(session.shown(), &session.staging(), Theme::Dark);
+    }
+}
+
+#[test]
+fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
+    let mut session = Session::default();
+    session.apply(Action::SwitchTo(Lead::Angles));
+    let before = session.document().clone();
+    for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
+        for wrong in [f32::INFINITY, f32::NAN, f32::MAX] {
+            session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            let (origin, direction) = (Vec3::splat(wrong), Vec3::new(-0.4, 0.4, wrong));
+            for ray in
+                [Ray { origin, ..ray() }, Ray { direction, ..ray() }, Ray { origin, direction }]
+            {
+                session.apply(Action::Drag(DragInput { ray, precise: false, snap: false }));
+                assert!(
+                    session.drag().and_then(Drag::turn).is_some_and(|it| it.turned().is_finite())
+                );
+                assert!(session.message().is_none(), "{:?}", session.message());
+            }
+            session.apply(Action::CancelEdit);
+            assert_eq!(session.document(), &before);
+            session.apply(Action::CloseDialog);
+        }
+    }
+}
+
+#[test]
+fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
+    let far = f32::MAX;
+    for actions in [
+        vec![Action::ShowRig(RigKind::Skeleton), Action::SetTranslation(Vec3::new(-far, 0.3, 0.2))],
+        vec![Action::NewSkeleton, Action::AddChild { parent: 0, tip: Some(Vec3::splat(far)) }],
+        vec![Action::SetRoot(Vec3::splat(far)), Action::SetHand(Vec3::splat(far))],
+        vec![Action::SetUpper(far), Action::SetLower(far), Action::SetHand(Vec3::splat(-far))],
+    ] {
+        let mut session = Session::default();
+        for action in actions {
+            session.apply(action);
+        }
+        for camera in [session.framing_all(), session.framing_selection()] {
+            assert!(camera.is_valid(), "{camera:?}");
+        }
+        let scene = Scene::new(session.shown(), &session.staging(), Theme::Dark);
+        assert!(scene.stage.centre.is_finite() && scene.stage.radius.is_finite());
+        assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
+        assert!(scene.solids.iter().all(|solid| solid.place.is_finite()));
     }
 }

@@ -362,6 +362,8 @@ impl Session {
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);
         self.pointed = self.pointed.filter(|joint| *joint < count);
+        let skeleton = &self.shown.skeleton.skeleton;
+        self.race.take_if(|race| !race.is_of(skeleton));
         self.retain_keys();
     }
 

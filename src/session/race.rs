@@ -47,6 +47,17 @@ impl Race {
         self.runners.iter().any(Runner::is_running)
     }
 
+    /// Whether the joints are still those that it began with, turned or not.
+    pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
+        let is_like = |runner: &Runner| {
+            let parents = |skeleton: &Skeleton| -> Vec<_> {
+                skeleton.joints().iter().map(|joint| joint.parent).collect()
+            };
+            parents(&runner.skeleton) == parents(skeleton)
+        };
+        self.runners.first().is_none_or(is_like)
+    }
+
     /// Lets every solver run on: ever faster, so that the start can be watched and the end comes.
     pub(super) fn advance(&mut self) {
         self.runners.iter_mut().for_each(Runner::advance);

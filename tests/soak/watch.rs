@@ -62,13 +62,16 @@ impl Watch {
 
     /// Whether the action was done, and not asked about.
     pub fn apply(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
-        let before = Before::new(&self.session, care.step);
-        let applied = catch_unwind(AssertUnwindSafe(|| self.session.apply(action.clone())));
-        if let Err(panic) = applied {
+        catch_unwind(AssertUnwindSafe(|| self.watched(action, care))).unwrap_or_else(|panic| {
             let text = panic.downcast_ref::<String>().cloned();
             let text = text.or(panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-            return Err(Broken(format!("nothing panics: {}", text.unwrap_or_default())));
-        }
+            Err(Broken(format!("nothing panics: {}", text.unwrap_or_default())))
+        })
+    }
+
+    fn watched(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
+        let before = Before::new(&self.session, care.step);
+        self.session.apply(action.clone());
         self.age += 1;
         let waits = Some(&Dialog::Unsaved { then: Box::new(action.clone()) });
         let is_done = self.session.dialog() != waits || before.dialog.as_ref() == waits;
