@@ -320,9 +320,10 @@ impl Arm {
         let points = [Vec3::ZERO, pose.elbow, pose.hand];
         let low = points.into_iter().fold(Vec3::MAX, Vec3::min);
         let high = points.into_iter().fold(Vec3::MIN, Vec3::max);
-        let centre = low.midpoint(high);
+        let centre = low * 0.5 + high * 0.5;
         let reach = points.into_iter().map(|point| point.distance(centre)).fold(0.0, f32::max);
-        (self.root + centre, reach.max(self.bones.outer_limit() * 0.5))
+        let radius = reach.max(self.bones.outer_limit() * 0.5).min(f32::MAX);
+        ((self.root + centre).clamp(Vec3::MIN, Vec3::MAX), radius)
     }
 }
 

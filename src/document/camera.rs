@@ -224,19 +224,22 @@ impl Projection {
 }
 
 impl Ray {
-    /// Where it meets the plane through `point`, if it does so ahead of its origin.
+    /// Where it meets the plane through `point`, if it does so ahead of its origin and before numbers
+    /// end.
     pub fn meets_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
         let along = (point - self.origin).dot(normal) / self.direction.dot(normal);
-        (along.is_finite() && along >= 0.0).then(|| self.origin + self.direction * along)
+        let met = self.origin + self.direction * along;
+        (along >= 0.0 && met.is_finite()).then_some(met)
     }
 
     /// How far along the line through `point` in unit direction `axis` the ray comes nearest to
-    /// it, if it does so ahead of its origin.
+    /// it, if it does so ahead of its origin and before numbers end.
     pub fn nearest_on_line(&self, point: Vec3, axis: Vec3) -> Option<f32> {
         let normal = axis.cross(self.direction).cross(axis);
         let along_ray = (point - self.origin).dot(normal) / self.direction.dot(normal);
         let met = self.origin + self.direction * along_ray;
-        (along_ray.is_finite() && along_ray >= 0.0).then(|| (met - point).dot(axis))
+        let along = (met - point).dot(axis);
+        (along_ray >= 0.0 && along.is_finite()).then_some(along)
     }
 }
 

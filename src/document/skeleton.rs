@@ -201,7 +201,9 @@ fn around(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, f32)> {
         .filter(|point| point.is_finite())
         .map(|point| (point, point))
         .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    Some((low.midpoint(high), 0.5 * low.distance(high)))
+    // Halved first: a sum would be beyond numbers where they end.
+    let (low, high) = (low * 0.5, high * 0.5);
+    Some((low + high, low.distance(high).min(f32::MAX)))
 }
 
 impl Default for SkeletonRig {

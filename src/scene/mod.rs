@@ -148,6 +148,7 @@ impl Scene {
             RigKind::Skeleton => skeleton::add(self, &document.skeleton, staging, display),
         }
         motion::add(self, document, staging, reach);
+        self.leave_out_endless();
     }
 
     fn empty(document: &Document, theme: Theme) -> Self {
@@ -182,6 +183,27 @@ impl Scene {
         self.lines.clear();
         self.labels.clear();
         self.letters.clear();
+    }
+
+    /// What is so far away or so large that numbers end is not drawn.
+    fn leave_out_endless(&mut self) {
+        let is_size = |size: f32| size.is_finite();
+        for solids in [&mut self.solids, &mut self.guide_solids] {
+            solids.retain(|Solid { place, shape, .. }| {
+                let sizes = [shape.length, shape.base_radius, shape.tip_radius];
+                place.is_finite() && sizes.into_iter().all(is_size)
+            });
+        }
+        for balls in [&mut self.balls, &mut self.guide_balls] {
+            balls.retain(|ball| ball.centre.is_finite() && is_size(ball.radius));
+        }
+        self.shells.retain(|shell| shell.centre.is_finite() && is_size(shell.radius));
+        self.lines.retain(|line| line.from.is_finite() && line.to.is_finite());
+        self.labels.retain(|label| label.at.is_finite() && is_size(label.clearance));
+        self.shadows.retain(|Shadow { base, base_radius, tip, tip_radius }| {
+            let ends = base.is_finite() && tip.is_finite();
+            ends && is_size(*base_radius) && is_size(*tip_radius)
+        });
     }
 
     /// Shows the globe, and marks each singular direction on it with a ball and a label.
@@ -246,7 +268,7 @@ impl Stage {
             grid_yz: display.shows(Layer::GridYz),
             ground: display.shows(Layer::Ground),
             centre,
-            radius: Self::RADIUS * reach,
+            radius: (Self::RADIUS * reach).min(f32::MAX),
             cell,
         }
     }

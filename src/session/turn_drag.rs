@@ -69,7 +69,9 @@ impl TurnDrag {
         }
         self.now = input;
         let around = self.ring.angle_between(self.pressed, input.ray);
-        self.pointed = around + ((self.pointed - around) / TAU).round() * TAU;
+        if around.is_finite() {
+            self.pointed = around + ((self.pointed - around) / TAU).round() * TAU;
+        }
     }
 
     /// The angle that is asked for, radians.

@@ -2,7 +2,7 @@ use glam::{Affine3A, Mat3A, Vec3};
 
 use super::Joint;
 
-/// Where every joint of a skeleton is.
+/// Where every joint of a skeleton is; what is beyond numbers is at their end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     joints: Vec<Posed>,
@@ -38,8 +38,13 @@ impl Pose {
         for joint in joints {
             let above = joint.parent.map_or(transform, |parent| posed[parent].full);
             let local = Affine3A { matrix3: rotation(joint), translation: joint.offset.into() };
-            let full = above * local;
-            posed.push(Posed { full, tip: full.transform_point3(joint.axis) });
+            let mut full = above * local;
+            let mut tip = full.transform_point3(joint.axis);
+            if !(full.is_finite() && tip.is_finite()) {
+                full = Affine3A::from_cols_array(&full.to_cols_array().map(saturated));
+                tip = Vec3::from_array(full.transform_point3(joint.axis).to_array().map(saturated));
+            }
+            posed.push(Posed { full, tip });
         }
     }
 
@@ -74,4 +79,8 @@ impl Pose {
     pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
         self.joints.iter().flat_map(|posed| [posed.full.translation.into(), posed.tip])
     }
+}
+
+fn saturated(number: f32) -> f32 {
+    if number.is_nan() { 0.0 } else { number.clamp(f32::MIN, f32::MAX) }
 }
