@@ -2,8 +2,8 @@
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Channel, Ray, RigKind, Theme};
-use ik_arm::io::Example;
+use ik_arm::document::{Camera, Channel, Ray, RigKind, Swivel, Theme};
+use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, Session};
 
@@ -215,5 +215,61 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
         assert!(scene.stage.centre.is_finite() && scene.stage.radius.is_finite());
         assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
         assert!(scene.solids.iter().all(|solid| solid.place.is_finite()));
+    }
+}
+
+#[test]
+fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
+    let mut session = Session::default();
+    let far = Vec3::new(-1e19, 0.7, -f32::MAX);
+    for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
+        session.apply(Action::AddChild { parent, tip });
+    }
+    session.apply(Action::AddRoot);
+    session.apply(Action::SetRotation { joint: 1, rotation: Vec3::new(1.0, -3.0, 2.0) });
+    for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
+        session.apply(Action::Reparent { joint, parent });
+        for joint in session.skeleton().skeleton.joints() {
+            assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
+        }
+    }
+}
+
+#[test]
+fn undo_and_redo_keep_the_sign_of_a_zero() {
+    let mut session = Session::default();
+    let text = |session: &Session| to_json(session.document()).expect("saved");
+    let mut texts = vec![text(&session)];
+    for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
+        session.apply(Action::BeginEdit);
+        for x in [1.0, x] {
+            session.apply(Action::SetRotation { joint: 0, rotation: Vec3::new(x, 0.0, 0.0) });
+        }
+        session.apply(Action::SetHand(Vec3::X * hand));
+        session.apply(Action::CommitEdit);
+        texts.push(text(&session));
+    }
+    for (back, steps) in [(Action::Undo, [2, 1, 0]), (Action::Redo, [1, 2, 3])] {
+        for step in steps {
+            session.apply(back.clone());
+            assert_eq!(text(&session), texts[step]);
+        }
+    }
+}
+
+#[test]
+fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
+    for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
+        let mut session = Session::default();
+        session.apply(Action::SetSwivel(Swivel::Pole));
+        session.apply(Action::SetPole(Vec3::new(0.0, 0.0, pole)));
+        let grip = Grip::Pole(Handle::Axis(2));
+        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        session.apply(Action::TypeOffset(typed.to_owned()));
+        let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };
+        session.apply(Action::Drag(DragInput { ray, precise: false, snap }));
+        assert!(session.point_drag().is_some_and(|drag| drag.moved().is_finite()));
+        assert!(session.arm().pole.is_finite(), "{:?}", session.message());
+        assert!(session.message().is_none(), "{:?}", session.message());
     }
 }

@@ -35,6 +35,16 @@ impl Keys {
         self.tracks.contains_key(&channel)
     }
 
+    /// Whether others are the same bit for bit: the signs of zeros too.
+    pub(crate) fn is_identical(&self, other: &Self) -> bool {
+        let is_same = |(a, b): (&Arc<Spline<Vec3>>, &Arc<Spline<Vec3>>)| {
+            let bits = |value: Vec3| value.to_array().map(f32::to_bits);
+            let knots = a.knots().iter().zip(b.knots());
+            Arc::ptr_eq(a, b) || knots.into_iter().all(|(a, b)| bits(a.value) == bits(b.value))
+        };
+        self == other && self.tracks.values().zip(other.tracks.values()).all(is_same)
+    }
+
     /// How many keys there are in all.
     pub fn count(&self) -> usize {
         self.tracks.values().map(|track| track.knots().len()).sum()

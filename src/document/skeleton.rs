@@ -3,7 +3,7 @@ use core::f32::consts::TAU;
 use glam::{Vec3, Vec3A};
 
 use super::{Camera, Slither};
-use crate::kinematics::skeleton::{Moved, Pose, Skeleton};
+use crate::kinematics::skeleton::{Joint, Moved, Pose, Skeleton};
 use crate::kinematics::solve::{self, Options};
 
 /// A skeleton with its targets, and how it is brought to them.
@@ -92,6 +92,35 @@ impl SkeletonRig {
             iterations_per_frame: 1,
             slither: None,
         }
+    }
+
+    /// Whether another is the same bit for bit: the signs of zeros too.
+    pub(crate) fn is_identical(&self, other: &Self) -> bool {
+        let both = self.numbers().zip(other.numbers());
+        self == other && both.into_iter().all(|(a, b)| a.to_bits() == b.to_bits())
+    }
+
+    /// Those that a zero can be among.
+    fn numbers(&self) -> impl Iterator<Item = f32> + '_ {
+        let of_joint = |joint: &Joint| {
+            let vectors = [joint.offset, joint.axis, joint.rotation].map(|it| it.to_array());
+            let limits = joint.limits.map(|limit| limit.map_or([1.0; 2], |it| [it.min, it.max]));
+            let frame = joint.frame.to_cols_array();
+            let all = vectors.into_iter().flatten().chain(limits.into_iter().flatten());
+            all.chain(frame).chain([joint.radius])
+        };
+        let of_target =
+            |target: &Target| target.home.to_array().into_iter().chain([target.motion.radius]);
+        let slither = self.slither.iter().flat_map(|it| [it.radius, it.amplitude]);
+        let joints = self.skeleton.joints().iter().flat_map(of_joint);
+        let targets = self.targets.iter().flat_map(of_target);
+        self.skeleton
+            .transform()
+            .to_cols_array()
+            .into_iter()
+            .chain(joints)
+            .chain(targets)
+            .chain(slither)
     }
 
     /// From where all of it is seen at time 0.

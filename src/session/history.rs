@@ -84,10 +84,10 @@ impl State {
     }
 
     fn share_with(&mut self, other: &Self) {
-        if self.skeleton == other.skeleton {
+        if self.skeleton.is_identical(&other.skeleton) {
             self.skeleton = Arc::clone(&other.skeleton);
         }
-        if self.keys == other.keys {
+        if self.keys.is_identical(&other.keys) {
             self.keys = Arc::clone(&other.keys);
         }
     }

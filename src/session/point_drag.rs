@@ -132,7 +132,7 @@ impl PointDrag {
 
     /// How far the point has been moved.
     pub fn moved(&self) -> Vec3 {
-        self.last - self.start
+        (self.last - self.start).clamp(Vec3::MIN, Vec3::MAX)
     }
 
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
@@ -165,7 +165,8 @@ impl PointDrag {
         for axis in 0..3 {
             if self.is_moved(axis) {
                 let to = self.start[axis] + offset[axis];
-                self.last[axis] = if snap { (to / step).round() * step } else { to };
+                let to = if snap { (to / step).round() * step } else { to };
+                self.last[axis] = to.clamp(f32::MIN, f32::MAX);
             } else {
                 self.last[axis] = self.start[axis];
             }

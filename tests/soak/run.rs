@@ -29,7 +29,7 @@ pub struct Every {
 }
 
 impl Every {
-    pub const RARE: Self = Self { step: 20, saving: 50, scene: 50, walk: 500 };
+    pub const RARE: Self = Self { step: 8, saving: 30, scene: 30, walk: 250 };
     pub const EACH: Self = Self { step: 1, saving: 1, scene: 1, walk: 1 };
 
     fn care(self, random: &mut Random) -> Care {

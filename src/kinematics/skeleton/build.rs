@@ -79,7 +79,7 @@ impl Skeleton {
     ///
     /// # Errors
     ///
-    /// Refuses a parent that hangs from the joint.
+    /// Refuses a parent that hangs from the joint, and one from which it would be beyond numbers.
     pub fn reparent(
         &mut self,
         joint: usize,
@@ -94,10 +94,15 @@ impl Skeleton {
         let pose = self.pose_in_skeleton();
         let above = parent.map_or(Affine3A::IDENTITY, |parent| pose.full(parent));
         let local = above.inverse() * pose.full(joint);
+        let (offset, rotation) =
+            (Vec3::from(local.translation), self.joints[joint].angles_of(local.matrix3));
+        for (field, value) in [("offset", offset), ("rotation", rotation)] {
+            if !value.is_finite() {
+                return Err(SkeletonError::NotFinite { joint, field, value });
+            }
+        }
         let moved = &mut self.joints[joint];
-        moved.parent = parent;
-        moved.offset = local.translation.into();
-        moved.rotation = moved.angles_of(local.matrix3);
+        (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
         moved.clamp();
         Ok(self.sort())
     }
