@@ -84,7 +84,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
             session.apply(Action::ConstrainDrag(Some(constraint)));
             session.apply(Action::TypeOffset("1".to_owned()));
-            assert_eq!(session.point_drag().and_then(|drag| drag.constraint()), None);
+            assert_eq!(session.point_drag().and_then(PointDrag::constraint), None);
         }
         session.apply(Action::CancelEdit);
         assert_eq!(session.document(), &before);

@@ -694,3 +694,27 @@ fn a_target_out_of_reach_does_not_keep_another_chain_from_its_own() {
         assert!(missed < near_enough, "{method:?} misses by {missed} after {report:?}");
     }
 }
+
+#[test]
+fn bones_whose_squares_are_no_numbers_are_turned_by_numbers_or_not_at_all() {
+    let mut random = Random(19);
+    for unit in [3e18, 1e19, 1e30, 1e38] {
+        let roots = [Root::Fixed, Root::Free];
+        for (method, root) in Method::ALL.into_iter().flat_map(|it| roots.map(|root| (it, root))) {
+            for _ in 0..20 {
+                let mut skeleton = chain(&mut random, 3, 1.0);
+                let long = random.direction() * unit;
+                skeleton.set_axis(3, long).expect("finite");
+                let point = random.direction() * unit;
+                let options = Options { method, root, ..Options::default() };
+                if let Ok(report) = solve(&mut skeleton, &[target(3, point)], &options) {
+                    assert!(report.error.is_finite(), "{report:?}");
+                }
+                for joint in skeleton.joints() {
+                    let are_numbers = joint.rotation.is_finite() && joint.offset.is_finite();
+                    assert!(are_numbers, "{method:?} {root:?} of {unit}: {joint:?}");
+                }
+            }
+        }
+    }
+}

@@ -163,11 +163,14 @@ impl Skeleton {
         Ok(())
     }
 
-    /// What solvers write: finite angles within limits, finite offsets.
+    /// What solvers write: angles within limits, and offsets. Where bones are so long that squares of
+    /// them are no numbers (from about 1e19), what is found is none either, and changes nothing.
     pub(crate) fn turn(&mut self, joint: usize, change: impl FnOnce(&mut Joint)) {
-        if let Some(joint) = self.joints.get_mut(joint) {
-            change(joint);
-            debug_assert!(joint.rotation.is_finite() && joint.offset.is_finite());
+        let Some(joint) = self.joints.get_mut(joint) else { return };
+        let (rotation, offset) = (joint.rotation, joint.offset);
+        change(joint);
+        if !(joint.rotation.is_finite() && joint.offset.is_finite()) {
+            (joint.rotation, joint.offset) = (rotation, offset);
         }
     }
 
