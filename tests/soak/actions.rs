@@ -17,6 +17,7 @@ pub struct Actions {
     wild: f32,
     stretch: usize,
     clock: f64,
+    made: usize,
 }
 
 impl Actions {
@@ -27,10 +28,11 @@ impl Actions {
 
     pub fn new(seed: u64) -> Self {
         let random = Random(seed);
-        Self { random, sort: Sort::Arm, burst: 0, wild: 0.0, stretch: 0, clock: 0.0 }
+        Self { random, sort: Sort::Arm, burst: 0, wild: 0.0, stretch: 0, clock: 0.0, made: 0 }
     }
 
     pub fn next(&mut self, session: &Session) -> Action {
+        self.made += 1;
         if self.stretch == 0 {
             self.stretch = 100 + self.random.below(400);
             self.wild = [0.0, 0.0, 0.003, 0.1][self.random.below(4)];
@@ -80,6 +82,11 @@ impl Actions {
 
     fn kind(&mut self, session: &Session) -> &'static Kind {
         const OFTEN: u32 = 8;
+        /// So that every kind comes, now and then each has its turn.
+        const TURN: usize = 10;
+        if self.made.is_multiple_of(TURN) {
+            return &KINDS[self.made / TURN % KINDS.len()];
+        }
         let (sort, is_dragging) = (self.sort, session.drag().is_some());
         let weight = |kind: &Kind| {
             let is_meant = kind.sort == sort || is_dragging && kind.sort == Sort::Drag;

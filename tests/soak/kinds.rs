@@ -42,7 +42,7 @@ pub struct Kind {
     pub make: fn(&mut Values<'_>) -> Action,
 }
 
-/// A line for each: its sort, how often it comes, and how one is made.
+/// A line for each, and nothing else: its sort, how often it comes, and how one is made.
 macro_rules! kinds {
     ($($name:ident: $sort:ident $weight:literal, $make:expr;)*) => {
         pub const KINDS: &[Kind] = &[$(Kind {
@@ -180,7 +180,7 @@ kinds! {
     ForgetRecovered: Look 1, |_| Action::ForgetRecovered;
     OpenExample: Files 1, |v| Action::OpenExample(v.example());
     NewSkeleton: Files 1, |_| Action::NewSkeleton;
-    Quit: Look 1, |_| Action::Quit;
+    Quit: Look 2, |_| Action::Quit;
 }
 
 /// What is asked about where changes are not saved.

@@ -30,15 +30,15 @@ macro_rules! hold {
 }
 
 #[test]
-fn a_session_stays_one_under_a_few_thousand_of_any_actions() {
-    let run = Run { seed: 1, actions: 4_000, every: Every::RARE, is_told: false };
-    let (least, name) = run.run().least();
-    assert!(least > 0, "{name} was never done");
+fn a_session_stays_one_under_two_thousand_of_any_actions() {
+    let run = Run { seed: 1, actions: 2_000, every: Every::RARE, is_told: false };
+    let (least, name) = run.run().least(|count| count.made);
+    assert!(least > 0, "{name} was never made");
 }
 
 #[test]
 fn a_session_stays_one_when_all_is_checked_after_every_action() {
-    let run = Run { seed: 2, actions: 300, every: Every::EACH, is_told: false };
+    let run = Run { seed: 2, actions: 150, every: Every::EACH, is_told: false };
     run.run();
 }
 
@@ -55,6 +55,6 @@ fn a_session_stays_one_under_a_million_of_any_actions() {
     each.run();
     let counts = rare.run();
     eprintln!("{}", counts.table());
-    let (least, name) = counts.least();
+    let (least, name) = counts.least(|count| count.done);
     assert!(least >= actions / 2000, "{name} was done only {least} times");
 }

@@ -7,7 +7,7 @@ use ik_arm::document::Document;
 use ik_arm::session::Action;
 
 use crate::actions::Actions;
-use crate::kinds::{KINDS, kind};
+use crate::kinds::{KINDS, Kind, kind};
 use crate::rigs::Random;
 use crate::watch::{Care, Watch};
 
@@ -29,7 +29,7 @@ pub struct Every {
 }
 
 impl Every {
-    pub const RARE: Self = Self { step: 8, saving: 30, scene: 30, walk: 250 };
+    pub const RARE: Self = Self { step: 20, saving: 50, scene: 50, walk: 500 };
     pub const EACH: Self = Self { step: 1, saving: 1, scene: 1, walk: 1 };
 
     fn care(self, random: &mut Random) -> Care {
@@ -44,7 +44,13 @@ impl Every {
 }
 
 /// How often each kind was made, and how often it was done rather than asked about.
-pub struct Counts(pub Vec<(usize, usize)>);
+pub struct Counts(Vec<Count>);
+
+#[derive(Clone, Copy, Default)]
+pub struct Count {
+    pub made: usize,
+    pub done: usize,
+}
 
 impl Run {
     /// # Panics
@@ -54,7 +60,7 @@ impl Run {
         let mut made = Actions::new(self.seed);
         let mut cares = Random(!self.seed);
         let mut watch = Watch::new(Document::default());
-        let mut counts = vec![(0, 0); KINDS.len()];
+        let mut counts = vec![Count::default(); KINDS.len()];
         // Since the document was opened.
         let mut recent: Vec<(Action, Care)> = Vec::new();
         let started = Instant::now();
@@ -66,7 +72,8 @@ impl Run {
             match watch.apply(&action, care) {
                 Ok(is_done) => {
                     let count = &mut counts[kind(&action)];
-                    *count = (count.0 + 1, count.1 + usize::from(is_done));
+                    count.made += 1;
+                    count.done += usize::from(is_done);
                 }
                 Err(broken) => self.fail(index, &broken.0, &began, &recent),
             }
@@ -100,18 +107,19 @@ impl Run {
 }
 
 impl Counts {
-    /// Sums, name by name, and the least of them.
+    /// Name by name, the fewest first.
     pub fn table(&self) -> String {
         let mut rows: Vec<_> = KINDS.iter().zip(&self.0).collect();
-        rows.sort_by_key(|(_, (_, done))| *done);
-        let row = |(kind, (made, done)): (&crate::kinds::Kind, &(usize, usize))| {
+        rows.sort_by_key(|(_, count)| count.done);
+        let row = |(kind, Count { made, done }): (&Kind, &Count)| {
             format!("{:>22} {made:>8} made {done:>8} done\n", kind.name)
         };
         rows.into_iter().map(row).collect()
     }
 
-    pub fn least(&self) -> (usize, &'static str) {
-        let counts = KINDS.iter().zip(&self.0).map(|(kind, (_, done))| (*done, kind.name));
+    /// The least of them, and whose it is.
+    pub fn least(&self, of: fn(&Count) -> usize) -> (usize, &'static str) {
+        let counts = KINDS.iter().zip(&self.0).map(|(kind, count)| (of(count), kind.name));
         counts.min().unwrap_or_default()
     }
 }

@@ -1,0 +1,96 @@
+//! Documents, files and windows over the others.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use ik_arm::document::{Document, RigKind, SkeletonRig};
+use ik_arm::io::{Example, Progress};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::session::{Action, Dialog, Export, Job};
+
+use super::Values;
+use crate::rigs;
+
+impl Values<'_> {
+    pub fn path(&mut self) -> PathBuf {
+        const PATHS: [&str; 7] = ["a.json", "/x/b.json", "", "é 😀.glb", "c.bvh", "..", "d.csv"];
+        self.one_of(&PATHS).into()
+    }
+
+    pub fn file(&mut self) -> Option<PathBuf> {
+        self.coin().then(|| self.path())
+    }
+
+    pub fn export(&mut self) -> Export {
+        let side = self.one_of(&[0, 1, 100, u32::MAX]);
+        Export { path: self.path(), frame_rate: self.one_of(&[0, 24, 5000]), size: (side, 100) }
+    }
+
+    pub fn job(&mut self) -> Job {
+        Job { path: self.path(), progress: Arc::new(Progress::default()) }
+    }
+
+    pub fn example(&mut self) -> Example {
+        self.one_of(&Example::ALL)
+    }
+
+    /// An example, or any forest, straight or in a mirror; of many joints once in a long while.
+    pub fn document(&mut self) -> Document {
+        match self.random.below(60) {
+            0..30 => self.example().open().expect("it opens").document,
+            30..34 => Document::default(),
+            34 if self.chance(0.005) => skeleton(long_chain()),
+            _ => {
+                let joints = 1 + self.random.below(20);
+                let mut forest = rigs::forest(self.random, joints);
+                if self.coin() {
+                    let transform = rigs::transform(self.random);
+                    forest.set_transform(transform).expect("finite");
+                }
+                skeleton(forest)
+            }
+        }
+    }
+
+    pub fn dialog(&mut self) -> Dialog {
+        let path = || "x.json".to_owned();
+        match self.random.below(10) {
+            0 => Dialog::About,
+            1 => Dialog::Shortcuts,
+            2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
+            3 => Dialog::Unsaved { then: Box::new(Action::Quit) },
+            4 => Dialog::SavePicture { path: path() },
+            5 => Dialog::Export(self.export()),
+            6 => Dialog::Open { path: path() },
+            7 => Dialog::SaveAs { path: path() },
+            8 => {
+                Dialog::ChooseSkeleton { path: self.path(), names: vec![self.name(), self.name()] }
+            }
+            _ => Dialog::Rename { joint: self.joint(), name: self.name() },
+        }
+    }
+}
+
+fn skeleton(skeleton: Skeleton) -> Document {
+    let skeleton = SkeletonRig::new(skeleton);
+    Document {
+        rig: RigKind::Skeleton,
+        camera: skeleton.first_view(),
+        skeleton,
+        ..Document::default()
+    }
+}
+
+/// As many joints as there can be.
+fn long_chain() -> Skeleton {
+    let joint = |index: usize| {
+        let parent = index.checked_sub(1);
+        let offset = if parent.is_some() { Vec3::Y } else { Vec3::ZERO };
+        Joint { offset, ..Joint::new(&format!("j{index}"), parent, Vec3::Y) }
+    };
+    let mut chain =
+        Skeleton::from_joints((0..Skeleton::MOST_JOINTS).map(joint).collect()).expect("a skeleton");
+    chain.set_transform(Affine3A::from_scale(Vec3::splat(0.01))).expect("finite");
+    chain
+}

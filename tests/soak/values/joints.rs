@@ -1,0 +1,120 @@
+//! Joints, targets, and how solvers and snakes go.
+
+use ik_arm::document::{Motion, Path, Slither, Target};
+use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::solve::{Method, Options, Root};
+
+use super::Values;
+
+impl Values<'_> {
+    fn joints(&self) -> usize {
+        self.session.skeleton().skeleton.joints().len()
+    }
+
+    /// Mostly one that is there.
+    pub fn joint(&mut self) -> usize {
+        let joints = self.joints();
+        if joints == 0 || self.chance(0.03) {
+            return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]);
+        }
+        match self.session.selected() {
+            Some(joint) if self.chance(0.3) => joint,
+            _ => self.random.below(joints),
+        }
+    }
+
+    /// Mostly one with a target, if there is any.
+    pub fn aimed(&mut self) -> usize {
+        let targets = &self.session.skeleton().targets;
+        if targets.is_empty() || self.chance(0.1) {
+            return self.joint();
+        }
+        targets[self.random.below(targets.len())].joint
+    }
+
+    /// None, one or some, also twice.
+    pub fn some_joints(&mut self) -> Vec<usize> {
+        (0..self.random.below(4)).map(|_| self.joint()).collect()
+    }
+
+    /// An angle's place.
+    pub fn axis(&mut self) -> usize {
+        if self.is_wild() { self.one_of(&[3, 99, usize::MAX]) } else { self.random.below(3) }
+    }
+
+    pub fn limit(&mut self) -> Option<Limit> {
+        let (a, b) = (self.angle(), self.angle());
+        match self.random.below(5) {
+            0 => None,
+            1 => Some(Limit { min: a, max: a }),
+            2 => Some(Limit { min: a, max: b }),
+            _ => Some(Limit { min: a.min(b), max: a.max(b) }),
+        }
+    }
+
+    pub fn name(&mut self) -> String {
+        const NAMES: [&str; 12] = [
+            "",
+            " ",
+            "a",
+            "b",
+            "root",
+            "joint",
+            "joint_2",
+            " hand ",
+            "é\u{301}\u{202e}😀",
+            "\"\\\n\t\0",
+            "{}[],:",
+            "ROOT",
+        ];
+        match self.random.below(8) {
+            0 => "ab c".repeat(self.random.below(600)),
+            1 => self.joint_name().unwrap_or_default(),
+            2..5 => format!("j{}", self.random.below(50)),
+            _ => self.one_of(&NAMES).to_owned(),
+        }
+    }
+
+    fn joint_name(&mut self) -> Option<String> {
+        let joint = self.joint();
+        Some(self.session.skeleton().skeleton.joint(joint)?.name.clone())
+    }
+
+    pub fn target(&mut self) -> Target {
+        let joint = self.aimed();
+        let size = self.session.skeleton().reach();
+        let path = self.one_of(&[Path::Still, Path::Still, Path::Circle, Path::FigureEight]);
+        let motion = Motion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
+        let home = self.small_point();
+        Target { joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
+    }
+
+    pub fn slither(&mut self) -> Option<Slither> {
+        self.chance(0.4).then(|| Slither {
+            radius: self.number(3.0),
+            amplitude: self.number(0.5),
+            waves: self.one_of(&[0, 1, 3, 6, 40]),
+            period: self.above_0(6.0),
+        })
+    }
+
+    pub fn options(&mut self) -> Options {
+        let iterations = self.one_of(&[0, 1, 3, 20, 100, 1000]);
+        let tolerance = self.above_0(0.1);
+        Options {
+            method: self.one_of(&Method::ALL),
+            iterations: self.chance(0.3).then_some(iterations),
+            tolerance: self.chance(0.3).then_some(tolerance),
+            damping: self.above_0(0.2),
+            step: self.above_0(2.0),
+            root: if self.chance(0.2) { Root::Free } else { Root::Fixed },
+        }
+    }
+
+    pub fn iterations_per_frame(&mut self) -> u32 {
+        match self.random.below(40) {
+            0 => self.one_of(&[0, 1000, 100_000, u32::MAX]),
+            _ => 1 + self.random.below(16) as u32,
+        }
+    }
+}

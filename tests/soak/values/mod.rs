@@ -1,0 +1,158 @@
+//! What actions are made of: mostly sensible, often on a limit, sometimes wild.
+
+mod files;
+mod joints;
+mod times;
+mod view;
+
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::Vec3;
+use ik_arm::document::RigKind;
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::session::Session;
+
+use crate::rigs::Random;
+
+/// Makes values for a session as that stands.
+pub struct Values<'a> {
+    pub random: &'a mut Random,
+    pub session: &'a Session,
+    /// What part of the values is wild.
+    pub wild: f32,
+    /// When the last picture was made, in seconds of the window.
+    pub clock: &'a mut f64,
+}
+
+impl Values<'_> {
+    pub fn chance(&mut self, share: f32) -> bool {
+        self.random.chance(share)
+    }
+
+    pub fn coin(&mut self) -> bool {
+        self.chance(0.5)
+    }
+
+    pub fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.random.below(all.len())]
+    }
+
+    fn is_wild(&mut self) -> bool {
+        let share = self.wild;
+        self.chance(share)
+    }
+
+    // Numbers
+
+    fn wild_number(&mut self) -> f32 {
+        const WILD: [f32; 14] = [
+            0.0,
+            -0.0,
+            1e-45,
+            -1e-40,
+            f32::MIN_POSITIVE,
+            1e-20,
+            1e10,
+            -1e19,
+            1e30,
+            f32::MAX,
+            f32::MIN,
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+        ];
+        self.one_of(&WILD)
+    }
+
+    /// Of a size; often 0 or the whole of it.
+    pub fn number(&mut self, size: f32) -> f32 {
+        if self.is_wild() {
+            return self.wild_number();
+        }
+        match self.random.below(8) {
+            0 => self.one_of(&[0.0, -0.0, size, -size]),
+            _ => self.random.within(-size..size),
+        }
+    }
+
+    pub fn angle(&mut self) -> f32 {
+        if self.chance(0.15) {
+            return self.one_of(&[0.0, PI, -PI, FRAC_PI_2, -FRAC_PI_2, TAU, 7.0 * TAU, 1e4]);
+        }
+        self.number(PI)
+    }
+
+    pub fn angles(&mut self) -> Vec3 {
+        Vec3::from_array([(); 3].map(|()| self.angle()))
+    }
+
+    pub fn part(&mut self) -> f32 {
+        if self.chance(0.3) {
+            return self.one_of(&[0.0, 1.0, 1.0, 0.5, -0.1, 1.1]);
+        }
+        self.number(1.0).abs()
+    }
+
+    pub fn length(&mut self) -> f32 {
+        let arm = self.session.arm().bones;
+        if self.chance(0.2) {
+            return self.one_of(&[arm.upper(), arm.lower(), 200.0, 300.0, 1e-2, 0.0, -1.0]);
+        }
+        self.number(400.0).abs()
+    }
+
+    pub fn above_0(&mut self, size: f32) -> f32 {
+        if self.chance(0.05) {
+            return self.one_of(&[0.0, -1.0, 1e-3, 1e3]);
+        }
+        self.number(size).abs()
+    }
+
+    // Points
+
+    /// How large what is shown is.
+    pub fn size(&self) -> f32 {
+        let size = match self.session.rig() {
+            RigKind::Arm => self.session.arm().bones.outer_limit(),
+            RigKind::Skeleton => self.session.skeleton().reach(),
+        };
+        if size.is_normal() { size } else { 1.0 }
+    }
+
+    pub fn point(&mut self, size: f32) -> Vec3 {
+        Vec3::from_array([(); 3].map(|()| self.number(size)))
+    }
+
+    pub fn small_point(&mut self) -> Vec3 {
+        let size = self.session.skeleton().reach();
+        self.point(1.5 * if size.is_normal() { size } else { 1.0 })
+    }
+
+    /// A cursor: in reach, on a limit, at the shoulder, on an axis, on the pole's line, far away.
+    pub fn cursor(&mut self) -> Vec3 {
+        let arm = *self.session.arm();
+        let (inner, outer) = (arm.bones.inner_limit(), arm.bones.outer_limit());
+        let direction = match self.random.below(6) {
+            0 => self.one_of(&[Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z]),
+            1 => arm.pole.normalize_or(Vec3::Y),
+            _ => self.random.direction(),
+        };
+        match self.random.below(12) {
+            0 => Vec3::ZERO,
+            1 => direction * inner,
+            2 => direction * outer,
+            3 => direction * outer * self.random.within(1.0..4.0),
+            4 => arm.cursor() + direction * outer * 0.01,
+            5 => self.point(outer),
+            _ => direction * self.random.within(inner..outer.max(inner)),
+        }
+    }
+
+    pub fn softening(&mut self) -> Softening {
+        let softness = self.one_of(&[0.0, 0.0, 0.1, 0.25, 0.5, 0.99, 1.0_f32.next_down()]);
+        let stretch = self.one_of(&[1.0, 1.0, 1.0, 1.2, 2.0, 100.0, f32::MAX]);
+        let stretch = if stretch == f32::MAX && !self.is_wild() { 1.5 } else { stretch };
+        let angle = self.one_of(&[0.0, 0.0, 0.3, 1.5, 3.0, PI.next_down()]);
+        Softening::new(softness, stretch, angle).expect("a softening")
+    }
+}

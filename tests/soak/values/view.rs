@@ -1,0 +1,121 @@
+//! Cameras, and what is dragged by rays.
+
+use std::f32::consts::FRAC_PI_2;
+
+use glam::{Vec2, Vec3};
+use ik_arm::document::{AxisView, Camera, Layer, Ray};
+use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion};
+
+use super::Values;
+
+impl Values<'_> {
+    pub fn place(&mut self) -> Vec2 {
+        Vec2::new(self.number(1.0), self.number(1.0))
+    }
+
+    pub fn aspect(&mut self) -> f32 {
+        if self.is_wild() { self.wild_number() } else { self.one_of(&[0.3, 1.0, 1.6, 3.0]) }
+    }
+
+    pub fn camera(&mut self) -> Camera {
+        let camera = *self.session.camera();
+        match self.random.below(5) {
+            0 => self.session.framing_all(),
+            1 => self.session.framing_selection(),
+            2 => camera.along(self.one_of(&[
+                AxisView::Front,
+                AxisView::Back,
+                AxisView::Right,
+                AxisView::Left,
+                AxisView::Top,
+                AxisView::Bottom,
+            ])),
+            3 => {
+                let (at, aspect) = (self.place(), self.aspect());
+                camera.zoomed(self.above_0(3.0), at, aspect)
+            }
+            _ => {
+                let size = self.size();
+                Camera {
+                    target: self.point(size),
+                    yaw: self.number(7.0),
+                    pitch: self.number(FRAC_PI_2),
+                    distance: self.above_0(4.0 * size),
+                    orthographic: self.coin(),
+                }
+            }
+        }
+    }
+
+    pub fn turn(&mut self) -> Motion {
+        self.one_of(&[Motion::Orbit, Motion::Pan, Motion::Zoom])
+    }
+
+    pub fn layer(&mut self) -> Layer {
+        let all: Vec<Layer> = Layer::all().collect();
+        self.one_of(&all)
+    }
+
+    // Drags
+
+    pub fn grip(&mut self) -> Grip {
+        let joint = self.joint();
+        match self.random.below(8) {
+            0 | 1 => Grip::Hand(self.handle()),
+            2 => Grip::Pole(self.handle()),
+            3 => Grip::Shoulder(self.axis()),
+            4 => Grip::Bend,
+            5 => Grip::Target(self.aimed(), self.handle()),
+            6 => Grip::Tip(joint, self.handle()),
+            _ => Grip::Ring(joint, self.axis()),
+        }
+    }
+
+    fn handle(&mut self) -> Handle {
+        match self.random.below(4) {
+            0 => Handle::Axis(self.axis()),
+            1 => Handle::Plane(self.axis()),
+            _ => Handle::Free,
+        }
+    }
+
+    pub fn constraint(&mut self) -> Option<Constraint> {
+        match self.random.below(3) {
+            0 => None,
+            1 => Some(Constraint::Axis(self.axis())),
+            _ => Some(Constraint::Plane(self.axis())),
+        }
+    }
+
+    pub fn ray(&mut self) -> Ray {
+        if self.is_wild() {
+            let (origin, direction) = (self.point(100.0), self.point(1.0));
+            return Ray { origin, direction };
+        }
+        let projection = self.session.camera().projection(1.6);
+        if self.chance(0.3)
+            && let Some(held) = self.session.point_drag().map(|drag| drag.moved())
+            && let Some(at) = projection.project(held)
+        {
+            return projection.ray(at);
+        }
+        let at = Vec2::new(self.random.within(-1.0..1.0), self.random.within(-1.0..1.0));
+        projection.ray(at)
+    }
+
+    pub fn forward(&mut self) -> Vec3 {
+        if self.is_wild() { self.point(1.0) } else { self.session.camera().projection(1.0).forward }
+    }
+
+    pub fn drag_input(&mut self) -> DragInput {
+        DragInput { ray: self.ray(), precise: self.chance(0.2), snap: self.chance(0.2) }
+    }
+
+    pub fn typed(&mut self) -> String {
+        const TYPED: [&str; 16] = [
+            "", "-", "1", "12.5", "-3,4", "1,2,3", ",,", "1,,2", "1e99", "1e38", "-1e38", "nan",
+            "inf", "0,0,0,0", "é", "180",
+        ];
+        self.one_of(&TYPED).to_owned()
+    }
+}
