@@ -24,7 +24,7 @@
 //! | [`kinematics`] | pure numbers: two bones, one or a batch, their swivel and reach, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, solvers, following a path, splines | |
 //! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
 //! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
-//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out | `document` |
+//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out; lines of `ik-arm solve` | `document` |
 //! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
 //! | `scene` | what to draw: plain lists | `document` |
 //! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |

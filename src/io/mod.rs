@@ -1,6 +1,6 @@
 //! Files: documents in the program's own format, Scotty3D's skeletons, and skeletons with their
 //! motions in glTF (`.gltf`, `.glb`) and BVH in; documents, [glTF](glb), [BVH](to_bvh) and
-//! [tables](to_csv) out.
+//! [tables](to_csv) out; and the [lines](solve_line) of `ik-arm solve`.
 //!
 //! What is wrong in a file is said with its line, its column (of a text), the path of the field, and
 //! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document. What
@@ -19,6 +19,7 @@ mod frames;
 mod gltf;
 mod js3d;
 mod layout;
+mod line;
 mod motion;
 mod open;
 mod progress;
@@ -34,6 +35,7 @@ pub use examples::{Example, Group};
 pub use format::{save, to_json};
 pub use frames::{Frames, Playback};
 pub use gltf::{GlbError, glb};
+pub use line::{Answer, LONGEST_LINE, LineError, Past, solve_line};
 pub use motion::{Exported, MotionError};
 pub use open::{Opened, open, parse, read};
 pub use progress::{Cancelled, Progress};

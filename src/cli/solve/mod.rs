@@ -1,9 +1,5 @@
 //! `ik-arm solve`: poses as JSON Lines, each line on its own unless its swivel is transported.
 
-mod error;
-mod line;
-mod swivel;
-
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -12,10 +8,8 @@ use std::process::ExitCode;
 use serde::Serialize;
 use thiserror::Error;
 
-use error::LineError;
+use crate::io::{LONGEST_LINE, solve_line};
 
-/// The longest line, in bytes and without its end: what a line may ask of the memory.
-const LONGEST_LINE: usize = 64 * 1024;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 #[derive(clap::Args)]
@@ -81,7 +75,7 @@ fn solve_lines(mut input: Input, output: impl Write) -> Result<u64, Failure> {
         if line.is_blank() {
             continue;
         }
-        let written = match line.bytes().and_then(|bytes| line::solve(bytes, &mut past)) {
+        let written = match solve_line(line.content, &mut past) {
             Ok(answer) => write_line(&mut output, &answer),
             Err(error) => {
                 bad += 1;
@@ -174,12 +168,5 @@ impl<'a> Line<'a> {
 
     fn is_blank(&self) -> bool {
         self.content.len() <= LONGEST_LINE && self.content.trim_ascii().is_empty()
-    }
-
-    fn bytes(&self) -> Result<&'a [u8], LineError> {
-        if self.content.len() > LONGEST_LINE {
-            return Err(LineError::TooLong);
-        }
-        Ok(self.content)
     }
 }

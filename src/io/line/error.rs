@@ -31,16 +31,17 @@ pub enum LineError {
 }
 
 impl LineError {
+    /// What to tell whoever wrote the line; of what it quotes at length, only the start and the end.
     pub fn message(&self) -> String {
         shortened(self.to_string())
     }
 
-    pub fn not_utf8(line: &[u8], error: Utf8Error) -> Self {
+    pub(super) fn not_utf8(line: &[u8], error: Utf8Error) -> Self {
         let valid = error.valid_up_to();
         Self::NotUtf8 { at: valid + 1, byte: line.get(valid).copied().unwrap_or_default() }
     }
 
-    pub fn not_a_request(line: &str, path: &Path, error: &serde_json::Error) -> Self {
+    pub(super) fn not_a_request(line: &str, path: &Path, error: &serde_json::Error) -> Self {
         let reason = without_position(error);
         let place = place(path, &reason);
         // serde_json has no other way to tell this error from the rest.
@@ -54,7 +55,7 @@ impl LineError {
         Self::not_json(line, place, error)
     }
 
-    pub fn not_json(line: &str, place: String, error: &serde_json::Error) -> Self {
+    pub(super) fn not_json(line: &str, place: String, error: &serde_json::Error) -> Self {
         let (reason, at) = (without_position(error), error.column());
         match word_around(line, at) {
             "" => Self::NotJson { place, reason, at },

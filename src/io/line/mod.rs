@@ -1,5 +1,8 @@
 //! One line of `ik-arm solve`: what it asks for, and the pose that it gets.
 
+mod error;
+mod swivel;
+
 use std::fmt;
 use std::str;
 
@@ -8,17 +11,27 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::error::LineError;
-use super::swivel::Swivel;
-use crate::io::value::{Number, Point};
+use super::value::{Number, Point};
 use crate::kinematics::ik::{Ik, Solved};
 use crate::kinematics::reach::{Softening, SofteningError};
 use crate::kinematics::swivel::{Carried, Reference};
 use crate::kinematics::two_bone::{Facing, Reach, TwoBone};
+pub use error::LineError;
+use swivel::Swivel;
 
-/// Solves one line, given without its end. `past` is what the good line before it left, and becomes
-/// what this one leaves; a bad line changes nothing.
-pub fn solve(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineError> {
+/// The longest line, in bytes and without its end: what a line may ask of the memory.
+pub const LONGEST_LINE: usize = 64 * 1024;
+
+/// Solves one line of `ik-arm solve`, given without its end. `past` is what the good line before it
+/// left, and becomes what this one leaves; a bad line changes nothing.
+///
+/// # Errors
+///
+/// If the line is no request, or one that no arm can meet; see [`LineError`].
+pub fn solve_line(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineError> {
+    if line.len() > LONGEST_LINE {
+        return Err(LineError::TooLong);
+    }
     let request = Request::parse(line)?;
     let ik = request.ik()?;
     // Only what is transported has a past: any other line is solved on its own.
@@ -31,7 +44,7 @@ pub fn solve(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineError> 
 
 /// What a transported line leaves to the next: where its arm faced, for a hand that says nothing of
 /// that (at the shoulder, or straight above or below it), and what its elbow was measured from.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past {
     facing: Facing,
     carried: Carried,
@@ -117,8 +130,8 @@ impl Request {
     }
 }
 
-/// The pose that a line gets.
-#[derive(Debug, Serialize)]
+/// The pose that a line gets, to be written as JSON; elbow and hand are in the world.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
     reach: &'static str,
     elbow: Vec3,
