@@ -1,0 +1,214 @@
+use std::collections::HashSet;
+
+use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Vec3};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::solve::{Method, Options, Report, Root, Solve, Target, jacobian};
+
+use super::bits::Bits;
+use super::opened::is_readable;
+
+/// A skeleton of a few joints with targets, of any numbers, by every method: what cannot be is
+/// refused in a few words; else a solve moves what it may, as far as limits let it, and tells the
+/// truth about how near it came.
+pub fn chain(data: &[u8]) {
+    let bits = &mut Bits::new(data);
+    let Some(skeleton) = skeleton(bits) else { return };
+    let targets = targets(bits, &skeleton);
+    let options = options(bits);
+    for joint in 0..skeleton.joints().len() {
+        let _ = jacobian(&skeleton, joint);
+    }
+    for method in Method::ALL {
+        solve(&skeleton, &targets, &Options { method, ..options }, bits.finite_vector());
+    }
+}
+
+fn skeleton(bits: &mut Bits<'_>) -> Option<Skeleton> {
+    const MOST: usize = 8;
+    let mut joints: Vec<Joint> = Vec::new();
+    for index in 0..1 + bits.below(MOST) {
+        let joint = joint(bits, index, &joints);
+        joints.push(joint);
+    }
+    let transform = transform(bits);
+    let mut skeleton = match Skeleton::from_joints(joints) {
+        Ok(skeleton) => skeleton,
+        Err(error) => {
+            is_readable(&error.to_string());
+            return None;
+        }
+    };
+    assert_eq!(skeleton.set_transform(transform).is_ok(), transform.is_finite());
+    Some(skeleton)
+}
+
+fn joint(bits: &mut Bits<'_>, index: usize, before: &[Joint]) -> Joint {
+    let what = bits.byte();
+    // Mostly a chain.
+    let parent =
+        if what & 3 == 0 { bits.below(index + 1).checked_sub(1) } else { index.checked_sub(1) };
+    let on_tip = parent.and_then(|parent| before.get(parent)).map(|parent| parent.axis);
+    let joint = Joint::new(&format!("joint {index}"), parent, bits.vector());
+    Joint {
+        offset: if what & 4 == 0 { on_tip.unwrap_or_default() } else { bits.vector() },
+        rotation: if what & 8 == 0 { Vec3::ZERO } else { bits.vector() },
+        frame: if what & 16 == 0 { Mat3::IDENTITY } else { Mat3::from_quat(bits.rotation()) },
+        limits: if what & 32 == 0 { [None; 3] } else { [(); 3].map(|()| limit(bits)) },
+        locked: what & 192 == 192,
+        ..joint
+    }
+}
+
+fn limit(bits: &mut Bits<'_>) -> Option<Limit> {
+    let (one, other) = (bits.number(), bits.number());
+    match bits.below(4) {
+        0 => None,
+        1 => Some(Limit { min: one, max: other }),
+        _ => Some(Limit { min: one.min(other), max: one.max(other) }),
+    }
+}
+
+fn transform(bits: &mut Bits<'_>) -> Affine3A {
+    match bits.byte() {
+        0..128 => Affine3A::IDENTITY,
+        128..160 => bits.matrix(),
+        160.. => {
+            let (scale, rotation) = (bits.vector(), bits.rotation());
+            Affine3A::from_scale_rotation_translation(scale, rotation, bits.vector())
+        }
+    }
+}
+
+fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<Target> {
+    const MOST: usize = 3;
+    // One more than there are.
+    let places = skeleton.joints().len() + 1;
+    let count = 1 + bits.below(MOST);
+    let target = |_| Target {
+        joint: bits.below(places),
+        point: bits.vector(),
+        weight: if bits.coin() { 1.0 } else { bits.number() },
+    };
+    (0..count).map(target).collect()
+}
+
+fn options(bits: &mut Bits<'_>) -> Options {
+    const MOST: u8 = 40;
+    let usual = Options::default();
+    let any = bits.byte();
+    Options {
+        iterations: Some(u32::from(bits.byte() % MOST)),
+        tolerance: (any & 1 == 1).then(|| bits.number()),
+        damping: if any & 2 == 0 { usual.damping } else { bits.number() },
+        step: if any & 4 == 0 { usual.step } else { bits.number() },
+        root: if any & 24 == 24 { Root::Free } else { Root::Fixed },
+        ..usual
+    }
+}
+
+fn solve(before: &Skeleton, targets: &[Target], options: &Options, elsewhere: Vec3) {
+    let mut solve = match Solve::new(before, targets, options) {
+        Ok(solve) => solve,
+        Err(error) => return is_readable(&error.to_string()),
+    };
+    let mut skeleton = before.clone();
+    check(before, &skeleton, targets, options, solve.report());
+    solve.run();
+    assert!(solve.is_over());
+    solve.write(&mut skeleton);
+    check(before, &skeleton, targets, options, solve.report());
+
+    let moved: Vec<_> =
+        targets.iter().map(|target| Target { point: elsewhere, ..*target }).collect();
+    solve.retarget(&moved).expect("the same joints");
+    solve.run();
+    solve.write(&mut skeleton);
+    check(before, &skeleton, &moved, options, solve.report());
+}
+
+fn check(
+    before: &Skeleton,
+    after: &Skeleton,
+    targets: &[Target],
+    options: &Options,
+    report: Report,
+) {
+    let on_path: HashSet<usize> =
+        targets.iter().flat_map(|target| before.ancestors(target.joint)).collect();
+    for (index, (was, is)) in before.joints().iter().zip(after.joints()).enumerate() {
+        let by = options.method;
+        assert!(is.rotation.is_finite() && is.offset.is_finite(), "{by:?}: {is:?}");
+        assert_eq!(is.clamped(is.rotation), is.rotation, "{by:?}: {is:?}");
+        let may_move =
+            options.root == Root::Free && is.parent.is_none() && on_path.contains(&index);
+        let may_turn = !was.locked && on_path.contains(&index);
+        let offset = if may_move { is.offset } else { was.offset };
+        let rotation = if may_turn { is.rotation } else { was.rotation };
+        assert_eq!(*is, Joint { offset, rotation, ..was.clone() }, "{by:?}");
+        is_rigid(is);
+    }
+    is_truth(after, targets, report);
+}
+
+/// A bone keeps its length however it is turned.
+fn is_rigid(joint: &Joint) {
+    let turn = joint.local_rotation();
+    let squared = turn.transpose() * turn;
+    assert!(squared.abs_diff_eq(Mat3A::IDENTITY, 1e-5), "{joint:?} is turned by {turn}");
+}
+
+/// What is reported is how far the tips are from their targets, as far as 32 bits tell. Angles of many
+/// turns have few digits for the rest.
+fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report) {
+    const TRUE: f64 = 1e-4;
+    const FEW_TURNS: f32 = 100.0;
+    assert!((0.0..=f32::MAX).contains(&report.error), "{report:?}");
+    if skeleton.joints().iter().any(|joint| joint.rotation.abs().max_element() > FEW_TURNS) {
+        return;
+    }
+    let twins: Vec<_> = targets.iter().map(|target| Twin::new(skeleton, target)).collect();
+    let error = twins.iter().map(|twin| twin.error).fold(0.0, f64::max);
+    let blur = twins.iter().map(|twin| twin.blur).fold(0.0, f64::max);
+    let off = (error.min(f64::from(f32::MAX)) - f64::from(report.error)).abs();
+    assert!(off <= TRUE * (error + blur), "{error} away, {blur} long: {report:?}");
+}
+
+/// A tip and its target by the formulas, in 64 bits.
+struct Twin {
+    error: f64,
+    /// How long the way from the root to the tip is, in the world, and what else rounds.
+    blur: f64,
+}
+
+impl Twin {
+    fn new(skeleton: &Skeleton, target: &Target) -> Self {
+        let joints = skeleton.joints();
+        let mut path: Vec<_> =
+            skeleton.ancestors(target.joint).map(|joint| &joints[joint]).collect();
+        path.reverse();
+        let mut turn = DMat3::IDENTITY;
+        let (mut at, mut length) = (DVec3::ZERO, 0.0);
+        for (index, joint) in path.iter().enumerate() {
+            at += turn * joint.offset.as_dvec3();
+            length += if index > 0 { joint.offset.as_dvec3().length() } else { 0.0 };
+            turn *= local(joint);
+        }
+        let axis = joints[target.joint].axis.as_dvec3();
+        let world = skeleton.transform();
+        let matrix = world.matrix3.as_dmat3();
+        let tip = matrix * (at + turn * axis) + world.translation.as_dvec3();
+        let scale = matrix.to_cols_array().into_iter().fold(0.0, f64::hypot);
+        // A root that moved has seven digits.
+        let root = path.first().map_or(0.0, |root| root.offset.as_dvec3().length()) * 1e-2;
+        let error = tip.distance(target.point.as_dvec3());
+        Self { error, blur: scale * (length + axis.length() + root) }
+    }
+}
+
+/// R.
+fn local(joint: &Joint) -> DMat3 {
+    let DVec3 { x, y, z } = joint.rotation.as_dvec3();
+    let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+    let frame = joint.frame.as_dmat3();
+    frame * turned * frame.transpose()
+}

@@ -1,0 +1,38 @@
+use ik_arm::document::{Document, Timeline};
+use ik_arm::io::{self, BvhUnit, Progress};
+
+use super::opened::{is_readable, opened};
+
+/// A document, or what looks like one: it is refused in a few words, or is saved and read again as it
+/// is; and so are its exports, if it has any.
+pub fn document(data: &[u8]) {
+    if let Some(opened) = opened(data, None) {
+        export(&short(opened.document));
+    }
+}
+
+/// A few frames of it.
+fn short(document: Document) -> Document {
+    const FRAMES: f64 = 3.0;
+    let Timeline { start, end, frame_rate } = document.timeline;
+    let end = end.min(start + FRAMES / f64::from(frame_rate));
+    Document { timeline: Timeline { start, end, frame_rate }, ..document }
+}
+
+fn export(document: &Document) {
+    let progress = &Progress::default();
+    match io::glb(document, None, progress) {
+        Ok(bytes) => drop(opened(&bytes, None).expect("glTF of ours is read")),
+        Err(error) => is_readable(&error.to_string()),
+    }
+    for unit in [BvhUnit::Centimetres, BvhUnit::Scene] {
+        match io::to_bvh(document, None, unit, progress) {
+            Ok(bvh) => drop(opened(&bvh.bytes, None).expect("BVH of ours is read")),
+            Err(error) => is_readable(&error.to_string()),
+        }
+    }
+    match io::to_csv(document, None, progress) {
+        Ok(table) => assert!(!String::from_utf8(table.bytes).expect("text").contains("NaN")),
+        Err(error) => is_readable(&error.to_string()),
+    }
+}

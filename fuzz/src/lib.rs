@@ -1,0 +1,24 @@
+//! What must hold of any bytes whatsoever: a function for each target, which panics where it does
+//! not.
+//!
+//! The fuzzer calls them with bytes of its own, and `tests/corpora.rs` of the main package with those
+//! that are kept here.
+
+mod bits;
+mod bvh;
+mod chain;
+mod document;
+mod gltf;
+mod job;
+mod js3d;
+mod json_lines;
+mod opened;
+mod two_bone;
+
+pub use bvh::bvh;
+pub use chain::chain;
+pub use document::document;
+pub use gltf::gltf;
+pub use js3d::js3d;
+pub use json_lines::json_lines;
+pub use two_bone::two_bone;

@@ -1,0 +1,83 @@
+use std::collections::HashSet;
+
+use ik_arm::document::Document;
+use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::skeleton::Skeleton;
+
+/// What is in a file, if it is one: checked; or else checks that the error is one to read.
+pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
+    match io::read("file", bytes, skeleton) {
+        Ok(opened) => {
+            check(&opened);
+            Some(opened)
+        }
+        Err(error) => {
+            is_readable(&error.to_string());
+            None
+        }
+    }
+}
+
+/// Every skeleton of a file.
+pub fn every_skeleton(bytes: &[u8]) {
+    const ENOUGH: usize = 4;
+    if let Some(first) = opened(bytes, None) {
+        for name in first.skeletons.iter().take(ENOUGH) {
+            opened(bytes, Some(name));
+        }
+    }
+}
+
+/// Something is said, and not more than a window shows.
+pub fn is_readable(message: &str) {
+    assert!((1..1000).contains(&message.chars().count()), "{message}");
+}
+
+fn check(opened: &Opened) {
+    let Opened { document, warnings, order, skeletons } = opened;
+    warnings.iter().for_each(|warning| is_readable(&warning.to_string()));
+    let names: HashSet<_> = skeletons.iter().collect();
+    assert_eq!(names.len(), skeletons.len(), "{skeletons:?}");
+
+    check_skeleton(document, order);
+    check_poses(document);
+    is_read_as_it_is_written(document);
+}
+
+fn check_skeleton(document: &Document, order: &[usize]) {
+    let rig = &document.skeleton;
+    let joints = rig.skeleton.joints();
+    assert!(order.iter().all(|joint| *joint < joints.len()), "{order:?}");
+    let mut again = Skeleton::from_joints(joints.to_vec()).expect("one that can be");
+    again.set_transform(rig.skeleton.transform()).expect("one that can be");
+    assert_eq!(again, rig.skeleton);
+
+    let aimed: HashSet<_> = rig.targets.iter().map(|target| target.joint).collect();
+    assert_eq!(aimed.len(), rig.targets.len());
+    assert!(aimed.into_iter().all(|joint| joint < joints.len()));
+}
+
+fn check_poses(document: &Document) {
+    let timeline = document.timeline;
+    assert!(timeline.is_valid(), "{timeline:?}");
+    for time in [-1.0, 0.0, 0.3, 1e9, timeline.start, timeline.end] {
+        let at = document.at(time);
+        let pose = at.arm.pose();
+        assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
+        let skeleton = at.skeleton.at(time);
+        for joint in skeleton.joints() {
+            assert!(joint.rotation.is_finite() && joint.offset.is_finite(), "{joint:?} at {time}");
+            assert_eq!(joint.clamped(joint.rotation), joint.rotation, "{joint:?} at {time}");
+        }
+    }
+}
+
+/// Numbers that are not finite could not be written.
+fn is_read_as_it_is_written(document: &Document) {
+    let json = io::to_json(document).expect("every document can be written");
+    let again = io::parse("again", &json, None).expect("what was written is read");
+    assert_eq!(again.document, *document);
+    assert_eq!(again.warnings, []);
+    // Equal numbers may differ in the sign of 0; their texts do not.
+    assert_eq!(io::to_json(&again.document).expect("written"), json);
+}

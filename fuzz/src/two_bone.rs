@@ -1,0 +1,186 @@
+use core::f32::consts::{PI, TAU};
+
+use glam::Vec3;
+use ik_arm::kinematics::fk::{Fk, blended};
+use ik_arm::kinematics::ik::{Ik, Solved};
+use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::swivel::{Carried, Reference, Stereographic};
+use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
+
+use super::bits::Bits;
+use super::job::job;
+
+/// The arm and the job of two bones, of any numbers: what cannot be is refused, and all that can be
+/// has a finite pose with limbs as long as they are, and a hand that is where it is said to be.
+pub fn two_bone(data: &[u8]) {
+    let bits = &mut Bits::new(data);
+    if bits.coin() {
+        return job(bits);
+    }
+    let (Some(bones), Some(softening)) = (bones(bits), softening(bits)) else { return };
+    let cursors = [bits.finite_vector(), bits.finite_vector()];
+    let spin = bits.finite();
+    plain(bones, cursors, spin);
+    let ik = Ik { bones, reference: reference(bits), softening };
+    let solved = solved_on(ik, cursors, spin);
+    found_again(ik, &solved);
+    forward(bits, bones, &solved.pose);
+}
+
+fn bones(bits: &mut Bits<'_>) -> Option<TwoBone> {
+    let lengths = [bits.number(), bits.number()];
+    let bones = TwoBone::new(lengths[0], lengths[1]);
+    assert_eq!(bones.is_ok(), lengths.iter().all(|length| length.is_finite() && *length > 0.0));
+    bones.ok()
+}
+
+fn softening(bits: &mut Bits<'_>) -> Option<Softening> {
+    let (softness, max_stretch, angle) = match bits.byte() {
+        0..64 => return Some(Softening::default()),
+        64..128 => (bits.number(), bits.number(), bits.number()),
+        128.. => (bits.part(), 1.0 + bits.part(), PI * bits.part()),
+    };
+    let softening = Softening::new(softness, max_stretch, angle);
+    let can_be = (0.0..1.0).contains(&softness)
+        && (1.0..=f32::MAX).contains(&max_stretch)
+        && (0.0..PI).contains(&angle);
+    assert_eq!(softening.is_ok(), can_be);
+    softening.ok()
+}
+
+fn reference(bits: &mut Bits<'_>) -> Reference {
+    match bits.below(4) {
+        0 => Reference::Limb,
+        1 => Reference::Pole(bits.finite_vector()),
+        2 => {
+            let map = Stereographic::new(bits.finite_vector(), bits.finite_vector());
+            Reference::Stereographic(map.unwrap_or_default())
+        }
+        _ => Reference::Transport,
+    }
+}
+
+/// The seed's arm, first without a past and then with one.
+fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
+    let mut last = Facing::default();
+    for cursor in [first, second] {
+        let pose = bones.solve_from(cursor, spin, last);
+        is_whole(&pose);
+        has_its_lengths(&pose, bones, EXACT);
+        let (asked, hand) = (cursor.as_dvec3().length(), pose.hand.as_dvec3().length());
+        let [inner, outer] = limits(bones);
+        let bound = EXACT * outer + TINY;
+        match pose.reach {
+            Reach::Reached => {
+                assert_eq!(pose.hand, cursor);
+                assert!(inner - bound <= asked && asked <= outer + bound, "{pose:?}");
+            }
+            Reach::TooFar => assert!(asked >= outer - bound, "{pose:?}"),
+            Reach::TooClose => {
+                assert!(asked <= inner + bound && hand >= inner - bound, "{pose:?}");
+            }
+        }
+        last = pose.facing;
+    }
+}
+
+/// With all its choices, from one cursor to the next.
+fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> Solved {
+    let one = ik.solve(first, spin, Facing::default(), None);
+    let two = ik.solve(second, spin, one.pose.facing, Some(one.carried));
+    for (cursor, solved) in [(first, one), (second, two)] {
+        let Solved { pose, carried, slope } = solved;
+        is_whole(&pose);
+        is_frame(carried);
+        let most = ik.softening.max_stretch();
+        assert!((0.0..=most).contains(&slope), "{slope}");
+        assert!((1.0..=most).contains(&pose.stretch), "{pose:?}");
+        assert!(ik.reference.gain(pose.facing) >= 0.0);
+        has_its_lengths(&pose, ik.bones.stretched(pose.stretch), 2.0 * EXACT);
+        let missed = pose.hand.as_dvec3().distance(cursor.as_dvec3());
+        let length = limits(ik.bones)[1] * f64::from(pose.stretch);
+        let is_there = missed <= 3.0 * REACHED * length + TINY;
+        assert!(pose.reach != Reach::Reached || is_there, "{cursor} is off by {missed}: {pose:?}");
+    }
+    two
+}
+
+/// The cursor and the spin of a pose lead to it again.
+fn found_again(ik: Ik, Solved { pose, carried, .. }: &Solved) {
+    let (cursor, spin) = ik.matching(pose, Some(*carried));
+    assert!(cursor.is_finite() && (0.0..TAU).contains(&spin), "{cursor}, {spin}");
+    let again = ik.solve(cursor, spin, pose.facing, Some(*carried)).pose;
+    is_whole(&again);
+    let length = limits(ik.bones)[1] * f64::from(pose.stretch);
+    if length <= LARGEST {
+        // A cursor of the least numbers has few digits to say where it is.
+        let coarse = TINY / cursor.as_dvec3().length().max(TINY);
+        let off = again.hand.as_dvec3().distance(pose.hand.as_dvec3());
+        let bound = (REACHED + coarse) * length + TINY;
+        assert!(off <= bound, "off by {off}: {again:?}, not {pose:?}");
+    }
+}
+
+/// Angles of a pose, the pose of any angles, and what is between the two.
+fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &Pose) {
+    let last = Fk { shoulder: bits.finite_vector(), bend: bits.finite(), stretch: 1.0 };
+    let fk = Fk::matching(pose, last);
+    assert!(fk.shoulder.is_finite() && fk.bend.is_finite() && fk.stretch.is_finite(), "{fk:?}");
+    let again = fk.pose(bones, pose.facing);
+    is_whole(&again);
+    let length = limits(bones)[1] * f64::from(pose.stretch);
+    if length <= LARGEST {
+        let off = again.hand.as_dvec3().distance(pose.hand.as_dvec3());
+        assert!(off <= REACHED * length + TINY, "off by {off}: {again:?}, not {pose:?}");
+    }
+    let any = last.pose(bones, pose.facing);
+    is_whole(&any);
+    has_its_lengths(&any, bones, EXACT);
+    let between = blended(last, pose, bits.number(), bones, pose.hand);
+    is_whole(&between);
+    let stretched = bones.stretched(between.stretch);
+    has_its_lengths(&between, stretched, 2.0 * EXACT);
+}
+
+/// Of the length: of a hand and of a limb, and of a hand that is reached.
+const EXACT: f64 = 3e-7;
+const REACHED: f64 = 1e-6;
+/// Steps of the least numbers.
+const TINY: f64 = 4.0 * f32::from_bits(1) as f64;
+/// Beyond it, what is longer is as long as numbers go.
+const LARGEST: f64 = f32::MAX as f64;
+
+/// |δ| and L.
+fn limits(bones: TwoBone) -> [f64; 2] {
+    let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
+    [(upper - lower).abs(), upper + lower]
+}
+
+fn is_whole(pose: &Pose) {
+    let Pose { elbow, hand, distance, along, out, facing, .. } = pose;
+    assert!(elbow.is_finite() && hand.is_finite(), "{pose:?}");
+    assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{pose:?}");
+    assert!(*distance >= 0.0 && *out >= 0.0, "{pose:?}");
+    assert!(facing.direction.is_normalized() && facing.heading.is_normalized(), "{pose:?}");
+    assert!((0.0..=PI).contains(&pose.shoulder_angle()), "{pose:?}");
+    let angles = [pose.yaw(), pose.pitch(), pose.elbow_angle(), pose.spin, pose.stretch];
+    assert!(angles.into_iter().all(f32::is_finite), "{pose:?}");
+}
+
+fn is_frame(Carried { direction, outward }: Carried) {
+    assert!(direction.is_normalized() && outward.is_normalized(), "{direction}, {outward}");
+    assert!(direction.dot(outward).abs() < 1e-5, "{direction}, {outward}");
+}
+
+fn has_its_lengths(pose: &Pose, bones: TwoBone, exact: f64) {
+    let [_, length] = limits(bones);
+    if length > LARGEST {
+        return;
+    }
+    let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
+    let limbs = [(elbow.length(), bones.upper()), (elbow.distance(hand), bones.lower())];
+    for (limb, rest) in limbs {
+        let off = (limb - f64::from(rest)).abs();
+        assert!(off <= exact * length + TINY, "{limb} is not {rest}: {pose:?}");
+    }
+}
