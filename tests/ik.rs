@@ -297,3 +297,15 @@ fn transport_without_a_past_begins_on_the_map() {
     let map = Reference::Stereographic(Stereographic::default());
     assert_eq!(solve(Reference::Transport), solve(map));
 }
+
+#[test]
+fn a_cursor_farther_than_numbers_go_is_not_reached() {
+    const FAR: f32 = f32::MAX;
+    // √2 times as far as the largest number.
+    let cursor = Vec3::new(0.0, FAR, FAR);
+    let bones = TwoBone::new(1.0, FAR).expect("lengths");
+    let ik = Ik { bones, reference: Reference::Limb, softening: soft(0.1, 1.0, 0.0) };
+    let pose = ik.solve(cursor, 0.0, Facing::default(), None).pose;
+    assert_eq!(pose.reach, Reach::TooFar);
+    assert!((pose.hand.as_dvec3().length() / f64::from(FAR) - 1.0).abs() < 0.1, "{}", pose.hand);
+}

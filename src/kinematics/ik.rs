@@ -83,7 +83,7 @@ impl Ik {
             _ => spin + angle_from_limb(facing, outward),
         };
         let asked = length(cursor);
-        let extent = self.softening.extent(self.bones, asked);
+        let extent = self.softening.extent(self.bones, asked.min(f32::MAX));
         let pose = if self.softening.is_hard() {
             self.bones.solve_from(cursor, spin, last)
         } else {
@@ -126,7 +126,8 @@ pub(super) fn reach(distance: f32, asked: f32, bones: TwoBone) -> Reach {
     }
 }
 
-/// In f64, where no square overflows.
+/// In f64, where no square overflows. Infinite where it is more than the largest number: a hand that
+/// is as far as that is not there.
 pub(super) fn length(v: Vec3) -> f32 {
-    v.as_dvec3().length().min(f64::from(f32::MAX)) as f32
+    v.as_dvec3().length() as f32
 }
