@@ -488,6 +488,21 @@ fn a_solve_follows_its_targets() {
 }
 
 #[test]
+fn a_solve_that_comes_back_to_where_it_began_writes_that() {
+    for method in [Method::Ccd, Method::Fabrik] {
+        let mut skeleton = straight(1);
+        let mut solve = Solve::new(&skeleton, &[target(1, Vec3::X)], &by(method)).expect("solve");
+        solve.run();
+        solve.write(&mut skeleton);
+        assert!(skeleton.tip(1).distance(Vec3::X) < 1e-6);
+        solve.retarget(&[target(1, Vec3::Y)]).expect("the same joint");
+        solve.run();
+        solve.write(&mut skeleton);
+        assert!(skeleton.tip(1).distance(Vec3::Y) < 1e-6, "{method:?}: {:?}", solve.report());
+    }
+}
+
+#[test]
 fn without_targets_there_is_nothing_to_do() {
     for method in Method::ALL {
         let mut skeleton = Skeleton::with_root("root");

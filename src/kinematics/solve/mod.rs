@@ -200,6 +200,10 @@ impl Solve {
                 skeleton.turn(tree.root, |root| root.offset = offset);
             }
         } else if self.pose.is_like(&self.start) {
+            // As they were, bit for bit, also where they have been written otherwise since.
+            for body in &self.rig.bodies {
+                skeleton.turn(body.joint, |joint| joint.rotation = body.start);
+            }
             return;
         }
         let near = |body: usize| {
