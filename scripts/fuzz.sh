@@ -41,7 +41,7 @@ fuzz() {
         [[ ! -d $folder ]] || folders+=("$folder")
     done
     mkdir -p "${folders[0]}"
-    options=(-max_total_time="$2" -timeout=10 -rss_limit_mb=2048 -max_len="$(longest "$target")"
+    options=(-max_total_time="$2" -timeout=30 -rss_limit_mb=2048 -max_len="$(longest "$target")"
         -print_final_stats=1)
     if [[ -f fuzz/dictionaries/$target.dict ]]; then
         options+=(-dict="fuzz/dictionaries/$target.dict")

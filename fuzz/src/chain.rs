@@ -112,6 +112,8 @@ fn solve(before: &Skeleton, targets: &[Target], options: &Options, elsewhere: Ve
         Err(error) => return is_readable(&error.to_string()),
     };
     let mut skeleton = before.clone();
+    // Roots that are free go near their targets at once.
+    solve.write(&mut skeleton);
     check(before, &skeleton, targets, options, solve.report());
     solve.run();
     assert!(solve.is_over());
@@ -170,7 +172,11 @@ fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report) {
     let error = twins.iter().map(|twin| twin.error).fold(0.0, f64::max);
     let blur = twins.iter().map(|twin| twin.blur).fold(0.0, f64::max);
     let off = (error.min(f64::from(f32::MAX)) - f64::from(report.error)).abs();
-    assert!(off <= TRUE * (error + blur), "{error} away, {blur} long: {report:?}");
+    let least = f64::from(f32::from_bits(2));
+    assert!(
+        off <= TRUE * (error + blur) + least,
+        "{error} away, {blur} long: {report:?} of {targets:?} and {skeleton:?}"
+    );
 }
 
 /// A tip and its target by the formulas, in 64 bits.

@@ -48,7 +48,7 @@ fn check(job: &TwoBoneJob, correction: Correction) {
     let missed = from.distance(to);
     // What the matrices are off from being a rotation and a scale is felt twice.
     let blur = 1e-6 * twin.length + 4.0 * twin.rounding;
-    let off = (missed - f64::from(hand_error)).abs();
+    let off = (missed.min(f64::from(f32::MAX)) - f64::from(hand_error)).abs();
     assert!(off <= blur + 1e-6 * missed, "{missed} away: {correction:?} of {job:?}");
     let is_there = missed <= 2e-6 * twin.length + 4.0 * twin.rounding;
     assert!(reach != Reach::Reached || is_there, "{missed} away: {correction:?} of {job:?}");
