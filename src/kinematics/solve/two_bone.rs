@@ -89,26 +89,27 @@ impl TwoBones {
     }
 }
 
-/// Turns the upper bone, and the arm's plane with it.
+/// Turns the upper bone, and the arm's plane with it. A bone that is so short beside the chain that
+/// rounding leaves nothing of it stays as it is.
 fn place_elbow(rig: &Rig, pose: &mut Pose, pair: Pair) {
     let shoulder = pose.bases[pair.upper];
     let (upper, hand) = (pose.bases[pair.lower] - shoulder, pose.tips[pair.goal] - shoulder);
     let cursor = rig.goals[pair.goal].point - shoulder;
 
+    let Some(along) = upper.try_normalize() else { return };
     let old_normal = hand.cross(upper).try_normalize();
-    let old_normal = old_normal.unwrap_or_else(|| upper.normalize().any_orthonormal_vector());
-    let old_pointer = hand.try_normalize().unwrap_or_else(|| old_normal.cross(upper).normalize());
+    let old_normal = old_normal.unwrap_or_else(|| along.any_orthonormal_vector());
+    let old_pointer = hand.try_normalize().unwrap_or_else(|| old_normal.cross(along));
     let pointer = cursor.try_normalize().unwrap_or(old_pointer);
     let carried = arc(old_pointer, pointer) * old_normal;
-    let normal = carried.reject_from_normalized(pointer).normalize();
+    let normal = carried.reject_from_normalized(pointer).try_normalize();
+    let normal = normal.unwrap_or_else(|| pointer.any_orthonormal_vector());
 
     let solved = pair.arm.solve(Vec3::X * cursor.length(), 0.0);
     let elbow = pointer * solved.along + normal.cross(pointer) * solved.out;
-    let plane = |bone: Vec3A, normal: Vec3A| {
-        let along = bone.normalize();
-        Mat3A::from_cols(along, normal, along.cross(normal))
-    };
-    let turn = plane(elbow, normal) * plane(upper, old_normal).transpose();
+    let Some(new_along) = elbow.try_normalize() else { return };
+    let plane = |along: Vec3A, normal: Vec3A| Mat3A::from_cols(along, normal, along.cross(normal));
+    let turn = plane(new_along, normal) * plane(along, old_normal).transpose();
     turn_body(rig, pose, pair.upper, turn);
 }
 
