@@ -65,6 +65,10 @@ fn check_poses(document: &Document) {
         let pose = at.arm.pose();
         assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
         let skeleton = at.skeleton.at(time);
+        let of_skeleton = at.skeleton.bounds(&skeleton.pose(), time);
+        for (centre, radius) in [at.arm.bounds(&pose), of_skeleton] {
+            assert!(centre.is_finite() && radius.is_finite(), "{centre} ± {radius} at {time}");
+        }
         for joint in skeleton.joints() {
             assert!(joint.rotation.is_finite() && joint.offset.is_finite(), "{joint:?} at {time}");
             assert_eq!(joint.clamped(joint.rotation), joint.rotation, "{joint:?} at {time}");
