@@ -1,19 +1,21 @@
 use glam::{Quat, Vec3A};
 
-/// The least turn that brings one direction to another. None where either has no direction; about
-/// any perpendicular where they are opposite.
+use super::direction::{direction, near_1};
+
+/// The least turn that brings one direction to another, however long the vectors are. None where
+/// either has no direction; about any perpendicular where they are opposite.
 pub(crate) fn arc(from: Vec3A, to: Vec3A) -> Quat {
     // Of the product of lengths: beyond, the sum below loses digits.
     const NEARLY_OPPOSITE: f32 = -0.9;
-    let both = (from.length_squared() * to.length_squared()).sqrt();
-    if both <= f32::MIN_POSITIVE {
+    let (Some(from), Some(to)) = (near_1(from), near_1(to)) else {
         return Quat::IDENTITY;
-    }
+    };
+    let both = (from.length_squared() * to.length_squared()).sqrt();
     let (cross, dot) = (from.cross(to), from.dot(to));
     if dot < NEARLY_OPPOSITE * both {
         // Half a turn about what is exactly perpendicular, then the little that is left.
         let unit = from.normalize();
-        let axis = cross.reject_from_normalized(unit).try_normalize();
+        let axis = direction(cross.reject_from_normalized(unit));
         let axis = axis.unwrap_or_else(|| unit.any_orthonormal_vector());
         let half = Quat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
         return (arc(-from, to) * half).normalize();
@@ -48,6 +50,15 @@ mod tests {
             let to = Vec3A::new(1.0, 10_f32.powi(-exponent), 0.0);
             let turned = arc(Vec3A::X, to) * Vec3A::X;
             assert!((turned.y / turned.x / to.y - 1.0).abs() < 1e-5, "{turned} for {to}");
+        }
+    }
+
+    #[test]
+    fn tiny_and_huge_vectors_turn_as_others_do() {
+        let (from, to) = (Vec3A::new(1.0, 2.0, -2.0), Vec3A::new(-6.0, 2.0, 3.0));
+        for exponents in [(-126, -126), (-126, 120), (120, 120), (-80, 0), (0, -70), (70, 0)] {
+            let [one, other] = [exponents.0, exponents.1].map(|power| 2_f32.powi(power));
+            assert_eq!(arc(from * one, to * other), arc(from, to), "{exponents:?}");
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod arc;
 pub mod batch;
+mod direction;
 pub mod euler;
 pub mod fk;
 pub mod follow;
@@ -16,3 +17,4 @@ pub mod swivel;
 pub mod two_bone;
 
 pub(crate) use arc::arc;
+pub(crate) use direction::direction;

@@ -82,9 +82,9 @@ impl Stereographic {
     /// With the direction that is left out (any length but 0), and one that is up when the Pointer
     /// faces the other way; nothing where the two are parallel or no directions.
     pub fn new(singular: Vec3, up: Vec3) -> Option<Self> {
-        let singular = singular.try_normalize()?;
-        let up = up.reject_from_normalized(singular).try_normalize()?;
-        Some(Self { singular, up })
+        let singular = singular.as_dvec3().try_normalize()?;
+        let up = up.as_dvec3().reject_from_normalized(singular).try_normalize()?;
+        Some(Self { singular: singular.as_vec3(), up: up.as_vec3() })
     }
 
     /// R.

@@ -5,6 +5,7 @@ use glam::{Vec3, Vec3A};
 
 use super::pose::Pose;
 use super::rig::Rig;
+use crate::kinematics::direction;
 use crate::kinematics::skeleton::within;
 
 /// Radians, shared by the joints of a path.
@@ -46,7 +47,7 @@ fn stuck(
     let farthest = points
         .clone()
         .max_by(|one, other| one.length_squared().total_cmp(&other.length_squared()))?;
-    let line = farthest.try_normalize()?;
+    let line = direction(farthest)?;
     let reach = farthest.length();
     let is_beside = |point: Vec3A| {
         point.reject_from_normalized(line).length() > STRAIGHT * reach.max(point.length())

@@ -31,8 +31,8 @@ use super::ccd::Ccd;
 use super::pose::Pose;
 use super::rig::Rig;
 use super::turn::{Pair, align, align_within};
-use crate::kinematics::arc;
 use crate::kinematics::skeleton::EulerAngles;
+use crate::kinematics::{arc, direction};
 
 /// A point of a body, and what is there.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,7 +166,7 @@ impl Fabrik {
             let wanted = self.wanted(rig, point);
             self.wanted[index] = wanted;
             self.arms[index] = point.place(pose) - base;
-            let back = (base - wanted).try_normalize().or((-self.arms[index]).try_normalize());
+            let back = direction(base - wanted).or_else(|| direction(-self.arms[index]));
             sum += point.weight * (wanted + point.reach * back.unwrap_or(Vec3A::ZERO));
             weights += point.weight;
         }
@@ -213,8 +213,8 @@ impl Fabrik {
         let base = pose.bases[body];
         if self.limited || to - from > 1 {
             self.turn(rig, pose, body);
-        } else if let Some(direction) = (self.wanted[from] - base).try_normalize() {
-            self.arms[from] = self.points[from].reach * direction;
+        } else if let Some(towards) = direction(self.wanted[from] - base) {
+            self.arms[from] = self.points[from].reach * towards;
         }
         for index in from..to {
             let place = base + self.arms[index];

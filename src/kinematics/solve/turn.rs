@@ -2,8 +2,8 @@
 
 use glam::{Quat, Vec3, Vec3A};
 
-use crate::kinematics::arc;
 use crate::kinematics::skeleton::Limit;
+use crate::kinematics::{arc, direction};
 
 /// A point to be turned, and where it is to come; both from the point that is turned about.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) fn align(pairs: &[Pair]) -> Quat {
         return arc(pair.arm, pair.goal);
     }
     let moment: Vec3A = pairs.iter().map(|pair| pair.weight * pair.arm.cross(pair.goal)).sum();
-    let Some(axis) = moment.try_normalize() else { return Quat::IDENTITY };
+    let Some(axis) = direction(moment) else { return Quat::IDENTITY };
     Quat::from_axis_angle(axis.into(), best_angle(axis, pairs))
 }
 

@@ -10,9 +10,9 @@ use super::SolveError;
 use super::bend::bend_body;
 use super::pose::Pose;
 use super::rig::Rig;
-use crate::kinematics::arc;
 use crate::kinematics::skeleton::{Limit, angle_triples, within};
 use crate::kinematics::two_bone::TwoBone;
+use crate::kinematics::{arc, direction};
 
 /// The two bodies of one goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +80,8 @@ impl TwoBones {
         // Sine of the angle between the bones: below it their plane is rounding.
         const STRAIGHT: f32 = 1e-4;
         const BEND: f32 = 0.1;
-        let upper = (pose.bases[pair.lower] - pose.bases[pair.upper]).normalize_or_zero();
-        let lower = (pose.tips[pair.goal] - pose.bases[pair.lower]).normalize_or_zero();
+        let upper = direction(pose.bases[pair.lower] - pose.bases[pair.upper]).unwrap_or_default();
+        let lower = direction(pose.tips[pair.goal] - pose.bases[pair.lower]).unwrap_or_default();
         if upper.cross(lower).length() < STRAIGHT {
             bend_body(rig, pose, pair.lower, upper, BEND);
             pose.forward(rig);
@@ -96,18 +96,18 @@ fn place_elbow(rig: &Rig, pose: &mut Pose, pair: Pair) {
     let (upper, hand) = (pose.bases[pair.lower] - shoulder, pose.tips[pair.goal] - shoulder);
     let cursor = rig.goals[pair.goal].point - shoulder;
 
-    let Some(along) = upper.try_normalize() else { return };
-    let old_normal = hand.cross(upper).try_normalize();
+    let Some(along) = direction(upper) else { return };
+    let old_normal = direction(hand.cross(upper));
     let old_normal = old_normal.unwrap_or_else(|| along.any_orthonormal_vector());
-    let old_pointer = hand.try_normalize().unwrap_or_else(|| old_normal.cross(along));
-    let pointer = cursor.try_normalize().unwrap_or(old_pointer);
+    let old_pointer = direction(hand).unwrap_or_else(|| old_normal.cross(along));
+    let pointer = direction(cursor).unwrap_or(old_pointer);
     let carried = arc(old_pointer, pointer) * old_normal;
-    let normal = carried.reject_from_normalized(pointer).try_normalize();
+    let normal = direction(carried.reject_from_normalized(pointer));
     let normal = normal.unwrap_or_else(|| pointer.any_orthonormal_vector());
 
     let solved = pair.arm.solve(Vec3::X * cursor.length(), 0.0);
     let elbow = pointer * solved.along + normal.cross(pointer) * solved.out;
-    let Some(new_along) = elbow.try_normalize() else { return };
+    let Some(new_along) = direction(elbow) else { return };
     let plane = |along: Vec3A, normal: Vec3A| Mat3A::from_cols(along, normal, along.cross(normal));
     let turn = plane(new_along, normal) * plane(along, old_normal).transpose();
     turn_body(rig, pose, pair.upper, turn);

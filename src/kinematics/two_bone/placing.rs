@@ -10,6 +10,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{Facing, Pose, Reach, TwoBone};
+use crate::kinematics::direction::power_of_two_near;
 
 /// Of squares that neither overflow nor vanish however they are added up: 2⁻⁶⁴ and 2⁶⁴.
 const PLAIN: [f32; 2] = [5.421_011e-20, 1.844_674_4e19];
@@ -191,17 +192,6 @@ fn is_plain(least: f32, most: f32) -> bool {
 fn between(value: f32, least: f32, most: f32) -> f32 {
     let value = if value > least { value } else { least };
     if value < most { value } else { most }
-}
-
-/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that
-/// reciprocal. To scale by them is exact.
-#[inline(always)]
-fn power_of_two_near(value: f32) -> (f32, f32) {
-    const EXPONENT: u32 = 0xff << 23;
-    const LEAST: u32 = 1 << 23;
-    const MOST: u32 = 253 << 23;
-    let power = (value.to_bits() & EXPONENT).clamp(LEAST, MOST);
-    (f32::from_bits(power), f32::from_bits(LEAST + MOST - power))
 }
 
 /// Back to the caller's unit; a result that rounds past the largest number is that number.
