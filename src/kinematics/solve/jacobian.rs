@@ -80,7 +80,7 @@ impl Wrenches {
     }
 }
 
-/// Pose turned and moved by a step, within limits.
+/// Pose turned and moved by a step, within limits. What a step would bring beyond all numbers stays.
 pub(super) fn advance(
     rig: &Rig,
     from: (&[Vec3], &[Vec3A]),
@@ -89,7 +89,8 @@ pub(super) fn advance(
     pose: &mut Pose,
 ) {
     for (index, body) in rig.bodies.iter().enumerate() {
-        let angles = from.0[index] + factor * by.0[index];
+        let (before, angles) = (from.0[index], from.0[index] + factor * by.0[index]);
+        let angles = if angles.is_finite() { angles } else { before };
         pose.angles[index] = crate::kinematics::skeleton::within(&body.limits, angles);
     }
     if rig.free {
@@ -97,7 +98,8 @@ pub(super) fn advance(
         // compare.
         let lever = factor * rig.length * rig.length;
         for (index, shift) in pose.shift.iter_mut().enumerate() {
-            *shift = from.1[index] + lever * by.1[index];
+            let (before, moved) = (from.1[index], from.1[index] + lever * by.1[index]);
+            *shift = if moved.is_finite() { moved } else { before };
         }
     }
     pose.forward(rig);
