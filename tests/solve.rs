@@ -503,6 +503,52 @@ fn a_solve_that_comes_back_to_where_it_began_writes_that() {
 }
 
 #[test]
+fn a_target_that_is_next_to_nothing_from_a_joint_does_not_stretch_its_bone() {
+    for method in ITERATIVE {
+        let mut skeleton = straight(1);
+        let targets = [target(1, Vec3::new(3e-23, 2e-23, 1e-23))];
+        let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+        let seen = error(&skeleton, &targets);
+        assert!((seen - report.error).abs() <= 1e-5, "{report:?} but {seen}");
+    }
+}
+
+#[test]
+fn a_bone_that_is_nothing_beside_its_chain_is_left_by_the_closed_form() {
+    let mut skeleton = Skeleton::default();
+    let far = skeleton.add(Joint::new("far", None, Vec3::X * 1e13)).expect("joint");
+    let upper = Joint { offset: Vec3::X * 1e13, ..Joint::new("upper", Some(far), Vec3::Y) };
+    let upper = skeleton.add(upper).expect("joint");
+    let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y * 1e8) };
+    let lower = skeleton.add(lower).expect("joint");
+    solve(&mut skeleton, &[target(lower, Vec3::Y)], &by(Method::TwoBone)).expect("solve");
+    assert!(skeleton.joints().iter().all(|joint| joint.rotation.is_finite()));
+}
+
+#[test]
+fn a_step_beyond_numbers_leaves_angles_that_are_numbers() {
+    for root in [Root::Fixed, Root::Free] {
+        let mut skeleton = straight(3);
+        let options = Options { step: f32::MAX, root, ..by(Method::TransposeFixed) };
+        let targets = [target(3, Vec3::new(1.0, 0.5, 0.0))];
+        solve(&mut skeleton, &targets, &options).expect("solve");
+        let is_whole = |joint: &Joint| joint.rotation.is_finite() && joint.offset.is_finite();
+        assert!(skeleton.joints().iter().all(is_whole), "{root:?}");
+    }
+}
+
+#[test]
+fn a_free_root_goes_no_farther_than_numbers_and_says_so() {
+    let mut skeleton = straight(2);
+    skeleton.set_transform(Affine3A::from_scale(Vec3::splat(1e-30))).expect("transform");
+    let targets = [target(2, Vec3::X * 1e38)];
+    let options = Options { root: Root::Free, ..by(Method::Fabrik) };
+    let report = solve(&mut skeleton, &targets, &options).expect("solve");
+    let seen = skeleton.tip(2).as_dvec3().distance(targets[0].point.as_dvec3());
+    assert!((f64::from(report.error) / seen - 1.0).abs() < 1e-3, "{report:?} but {seen}");
+}
+
+#[test]
 fn without_targets_there_is_nothing_to_do() {
     for method in Method::ALL {
         let mut skeleton = Skeleton::with_root("root");

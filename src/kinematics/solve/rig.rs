@@ -155,15 +155,17 @@ impl Rig {
         }
     }
 
-    /// Moves trees whose targets are beyond reach until they are not: what is left is near the
-    /// origin, where numbers are fine.
+    /// Moves trees whose targets are beyond reach until they are not, as far as numbers go: what is
+    /// left is near the origin, where numbers are fine.
     pub fn approach(&mut self, targets: &[Target], tips: &[Vec3A]) {
         for tree in 0..self.trees.len() {
             let missing = self.missing(tree, tips);
             let most = f64::from(self.length);
             let distance = missing.length();
             if distance > 2.0 * most {
-                self.trees[tree].origin += missing * ((distance - most) / distance / self.unit);
+                let by = missing * ((distance - most) / distance / self.unit);
+                let origin = &mut self.trees[tree].origin;
+                *origin = within_numbers(*origin + by);
             }
         }
         self.aim(targets);
@@ -181,9 +183,8 @@ impl Rig {
 
     /// Where a tree's root has gone, in skeleton space.
     pub fn root_offset(&self, tree: usize, shift: Vec3A) -> Vec3 {
-        let largest = DVec3::splat(f64::from(f32::MAX));
         let offset = self.trees[tree].origin + shift.as_dvec3() / self.unit;
-        offset.clamp(-largest, largest).as_vec3()
+        within_numbers(offset).as_vec3()
     }
 
     fn add_bodies(&mut self, skeleton: &Skeleton, on_path: &[bool]) -> Vec<Option<Place>> {
@@ -299,6 +300,11 @@ impl Rig {
     fn scaled(&self, v: Vec3) -> Vec3A {
         (v.as_dvec3() * self.unit).as_vec3a()
     }
+}
+
+/// As near as f32 can say where a point is.
+fn within_numbers(point: DVec3) -> DVec3 {
+    point.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3())
 }
 
 pub(super) fn check(skeleton: &Skeleton, targets: &[Target]) -> Result<(), SolveError> {
