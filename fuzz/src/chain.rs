@@ -224,8 +224,9 @@ impl Twin {
         let axis = joints[target.joint].axis.as_dvec3();
         let world = skeleton.transform();
         let matrix = world.matrix3.as_dmat3();
-        let tip = matrix * (at + turn * axis) + world.translation.as_dvec3();
-        let error = tip.distance(target.point.as_dvec3());
+        // First what may cancel.
+        let beside = world.translation.as_dvec3() - target.point.as_dvec3();
+        let error = (matrix * (at + turn * axis) + beside).length();
         Self { error, blur: scale(skeleton) * (length + axis.length()) }
     }
 }
