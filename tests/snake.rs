@@ -1,6 +1,8 @@
 //! A snake's body follows the path of its head.
 #![cfg(feature = "document")]
 
+use std::cell::Cell;
+
 use glam::Vec3;
 use ik_arm::document::Slither;
 use ik_arm::kinematics::follow;
@@ -94,4 +96,17 @@ fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
     point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
     let posed = WAY.pose(&point, 1.0).pose();
     assert_eq!(posed.base(0), posed.tip(0));
+}
+
+#[test]
+fn a_long_snake_on_a_path_that_it_does_not_fit_on_is_no_search_without_end() {
+    const JOINTS: usize = 10_000;
+    let asked = Cell::new(0_usize);
+    let ring = |s: f64| {
+        asked.set(asked.get() + 1);
+        Vec3::new(s.cos() as f32, 0.0, s.sin() as f32)
+    };
+    let points = follow::along(ring, 0.0, 0.1, [5.0; JOINTS]);
+    assert_eq!(points.len(), JOINTS + 1);
+    assert!(asked.get() < 2_000_000, "{} places asked for", asked.get());
 }

@@ -11,7 +11,8 @@ use glam::Vec3;
 ///
 /// `path` must be continuous and defined before `head` as far as the chain reaches back; `stride` is
 /// a difference of parameters over which it is nearly straight and does not leave a joint's reach
-/// twice. On a path that never goes one bone away the joint stays some thousand strides back.
+/// twice. On a path that never goes one bone away the joint stays some thousand strides back, and
+/// after a million strides of the whole chain what is left of it stays where it is.
 pub fn along(
     path: impl Fn(f64) -> Vec3,
     head: f64,
@@ -29,26 +30,29 @@ pub(crate) fn behind(
     stride: f64,
     lengths: impl IntoIterator<Item = f32>,
 ) -> impl Iterator<Item = Vec3> {
+    const MOST_STRIDES: usize = 1_000_000;
+    let mut left = MOST_STRIDES;
     let mut at = head;
     lengths.into_iter().map(move |length| {
         let from = path(at);
-        at = back_by(|s| path(s).distance(from) - length, at, stride);
+        at = back_by(|s| path(s).distance(from) - length, at, stride, &mut left);
         path(at)
     })
 }
 
-/// The parameter before `start` at which `beyond` becomes positive.
-fn back_by(beyond: impl Fn(f64) -> f32, start: f64, stride: f64) -> f64 {
+/// The parameter before `start` at which `beyond` becomes positive, by at most so many strides.
+fn back_by(beyond: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
     const MOST_STRIDES: usize = 10_000;
     const HALVINGS: usize = 40;
     let mut near = start;
     let mut far = start;
-    for _ in 0..MOST_STRIDES {
+    for _ in 0..MOST_STRIDES.min(*left) {
         if beyond(far) > 0.0 {
             break;
         }
         near = far;
         far -= stride;
+        *left -= 1;
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (near + far);
