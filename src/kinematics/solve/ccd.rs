@@ -111,7 +111,7 @@ pub(super) fn place(rig: &Rig, pose: &mut Pose) {
     }
 }
 
-/// Each tree by what its tips are short of their targets in the mean.
+/// Each tree by what its tips are short of their targets in the mean, as far as numbers go.
 pub(super) fn move_roots(rig: &Rig, pose: &mut Pose) {
     for tree in 0..rig.trees.len() {
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
@@ -120,6 +120,9 @@ pub(super) fn move_roots(rig: &Rig, pose: &mut Pose) {
             weights += goal.weight;
         }
         let by = sum / weights;
+        if !rig.can_go(tree, pose.shift[tree] + by) {
+            continue;
+        }
         pose.shift[tree] += by;
         let bases = rig.bodies.iter().zip(&mut pose.bases);
         bases.filter(|(body, _)| body.tree == tree).for_each(|(_, base)| *base += by);

@@ -190,7 +190,7 @@ impl Fabrik {
         }
     }
 
-    /// Each tree by the mean of what is asked of its root.
+    /// Each tree by the mean of what is asked of its root, as far as numbers go.
     fn move_roots(&self, rig: &Rig, pose: &mut Pose) {
         for (tree, ground) in self.grounds.iter().enumerate() {
             let weights: f32 = ground.iter().map(|held| held.weight).sum();
@@ -198,7 +198,10 @@ impl Fabrik {
                 .iter()
                 .map(|held| held.weight * (self.asks(rig, held.what) - held.what.place(pose)))
                 .sum();
-            pose.shift[tree] += sum / weights;
+            let moved = pose.shift[tree] + sum / weights;
+            if rig.can_go(tree, moved) {
+                pose.shift[tree] = moved;
+            }
             for held in ground {
                 if let What::Tip(goal) = held.what {
                     pose.tips[goal] = pose.shift[tree] + rig.goals[goal].tip;

@@ -99,7 +99,7 @@ pub(super) fn advance(
         let lever = factor * rig.length * rig.length;
         for (index, shift) in pose.shift.iter_mut().enumerate() {
             let (before, moved) = (from.1[index], from.1[index] + lever * by.1[index]);
-            *shift = if moved.is_finite() { moved } else { before };
+            *shift = if rig.can_go(index, moved) { moved } else { before };
         }
     }
     pose.forward(rig);

@@ -181,6 +181,11 @@ impl Rig {
         sum / weight
     }
 
+    /// Whether a number says where a tree's root is then.
+    pub fn can_go(&self, tree: usize, shift: Vec3A) -> bool {
+        (self.trees[tree].origin + shift.as_dvec3() / self.unit).as_vec3().is_finite()
+    }
+
     /// Where a tree's root has gone, in skeleton space.
     pub fn root_offset(&self, tree: usize, shift: Vec3A) -> Vec3 {
         let offset = self.trees[tree].origin + shift.as_dvec3() / self.unit;
