@@ -10,11 +10,14 @@ logs=$target_folder/logs
 found=()
 
 main() {
-    local seconds=${1:-600}
+    local seconds=${1:-600} target
     if [[ ! $seconds =~ ^[0-9]+$ ]]; then
         fail "$seconds is not a number of seconds"
     fi
     [[ $# -le 1 ]] || targets=("${@:2}")
+    for target in "${targets[@]}"; do
+        [[ -f fuzz/fuzz_targets/$target.rs ]] || fail "$target is not a target"
+    done
     check_tools
     mkdir -p "$logs"
     for target in "${targets[@]}"; do
@@ -41,6 +44,7 @@ fuzz() {
         [[ ! -d $folder ]] || folders+=("$folder")
     done
     mkdir -p "${folders[0]}"
+    # The timeout is by the clock on the wall, of which a busy machine leaves little.
     options=(-max_total_time="$2" -timeout=30 -rss_limit_mb=2048 -max_len="$(longest "$target")"
         -print_final_stats=1)
     if [[ -f fuzz/dictionaries/$target.dict ]]; then
@@ -48,8 +52,9 @@ fuzz() {
     fi
     printf '\n==> %s\n' "$target"
     # No code here is unsafe, and without a sanitizer twice as much is tried.
-    if ! nice -n 19 cargo +nightly fuzz run --sanitizer none --target-dir "$target_folder" \
-        "$target" "${folders[@]}" -- "${options[@]}" >"$logs/$target.log" 2>&1; then
+    local run=(cargo +nightly fuzz run --sanitizer none --codegen-units 16
+        --target-dir "$target_folder" "$target" "${folders[@]}")
+    if ! nice -n 19 "${run[@]}" -- "${options[@]}" >"$logs/$target.log" 2>&1; then
         grep -m 1 -A 2 'panicked at' "$logs/$target.log" | cut -c 1-1000 >&2 ||
             tail -n 5 "$logs/$target.log" | cut -c 1-1000 >&2
         found+=("$target")
