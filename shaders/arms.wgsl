@@ -35,8 +35,9 @@ fn corner_of_limb(base: vec3f, tip: vec3f, corner: u32) -> Corner {
     if level.sides == 1u {
         let towards = mix(crowd.eye - place, -crowd.forward, select(0.0, 1.0, crowd.per_pixel > 0.0));
         let aside = normalize(cross(towards, axis));
-        let normal = normalize(cross(axis, aside));
-        return Corner(place + aside * radius * (1.0 - 2.0 * f32(cell.x)), normal);
+        let normal = normalize(cross(aside, axis));
+        let facing = select(normal, -normal, dot(normal, towards) < 0.0);
+        return Corner(place + aside * radius * (1.0 - 2.0 * f32(cell.x)), facing);
     }
     let up = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(axis.y) > 0.9);
     let y = normalize(cross(up, axis));

@@ -100,12 +100,7 @@ pub(super) fn run_for_each(
     pass.dispatch_workgroups(arms.div_ceil(GROUP), 1, 1);
 }
 
-pub(super) fn buffer(
-    gpu: &Gpu,
-    label: &str,
-    size: u64,
-    usage: wgpu::BufferUsages,
-) -> wgpu::Buffer {
+pub(super) fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,

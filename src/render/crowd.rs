@@ -26,8 +26,8 @@ const JOINTS: u32 = 3 * 10 * 5 * 6;
 const ARGUMENTS: usize = 4;
 
 /// Radii of a limb, as parts of the arm's length.
-const THICK: f32 = 0.044;
-const THIN: f32 = 0.03;
+const THICK: f32 = 0.05;
+const THIN: f32 = 0.034;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -157,7 +157,8 @@ impl Troupe {
     fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Option<Self> {
         let solver = Solver::new(gpu)?;
         let flags = gpu.adapter.get_downlevel_capabilities().flags;
-        let needed = wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+        let needed =
+            wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
         if !flags.contains(needed) {
             log::warn!("{} draws no crowd: its shaders read too little", gpu.name());
             return None;

@@ -151,12 +151,7 @@ impl Solver {
 }
 
 impl Room {
-    fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        uniform: &wgpu::Buffer,
-        arms: u32,
-    ) -> Self {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, uniform: &wgpu::Buffer, arms: u32) -> Self {
         let buffer = |label, kinds: u64| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
             compute::buffer(gpu, label, kinds * u64::from(arms) * NUMBER, usage)

@@ -39,7 +39,7 @@ impl Crowd {
     pub const PERIOD: f32 = 16.0;
 
     /// How far apart the shoulders are, in lengths of an arm: targets of neighbours hardly meet.
-    const SPACING: f32 = 1.3;
+    const SPACING: f32 = 1.15;
 
     /// A sphere around all arms, in the world: middle and radius.
     pub fn bounds(&self) -> (Vec3, f32) {
@@ -142,7 +142,11 @@ impl Ranks {
 
 /// Where each target is in its round, at a time from 0 to 1: on a loop before and above its shoulder,
 /// some of it out of reach, the elbow going around by itself.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw",
+    "x86_64+avx2",
+    "aarch64+neon"
+))]
 fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], spin: [&mut [f32]; 2]) {
     const BLOCK: usize = 256;
     let arms = cursor[0].len();

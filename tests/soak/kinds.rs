@@ -1,6 +1,7 @@
 //! Every kind of action there is: a new one does not compile until it has its line here.
 
 use ik_arm::document::{RigKind, Space, Swivel, Theme};
+use ik_arm::rig::SolvedBy;
 use ik_arm::session::{Action, Lead, Navigation};
 
 use crate::values::Values;
@@ -155,6 +156,10 @@ kinds! {
     SetNavigation: Look 1, |v| Action::SetNavigation(v.one_of(&Navigation::ALL));
     ShowExplain: Look 1, |v| Action::ShowExplain(v.coin());
     ShowTimeline: Look 1, |v| Action::ShowTimeline(v.coin());
+    ShowCrowd: Look 1, |v| Action::ShowCrowd(v.coin());
+    SetCrowd: Look 1, |v| Action::SetCrowd(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));
+    SolveCrowd: Look 1, |v| Action::SolveCrowd(v.one_of(&[SolvedBy::Cpu, SolvedBy::Gpu]));
+    MoveCrowd: Look 1, |v| Action::MoveCrowd(v.coin());
     ShowCurves: Look 1, |v| Action::ShowCurves(v.coin());
     OpenDialog: Look 2, |v| Action::OpenDialog(v.dialog());
     CloseDialog: Look 1, |_| Action::CloseDialog;

@@ -50,12 +50,8 @@ use core::f32::consts::PI;
 use glam::{Mat3, Vec2, Vec3};
 use thiserror::Error;
 
-<<<<<<< HEAD:src/kinematics/two_bone/mod.rs
 pub(super) use placing::Placed;
 use placing::{Scaled, Sight};
-=======
-use super::direction::power_of_two_near;
->>>>>>> c4e5cf8 (Turn vectors shorter than 1e-19 and longer than 1e19 as others):src/kinematics/two_bone.rs
 
 /// Two bones joined at an elbow, with the shoulder at the origin.
 ///
@@ -281,17 +277,3 @@ impl Facing {
         )
     }
 }
-<<<<<<< HEAD:src/kinematics/two_bone/mod.rs
-=======
-
-/// The vector seen from above, scaled before it is squared: it may be tiny beside the height.
-fn heading(v: Vec3) -> Option<Vec2> {
-    let flat = Vec2::new(v.x, v.z);
-    (flat != Vec2::ZERO).then(|| (flat * power_of_two_near(flat.abs().max_element()).1).normalize())
-}
-
-/// Back to the caller's unit; a result that rounds past the largest number is that number.
-fn saturate(v: Vec3, unit: f32) -> Vec3 {
-    (v * unit).clamp(Vec3::MIN, Vec3::MAX)
-}
->>>>>>> c4e5cf8 (Turn vectors shorter than 1e-19 and longer than 1e19 as others):src/kinematics/two_bone.rs

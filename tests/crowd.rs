@@ -1,0 +1,239 @@
+//! Many arms after targets of their own, solved here and on a device.
+#![cfg(feature = "render")]
+
+#[path = "common/rigs.rs"]
+mod rigs;
+
+use glam::{DVec3, Vec3};
+use ik_arm::document::{Camera, Document, Theme};
+use ik_arm::kinematics::two_bone::TwoBone;
+use ik_arm::render::{Gpu, Picture, Solver};
+use ik_arm::rig::{Crowd, Ranks, SolvedBy};
+use ik_arm::scene::Scene;
+use ik_arm::session::{Action, Session, Staging};
+use image::RgbaImage;
+use rigs::Random;
+
+fn crowd(arms: u32) -> Crowd {
+    let bones = TwoBone::new(200.0, 300.0).expect("lengths");
+    Crowd { arms, bones, time: 3.25, solved_by: SolvedBy::Cpu }
+}
+
+fn ranks(crowd: &Crowd) -> Ranks {
+    let mut ranks = Ranks::default();
+    ranks.muster(crowd);
+    ranks.ask(crowd);
+    ranks
+}
+
+fn at(of: &[Vec<f32>; 3], arm: usize) -> Vec3 {
+    Vec3::from_array([0, 1, 2].map(|axis| of[axis][arm]))
+}
+
+/// φ in degrees, from points.
+fn elbow_angle(elbow: DVec3, hand: DVec3) -> f64 {
+    (-elbow).angle_between(hand - elbow).to_degrees()
+}
+
+/// Asks `ranks` of the device and of the batch solver, and compares: hands and lengths to 1e-5 of the
+/// arm, elbows too where they are well bent.
+fn agree(gpu: &Gpu, bones: TwoBone, ranks: &mut Ranks) {
+    let mut solver = Solver::new(gpu).expect("compute shaders");
+    solver.reserve(gpu, ranks.len() as u32);
+    solver.solve(gpu, bones, ranks).expect("a device");
+    let [elbows, hands] = solver.read(gpu).expect("poses");
+    ranks.solve(bones).expect("a batch");
+    let length = f64::from(bones.outer_limit());
+    for arm in 0..ranks.len() {
+        let [elbow, hand] = [at(&elbows, arm), at(&hands, arm)].map(Vec3::as_dvec3);
+        let [elbow_here, hand_here] =
+            [at(&ranks.elbow, arm), at(&ranks.hand, arm)].map(Vec3::as_dvec3);
+        let within = |what: &str, error: f64, bound: f64| {
+            let cursor = at(&ranks.cursor, arm);
+            assert!(error.abs() <= bound * length, "{what} of {arm} at {cursor}: {error:e}");
+        };
+        within("the hand", hand.distance(hand_here), 1e-5);
+        within("the upper limb", elbow.length() - f64::from(bones.upper()), 1e-5);
+        within("the lower limb", elbow.distance(hand) - f64::from(bones.lower()), 1e-5);
+        let is_bent = (1.0..=179.0).contains(&elbow_angle(elbow_here, hand_here));
+        within("the elbow", elbow.distance(elbow_here), if is_bent { 1e-5 } else { 1e-3 });
+    }
+}
+
+#[test]
+fn device_and_batch_agree_on_a_hundred_thousand_random_arms() {
+    let gpu = Gpu::headless().expect("a device");
+    let mut random = Random(11);
+    for (upper, lower, arms) in [(200.0, 300.0, 100_000), (1.0, 1.0, 10_000), (0.3, 9.0, 10_000)] {
+        let bones = TwoBone::new(upper, lower).expect("lengths");
+        let mut ranks = ranks(&Crowd { bones, ..crowd(arms) });
+        for arm in 0..ranks.len() {
+            let cursor = random.direction() * bones.outer_limit() * random.within(0.0..1.3);
+            for (axis, part) in cursor.to_array().into_iter().enumerate() {
+                ranks.cursor[axis][arm] = part;
+            }
+            let spin = random.within(-4.0..4.0);
+            (ranks.sin[arm], ranks.cos[arm]) = spin.sin_cos();
+        }
+        agree(&gpu, bones, &mut ranks);
+    }
+}
+
+#[test]
+fn device_and_batch_agree_where_a_cursor_has_no_direction_and_on_the_limits() {
+    let gpu = Gpu::headless().expect("a device");
+    for (upper, lower) in [(200.0, 300.0), (250.0, 250.0), (300.0, 200.0)] {
+        let bones = TwoBone::new(upper, lower).expect("lengths");
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
+        let fars = [0.0, 1e-20, 1.0, 100.0, 250.0, 499.0, 500.0, 501.0, 1e6];
+        let cursors =
+            axes.into_iter().flat_map(|axis| fars.map(|far| axis * far)).collect::<Vec<_>>();
+        let mut ranks = ranks(&Crowd { bones, ..crowd(cursors.len() as u32) });
+        for (arm, cursor) in cursors.into_iter().enumerate() {
+            for (axis, part) in cursor.to_array().into_iter().enumerate() {
+                ranks.cursor[axis][arm] = part;
+            }
+        }
+        agree(&gpu, bones, &mut ranks);
+    }
+}
+
+#[test]
+fn spins_are_angles_and_targets_stay_about_their_arm_and_come_round() {
+    let mut crowd = crowd(20_000);
+    let mut first = None;
+    for step in 0..=8 {
+        crowd.time = Crowd::PERIOD * step as f32 / 8.0;
+        let ranks = ranks(&crowd);
+        let mut reached = 0;
+        for arm in 0..ranks.len() {
+            let (cos, sin) = (f64::from(ranks.cos[arm]), f64::from(ranks.sin[arm]));
+            assert!((cos * cos + sin * sin - 1.0).abs() < 1e-6, "{cos}, {sin}");
+            let far = at(&ranks.cursor, arm).length() / crowd.bones.outer_limit();
+            assert!((0.1..1.6).contains(&far), "a target is {far} arms away");
+            reached += usize::from(far <= 1.0);
+        }
+        assert!((5_000..19_500).contains(&reached), "{reached} are in reach: all or none is dull");
+        match &first {
+            None => first = Some(ranks.cursor),
+            Some(first) if step == 8 => assert_eq!(*first, ranks.cursor),
+            Some(first) => assert_ne!(*first, ranks.cursor),
+        }
+    }
+}
+
+#[test]
+fn more_arms_leave_those_that_are_there_where_they_are() {
+    let few = ranks(&crowd(100));
+    let mut ranks = few;
+    let shoulders = ranks.shoulder.clone();
+    ranks.muster(&crowd(5_000));
+    for (before, after) in shoulders.iter().zip(&ranks.shoulder) {
+        assert_eq!(before[..], after[..100]);
+    }
+    let bounds = crowd(5_000).bounds().1;
+    for (x, z) in ranks.shoulder[0].iter().zip(&ranks.shoulder[1]) {
+        assert!(x.hypot(*z) + 500.0 <= bounds * 1.001);
+    }
+}
+
+#[test]
+fn a_crowd_that_was_larger_is_drawn_like_one_that_never_was() {
+    let gpu = Gpu::headless().expect("a device");
+    let (mut used, mut new) = (picture(&gpu), picture(&gpu));
+    for arms in [30, 3_000] {
+        draw(&mut used, &crowd(arms), near());
+    }
+    let small = crowd(200);
+    assert!(draw(&mut used, &small, near()) == draw(&mut new, &small, near()));
+}
+
+#[test]
+fn solved_here_or_on_the_device_a_crowd_looks_the_same() {
+    let gpu = Gpu::headless().expect("a device");
+    let mut picture = picture(&gpu);
+    let here = draw(&mut picture, &crowd(500), near());
+    let there = Crowd { solved_by: SolvedBy::Gpu, ..crowd(500) };
+    let there = draw(&mut picture, &there, near());
+    let differing = here
+        .pixels()
+        .zip(there.pixels())
+        .filter(|(a, b)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 24));
+    let count = differing.count();
+    assert!(count < 40, "{count} pixels differ");
+    let empty = draw(&mut picture, &Crowd { arms: 1, ..crowd(1) }, behind());
+    assert!(here != empty);
+}
+
+#[test]
+fn arms_near_and_far_have_the_colours_of_their_limbs() {
+    let gpu = Gpu::headless().expect("a device");
+    for radius in [600.0, 5_000.0, 30_000.0] {
+        let camera = Camera::default().framing(Vec3::ZERO, radius, 1.0);
+        let image = draw(&mut picture(&gpu), &crowd(1_000), camera);
+        let warm = image.pixels().filter(|p| p.0[0] > p.0[2].saturating_add(40)).count();
+        let cold = image.pixels().filter(|p| p.0[2] > p.0[0].saturating_add(40)).count();
+        assert!(warm > 100 && cold > 100, "{warm} warm and {cold} cold pixels at {radius}");
+    }
+}
+
+#[test]
+fn what_is_behind_the_eye_is_not_drawn() {
+    let gpu = Gpu::headless().expect("a device");
+    let with = draw(&mut picture(&gpu), &crowd(1), behind());
+    let without = Scene::new(
+        &Document { camera: behind(), ..Document::default() },
+        &Staging { crowd: Some(crowd(1)), ..Staging::default() },
+        Theme::Dark,
+    );
+    let without = picture(&gpu).draw(&Scene { crowd: None, ..without }).expect("a picture");
+    assert!(with == without);
+}
+
+#[test]
+fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
+    let mut session = Session::default();
+    let before = session.document().clone();
+    assert_eq!(session.crowd(), None);
+    session.apply(Action::ShowCrowd(true));
+    session.apply(Action::SetCrowd(0));
+    assert_eq!(session.crowd().map(|crowd| crowd.arms), Some(1));
+    session.apply(Action::SetCrowd(u32::MAX));
+    assert_eq!(session.crowd().map(|crowd| crowd.arms), Some(Crowd::MOST));
+    session.apply(Action::SetCrowd(40));
+    for time in [10.0, 12.0] {
+        session.apply(Action::Advance(time));
+    }
+    assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0));
+    session.apply(Action::MoveCrowd(false));
+    session.apply(Action::Advance(15.0));
+    assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0));
+    assert!(!session.is_moving());
+    session.apply(Action::ShowCrowd(false));
+    session.apply(Action::Advance(20.0));
+    assert_eq!(session.crowd(), None);
+    let after = Document { camera: before.camera, ..session.document().clone() };
+    assert_eq!(after, before);
+    assert_eq!(session.undo_name(), None);
+}
+
+fn picture(gpu: &Gpu) -> Picture<'_> {
+    Picture::of_size(gpu, 320, 200).expect("a canvas")
+}
+
+fn near() -> Camera {
+    Camera::default().framing(Vec3::ZERO, 3_000.0, 1.0)
+}
+
+/// With the only arm behind it.
+fn behind() -> Camera {
+    let camera = Camera::default();
+    let (back, _, _) = camera.basis();
+    Camera { target: camera.target - back * 30_000.0, ..camera }
+}
+
+fn draw(picture: &mut Picture<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
+    let document = Document { camera, ..Document::default() };
+    let staging = Staging { crowd: Some(*crowd), ..Staging::default() };
+    picture.draw(&Scene::new(&document, &staging, Theme::Dark)).expect("a picture")
+}
