@@ -183,7 +183,6 @@ fn is_rigid(joint: &Joint) {
 /// What is reported is how far the tips are from their targets, as far as 32 bits tell. Angles of many
 /// turns have few digits for the rest.
 fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report, way: f64) {
-    const TRUE: f64 = 1e-4;
     const COARSE: f64 = 1e-6;
     const FEW_TURNS: f32 = 100.0;
     assert!((0.0..=f32::MAX).contains(&report.error), "{report:?}");
@@ -201,10 +200,13 @@ fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report, way: f64) {
     );
 }
 
+/// Of what is long, how much may be off.
+const TRUE: f64 = 1e-4;
+
 /// A tip and its target by the formulas, in 64 bits.
 struct Twin {
     error: f64,
-    /// How long the way from the root to the tip is at most, in the world.
+    /// How long the way from the root to the tip is at most, in the world, and what 64 bits round.
     blur: f64,
 }
 
@@ -215,19 +217,23 @@ impl Twin {
             skeleton.ancestors(target.joint).map(|joint| &joints[joint]).collect();
         path.reverse();
         let mut turn = DMat3::IDENTITY;
+        // From the root: it may be far from all else.
         let (mut at, mut length) = (DVec3::ZERO, 0.0);
         for (index, joint) in path.iter().enumerate() {
-            at += turn * joint.offset.as_dvec3();
-            length += if index > 0 { joint.offset.as_dvec3().length() } else { 0.0 };
+            if index > 0 {
+                at += turn * joint.offset.as_dvec3();
+                length += joint.offset.as_dvec3().length();
+            }
             turn *= local(joint);
         }
         let axis = joints[target.joint].axis.as_dvec3();
-        let world = skeleton.transform();
-        let matrix = world.matrix3.as_dmat3();
-        // First what may cancel.
-        let beside = world.translation.as_dvec3() - target.point.as_dvec3();
-        let error = (matrix * (at + turn * axis) + beside).length();
-        Self { error, blur: scale(skeleton) * (length + axis.length()) }
+        let matrix = skeleton.transform().matrix3.as_dmat3();
+        let root = path.first().map_or(DVec3::ZERO, |root| matrix * root.offset.as_dvec3());
+        let origin = skeleton.transform().translation.as_dvec3();
+        let asked = target.point.as_dvec3();
+        let error = (matrix * (at + turn * axis) + (root + (origin - asked))).length();
+        let rounding = f64::EPSILON * (root.length() + origin.length() + asked.length()) / TRUE;
+        Self { error, blur: scale(skeleton) * (length + axis.length()) + rounding }
     }
 }
 
