@@ -1,15 +1,16 @@
 use glam::{Quat, Vec3A};
 
-use super::direction::{direction, near_1};
+use super::direction::{direction, is_usual, near_1};
 
 /// The least turn that brings one direction to another, however long the vectors are. None where
 /// either has no direction; about any perpendicular where they are opposite.
 pub(crate) fn arc(from: Vec3A, to: Vec3A) -> Quat {
     // Of the product of lengths: beyond, the sum below loses digits.
     const NEARLY_OPPOSITE: f32 = -0.9;
-    let (Some(from), Some(to)) = (near_1(from), near_1(to)) else {
-        return Quat::IDENTITY;
-    };
+    if !(is_usual(from) && is_usual(to)) {
+        let both = near_1(from).zip(near_1(to));
+        return both.map_or(Quat::IDENTITY, |(from, to)| arc(from, to));
+    }
     let both = (from.length_squared() * to.length_squared()).sqrt();
     let (cross, dot) = (from.cross(to), from.dot(to));
     if dot < NEARLY_OPPOSITE * both {

@@ -4,7 +4,12 @@ use glam::Vec3A;
 
 /// The unit vector along another one, if it has a direction.
 pub(crate) fn direction(v: Vec3A) -> Option<Vec3A> {
-    near_1(v)?.try_normalize()
+    if is_usual(v) { v.try_normalize() } else { near_1(v)?.try_normalize() }
+}
+
+/// Whether it can be squared, and the square multiplied by another such one.
+pub(super) fn is_usual(v: Vec3A) -> bool {
+    (1e-15..=1e15).contains(&v.length_squared())
 }
 
 /// The vector times the power of two that brings its largest coordinate to 1 … 2 (of the tiniest, as
