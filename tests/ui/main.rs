@@ -5,6 +5,7 @@
 mod accessibility;
 mod arm_posing;
 mod bench;
+mod crowd;
 mod dialogs;
 mod export;
 mod gallery;

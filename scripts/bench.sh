@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# bench.sh: measures what docs/performance.md claims, and writes the tables between its marks anew.
+# Takes about half an hour on two cores, and a machine that does nothing else meanwhile.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+page=docs/performance.md
+results=${CARGO_TARGET_DIR:-target}/criterion
+
+main() {
+    cargo bench --locked --no-default-features --features parallel \
+        --bench two_bone --bench batch --bench curves --bench solve
+    cargo build --locked --release
+    {
+        machine
+        batch_table
+        other_table
+        crowd_table
+        size_table
+    } | put_between_marks
+    echo "$page has the figures of this run."
+}
+
+machine() {
+    local processor memory
+    processor=$(lscpu | sed -n 's/^Model name: *//p' | head -1)
+    memory=$(free -g | awk '/^Mem:/ { print $2 }')
+    printf 'Measured on %s: %s, %s threads, %s GiB, %s; commit %s.\n\n' "$(date +%F)" \
+        "$processor" "$(nproc)" "$memory" "$(rustc --version | cut -d' ' -f1-2)" \
+        "$(git rev-parse --short HEAD)"
+}
+
+# estimate BENCH: the median of a run, in ns; of a bench whose name has slashes or blanks, its folder.
+estimate() {
+    local file="$results/$1/new/estimates.json"
+    python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["median"]["point_estimate"])' \
+        "$file"
+}
+
+batch_table() {
+    printf '| arms | elbow and hand | copy | ratio | with rotations | own bones | angles | all cores |\n'
+    printf '| --- | --- | --- | --- | --- | --- | --- | --- |\n'
+    local size count
+    for size in "4 Ki:4096" "1 Mi:1048576" "4 Mi:4194304"; do
+        count=${size#*:}
+        size=${size%:*}
+        python3 - "$size" "$count" "$(batch "$size" "elbow and hand")" "$(batch "$size" copy)" \
+            "$(batch "$size" "with rotations")" "$(batch "$size" "own bones")" \
+            "$(batch "$size" angles)" "$(batch "$size" "all cores")" <<'PYTHON'
+import sys
+size, arms, *times = sys.argv[1:]
+each = [float(time) / int(arms) for time in times]
+solve, copy, *others = each
+cells = [f"{solve:.2f} ns", f"{copy:.2f} ns", f"**{solve / copy:.2f}**"]
+cells += [f"{other:.2f} ns" for other in others]
+print(f"| {size} | " + " | ".join(cells) + " |")
+PYTHON
+    done
+    printf '\n'
+}
+
+batch() {
+    estimate "batch/$2/$1"
+}
+
+other_table() {
+    printf '| what | median |\n| --- | --- |\n'
+    python3 - "$results" <<'PYTHON'
+import json, pathlib, sys
+root = pathlib.Path(sys.argv[1])
+def rows(group):
+    found = []
+    for file in sorted(root.glob(f"{group}/**/new/estimates.json")):
+        name = "/".join(file.relative_to(root).parts[:-2])
+        throughput = json.loads((file.parent / "benchmark.json").read_text())["throughput"]
+        elements = (throughput or {}).get("Elements", 1)
+        time = json.loads(file.read_text())["median"]["point_estimate"] / elements
+        found.append((name, time))
+    return found
+for group in ("two_bone", "swivel", "spline", "solve", "iteration"):
+    for name, time in rows(group):
+        shown = f"{time:.1f} ns" if time < 1e3 else f"{time / 1e3:.1f} µs" if time < 1e6 else f"{time / 1e6:.2f} ms"
+        print(f"| {name} | {shown} |")
+PYTHON
+    printf '\n'
+}
+
+crowd_table() {
+    printf '| arms | solved by | solve | ns per arm | frame | adapter |\n'
+    printf '| --- | --- | --- | --- | --- | --- |\n'
+    local arms solver
+    for arms in 1000 100000 1000000; do
+        for solver in cpu gpu; do
+            "${CARGO_TARGET_DIR:-target}"/release/ik-arm render --crowd $arms --frames 20 --timings \
+                --solve $solver 2>/dev/null | python3 -c '
+import json, sys
+line = json.load(sys.stdin)
+solve = line["solve_ms_median"]
+print("| {:,} | {} | {:.2f} ms | {:.1f} | {:.0f} ms | {} |".format(
+    line["arms"], sys.argv[1], solve, solve * 1e6 / line["arms"], line["frame_ms_median"],
+    line["adapter"]))' $solver
+        done
+    done
+    printf '\n'
+}
+
+size_table() {
+    printf 'The release binary: %s MB.\n' \
+        "$(stat -c %s "${CARGO_TARGET_DIR:-target}/release/ik-arm" | awk '{ printf "%.1f", $1 / 1e6 }')"
+}
+
+put_between_marks() {
+    local figures
+    figures=$(mktemp)
+    cat >"$figures"
+    awk -v figures="$figures" '
+        /<!-- figures end -->/ { skip = 0 }
+        !skip { print }
+        /<!-- figures begin -->/ { skip = 1; while ((getline line < figures) > 0) print line }
+    ' "$page" >"$page.new"
+    mv "$page.new" "$page"
+    rm "$figures"
+}
+
+main "$@"

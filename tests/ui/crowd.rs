@@ -1,0 +1,89 @@
+//! View → Crowd: many arms in the rig's place, and what they cost.
+
+use std::time::Duration;
+
+use egui::PointerButton;
+use egui::accesskit::Role;
+use ik_arm::document::Document;
+use ik_arm::rig::{Crowd, CrowdTimes, SolvedBy};
+use ik_arm::session::Action;
+use ik_arm::ui::Frame;
+
+use crate::bench::Bench;
+
+fn shown() -> Bench {
+    let mut bench = Bench::new();
+    bench.choose(&["View", "Crowd"]);
+    bench
+}
+
+fn crowd(bench: &Bench) -> Crowd {
+    bench.session().crowd().expect("a crowd")
+}
+
+#[test]
+fn the_view_menu_shows_a_crowd_and_its_window_closes_it() {
+    let mut bench = shown();
+    assert_eq!(crowd(&bench).arms, 1_000);
+    assert!(bench.says("A crowd of 1,000 arms"));
+    assert!(bench.shows(Role::Window, "Crowd"));
+    bench.click(Role::Button, "Close window");
+    assert_eq!(bench.session().crowd(), None);
+    assert!(!bench.shows(Role::Window, "Crowd"));
+}
+
+#[test]
+fn the_slider_goes_from_one_arm_to_a_million_by_tens() {
+    let mut bench = shown();
+    let rail = bench.rect(Role::Slider, "Arms");
+    for (part, least, most) in [(-0.1, 1, 1), (0.5, 300, 3_000), (1.1, 1_000_000, 1_000_000)] {
+        let to = rail.left_center() + egui::vec2(rail.width() * part, 0.0);
+        bench.drag(PointerButton::Primary, rail.center(), to);
+        let arms = crowd(&bench).arms;
+        assert!((least..=most).contains(&arms), "{arms} at {part}");
+    }
+    assert!(bench.says("A crowd of 1,000,000 arms"));
+}
+
+#[test]
+fn what_solves_it_and_whether_it_moves_are_chosen() {
+    let mut bench = shown();
+    bench.click(Role::RadioButton, "GPU");
+    assert_eq!(crowd(&bench).solved_by, SolvedBy::Gpu);
+    bench.click(Role::RadioButton, "CPU");
+    assert_eq!(crowd(&bench).solved_by, SolvedBy::Cpu);
+    bench.click(Role::CheckBox, "Follow the targets");
+    assert!(!bench.session().is_crowd_moving());
+    bench.wait(1.0);
+    let before = crowd(&bench).time;
+    bench.wait(1.0);
+    assert_eq!(crowd(&bench).time, before);
+    assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
+}
+
+#[test]
+fn its_figures_are_those_of_the_machine() {
+    let mut bench = shown();
+    assert!(bench.says("–"), "nothing is measured before the first frame");
+    let machine = &mut bench.harness.state_mut().machine;
+    machine.crowd = Some(CrowdTimes { arms: 1_000, solve: Duration::from_micros(1_250) });
+    machine.times.push(Frame { encode: Duration::from_millis(10), ..Frame::default() });
+    bench.frame([]);
+    for figure in ["1.25 ms", "1250.00 ns", "8.75 ms"] {
+        assert!(bench.says(figure), "{figure}");
+    }
+    bench.apply([Action::SetCrowd(2_000)]);
+    assert!(!bench.says("1.25 ms"), "those were of another crowd");
+}
+
+#[test]
+fn the_hand_cannot_be_taken_hold_of_behind_a_crowd() {
+    let mut bench = Bench::new();
+    let (hand, document) = (bench.cursor_place(), bench.session().document().clone());
+    bench.choose(&["View", "Crowd"]);
+    bench.wait(1.0);
+    bench.drag(PointerButton::Primary, hand, hand + egui::vec2(60.0, 10.0));
+    let camera = bench.session().document().camera;
+    assert_ne!(camera, document.camera, "the view turns");
+    assert_eq!(*bench.session().document(), Document { camera, ..document });
+}
