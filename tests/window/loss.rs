@@ -12,18 +12,38 @@ use crate::screen::{
     xdotool,
 };
 
-/// Through the menu Help, until that is seen no more; the pointer stays where it was.
+/// Beside all that takes the keyboard.
+const NOWHERE: egui::Pos2 = egui::pos2(640.0, 12.0);
+
+/// The screen as it is to be when the device is lost and made anew: with the pointer where the menu
+/// was, and the keyboard at nothing.
+fn expected(places: &Places, folder: &Path) -> RgbImage {
+    mouse_to(NOWHERE);
+    xdotool(&["click", "1"]);
+    mouse_to(places.lose_device);
+    settled(folder)
+}
+
+/// Through the menu Help.
 fn lose_device(places: &Places, folder: &Path) {
     mouse_to(places.help);
     xdotool(&["click", "1"]);
     sleep(Duration::from_millis(700));
     mouse_to(places.lose_device);
-    let open = settled(folder);
+    settled(folder);
     xdotool(&["click", "1"]);
+}
+
+/// Waits until the menu is gone and all is as before, but for what the line at the bottom says.
+fn assert_comes_back(before: &RgbImage, folder: &Path) {
     let given_up = Instant::now() + PATIENCE;
-    let in_menu = places.help + (places.lose_device - places.help) / 2.0;
-    while changed(&open, &screenshot(folder), in_menu, 30.0) == 0 {
-        assert!(Instant::now() < given_up, "nothing is drawn any more");
+    loop {
+        let differing = changed_above_the_status(before, &screenshot(folder));
+        if differing == 0 {
+            return;
+        }
+        assert!(Instant::now() < given_up, "{differing} pixels are others than before the loss");
+        sleep(Duration::from_millis(400));
     }
 }
 
@@ -43,18 +63,12 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
     place_window();
     let first = settled(folder.path());
     drag(places.thumb, places.rail_end);
-    // Pressed twice, the menu is closed again; then all is as after the device is lost.
-    mouse_to(places.help);
-    xdotool(&["click", "1", "sleep", "1", "click", "1"]);
-    mouse_to(places.lose_device);
-    let before = settled(folder.path());
+    let before = expected(&places, folder.path());
     assert!(changed(&first, &before, places.elbow, 40.0) > 300, "the elbow has not followed");
 
-    for time in 1..=4 {
+    for _ in 0..4 {
         lose_device(&places, folder.path());
-        let after = settled(folder.path());
-        let differing = changed_above_the_status(&before, &after);
-        assert_eq!(differing, 0, "pixels are others after the device was lost {time} times");
+        assert_comes_back(&before, folder.path());
     }
     drag(places.rail_end, places.thumb);
     let dragged = settled(folder.path());
@@ -82,14 +96,9 @@ fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
     let places = Places::new();
     let mut program = Program::start_to_debug(folder.path(), "fail-devices:2");
     place_window();
-    settled(folder.path());
-    mouse_to(places.help);
-    xdotool(&["click", "1", "sleep", "1", "click", "1"]);
-    mouse_to(places.lose_device);
-    let before = settled(folder.path());
+    let before = expected(&places, folder.path());
     lose_device(&places, folder.path());
-    let after = settled(folder.path());
-    assert_eq!(changed_above_the_status(&before, &after), 0);
+    assert_comes_back(&before, folder.path());
     xdotool(&["key", "ctrl+q"]);
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
 }
