@@ -22,7 +22,7 @@
 //! | module | what it is | feature |
 //! | --- | --- | --- |
 //! | [`kinematics`] | pure numbers: two bones, one or a batch, their swivel and reach, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, solvers, following a path, splines | |
-//! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides | |
+//! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides; crowds of arms | |
 //! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
 //! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out; lines of `ik-arm solve` | `document` |
 //! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
