@@ -11,8 +11,9 @@ use ik_arm::ui::Frame;
 
 use crate::bench::Bench;
 
+/// A crowd that stands.
 fn shown() -> Bench {
-    let mut bench = Bench::new();
+    let mut bench = Bench::after([Action::MoveCrowd(false)]);
     bench.choose(&["View", "Crowd"]);
     bench
 }
@@ -52,13 +53,17 @@ fn what_solves_it_and_whether_it_moves_are_chosen() {
     assert_eq!(crowd(&bench).solved_by, SolvedBy::Gpu);
     bench.click(Role::RadioButton, "CPU");
     assert_eq!(crowd(&bench).solved_by, SolvedBy::Cpu);
-    bench.click(Role::CheckBox, "Follow the targets");
-    assert!(!bench.session().is_crowd_moving());
-    bench.wait(1.0);
+    assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
+    bench.apply_moving([Action::MoveCrowd(true)]);
+    for _ in 0..3 {
+        bench.wait(0.5);
+    }
+    assert!(crowd(&bench).time > 0.9);
+    assert!(bench.asks_for_a_frame());
+    bench.apply([Action::MoveCrowd(false)]);
     let before = crowd(&bench).time;
     bench.wait(1.0);
     assert_eq!(crowd(&bench).time, before);
-    assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
 }
 
 #[test]
@@ -78,10 +83,9 @@ fn its_figures_are_those_of_the_machine() {
 
 #[test]
 fn the_hand_cannot_be_taken_hold_of_behind_a_crowd() {
-    let mut bench = Bench::new();
+    let mut bench = Bench::after([Action::MoveCrowd(false)]);
     let (hand, document) = (bench.cursor_place(), bench.session().document().clone());
     bench.choose(&["View", "Crowd"]);
-    bench.wait(1.0);
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(60.0, 10.0));
     let camera = bench.session().document().camera;
     assert_ne!(camera, document.camera, "the view turns");
