@@ -1,5 +1,6 @@
 //! The window: winit's event loop, the surface, and the frames drawn on it.
 
+mod attributes;
 mod debug;
 mod effects;
 mod failures;

@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use egui::{FullOutput, RawInput, Rect, ViewportId};
 use egui_winit::WindowSettings;
-use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::{Icon, Window, WindowAttributes};
+use winit::window::Window;
 
+use super::attributes::attributes;
 use super::debug::Debug;
 use super::failures::Failures;
 use super::graphics::{Graphics, GraphicsError, guarded};
@@ -22,11 +23,7 @@ use crate::scene::Scene;
 use crate::session::{Action, Effect, Session, Staging};
 use crate::ui::{self, Frame, Machine, style};
 
-const TITLE: &str = "ik-arm";
-const APP_ID: &str = "ik-arm";
-const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
-const SMALLEST: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
-const ICON: &[u8] = include_bytes!("../../assets/icon-64.png");
+pub(super) const TITLE: &str = "ik-arm";
 
 /// When the next frame is due.
 pub(super) enum Repaint {
@@ -359,53 +356,6 @@ impl AppWindow {
             Ok(presented)
         })
     }
-}
-
-/// As large as it was last, as far as the screen goes.
-fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSize<f64> {
-    let Some(mut last) = last else {
-        return SIZE;
-    };
-    let screens = event_loop.available_monitors().map(|screen| {
-        let size = screen.size().to_logical::<f32>(screen.scale_factor());
-        egui::vec2(size.width, size.height)
-    });
-    let largest = screens.filter(|size| size.min_elem() > 0.0).reduce(egui::Vec2::max);
-    last.clamp_size_to_sane_values(largest.unwrap_or(egui::Vec2::INFINITY));
-    let points = last.inner_size_points();
-    LogicalSize::new(
-        f64::from(points.x).max(SMALLEST.width),
-        f64::from(points.y).max(SMALLEST.height),
-    )
-}
-
-fn attributes(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> WindowAttributes {
-    let attributes = Window::default_attributes()
-        .with_title(TITLE)
-        .with_inner_size(size(event_loop, last))
-        .with_min_inner_size(SMALLEST)
-        .with_window_icon(icon())
-        // Shown once a screen reader can read it.
-        .with_visible(false);
-    named(attributes)
-}
-
-#[cfg(target_os = "linux")]
-fn named(attributes: WindowAttributes) -> WindowAttributes {
-    use winit::platform::{wayland, x11};
-    let attributes = x11::WindowAttributesExtX11::with_name(attributes, APP_ID, APP_ID);
-    wayland::WindowAttributesExtWayland::with_name(attributes, APP_ID, APP_ID)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn named(attributes: WindowAttributes) -> WindowAttributes {
-    attributes
-}
-
-fn icon() -> Option<Icon> {
-    let image = image::load_from_memory(ICON).ok()?.into_rgba8();
-    let (width, height) = image.dimensions();
-    Icon::from_rgba(image.into_raw(), width, height).ok()
 }
 
 pub(super) fn pixels(viewport: Rect, scale: f32) -> (u32, u32) {
