@@ -5,7 +5,9 @@ use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Ray, RigKind, Swivel, Theme};
 use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
-use ik_arm::session::{Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, Session};
+use ik_arm::session::{
+    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Session,
+};
 
 fn ray() -> Ray {
     Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
@@ -272,4 +274,17 @@ fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
         assert!(session.arm().pole.is_finite(), "{:?}", session.message());
         assert!(session.message().is_none(), "{:?}", session.message());
     }
+}
+
+#[test]
+fn the_same_revision_is_saved_as_the_same_text() {
+    let mut session = Session::default();
+    let (revision, text) = (session.revision(), to_json(session.document()).expect("saved"));
+    session.apply(Action::BeginEdit);
+    for x in [1.0, -0.0] {
+        session.apply(Action::SetRoot(Vec3::new(x, 0.0, 0.0)));
+    }
+    session.apply(Action::CommitEdit);
+    assert_eq!(session.revision(), revision);
+    assert_eq!(to_json(session.document()).expect("saved"), text);
 }

@@ -161,8 +161,12 @@ impl Session {
         if before.differs_from(&self.document) {
             self.newest_revision += 1;
             self.revision = self.newest_revision;
-        } else if before.overrides_at(self.clock.time) == self.overrides {
-            return;
+        } else {
+            // Zeros may have changed their signs: the same revision is the same to the last bit.
+            self.document = before.document(self.document.camera);
+            if before.overrides_at(self.clock.time) == self.overrides {
+                return;
+            }
         }
         self.history.push(name, before);
     }
