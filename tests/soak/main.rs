@@ -23,7 +23,8 @@ pub struct Broken(pub String);
 #[macro_export]
 macro_rules! hold {
     ($holds:expr, $($words:tt)*) => {
-        if !$holds {
+        let holds: bool = $holds;
+        if !holds {
             return Err($crate::Broken(format!($($words)*)));
         }
     };

@@ -4,7 +4,7 @@ use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
 use ik_arm::kinematics::skeleton::{Pose as SkeletonPose, Skeleton};
 use ik_arm::kinematics::two_bone::{Pose, Reach};
-use ik_arm::session::{Drag, Grip, Session};
+use ik_arm::session::{Drag, Grip, PointDrag, Session, TurnDrag};
 
 use crate::{Broken, hold};
 
@@ -117,8 +117,8 @@ fn places(session: &Session) -> Result<(), Broken> {
     hold!(session.time().is_finite(), "the time is finite: {}", session.time());
     let (slowest, fastest) = Session::SPEEDS;
     hold!((slowest..=fastest).contains(&session.speed()), "the speed is one: {}", session.speed());
-    let held = session.point_drag().map_or(Vec3::ZERO, |drag| drag.moved());
-    let turned = session.drag().and_then(Drag::turn).map_or(0.0, |drag| drag.turned());
+    let held = session.point_drag().map_or(Vec3::ZERO, PointDrag::moved);
+    let turned = session.drag().and_then(Drag::turn).map_or(0.0, TurnDrag::turned);
     hold!(held.is_finite() && turned.is_finite(), "what is held is somewhere: {held} {turned}");
     if let Some(Grip::Ring(_, axis) | Grip::Shoulder(axis)) = session.drag().map(Drag::grip) {
         hold!(axis < 3, "a ring is about x, y or z");

@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Layer, Ray};
-use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion};
+use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion, PointDrag};
 
 use super::Values;
 
@@ -94,7 +94,7 @@ impl Values<'_> {
         }
         let projection = self.session.camera().projection(1.6);
         if self.chance(0.3)
-            && let Some(held) = self.session.point_drag().map(|drag| drag.moved())
+            && let Some(held) = self.session.point_drag().map(PointDrag::moved)
             && let Some(at) = projection.project(held)
         {
             return projection.ray(at);
