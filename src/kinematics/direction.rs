@@ -16,7 +16,7 @@ pub(super) fn is_usual(v: Vec3A) -> bool {
 /// near to that as it can), if it has a direction.
 pub(super) fn near_1(v: Vec3A) -> Option<Vec3A> {
     let largest = v.abs().max_element();
-    (largest > 0.0 && largest.is_finite()).then(|| v * power_of_two_near(largest).1)
+    (largest > 0.0 && v.is_finite()).then(|| v * power_of_two_near(largest).1)
 }
 
 /// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn what_has_no_direction_has_none() {
-        for v in [Vec3A::ZERO, Vec3A::NAN, Vec3A::INFINITY] {
+        for v in [Vec3A::ZERO, Vec3A::NAN, Vec3A::INFINITY, Vec3A::new(f32::NAN, 1.0, 0.0)] {
             assert_eq!(direction(v), None, "{v}");
         }
     }
