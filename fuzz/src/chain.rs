@@ -193,7 +193,8 @@ fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report, way: f64) {
     let error = twins.iter().map(|twin| twin.error).fold(0.0, f64::max);
     let blur = twins.iter().map(|twin| twin.blur).fold(0.0, f64::max);
     let off = (error.min(f64::from(f32::MAX)) - f64::from(report.error)).abs();
-    let least = f64::from(f32::from_bits(2));
+    // What a root can move by at least may be much in the world.
+    let least = f64::from(f32::from_bits(2)) * scale(skeleton).max(1.0);
     assert!(
         off <= TRUE * (error + blur) + COARSE * way + least,
         "{error} away, {blur} long: {report:?} of {targets:?} and {skeleton:?}"
