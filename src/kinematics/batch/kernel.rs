@@ -7,7 +7,7 @@
 use glam::{Mat3, Vec3};
 use multiversion::multiversion;
 
-use crate::kinematics::two_bone::{Facing, Placed, TwoBone};
+use crate::kinematics::two_bone::{Facing, Placed, Scaled, TwoBone};
 
 /// How many arms are placed before they are handed over.
 ///
@@ -24,9 +24,14 @@ impl Lane {
     pub const ZERO: Self = Self([0.0; BLOCK]);
 }
 
+/// Up to so many times as long as the other, a bone leaves it long enough beside rounding that their
+/// directions are of unit length to 1e-6 as they are.
+const ALIKE: f32 = 8.0;
+
 /// What is kept of arms that were placed.
 pub(super) trait Block {
-    fn keep(&mut self, arm: usize, placed: &Placed, hand: Vec3);
+    /// Says whether the arm was plain enough for what is kept of it, or `ANY` has seen to it.
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool;
 }
 
 /// Elbows and hands of a block: x, y, z each.
@@ -68,8 +73,7 @@ pub(super) fn place<const ANY: bool, const SAME: bool, B: Block>(
         let bones = TwoBone { upper: upper[of], lower: lower[of] };
         let cursor = Vec3::new(x[arm], y[arm], z[arm]);
         let placed = Placed::new::<ANY>(bones, cursor, cos[arm], sin[arm], Facing::default());
-        block.keep(arm, &placed, placed.hand_of(cursor));
-        are_plain &= placed.is_plain;
+        are_plain &= placed.is_plain & block.keep::<ANY>(arm, &placed, placed.hand_of(cursor));
     }
     are_plain
 }
@@ -85,19 +89,23 @@ impl PlacesAndRotations {
 
 impl Block for Places {
     #[inline(always)]
-    fn keep(&mut self, arm: usize, placed: &Placed, hand: Vec3) {
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool {
         put(&mut self.elbow, arm, placed.elbow.to_array());
         put(&mut self.hand, arm, hand.to_array());
+        true
     }
 }
 
 impl Block for PlacesAndRotations {
     #[inline(always)]
-    fn keep(&mut self, arm: usize, placed: &Placed, hand: Vec3) {
-        self.places.keep(arm, placed, hand);
-        let [upper, lower] = rotations(placed);
-        put(&mut self.upper, arm, upper);
-        put(&mut self.lower, arm, lower);
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool {
+        self.places.keep::<ANY>(arm, placed, hand);
+        let Scaled { upper, lower, .. } = placed.scaled;
+        let are_alike = (upper <= ALIKE * lower) & (lower <= ALIKE * upper);
+        let [of_upper, of_lower] = rotations(placed, ANY && !are_alike);
+        put(&mut self.upper, arm, of_upper);
+        put(&mut self.lower, arm, of_lower);
+        are_alike
     }
 }
 
@@ -110,11 +118,11 @@ fn put<const N: usize>(lanes: &mut [Lane; N], arm: usize, values: [f32; N]) {
 
 /// The rotations of the upper and the lower limb, as quaternions: +x along the limb, +z the hinge.
 #[inline(always)]
-fn rotations(placed: &Placed) -> [[f32; 4]; 2] {
+fn rotations(placed: &Placed, is_uneven: bool) -> [[f32; 4]; 2] {
     let Placed { facing, outward, distance, along, out, scaled, .. } = *placed;
     let hinge = facing.direction.cross(outward);
     let limb = |ahead: f32, aside: f32| {
-        let (cos, sin) = turn(ahead, aside);
+        let (cos, sin) = if is_uneven { turn(ahead, aside) } else { (ahead, aside) };
         quaternion(Mat3::from_cols(
             facing.direction * cos + outward * sin,
             outward * cos - facing.direction * sin,

@@ -50,8 +50,8 @@ use core::f32::consts::PI;
 use glam::{Mat3, Vec2, Vec3};
 use thiserror::Error;
 
-pub(super) use placing::Placed;
-use placing::{Scaled, Sight};
+use placing::Sight;
+pub(super) use placing::{Placed, Scaled};
 
 /// Two bones joined at an elbow, with the shoulder at the origin.
 ///
