@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# bench.sh: measures what docs/performance.md claims, and writes the tables between its marks anew.
-# Takes about half an hour on two cores, and a machine that does nothing else meanwhile.
+# bench.sh [--tables]: measures what docs/performance.md claims, and writes the tables between its marks
+# anew; or the tables alone, of what was measured last. Takes about half an hour on two cores, and a
+# machine that does nothing else meanwhile.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -8,9 +9,11 @@ page=docs/performance.md
 results=${CARGO_TARGET_DIR:-target}/criterion
 
 main() {
-    cargo bench --locked --no-default-features --features parallel \
-        --bench two_bone --bench batch --bench curves --bench solve
-    cargo build --locked --release
+    if [[ ${1:-} != --tables ]]; then
+        cargo bench --locked --no-default-features --features parallel \
+            --bench two_bone --bench batch --bench curves --bench solve
+        cargo build --locked --release
+    fi
     {
         machine
         batch_table

@@ -155,8 +155,8 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], spin: [&mut [f32]; 2])
     let [cos, sin] = spin;
     let mut arrays = [x, y, z, cos, sin];
     for from in (0..arms).step_by(BLOCK) {
-        for of in 0..BLOCK {
-            let own = Own::of((from + of) as u32);
+        for (arm, of) in (from as u32..).zip(0..BLOCK) {
+            let own = Own::of(arm);
             let [x, y, z] = own.cursor(time);
             block[0][of] = x * reach;
             block[1][of] = y * reach;

@@ -90,7 +90,7 @@ impl Progress {
     fn tell(&self, frame: u32) {
         self.bar.set_position(u64::from(frame));
         let tenth = (self.frames / 10).max(1);
-        if !std::io::stderr().is_terminal() && frame % tenth == 0 {
+        if !std::io::stderr().is_terminal() && frame.is_multiple_of(tenth) {
             eprintln!("frame {} of {}", frame + 1, self.frames);
         }
     }
