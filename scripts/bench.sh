@@ -14,13 +14,18 @@ main() {
             --bench two_bone --bench batch --bench curves --bench solve
         cargo build --locked --release
     fi
+    local figures
+    figures=$(mktemp)
+    # Into a file first: what fails must not leave half a page.
     {
         machine
         batch_table
         other_table
         crowd_table
         size_table
-    } | put_between_marks
+    } >"$figures"
+    put_between_marks "$figures"
+    rm "$figures"
     echo "$page has the figures of this run."
 }
 
@@ -95,7 +100,7 @@ crowd_table() {
     for arms in 1000 100000 1000000; do
         for solver in cpu gpu; do
             "${CARGO_TARGET_DIR:-target}"/release/ik-arm render --crowd $arms --frames 20 --timings \
-                --solve $solver 2>/dev/null | python3 -c '
+                --solve $solver | python3 -c '
 import json, sys
 line = json.load(sys.stdin)
 solve = line["solve_ms_median"]
@@ -113,16 +118,12 @@ size_table() {
 }
 
 put_between_marks() {
-    local figures
-    figures=$(mktemp)
-    cat >"$figures"
-    awk -v figures="$figures" '
+    awk -v figures="$1" '
         /<!-- figures end -->/ { skip = 0 }
         !skip { print }
         /<!-- figures begin -->/ { skip = 1; while ((getline line < figures) > 0) print line }
     ' "$page" >"$page.new"
     mv "$page.new" "$page"
-    rm "$figures"
 }
 
 main "$@"

@@ -24,18 +24,22 @@ struct Corner {
 const TURN = 6.2831853;
 const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 1), vec2u(0, 1));
 const BALL = vec2u(10u, 5u); // around, from pole to pole
-const JOINT = 1.12; // radius, in those of a limb
 const LEAST = 0.4; // radius of a limb on screen, in pixels
 
+fn unit(v: vec3f, otherwise: vec3f) -> vec3f {
+    let square = dot(v, v);
+    return select(otherwise, v * inverseSqrt(square), square > 0.0);
+}
+
 fn corner_of_limb(base: vec3f, tip: vec3f, corner: u32) -> Corner {
-    let axis = normalize(tip - base);
+    let axis = unit(tip - base, vec3f(0.0, 1.0, 0.0));
     let cell = QUAD[corner % 6u];
     let place = mix(base, tip, f32(cell.y));
     let radius = max(mix(crowd.thick, crowd.thin, f32(cell.y)), LEAST * pixel_at(place));
     if level.sides == 1u {
         let towards = mix(crowd.eye - place, -crowd.forward, select(0.0, 1.0, crowd.per_pixel > 0.0));
-        let aside = normalize(cross(towards, axis));
-        let normal = normalize(cross(aside, axis));
+        let aside = unit(cross(towards, axis), normalize(view.right));
+        let normal = unit(cross(aside, axis), -crowd.forward);
         let facing = select(normal, -normal, dot(normal, towards) < 0.0);
         return Corner(place + aside * radius * (1.0 - 2.0 * f32(cell.x)), facing);
     }

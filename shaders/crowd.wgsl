@@ -15,6 +15,8 @@ struct Crowd {
     thin: f32,
 }
 
+const JOINT = 1.12; // radius, in those of a limb
+
 struct Arm {
     shoulder: vec3f, // all in the world
     elbow: vec3f,

@@ -16,7 +16,7 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
     let least = min(arm.shoulder, min(arm.elbow, arm.hand));
     let most = max(arm.shoulder, max(arm.elbow, arm.hand));
     let middle = (least + most) * 0.5;
-    let radius = length(most - middle) + crowd.thick;
+    let radius = length(most - middle) + crowd.thick * JOINT;
     for (var side = 0u; side < 5u; side++) {
         let plane = crowd.planes[side];
         if dot(plane.xyz, middle) + plane.w < -radius {

@@ -210,8 +210,11 @@ fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
     session.apply(Action::Advance(15.0));
     assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0));
     assert!(!session.is_moving());
+    session.apply(Action::MoveCrowd(true));
+    session.apply(Action::Advance(100.0));
+    assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0), "a pause is no time");
     session.apply(Action::ShowCrowd(false));
-    session.apply(Action::Advance(20.0));
+    session.apply(Action::Advance(120.0));
     assert_eq!(session.crowd(), None);
     let after = Document { camera: before.camera, ..session.document().clone() };
     assert_eq!(after, before);
@@ -237,4 +240,13 @@ fn draw(picture: &mut Picture<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
     let document = Document { camera, ..Document::default() };
     let staging = Staging { crowd: Some(*crowd), ..Staging::default() };
     picture.draw(&Scene::new(&document, &staging, Theme::Dark)).expect("a picture")
+}
+
+#[test]
+fn a_crowd_of_arms_that_numbers_cannot_square_is_not_drawn() {
+    for length in [1e-30, 1e19, 1e38] {
+        let bones = TwoBone::new(length, length).expect("lengths");
+        let staging = Staging { crowd: Some(Crowd { bones, ..crowd(10) }), ..Staging::default() };
+        assert_eq!(Scene::new(&Document::default(), &staging, Theme::Dark).crowd, None, "{length}");
+    }
 }

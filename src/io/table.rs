@@ -5,6 +5,7 @@ use super::frames::{Frames, Playback};
 use super::motion::{Exported, MotionError};
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::is_within_numbers;
 
 /// Where the shown rig's joints are in time, as a table of comma-separated values.
 ///
@@ -32,7 +33,7 @@ pub fn to_csv(
         table.write_field(frame.to_string())?;
         table.write_field(frames.since_first(frame).to_string())?;
         for (name, point) in columns.names.iter().zip(columns.points(playback.at(time), time)) {
-            if !point.is_finite() {
+            if !is_within_numbers(point) {
                 return Err(MotionError::TooFar { joint: name.clone() });
             }
             for number in point.to_array() {

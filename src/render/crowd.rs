@@ -115,8 +115,8 @@ impl Crowds {
         let mut sent = 0;
         if troupe.shown != Some(crowd) {
             sent += troupe.muster(gpu, &crowd);
-            let solve = troupe.solve(gpu, &crowd).unwrap_or_default();
-            self.times = Some(CrowdTimes { arms: crowd.arms, solve });
+            let solve = troupe.solve(gpu, &crowd);
+            self.times = solve.map(|solve| CrowdTimes { arms: crowd.arms, solve });
             troupe.shown = Some(crowd);
         }
         sent + troupe.look(gpu, &crowd, scene, size)
@@ -160,7 +160,7 @@ impl Troupe {
         let needed =
             wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
         if !flags.contains(needed) {
-            log::warn!("{} draws no crowd: its shaders read too little", gpu.name());
+            log::warn!("{} draws no crowd: it lacks the shaders for it", gpu.name());
             return None;
         }
         let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Write, Slot::Write];
@@ -241,11 +241,14 @@ impl Troupe {
         2 * size_of_val(&x[..]) as u64
     }
 
-    /// How long solving took; nothing if the device failed, which is told elsewhere.
+    /// How long solving took; nothing where it failed.
     fn solve(&mut self, gpu: &Gpu, crowd: &Crowd) -> Option<Duration> {
         self.ranks.ask(crowd);
         match crowd.solved_by {
-            SolvedBy::Gpu => self.solver.solve(gpu, crowd.bones, &self.ranks).ok(),
+            SolvedBy::Gpu => {
+                let took = self.solver.solve(gpu, crowd.bones, &self.ranks);
+                took.inspect_err(|error| log::error!("the crowd was not solved: {error}")).ok()
+            }
             SolvedBy::Cpu => {
                 let took = self.ranks.solve(crowd.bones).ok();
                 self.solver.take(gpu, &self.ranks);
@@ -279,15 +282,11 @@ impl Room {
         };
         let shoulders = buffer("shoulders", 2);
         let seen = buffer("seen of a crowd", LEVELS.len() as u64);
-        let (posed, shared) = (solver.posed(), [uniform, &shoulders]);
-        let [uniform, shoulders_there] = shared;
-        let to_cull = [uniform, shoulders_there, posed, &seen, arguments];
-        let to_draw = [uniform, shoulders_there, posed, &seen];
-        Self {
-            cull: compute::group(gpu, "cull", cull, &to_cull),
-            draw: compute::group(gpu, "crowd", draw, &to_draw),
-            shoulders,
-        }
+        let posed = solver.posed();
+        let to_cull = [uniform, &shoulders, posed, &seen, arguments];
+        let cull = compute::group(gpu, "cull", cull, &to_cull);
+        let draw = compute::group(gpu, "crowd", draw, &[uniform, &shoulders, posed, &seen]);
+        Self { cull, draw, shoulders }
     }
 }
 

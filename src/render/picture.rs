@@ -86,6 +86,11 @@ impl<'a> Picture<'a> {
         Ok(image?)
     }
 
+    /// Whether there was a crowd in the scene that was drawn last, and it could be.
+    pub fn has_crowd(&self) -> bool {
+        self.renderer.crowd_times().is_some()
+    }
+
     /// Draws the scenes that `scene` makes, the first, second and so on of `frames`, waiting for the
     /// device each time.
     ///
@@ -100,7 +105,8 @@ impl<'a> Picture<'a> {
         let (mut cpu, mut frame, mut solve) = (Vec::new(), Vec::new(), Vec::new());
         for number in 0..frames {
             let start = Instant::now();
-            self.renderer.draw(self.gpu, &scene(number), &self.canvas, self.scale);
+            let scene = scene(number);
+            self.renderer.draw(self.gpu, &scene, &self.canvas, self.scale);
             cpu.push(start.elapsed());
             self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
             frame.push(start.elapsed());

@@ -15,6 +15,10 @@ const ASKED: u64 = 5;
 const POSED: u64 = 6;
 const NUMBER: u64 = size_of::<f32>() as u64;
 
+/// A device that takes longer hangs.
+const PATIENCE: wgpu::PollType =
+    wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(10)) };
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Uniform {
@@ -63,7 +67,7 @@ impl Solver {
         Some(Self { pipeline, layout, uniform, room, arms: 0 })
     }
 
-    /// How many arms there is room for: from one kind of number to the next in [`Self::posed`].
+    /// How many arms there is room for: from one kind of number to the next in its buffers.
     pub fn stride(&self) -> u32 {
         self.room.arms
     }
@@ -87,7 +91,11 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// If the device fails meanwhile.
+    /// If the device has not done it after ten seconds.
+    ///
+    /// # Panics
+    ///
+    /// As all that waits for a device in `wgpu`, if that is lost meanwhile.
     pub fn solve(
         &mut self,
         gpu: &Gpu,
@@ -107,7 +115,7 @@ impl Solver {
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         gpu.queue.submit([]);
-        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        gpu.device.poll(PATIENCE)?;
 
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("solve") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
@@ -116,7 +124,7 @@ impl Solver {
         let orders = encoder.finish();
         let start = Instant::now();
         gpu.queue.submit([orders]);
-        gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        gpu.device.poll(PATIENCE)?;
         Ok(start.elapsed())
     }
 

@@ -108,6 +108,9 @@ pub struct Shadow {
     pub tip_radius: f32,
 }
 
+/// Of crowds that are drawn: beyond, squares of their lengths end, on the device too.
+const SIZES: core::ops::Range<f32> = 1e-12..1e15;
+
 impl Scene {
     /// The document as it stands, with what goes on around it.
     pub fn new(document: &Document, staging: &Staging, theme: Theme) -> Self {
@@ -130,8 +133,10 @@ impl Scene {
         self.camera = document.camera;
         self.palette = Palette::new(theme);
         if let Some(crowd) = staging.crowd {
-            self.stage = Stage::around_crowd(&crowd, display);
-            self.crowd = Some(crowd);
+            if SIZES.contains(&crowd.bounds().1) {
+                self.stage = Stage::around_crowd(&crowd, display);
+                self.crowd = Some(crowd);
+            }
             return;
         }
         self.stage = Stage::around(centre, reach, cell, display);

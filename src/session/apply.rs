@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::crowd::Crowding;
 use super::drag::Way;
 use super::{
     Action, Constraint, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming,
@@ -258,6 +259,7 @@ impl Session {
     }
 
     fn reset_all(&mut self) {
+        self.crowding = Crowding::default();
         self.commit(Document { display: Display::default(), ..self.shown.clone() });
         match self.rig() {
             RigKind::Arm => {

@@ -42,6 +42,7 @@ impl Session {
     pub(super) fn show_crowd(&mut self, shown: bool) {
         if shown != self.crowding.shown {
             self.crowding.shown = shown;
+            self.forget_pause();
             self.glide = Some(Glide::new(self.document.camera, self.framing_all()));
         }
     }
@@ -56,6 +57,14 @@ impl Session {
 
     pub(super) fn move_crowd(&mut self, moving: bool) {
         self.crowding.moving = moving;
+        self.forget_pause();
+    }
+
+    /// What passed while nothing went on is no time of the crowd.
+    fn forget_pause(&mut self) {
+        if !self.clock.playing {
+            self.clock.last = None;
+        }
     }
 
     pub(super) fn advance_crowd(&mut self, passed: f64) {

@@ -2,6 +2,7 @@ use glam::{Mat4, Vec3};
 use serde::Serialize;
 
 use crate::document::SkeletonRig;
+use crate::kinematics::skeleton::is_within_numbers;
 use crate::kinematics::solve::Report;
 
 /// What is printed.
@@ -55,7 +56,7 @@ impl<'a> Line<'a> {
         let joints = order.iter().enumerate().map(|(index, &joint)| {
             let bone = &rig.skeleton.joints()[joint];
             let (full, tip) = (pose.full(joint), pose.tip(joint));
-            if !(full.is_finite() && tip.is_finite()) {
+            if !(is_within_numbers(full.translation.into()) && is_within_numbers(tip)) {
                 return Err(bone.name.as_str());
             }
             Ok(JointLine {

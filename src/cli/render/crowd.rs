@@ -38,7 +38,11 @@ pub fn render(args: &Args, arms: u32) -> Result<(), RenderError> {
     let gpu = Gpu::headless()?;
     let mut picture = Picture::of_size(&gpu, args.size.width, args.size.height)?;
     if let Some(path) = &args.output {
-        render::save(&picture.draw(&scene(&document, crowd, theme))?, path)?;
+        let image = picture.draw(&scene(&document, crowd, theme))?;
+        if !picture.has_crowd() {
+            return Err(RenderError::NoCrowd(gpu.name()));
+        }
+        render::save(&image, path)?;
     }
     if args.timings {
         let progress = Progress::new(args.frames);

@@ -126,7 +126,9 @@ enum RenderError {
     Draw(#[from] DrawError),
     #[error(transparent)]
     Read(#[from] ReadError),
-    #[error("the graphics adapter {0} draws no crowd: it has no compute shaders")]
+    #[error(
+        "the graphics adapter {0} does not draw this crowd: it lacks the shaders for it, or the arms are too large"
+    )]
     NoCrowd(String),
     #[error(transparent)]
     Save(#[from] SaveError),

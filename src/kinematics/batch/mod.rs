@@ -41,7 +41,8 @@
 //!
 //! `docs/performance.md` has the figures beside those of a copy of the same bytes. Plain numbers,
 //! from about 1e-9 to 1e9, go the fast way. A block of 2,048 arms that has others, or a cursor
-//! straight above, below or at its shoulder, is solved once more with care: half as fast.
+//! straight above, below or at its shoulder, is solved once more with care: half as fast. So is one with
+//! a bone more than eight times as long as the other, if rotations are asked for.
 
 #[cfg(feature = "parallel")]
 mod cores;

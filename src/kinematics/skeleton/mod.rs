@@ -33,7 +33,7 @@ use glam::{Affine3A, Mat3A, Vec3};
 pub use build::Moved;
 pub use error::SkeletonError;
 pub use joint::{Joint, Limit};
-pub use pose::Pose;
+pub use pose::{Pose, is_within_numbers};
 
 pub(crate) use euler::{EulerAngles, angle_triples, nearest_angles};
 pub(crate) use joint::within;

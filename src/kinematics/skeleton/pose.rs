@@ -81,6 +81,11 @@ impl Pose {
     }
 }
 
+/// Whether a point is where it should be, and not at the end of numbers because it is beyond them.
+pub fn is_within_numbers(point: Vec3) -> bool {
+    point.is_finite() && point.abs().max_element() < f32::MAX
+}
+
 fn saturated(number: f32) -> f32 {
     if number.is_nan() { 0.0 } else { number.clamp(f32::MIN, f32::MAX) }
 }
