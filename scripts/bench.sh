@@ -114,7 +114,7 @@ print("| {:,} | {} | {:.2f} ms | {:.1f} | {:.0f} ms | {} |".format(
 
 size_table() {
     printf 'The release binary: %s MB.\n' \
-        "$(stat -c %s "${CARGO_TARGET_DIR:-target}/release/ik-arm" | awk '{ printf "%.1f", $1 / 1e6 }')"
+        "$(stat -Lc %s "${CARGO_TARGET_DIR:-target}/release/ik-arm" | awk '{ printf "%.1f", $1 / 1e6 }')"
 }
 
 put_between_marks() {
