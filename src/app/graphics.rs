@@ -129,6 +129,9 @@ impl Graphics {
 
     /// A frame and how long the device worked on it, if that is known by now.
     pub fn read_clock(&mut self) -> Option<(u64, Duration)> {
+        // A device that is lost says so when it is asked, and has no buffers left to read.
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        self.check().ok()?;
         self.stopwatch.as_mut()?.read(&self.gpu)
     }
 
