@@ -6,7 +6,7 @@ use ik_arm::document::{Camera, Channel, Ray, RigKind, Swivel, Theme};
 use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Session,
+    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Session, TurnDrag,
 };
 
 fn ray() -> Ray {
@@ -287,4 +287,24 @@ fn the_same_revision_is_saved_as_the_same_text() {
     session.apply(Action::CommitEdit);
     assert_eq!(session.revision(), revision);
     assert_eq!(to_json(session.document()).expect("saved"), text);
+}
+
+#[test]
+fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
+    for angle in [f32::MAX, f32::MIN] {
+        let mut session = Session::default();
+        session.apply(Action::SetRotation { joint: 0, rotation: Vec3::X * angle });
+        let axis = session.ring(0, 0).expect("a ring").axis;
+        let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
+        let (one, other) = axis.any_orthonormal_pair();
+        let grip = Grip::Ring(0, 0);
+        session.apply(Action::Grab { grip, ray: seen(one), forward: -axis });
+        for precise in [false, true] {
+            session.apply(Action::Drag(DragInput { ray: seen(other), precise, snap: true }));
+            let turned = session.drag().and_then(Drag::turn).map(TurnDrag::turned);
+            assert!(turned.is_some_and(f32::is_finite), "{turned:?}");
+            assert!(session.message().is_none(), "{:?}", session.message());
+        }
+        assert!(session.skeleton().skeleton.joints()[0].rotation.is_finite());
+    }
 }

@@ -56,7 +56,7 @@ impl TurnDrag {
 
     /// How far the ring has been turned, radians.
     pub fn turned(&self) -> f32 {
-        self.last - self.start
+        (self.last - self.start).clamp(f32::MIN, f32::MAX)
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {
@@ -83,7 +83,8 @@ impl TurnDrag {
         }
         let to = self.start + self.offset();
         let step = if self.now.precise { Self::PRECISE_SNAP } else { Self::SNAP };
-        self.last = if self.now.snap { (to / step).round() * step } else { to };
+        let to = if self.now.snap { (to / step).round() * step } else { to };
+        self.last = to.clamp(f32::MIN, f32::MAX);
         self.last
     }
 
