@@ -131,6 +131,7 @@ fn random_document(random: &mut Random) -> Document {
             distance: random.above_0(),
             orthographic: random.coin(),
         },
+        other_camera: random.coin().then(Camera::default),
         display: layers.filter(|_| random.coin()).collect::<Display>(),
     }
 }

@@ -110,7 +110,8 @@ fn not_saved(path: &Path) -> (Session, String) {
     session.apply(Action::SetHand(Vec3::new(1.0, 2.0, 3.0)));
     let document = session.document().clone();
     let error = io::save(session.document(), path).expect_err("it cannot be saved");
-    session.apply(Action::NotSaved(format!("Not saved: {error}")));
+    let why = error.to_string();
+    session.apply(Action::NotSaved { path: path.to_owned(), why });
     assert!(session.is_unsaved());
     assert_eq!(session.document(), &document);
     assert_eq!(session.file(), None);

@@ -447,7 +447,7 @@ fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
     assert_eq!(session.arm().elbow_spin, 1.0);
     assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
     session.apply(Action::Discard(Box::new(opened)));
-    assert_eq!(session.document(), &Document::default());
+    assert_eq!(session.document(), &ik_arm::io::new_document());
 }
 
 #[test]

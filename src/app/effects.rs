@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use winit::event_loop::EventLoopProxy;
 
@@ -65,12 +65,15 @@ impl AppWindow {
                 self.exporting = Some(thread);
                 session.apply(Action::Exporting(job));
             }
-            Effect::ChoosePath(dialog) => jobs::choose_path(dialog, proxy.clone()),
+            Effect::ChoosePath(dialog) => {
+                let path = session.full_path(&dialog, dialog.path().unwrap_or(Path::new("")));
+                jobs::choose_path(dialog, &path, proxy.clone());
+            }
             Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
             Effect::Save(path) => {
                 let saved = match io::save(session.document(), &path) {
                     Ok(()) => Action::Saved(path),
-                    Err(error) => Action::NotSaved(format!("Not saved: {error}")),
+                    Err(error) => Action::NotSaved { path, why: error.to_string() },
                 };
                 let next = session.apply(saved);
                 return next.is_some_and(|effect| self.carry_out(effect, session, proxy));

@@ -27,11 +27,11 @@ pub(super) struct Shot {
 /// Draws with a device of its own, so that the window goes on.
 pub(super) fn save_picture(shot: Shot, path: PathBuf, proxy: EventLoopProxy<UserEvent>) {
     thread::spawn(move || {
-        let message = match draw(&shot, &path) {
-            Ok(()) => format!("Saved {}", path.display()),
-            Err(error) => format!("Not saved: {error}"),
+        let how = match draw(&shot, &path) {
+            Ok(()) => Ok(format!("Saved {}", path.display())),
+            Err(error) => Err(format!("Not saved: {error}")),
         };
-        report(&proxy, UserEvent::Report(message));
+        report(&proxy, UserEvent::Report(how));
     });
 }
 
@@ -64,24 +64,27 @@ pub(super) fn export(
         // The window is told, whatever happens: it waits for that before it exports again.
         let how = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(write)) {
             Ok(exported) => say_exported(&export.path, exported),
-            Err(_) => "Not exported: the export failed by a fault of the program".to_owned(),
+            Err(_) => Err("Not exported: the export failed by a fault of the program".to_owned()),
         };
         report(&proxy, UserEvent::Exported(how));
     });
     (job, thread)
 }
 
-fn say_exported(path: &Path, exported: Result<Vec<String>, ExportError>) -> String {
+fn say_exported(
+    path: &Path,
+    exported: Result<Vec<String>, ExportError>,
+) -> Result<String, String> {
     match exported {
-        Ok(notes) => match &notes[..] {
+        Ok(notes) => Ok(match &notes[..] {
             [] => format!("Exported {}", path.display()),
             [note] => format!("Exported {}; {note}", path.display()),
             [first, rest @ ..] => {
                 format!("Exported {}; {first}, and {} more notes", path.display(), rest.len())
             }
-        },
-        Err(ExportError::Cancelled(_)) => "Export cancelled; no file was left".to_owned(),
-        Err(error) => format!("Not exported: {error}"),
+        }),
+        Err(ExportError::Cancelled(_)) => Ok("Export cancelled; no file was left".to_owned()),
+        Err(error) => Err(format!("Not exported: {error}")),
     }
 }
 
@@ -98,7 +101,7 @@ pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProx
 pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError>) -> Vec<Action> {
     let Opened { document, warnings, skeletons, .. } = match read {
         Ok(opened) => opened,
-        Err(error) => return vec![Action::Report(format!("Not opened: {error}"))],
+        Err(error) => return vec![Action::NotOpened { path, why: error.to_string() }],
     };
     let said = match &warnings[..] {
         [] => format!("Opened {}", path.display()),
@@ -126,18 +129,16 @@ pub(super) enum Choice {
     NoDialog,
 }
 
-/// Opens the system's own dialog for the path that one of ours asks for.
-pub(super) fn choose_path(dialog: Dialog, proxy: EventLoopProxy<UserEvent>) {
+/// Opens the system's own dialog for the path that one of ours asks for, at a path to begin with.
+pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
     /// Nobody cancels as fast as a system answers that has no dialog; both answer alike.
     const FASTEST_HAND: Duration = Duration::from_millis(400);
     let exported = Format::ENDINGS.map(|(ending, _)| ending);
-    let (path, name, extensions): (_, _, &[&str]) = match &dialog {
-        Dialog::SavePicture { path } => (Path::new(path), "PNG", &["png"]),
-        Dialog::Open { path } => {
-            (Path::new(path), "Scene", &["json", "js3d", "bvh", "glb", "gltf"])
-        }
-        Dialog::SaveAs { path } => (Path::new(path), "Scene", &["json"]),
-        Dialog::Export(export) => (export.path.as_path(), "Export", &exported),
+    let (name, extensions): (_, &[&str]) = match &dialog {
+        Dialog::SavePicture { .. } => ("PNG", &["png"]),
+        Dialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
+        Dialog::SaveAs { .. } => ("Scene", &["json"]),
+        Dialog::Export(_) => ("Export", &exported),
         _ => return,
     };
     let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
@@ -180,8 +181,8 @@ pub(super) fn chosen(dialog: Dialog, choice: Choice) -> Option<Action> {
             Some(Action::OpenDialog(Dialog::Export(Export { path, ..export })))
         }
         (Choice::Path(_), _) => None,
-        (Choice::Cancelled, _) => Some(Action::NotSaved("No file was chosen".to_owned())),
-        (Choice::NoDialog, dialog) => Some(Action::OpenDialog(dialog)),
+        (Choice::Cancelled, _) => Some(Action::ChoseNothing),
+        (Choice::NoDialog, dialog) => Some(Action::NoSystemDialog(dialog)),
     }
 }
 

@@ -69,9 +69,9 @@ fn why_no_display() -> String {
 enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Something that ran beside the window says how it ended.
-    Report(String),
+    Report(Result<String, String>),
     /// An export says how it ended.
-    Exported(String),
+    Exported(Result<String, String>),
     /// The document is safe, as far as it was changed by then.
     Kept,
     /// The device is good for nothing more.
@@ -104,6 +104,7 @@ pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError
     let settings = Settings::load();
     let mut session = Session::new(settings.preferences);
     session.set_recent(settings.recent.clone());
+    session.set_export_folder(settings.export_folder.clone());
     if let Some((document, file)) = document {
         session.apply(Action::Opened { document: Box::new(document), file });
     }
@@ -267,7 +268,10 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Accesskit(event) => window.on_accesskit(event),
             UserEvent::Kept | UserEvent::GraphicsFailed => {}
             UserEvent::Report(message) => {
-                self.session.apply(Action::Report(message));
+                self.session.apply(match message {
+                    Ok(done) => Action::Report(done),
+                    Err(why) => Action::Fail(why),
+                });
             }
             UserEvent::Exported(how) => {
                 self.session.apply(Action::Exported(how));

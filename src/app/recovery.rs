@@ -152,7 +152,7 @@ impl Recovery {
             // Nobody hears it once the window is closed.
             let _ = proxy.send_event(match written {
                 Ok(()) => UserEvent::Kept,
-                Err(error) => UserEvent::Report(format!("Not kept safe: {error}")),
+                Err(error) => UserEvent::Report(Err(format!("Not kept safe: {error}"))),
             });
             is_written
         });

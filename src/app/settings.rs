@@ -15,6 +15,8 @@ pub(super) struct Settings {
     pub preferences: Preferences,
     /// Files that were opened or saved, the last one first.
     pub recent: Vec<PathBuf>,
+    /// Of the last export or picture.
+    pub export_folder: Option<PathBuf>,
     pub window: Option<WindowSettings>,
     pub layout: IdTypeMap,
 }

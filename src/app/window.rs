@@ -150,6 +150,7 @@ impl AppWindow {
         Settings {
             preferences: *session.preferences(),
             recent: session.recent().to_vec(),
+            export_folder: session.export_folder().map(Path::to_owned),
             window: Some(WindowSettings::from_window(ctx.zoom_factor(), &self.window, None)),
             layout: ctx.data(Clone::clone),
         }
@@ -254,9 +255,32 @@ impl AppWindow {
         }
     }
 
-    /// Runs the panels, applies what they ask for, and if that was anything, runs them once more,
-    /// so that none shows the state before.
+    /// Runs the panels on one key press or mouse button after the other, so that each meets what the
+    /// one before it has opened.
     fn run(
+        &mut self,
+        mut input: RawInput,
+        session: &mut Session,
+        frame: &mut Frame,
+    ) -> (FullOutput, Rect, Vec<Effect>) {
+        let strokes = ui::strokes(std::mem::take(&mut input.events));
+        let mut output = FullOutput::default();
+        let mut viewport = Rect::ZERO;
+        let mut effects = Vec::new();
+        for events in strokes {
+            let dropped_files = std::mem::take(&mut input.dropped_files);
+            let stroke = RawInput { events, dropped_files, ..input.clone() };
+            let (shown, rect, asked) = self.run_stroke(stroke, session, frame);
+            output.append(shown);
+            viewport = rect;
+            effects.extend(asked);
+        }
+        (output, viewport, effects)
+    }
+
+    /// Runs the panels, applies their actions, and if there were any, runs the panels once more, so
+    /// that none shows the state before.
+    fn run_stroke(
         &mut self,
         input: RawInput,
         session: &mut Session,

@@ -8,6 +8,7 @@ mod arm;
 mod camera;
 mod channel;
 mod display;
+mod dissolve;
 mod keys;
 mod skeleton;
 mod slither;
@@ -24,7 +25,7 @@ pub use slither::Slither;
 pub use timeline::Timeline;
 pub use wrist::{Space, Wrist};
 
-use crate::kinematics::skeleton::Moved;
+use crate::kinematics::skeleton::{Moved, SkeletonError};
 
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,7 +36,10 @@ pub struct Document {
     pub skeleton: SkeletonRig,
     pub keys: Keys,
     pub timeline: Timeline,
+    /// Where the shown rig is looked at from.
     pub camera: Camera,
+    /// The camera of the other rig; `None` frames that rig when it is shown.
+    pub other_camera: Option<Camera>,
     pub display: Display,
     /// How long a unit of the shown rig is for other programs; nothing says what is usual: see
     /// [`Document::metres_per_unit`].
@@ -57,6 +61,39 @@ impl Document {
             RigKind::Arm => 0.001,
             RigKind::Skeleton => 1.0,
         })
+    }
+
+    /// Shows a rig, from where it was looked at last.
+    pub fn show(&mut self, rig: RigKind) {
+        if rig == self.rig {
+            return;
+        }
+        let camera = self.other_camera.unwrap_or_else(|| self.first_view(rig));
+        self.other_camera = Some(self.camera);
+        (self.rig, self.camera) = (rig, camera);
+    }
+
+    /// A view of a whole rig.
+    fn first_view(&self, rig: RigKind) -> Camera {
+        match rig {
+            RigKind::Arm if self.arm.bones == Arm::default().bones => Camera::default(),
+            RigKind::Arm => {
+                let (centre, radius) = self.arm.bounds(&self.arm.pose());
+                Camera::default().framing(centre, radius, 1.0)
+            }
+            RigKind::Skeleton => self.skeleton.first_view(),
+        }
+    }
+
+    /// Deletes joints with all their descendants.
+    ///
+    /// # Errors
+    ///
+    /// None; [`Document::dissolve`] has some.
+    pub fn delete(&mut self, joints: &[usize]) -> Result<Moved, SkeletonError> {
+        let moved = self.skeleton.skeleton.remove(joints);
+        self.follow(&moved);
+        Ok(moved)
     }
 
     /// Lets targets and keys follow their joints to new places.

@@ -135,6 +135,11 @@ impl SkeletonRig {
         PART * self.reach()
     }
 
+    /// Whether any joint is more than a point.
+    pub fn has_bones(&self) -> bool {
+        self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
+    }
+
     /// The target of a joint.
     pub fn target(&self, joint: usize) -> Option<usize> {
         self.targets.iter().position(|target| target.joint == joint)

@@ -1,5 +1,5 @@
 use std::ffi::{OsStr, OsString};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::ExportError;
 
@@ -78,6 +78,16 @@ impl Numbered {
         })
     }
 
+    /// Whether a file is called like one of the sequence.
+    fn is_name(&self, name: &OsStr) -> bool {
+        let digits = name.to_str().and_then(|name| {
+            name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())
+        });
+        digits.is_some_and(|digits| {
+            digits.len() >= self.digits && digits.bytes().all(|digit| digit.is_ascii_digit())
+        })
+    }
+
     /// The name of a number, with zeros before it.
     pub fn name(&self, number: usize) -> OsString {
         /// More zeros than any number needs.
@@ -86,6 +96,18 @@ impl Numbered {
         let digits = self.digits.min(MOST_DIGITS);
         format!("{before}{number:0digits$}{after}").into()
     }
+}
+
+/// The file that an export to this path would overwrite, the first of several.
+pub fn existing(path: &Path) -> Option<PathBuf> {
+    let is_sequence = matches!(Format::of(path), Ok(Format::PngSequence));
+    let Some(numbered) = Numbered::new(path).filter(|_| is_sequence) else {
+        return path.exists().then(|| path.to_owned());
+    };
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let found = files.flatten().filter(|file| numbered.is_name(&file.file_name()));
+    found.map(|file| file.path()).min()
 }
 
 #[cfg(test)]
@@ -116,5 +138,21 @@ mod tests {
         assert_eq!(name("x/walk_####.png", 7), Some("walk_0007.png".into()));
         assert_eq!(name("#a##b.png", 12345), Some("#a12345b.png".into()));
         assert_eq!(name("x#/a.png", 1), None);
+    }
+
+    #[test]
+    fn a_sequence_finds_the_frames_that_are_there_already() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("walk_##.png");
+        assert_eq!(existing(&path), None);
+        for name in ["walk_x1.png", "walk_1.png", "swalk_01.png", "walk_01.jpg", "walk_##.png"] {
+            std::fs::write(folder.path().join(name), "").expect("written");
+        }
+        assert_eq!(existing(&path), None, "none of these is a frame");
+        for name in ["walk_101.png", "walk_07.png"] {
+            std::fs::write(folder.path().join(name), "").expect("written");
+        }
+        assert_eq!(existing(&path), Some(folder.path().join("walk_07.png")));
+        assert_eq!(existing(&folder.path().join("walk_1.png")).is_some(), true);
     }
 }

@@ -11,7 +11,7 @@ mod format;
 use std::path::Path;
 
 pub use error::ExportError;
-pub use format::Format;
+pub use format::{Format, existing};
 
 use crate::document::{Document, Theme};
 use crate::io::{self, BvhUnit, Exported, Progress};

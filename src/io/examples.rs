@@ -1,5 +1,6 @@
 use super::OpenError;
 use super::open::{Opened, parse};
+use crate::document::Document;
 
 /// A scene that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,13 @@ pub enum Group {
     Tour,
     /// Where arms go wrong: a scene for every case.
     HardCases,
+}
+
+/// The document of a new window: the arm, and the Human to switch to.
+pub fn new_document() -> Document {
+    let human = Example::find("human").and_then(|human| human.open().ok());
+    let skeleton = human.map(|opened| opened.document.skeleton).unwrap_or_default();
+    Document { skeleton, ..Document::default() }
 }
 
 impl Example {

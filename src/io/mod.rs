@@ -31,7 +31,7 @@ mod write;
 pub use batch::Batch;
 pub use bvh::{BvhUnit, to_bvh};
 pub use error::{OpenError, Remark, SaveError, WriteError};
-pub use examples::{Example, Group};
+pub use examples::{Example, Group, new_document};
 pub use format::{save, to_json};
 pub use frames::{Frames, Playback};
 pub use gltf::{GlbError, glb};

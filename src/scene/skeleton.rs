@@ -10,6 +10,9 @@ use crate::session::Staging;
 /// A bone is drawn no thicker than this part of its length, and this part of the skeleton's reach,
 /// whatever its radius is.
 const THICKEST: (f32, f32) = (0.45, 0.028);
+/// But a bone's reach never makes it more slender than this part of its length, so that the first
+/// bones of a new skeleton are as thick as they will be when it is complete.
+const SLENDEREST: f32 = 0.1;
 /// A joint that is a point is drawn as large as this part of the skeleton's reach at most.
 const POINT: f32 = 0.02;
 /// How much a slender bone tapers to its tip; one that is shorter than so many of its radii does not,
@@ -111,7 +114,10 @@ impl Figure<'_> {
         let (of_length, of_reach) = THICKEST;
         let thickest = match length {
             0.0 => POINT * self.reach,
-            length => (of_length * length).min(of_reach * self.reach),
+            length => {
+                let of_reach = (of_reach * self.reach).max(SLENDEREST * length);
+                of_reach.min(of_length * length)
+            }
         };
         (self.joints[joint].radius * self.scale).clamp(0.25 * thickest, thickest)
     }

@@ -61,9 +61,16 @@ pub enum Action {
         parent: usize,
         tip: Option<Vec3>,
     },
+    /// Adds a joint at the tip of the selected one, else of the last one, and a root below it where
+    /// there is none; its bone ends at a point of the world or continues its parent's.
+    AddJoint {
+        tip: Option<Vec3>,
+    },
     AddRoot,
-    /// With all that hangs from them.
+    /// Deletes joints with all their descendants.
     Delete(Vec<usize>),
+    /// Deletes joints; their children are attached to the next ancestor that stays, and do not move.
+    Dissolve(Vec<usize>),
     Rename {
         joint: usize,
         name: String,
@@ -194,6 +201,8 @@ pub enum Action {
     CloseDialog,
     /// Says what just happened.
     Report(String),
+    /// Says why something was not done.
+    Fail(String),
 
     CopyPose,
     SavePicture(String),
@@ -201,12 +210,17 @@ pub enum Action {
     /// Says that an export has begun.
     Exporting(Job),
     CancelExport,
-    /// Says how an export has ended.
-    Exported(String),
+    /// Says how an export has ended, or why it failed.
+    Exported(Result<String, String>),
+    StopExportAndQuit,
     /// Asks for a path: by the system's own dialog, or where it has none by this one.
     Ask(Dialog),
     /// Asks the system's own dialog for the path that the open dialog wants.
     ChoosePath,
+    /// The system's own dialog was closed without a path.
+    ChoseNothing,
+    /// The system has no dialog of its own for this one.
+    NoSystemDialog(Dialog),
     /// A file, and which of its skeletons if it has several.
     Open {
         path: PathBuf,
@@ -217,12 +231,20 @@ pub enum Action {
         document: Box<Document>,
         file: Option<PathBuf>,
     },
+    /// Says why a file is not opened.
+    NotOpened {
+        path: PathBuf,
+        why: String,
+    },
     /// To where the document is from; asks if it is from nowhere.
     Save,
     SaveAs(PathBuf),
     Saved(PathBuf),
     /// Says why the document is not saved.
-    NotSaved(String),
+    NotSaved {
+        path: PathBuf,
+        why: String,
+    },
     /// Saves, then does what would have lost the changes.
     SaveAnd(Box<Action>),
     /// Does it, though it loses changes.

@@ -12,6 +12,10 @@ impl Session {
     /// Does it; what is not possible changes nothing and is said in [`Session::message`]. What would
     /// lose changes that are not saved is asked about first.
     pub fn apply(&mut self, action: Action) -> Option<Effect> {
+        if action == Action::Quit && self.is_exporting() {
+            self.dialog = Some(Dialog::Exporting);
+            return None;
+        }
         if self.is_unsaved() && (action.leaves_document() || self.came_late(&action)) {
             self.dialog = Some(Dialog::Unsaved { then: Box::new(action) });
             return None;
@@ -20,10 +24,12 @@ impl Session {
     }
 
     pub(super) fn apply_unasked(&mut self, action: Action) -> Option<Effect> {
-        match naming::of(&action) {
+        let effect = match naming::of(&action) {
             Some(name) => self.step_by(name, |session| session.act(action)),
             None => self.act(action),
-        }
+        };
+        self.choosing |= matches!(effect, Some(Effect::ChoosePath(_)));
+        effect
     }
 
     fn act(&mut self, action: Action) -> Option<Effect> {
@@ -68,8 +74,16 @@ impl Session {
             Action::Select(joints) => self.select(joints),
             Action::Point(joint) => self.point(joint),
             Action::AddChild { parent, tip } => self.add_joint(Some(parent), tip),
+            Action::AddJoint { tip } => self.add_next_joint(tip),
             Action::AddRoot => self.add_joint(None, None),
-            Action::Delete(joints) => self.remove_joints(&joints),
+            Action::Delete(joints) => {
+                self.dialog = None;
+                self.delete_joints(&joints, Document::delete);
+            }
+            Action::Dissolve(joints) => {
+                self.dialog = None;
+                self.delete_joints(&joints, Document::dissolve);
+            }
             Action::Rename { joint, name } => {
                 self.dialog = None;
                 self.edit_skeleton(|rig| rig.skeleton.rename(joint, name.trim()));
@@ -181,56 +195,65 @@ impl Session {
             Action::MoveCrowd(moving) => self.move_crowd(moving),
             Action::ShowTimeline(shown) => self.preferences.timeline = shown,
             Action::ShowCurves(shown) => self.preferences.curves = shown,
-            Action::OpenDialog(dialog) => {
-                // What waits for the document to be saved waits for no other question.
-                if !matches!(dialog, Dialog::SaveAs { .. }) {
-                    self.then = None;
-                }
-                self.dialog = Some(dialog);
-            }
+            Action::OpenDialog(dialog) => self.open_dialog(dialog),
             Action::CloseDialog => self.close_dialog(),
-            Action::Report(message) => self.message = Some(message),
+            Action::Report(message) => self.say(message),
+            Action::Fail(why) => self.fail(why),
 
             Action::CopyPose => {
-                self.message = Some("Pose copied as a line for ik-arm solve".to_owned());
+                self.say("Pose copied as a line for ik-arm solve");
                 return Some(Effect::CopyText(super::pose_line::of(self.arm())));
             }
             Action::SavePicture(path) => {
-                self.dialog = None;
-                self.message = Some(format!("Saving {path} …"));
+                (self.dialog, self.choosing) = (None, false);
+                self.remember_export_folder(path.as_ref());
+                self.say(format!("Saving {path} …"));
                 return Some(Effect::SavePicture(path));
             }
             Action::Export(export) => return self.export(export),
             Action::Exporting(job) => self.job = Some(job),
             Action::CancelExport => self.cancel_export(),
+            Action::StopExportAndQuit => return self.stop_export_and_quit(),
             Action::Exported(how) => {
                 self.job = None;
-                self.message = Some(how);
+                if self.dialog == Some(Dialog::Exporting) {
+                    self.dialog = None;
+                }
+                match how {
+                    Ok(done) => self.say(done),
+                    Err(why) => self.fail(why),
+                }
             }
             Action::Ask(dialog) => {
                 self.then = None;
                 return Some(Effect::ChoosePath(dialog));
             }
             Action::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),
+            Action::ChoseNothing => {
+                (self.then, self.choosing) = (None, false);
+                self.say("No file was chosen");
+            }
+            Action::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
             Action::Open { path, skeleton } => {
-                self.dialog = None;
+                self.choosing = false;
+                if !matches!(self.dialog, Some(Dialog::Open { .. })) {
+                    self.dialog = None;
+                }
                 self.opening = Some(self.revision);
                 return Some(Effect::Open { path, skeleton });
             }
             Action::Opened { document, file } => self.replace_document(*document, file),
+            Action::NotOpened { path, why } => self.not_opened(&path, &why),
             Action::Save => {
                 self.then = None;
                 return Some(self.save());
             }
             Action::SaveAs(path) => {
-                self.dialog = None;
+                (self.dialog, self.choosing) = (None, false);
                 return Some(Effect::Save(path));
             }
             Action::Saved(path) => return self.saved(path),
-            Action::NotSaved(why) => {
-                self.then = None;
-                self.message = Some(why);
-            }
+            Action::NotSaved { path, why } => self.not_saved(&path, &why),
             Action::SaveAnd(then) => {
                 self.dialog = None;
                 self.then = Some(then);
@@ -278,9 +301,9 @@ impl Session {
         match example.open() {
             Ok(opened) => {
                 self.replace_document(opened.document, None);
-                self.message = Some(example.sentence.to_owned());
+                self.say(example.sentence);
             }
-            Err(error) => self.say_impossible(&error.to_string()),
+            Err(error) => self.fail(error.to_string()),
         }
     }
 
@@ -289,8 +312,6 @@ impl Session {
         self.replace_document(document, None);
         self.select(vec![0]);
         self.set_camera(self.framing_all());
-        self.message =
-            Some("Press A to hang a joint on the root, or Ctrl+click in the view".to_owned());
     }
 
     fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {

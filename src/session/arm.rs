@@ -15,7 +15,7 @@ impl Session {
             set(&mut arm, point);
             self.replace_arm(arm);
         } else {
-            self.message = Some(format!("The {name} must be at finite numbers, not {point}"));
+            self.fail(format!("The {name} must be at finite numbers, not {point}"));
         }
     }
 
@@ -23,14 +23,14 @@ impl Session {
         if spin.is_finite() {
             self.replace_arm(Arm { elbow_spin: wrapped(spin), ..*self.arm() });
         } else {
-            self.message = Some(format!("The elbow spin must be a finite number, not {spin}"));
+            self.fail(format!("The elbow spin must be a finite number, not {spin}"));
         }
     }
 
     pub(super) fn set_lengths(&mut self, upper: f32, lower: f32) {
         match TwoBone::new(upper, lower) {
             Ok(bones) => self.replace_arm(Arm { bones, ..*self.arm() }),
-            Err(error) => self.message = Some(format!("The {error}")),
+            Err(error) => self.fail(format!("the {error}")),
         }
     }
 
@@ -55,7 +55,7 @@ impl Session {
         if (0.0..=1.0).contains(&weight) {
             self.replace_arm(Arm { weight, ..*self.arm() });
         } else {
-            self.message = Some(format!("The IK weight must be from 0 to 1, not {weight}"));
+            self.fail(format!("The IK weight must be from 0 to 1, not {weight}"));
         }
     }
 
@@ -73,7 +73,7 @@ impl Session {
             arm.fk.bend = bend;
             self.replace_arm(arm);
         } else {
-            self.message = Some(format!("The elbow's bend must be a finite number, not {bend}"));
+            self.fail(format!("The elbow's bend must be a finite number, not {bend}"));
         }
     }
 
@@ -88,7 +88,7 @@ impl Session {
         let moved =
             self.pose.elbow.distance(before.elbow).max(self.pose.hand.distance(before.hand));
         if moved > MOVED * self.arm().bones.outer_limit() {
-            self.message = Some("The arm has moved: its soft limits do not let it be there".into());
+            self.say("The arm has moved: its soft limits do not let it be there");
         }
     }
 

@@ -33,7 +33,7 @@ impl Session {
                 Some(value)
             }
             Err(error) => {
-                self.say_impossible(&error.to_string());
+                self.fail(error.to_string());
                 None
             }
         }
@@ -120,7 +120,7 @@ impl Session {
                 self.overrides.remove(&channel);
             } else if let Some(value) = channel.value(after) {
                 self.overrides.insert(channel, value);
-                self.message = Some("Shown until the time changes: press K to keep it".to_owned());
+                self.say("Shown until the time changes: press K to keep it");
             }
         }
     }
@@ -153,7 +153,8 @@ impl Session {
     }
 
     pub(super) fn state(&self) -> State {
-        State::new(&self.document, &self.overrides, self.clock.time, self.revision)
+        let Self { document, overrides, clock, revision, content, .. } = self;
+        State::new(document, overrides, clock.time, *revision, *content)
     }
 
     /// Makes a step of what has changed since, if anything has.
@@ -161,9 +162,12 @@ impl Session {
         if before.differs_from(&self.document) {
             self.newest_revision += 1;
             self.revision = self.newest_revision;
+            if before.differs_in_content_from(&self.document) {
+                self.content = self.newest_revision;
+            }
         } else {
             // Zeros may have changed their signs: the same revision is the same to the last bit.
-            self.document = before.document(self.document.camera);
+            self.document = before.document(&self.document);
             if before.overrides_at(self.clock.time) == self.overrides {
                 return;
             }
@@ -172,7 +176,7 @@ impl Session {
     }
 
     pub(super) fn restore(&mut self, state: &State) {
-        let document = state.document(self.document.camera);
+        let document = state.document(&self.document);
         if is_rebuilt(&self.document.skeleton.skeleton, &document.skeleton.skeleton) {
             // They name joints by their places.
             self.selection.clear();
@@ -182,6 +186,7 @@ impl Session {
         self.document = document;
         self.overrides = state.overrides_at(self.clock.time);
         self.revision = state.revision;
+        self.content = state.content;
         self.refresh();
         self.forget_trail();
     }
@@ -221,7 +226,7 @@ impl Session {
         if let Some(edit) = self.edit.take() {
             self.restore(&edit.before);
             self.begin_run();
-            self.message = Some("Taken back".to_owned());
+            self.say("Taken back");
         }
     }
 
@@ -234,26 +239,26 @@ impl Session {
             return self.cancel_run();
         }
         let now = self.state();
-        self.message = Some(match self.history.undo(now) {
+        match self.history.undo(now) {
             Some((name, state)) => {
                 self.restore(&state);
-                format!("Undone: {name}")
+                self.say(format!("Undone: {name}"));
             }
-            None => "There is nothing to undo".to_owned(),
-        });
+            None => self.say("There is nothing to undo"),
+        }
     }
 
     pub(super) fn redo(&mut self) {
         self.commit_edit();
         self.stop_run();
         let now = self.state();
-        self.message = Some(match self.history.redo(now) {
+        match self.history.redo(now) {
             Some((name, state)) => {
                 self.restore(&state);
-                format!("Done again: {name}")
+                self.say(format!("Redone: {name}"));
             }
-            None => "There is nothing to do again".to_owned(),
-        });
+            None => self.say("There is nothing to redo"),
+        }
     }
 
     /// What Undo would take back, as in "Undo move hand".
@@ -275,11 +280,12 @@ impl Session {
         self.edit.is_some() || self.run_before.is_some()
     }
 
-    /// Whether the document is not as it was saved last, or opened.
+    /// Whether the document differs from what was saved last, or opened, in more than how it is
+    /// looked at: which rig and which layers are shown.
     pub fn is_unsaved(&self) -> bool {
         let changing = self.edit.as_ref().map(|edit| &edit.before).or(self.run_before.as_ref());
-        self.revision != self.saved_revision
-            || changing.is_some_and(|before| before.differs_from(&self.document))
+        self.content != self.saved_content
+            || changing.is_some_and(|before| before.differs_in_content_from(&self.document))
     }
 }
 

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Dialog, Effect, Session};
+use super::{Action, Dialog, Effect, Session};
 use crate::io::Progress;
 
 /// What is asked for of an export; its path's ending says the format.
@@ -48,17 +48,30 @@ impl Session {
 
     pub(super) fn export(&mut self, export: Export) -> Option<Effect> {
         if self.job.is_some() {
-            self.message = Some("Another export is under way; cancel it or wait".to_owned());
+            self.say("Another export is under way; cancel it or wait");
             return None;
         }
         self.dialog = None;
+        self.remember_export_folder(&export.path);
         Some(Effect::Export(export))
+    }
+
+    /// Whether an export runs that is not told to stop.
+    pub(super) fn is_exporting(&self) -> bool {
+        self.job.as_ref().is_some_and(|job| !job.progress.is_cancelled())
+    }
+
+    /// Quits as soon as the export has stopped and left no file.
+    pub(super) fn stop_export_and_quit(&mut self) -> Option<Effect> {
+        self.dialog = None;
+        self.cancel_export();
+        self.apply(Action::Quit)
     }
 
     pub(super) fn cancel_export(&mut self) {
         if let Some(job) = &self.job {
             job.progress.cancel();
-            self.message = Some("Cancelling the export …".to_owned());
+            self.say("Cancelling the export …");
         }
     }
 }

@@ -32,9 +32,9 @@ impl Session {
     /// Opens what an earlier run of the program kept: it is not saved yet.
     pub(super) fn recover(&mut self, document: Document, file: Option<PathBuf>) {
         self.replace_document(document, file);
-        self.saved_revision = self.revision - 1;
+        self.saved_content = self.content - 1;
         self.recovery_settled = true;
-        self.message = Some("The document that was kept is open; save it".to_owned());
+        self.say("The document that was kept is open; save it");
     }
 
     /// Whether a file that took its time to open would now take the place of changes that were made
@@ -62,9 +62,11 @@ impl Session {
             file: file.clone(),
             recent,
             clock,
+            export_folder: self.export_folder.take(),
             revision: newest_revision,
-            saved_revision: newest_revision,
             newest_revision,
+            content: newest_revision,
+            saved_content: newest_revision,
             recovery_settled: self.recovery_settled,
             job: self.job.take(),
             ..Self::with_document(self.preferences, document)
@@ -81,25 +83,37 @@ impl Session {
     pub(super) fn save(&self) -> Effect {
         match &self.file {
             Some(path) => Effect::Save(path.clone()),
-            None => Effect::ChoosePath(Dialog::SaveAs { path: "ik-arm.json".to_owned() }),
+            None => Effect::ChoosePath(Dialog::save_as()),
         }
     }
 
     /// Goes on with what waited for it.
     pub(super) fn saved(&mut self, path: PathBuf) -> Option<Effect> {
-        self.message = Some(format!("Saved {}", path.display()));
+        self.say(format!("Saved {}", path.display()));
         self.commit_edit();
         self.end_run();
         self.begin_run();
-        self.saved_revision = self.revision;
+        self.saved_content = self.content;
         self.remember_file(path.clone());
         self.file = Some(path);
         self.then.take().and_then(|then: Box<Action>| self.apply(*then))
     }
 
-    pub(super) fn close_dialog(&mut self) {
-        self.dialog = None;
+    /// Asks for another place, and says why this one will not do.
+    pub(super) fn not_saved(&mut self, path: &Path, why: &str) {
+        self.fail(format!("not saved: {why}"));
+        let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
+        self.open_dialog(Dialog::SaveAs { path, problem });
         self.then = None;
+    }
+
+    /// Keeps the dialog with the path that could not be opened.
+    pub(super) fn not_opened(&mut self, path: &Path, why: &str) {
+        self.fail(format!("not opened: {why}"));
+        if self.dialog.as_ref().is_none_or(|dialog| matches!(dialog, Dialog::Open { .. })) {
+            let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
+            self.open_dialog(Dialog::Open { path, problem });
+        }
     }
 
     fn remember_file(&mut self, path: PathBuf) {

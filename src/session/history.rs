@@ -3,9 +3,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::document::{
-    Arm, Camera, Channel, Display, Document, Keys, RigKind, SkeletonRig, Timeline,
-};
+use crate::document::{Arm, Channel, Display, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::kinematics::skeleton::Joint;
 use crate::kinematics::spline::Knot;
 
@@ -28,11 +26,19 @@ pub(super) struct State {
     time: f64,
     /// Which document it is: the same number, the same document.
     pub revision: u64,
+    /// The same number, the same document but for how it is looked at.
+    pub content: u64,
 }
 
 impl State {
-    pub fn new(document: &Document, overrides: &Overrides, time: f64, revision: u64) -> Self {
-        let Document { rig, arm, skeleton, keys, timeline, display, metres, camera: _ } = document;
+    pub fn new(
+        document: &Document,
+        overrides: &Overrides,
+        time: f64,
+        revision: u64,
+        content: u64,
+    ) -> Self {
+        let Document { rig, arm, skeleton, keys, timeline, display, metres, .. } = document;
         Self {
             rig: *rig,
             arm: *arm,
@@ -44,31 +50,41 @@ impl State {
             overrides: overrides.clone(),
             time,
             revision,
+            content,
         }
     }
 
-    pub fn document(&self, camera: Camera) -> Document {
-        Document {
-            rig: self.rig,
+    /// Its document, with the cameras of the one that is open.
+    pub fn document(&self, open: &Document) -> Document {
+        let mut document = Document {
+            rig: open.rig,
             arm: self.arm,
             skeleton: SkeletonRig::clone(&self.skeleton),
             keys: Keys::clone(&self.keys),
             timeline: self.timeline,
-            camera,
+            camera: open.camera,
+            other_camera: open.other_camera,
             display: self.display,
             metres: self.metres,
-        }
+        };
+        document.show(self.rig);
+        document
     }
 
     /// Whether its document is another one.
     pub fn differs_from(&self, document: &Document) -> bool {
-        let Document { rig, arm, skeleton, keys, timeline, display, metres, camera: _ } = document;
-        self.rig != *rig
-            || self.arm != *arm
+        self.rig != document.rig
+            || self.display != document.display
+            || self.differs_in_content_from(document)
+    }
+
+    /// Whether its document is another one in more than how it is looked at.
+    pub fn differs_in_content_from(&self, document: &Document) -> bool {
+        let Document { arm, skeleton, keys, timeline, metres, .. } = document;
+        self.arm != *arm
             || *self.skeleton != *skeleton
             || *self.keys != *keys
             || self.timeline != *timeline
-            || self.display != *display
             || self.metres != *metres
     }
 

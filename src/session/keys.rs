@@ -90,7 +90,7 @@ impl Session {
             self.overrides.remove(channel);
         }
         self.refresh();
-        self.message = Some(match channels {
+        self.say(match channels {
             [] => "There is nothing to key".to_owned(),
             _ => format!("Keyed at {time:.2} s"),
         });
@@ -173,7 +173,7 @@ impl Session {
         let mut copies: Clipboard = self.selected_keys.iter().filter_map(copied).collect();
         let first = copies.iter().map(|(_, time, _)| *time).fold(f64::INFINITY, f64::min);
         copies.iter_mut().for_each(|(_, time, _)| *time -= first);
-        self.message = Some(match copies.len() {
+        self.say(match copies.len() {
             0 => "Select keys to copy them".to_owned(),
             1 => "1 key copied".to_owned(),
             count => format!("{count} keys copied"),
@@ -203,7 +203,7 @@ impl Session {
 
     pub(super) fn set_timeline(&mut self, timeline: Timeline) {
         if !timeline.is_valid() {
-            self.message = Some(format!(
+            self.fail(format!(
                 "A timeline starts before it ends, within a day of 0, and has 1 to {} frames in a \
                  second",
                 Timeline::HIGHEST_FRAME_RATE
@@ -215,7 +215,7 @@ impl Session {
 
     pub(super) fn set_metres(&mut self, metres: Option<f32>) {
         if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
-            self.message = Some("A unit must be longer than 0 m".to_owned());
+            self.fail("A unit must be longer than 0 m");
             return;
         }
         self.edit_keys(|document| document.metres = metres);

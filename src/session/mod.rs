@@ -6,6 +6,7 @@ mod apply;
 mod arm;
 mod clock;
 mod crowd;
+mod dialog;
 mod drag;
 mod edit;
 mod export;
@@ -13,6 +14,7 @@ mod files;
 mod history;
 mod journey;
 mod keys;
+mod message;
 mod naming;
 mod point_drag;
 mod pops;
@@ -23,6 +25,7 @@ mod remedy;
 mod run;
 mod skeleton;
 mod skeleton_drag;
+mod solver_status;
 mod solving;
 mod staging;
 mod trail;
@@ -36,6 +39,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 pub use action::{Action, Effect, Lead};
+pub use dialog::Dialog;
 pub use drag::{Drag, Grip};
 pub use export::{Export, Job};
 pub use journey::Journey;
@@ -45,11 +49,13 @@ pub use pops::{Pops, Sample, Spike, What};
 pub use preferences::{Navigation, Preferences};
 pub use race::{Race, Runner};
 pub use remedy::Remedy;
+pub use solver_status::{SolverState, SolverStatus};
 pub use solving::{History, Solving};
 pub use staging::{Ghost, OnionSkin, Staging};
 pub use turn_drag::{Ring, TurnDrag};
 pub use view_drag::{Motion, ViewDrag};
 
+use crate::io;
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::kinematics::skeleton::Pose as SkeletonPose;
 use crate::kinematics::two_bone::Pose;
@@ -58,6 +64,7 @@ use crowd::Crowding;
 use edit::Edit;
 use history::{Overrides, State};
 use keys::Clipboard;
+use message::Message;
 use view_drag::Glide;
 
 /// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
@@ -84,8 +91,10 @@ pub struct Session {
     history: history::History,
     /// The same number, the same document.
     revision: u64,
-    saved_revision: u64,
     newest_revision: u64,
+    /// The same number, the same document but for how it is looked at.
+    content: u64,
+    saved_content: u64,
     overrides: Overrides,
     auto_key: bool,
     selected_channels: BTreeSet<Channel>,
@@ -103,6 +112,9 @@ pub struct Session {
     view_drag: Option<ViewDrag>,
     glide: Option<Glide>,
     dialog: Option<Dialog>,
+    /// Whether the system's file dialog has been asked for and has not answered.
+    choosing: bool,
+    export_folder: Option<PathBuf>,
     job: Option<Job>,
     /// Whether what an earlier run kept has been opened or declined.
     recovery_settled: bool,
@@ -110,47 +122,7 @@ pub struct Session {
     opening: Option<u64>,
     /// What waits for the document to be saved.
     then: Option<Box<Action>>,
-    message: Option<String>,
-}
-
-/// A window over the others.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Dialog {
-    About,
-    Shortcuts,
-    /// What frames cost; it lets the rest go on.
-    Statistics,
-    /// An earlier run of the program ended without saving this.
-    Recover {
-        document: Box<Document>,
-        file: Option<PathBuf>,
-    },
-    /// What would lose changes that are not saved.
-    Unsaved {
-        then: Box<Action>,
-    },
-    /// Each asks for a path, which is shown as it is typed.
-    SavePicture {
-        path: String,
-    },
-    /// Asks what to export, and how.
-    Export(Export),
-    Open {
-        path: String,
-    },
-    SaveAs {
-        path: String,
-    },
-    /// A file has several skeletons.
-    ChooseSkeleton {
-        path: PathBuf,
-        names: Vec<String>,
-    },
-    /// Asks for a joint's name, which is shown as it is typed.
-    Rename {
-        joint: usize,
-        name: String,
-    },
+    message: Option<Message>,
 }
 
 impl Default for Session {
@@ -160,9 +132,9 @@ impl Default for Session {
 }
 
 impl Session {
-    /// The seed's arm.
+    /// A new window's: the arm, with the Human behind the Skeleton switch.
     pub fn new(preferences: Preferences) -> Self {
-        Self::with_document(preferences, Document::default())
+        Self::with_document(preferences, io::new_document())
     }
 
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
@@ -180,8 +152,9 @@ impl Session {
             edit: None,
             history: history::History::default(),
             revision: 0,
-            saved_revision: 0,
             newest_revision: 0,
+            content: 0,
+            saved_content: 0,
             overrides: Overrides::default(),
             auto_key: false,
             selected_channels: BTreeSet::new(),
@@ -197,6 +170,8 @@ impl Session {
             view_drag: None,
             glide: None,
             dialog: None,
+            choosing: false,
+            export_folder: None,
             job: None,
             recovery_settled: false,
             opening: None,
@@ -385,12 +360,4 @@ impl Session {
         self.pointed = joint.filter(|joint| *joint < self.skeleton_pose.len());
     }
 
-    pub fn dialog(&self) -> Option<&Dialog> {
-        self.dialog.as_ref()
-    }
-
-    /// What just happened, if it is worth a word.
-    pub fn message(&self) -> Option<&str> {
-        self.message.as_deref()
-    }
 }

@@ -1,5 +1,5 @@
 use super::{Action, Grip, Lead};
-use crate::document::{Channel, RigKind};
+use crate::document::{Channel, Layer, RigKind};
 
 /// What an action does to the document, as in "Undo move hand"; nothing if it leaves it alone.
 pub(super) fn of(action: &Action) -> Option<&'static str> {
@@ -21,14 +21,13 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::SetUpper(_) | Action::SetLower(_) => "change length",
         Action::ResetPose => "reset pose",
         Action::ResetAll => "reset all",
-        Action::Show(_, true) => "show guide",
-        Action::Show(_, false) => "hide guide",
+        Action::Show(layer, _) => of_layer(*layer),
         Action::ShowRig(RigKind::Arm) => "show arm",
         Action::ShowRig(RigKind::Skeleton) => "show skeleton",
-        Action::AddChild { .. } => "add joint",
+        Action::AddChild { .. } | Action::AddJoint { .. } => "add joint",
         Action::AddRoot => "add root",
-        Action::Delete(joints) if joints.len() == 1 => "delete joint",
-        Action::Delete(_) => "delete joints",
+        Action::Delete(joints) | Action::Dissolve(joints) if joints.len() == 1 => "delete joint",
+        Action::Delete(_) | Action::Dissolve(_) => "delete joints",
         Action::Rename { .. } => "rename joint",
         Action::Reparent { .. } => "re-parent joint",
         Action::SetRotation { .. } => "turn joint",
@@ -56,6 +55,27 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::SetMetres(_) => "change unit",
         _ => return None,
     })
+}
+
+fn of_layer(layer: Layer) -> &'static str {
+    match layer {
+        Layer::Cursor => "toggle Cursor",
+        Layer::Pointer => "toggle Pointer",
+        Layer::InnerLimit => "toggle Inner Limit",
+        Layer::OuterLimit => "toggle Outer Limit",
+        Layer::GridXy => "toggle XY grid",
+        Layer::GridXz => "toggle XZ grid",
+        Layer::GridYz => "toggle YZ grid",
+        Layer::Ground => "toggle ground",
+        Layer::Axes => "toggle axes",
+        Layer::Labels => "toggle labels",
+        Layer::Shadow => "toggle shadow",
+        Layer::Trail => "toggle motion trail",
+        Layer::OnionSkins => "toggle onion skins",
+        Layer::Globe => "toggle singularity globe",
+        Layer::References => "toggle references",
+        Layer::Hand => "toggle hand",
+    }
 }
 
 /// What a drag does.

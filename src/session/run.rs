@@ -5,12 +5,11 @@ impl Session {
     /// The solver that is under way, or a new one at its start.
     fn solving_or_new(&mut self) -> Option<Solving> {
         if self.skeleton().slither.is_some() {
-            self.message =
-                Some("This skeleton follows its head; it has nothing to solve".to_owned());
+            self.fail("This skeleton follows its head; it has nothing to solve");
             return None;
         }
         if self.skeleton().goals(self.clock.time).is_empty() {
-            self.message = Some("There is no target to solve for; add one to a joint".to_owned());
+            self.say("There is no target to solve for; add one to a joint");
             return None;
         }
         if let Some(solving) = self.solving.take() {
@@ -19,7 +18,7 @@ impl Session {
         match Solving::new(self.skeleton(), self.clock.time) {
             Ok(solving) => Some(solving),
             Err(error) => {
-                self.say_impossible(&error.to_string());
+                self.fail(error.to_string());
                 None
             }
         }
@@ -65,7 +64,7 @@ impl Session {
         if let Some(before) = self.run_before.take() {
             self.restore(&before);
         }
-        self.message = Some("Taken back".to_owned());
+        self.say("Taken back");
     }
 
     /// One iteration, after which the solver waits.
@@ -94,7 +93,7 @@ impl Session {
                 })
             })
         });
-        self.message = Some("The skeleton is as it was before the solver ran".to_owned());
+        self.say("The skeleton is as it was before the solver ran");
     }
 
     pub(super) fn start_race(&mut self) {
@@ -126,7 +125,7 @@ impl Session {
             }
             Err(error) => {
                 self.end_run();
-                self.say_impossible(&error.to_string());
+                self.fail(error.to_string());
             }
         }
     }

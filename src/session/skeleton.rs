@@ -1,8 +1,9 @@
 use glam::Vec3;
 
 use super::Session;
+use super::view_drag::Glide;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Slither, Target};
-use crate::kinematics::skeleton::{Joint, Limit, SkeletonError};
+use crate::kinematics::skeleton::{Joint, Limit, Moved, Skeleton, SkeletonError};
 use crate::kinematics::solve::Options;
 
 /// What actions do to the skeleton.
@@ -13,12 +14,6 @@ impl Session {
         change: impl FnOnce(&mut SkeletonRig) -> Result<T, SkeletonError>,
     ) -> Option<T> {
         self.edit_document(|document| change(&mut document.skeleton))
-    }
-
-    pub(super) fn say_impossible(&mut self, why: &str) {
-        let mut letters = why.chars();
-        let first = letters.next().map(|letter| letter.to_uppercase().to_string());
-        self.message = Some(format!("{}{}", first.unwrap_or_default(), letters.as_str()));
     }
 
     pub(super) fn change_joint(&mut self, joint: usize, change: impl FnOnce(&mut Joint)) {
@@ -44,7 +39,7 @@ impl Session {
                 None => skeleton.next_axis(parent),
             };
             let joint = Joint::new(&skeleton.free_name("joint"), Some(parent), axis);
-            let radius = if above.radius > 0.0 { above.radius * 0.9 } else { joint.radius };
+            let radius = radius_of_next(skeleton, parent, joint.radius);
             skeleton.add(Joint { offset: above.axis, radius, ..joint })
         });
         if let Some(joint) = added {
@@ -52,16 +47,52 @@ impl Session {
         }
     }
 
-    pub(super) fn remove_joints(&mut self, joints: &[usize]) {
+    /// Adds a joint to the selected one, else to the last one, else to a new root.
+    pub(super) fn add_next_joint(&mut self, tip: Option<Vec3>) {
+        if self.next_parent().is_none() {
+            self.add_joint(None, None);
+        }
+        if let Some(parent) = self.next_parent() {
+            self.add_joint(Some(parent), tip);
+            self.keep_in_view();
+        }
+    }
+
+    fn next_parent(&self) -> Option<usize> {
+        self.selected().or(self.skeleton_pose.len().checked_sub(1))
+    }
+
+    /// Where the bone of the next joint begins, in the world.
+    pub fn next_base(&self) -> Vec3 {
+        let origin = self.skeleton().skeleton.transform().translation.into();
+        self.next_parent().map_or(origin, |parent| self.skeleton_pose.tip(parent))
+    }
+
+    /// Lets the camera zoom out where the selected joint's bone ends outside of the view.
+    fn keep_in_view(&mut self) {
+        const EDGE: f32 = 0.9;
+        let Some(joint) = self.selected() else { return };
+        let projection = self.settled_camera().projection(super::ASPECT);
+        let tip = projection.project(self.skeleton_pose.tip(joint));
+        if tip.is_none_or(|tip| tip.abs().max_element() > EDGE) {
+            let camera = self.framing_all();
+            if camera.is_valid() {
+                self.glide = Some(Glide::new(self.document.camera, camera));
+            }
+        }
+    }
+
+    /// Deletes joints and selects the parent that is left of the last one.
+    pub(super) fn delete_joints(
+        &mut self,
+        joints: &[usize],
+        delete: fn(&mut Document, &[usize]) -> Result<Moved, SkeletonError>,
+    ) {
         let skeleton = &self.skeleton().skeleton;
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
         let parents: Vec<usize> = parents.collect();
         let selected = self.selected_in_timeline();
-        let moved = self.edit_document(|document| {
-            let moved = document.skeleton.skeleton.remove(joints);
-            document.follow(&moved);
-            Ok::<_, SkeletonError>(moved)
-        });
+        let moved = self.edit_document(|document| delete(document, joints));
         let Some(moved) = moved else { return };
         self.follow_keys(&moved, selected);
         let left = parents.iter().rev().find_map(|parent| moved.get(*parent));
@@ -87,7 +118,7 @@ impl Session {
         if axis < 3 {
             self.change_joint(joint, |joint| joint.limits[axis] = limit);
         } else {
-            self.message = Some(format!("A joint has angles 0, 1 and 2, not {axis}"));
+            self.fail(format!("A joint has angles 0, 1 and 2, not {axis}"));
         }
     }
 
@@ -125,11 +156,11 @@ impl Session {
         let above_0 = |value: f32| value.is_finite() && value > 0.0;
         if !target.home.is_finite() {
             let home = target.home;
-            self.message = Some(format!("A target must be at finite numbers, not {home}"));
+            self.fail(format!("A target must be at finite numbers, not {home}"));
         } else if !above_0(weight) {
-            self.message = Some(format!("A weight must be a finite number above 0, not {weight}"));
+            self.fail(format!("A weight must be a finite number above 0, not {weight}"));
         } else if !(above_0(motion.period) && motion.radius.is_finite()) {
-            self.message = Some("A target needs a period above 0 and a finite radius".to_owned());
+            self.fail("A target needs a period above 0 and a finite radius");
         } else if let Some(index) = self.skeleton().target(target.joint) {
             self.edit_skeleton(|rig| {
                 rig.targets[index] = target;
@@ -149,7 +180,7 @@ impl Session {
                 Ok(())
             });
         } else {
-            self.message = Some("A way needs a period above 0 and finite lengths".to_owned());
+            self.fail("A way needs a period above 0 and finite lengths");
         }
     }
 
@@ -165,8 +196,7 @@ impl Session {
                 Ok(())
             });
         } else {
-            self.message =
-                Some("Tolerance, damping, step and iterations must be above 0".to_owned());
+            self.fail("Tolerance, damping, step and iterations must be above 0");
         }
     }
 
@@ -186,7 +216,23 @@ impl Session {
             self.race = None;
             self.stop_run();
         }
-        self.commit(Document { rig, ..self.shown.clone() });
+        self.view_drag = None;
+        if let Some(glide) = self.glide.take() {
+            self.set_camera(glide.target());
+        }
+        let mut after = self.shown.clone();
+        after.show(rig);
+        self.commit(after);
         self.message = None;
     }
+}
+
+/// A radius for a child of `parent`: a little less than that of the thickest bone above it, so that one
+/// skeleton's bones look alike, but at most a quarter of its length; `own` is a tenth of that.
+fn radius_of_next(skeleton: &Skeleton, parent: usize, own: f32) -> f32 {
+    const TAPER: f32 = 0.9;
+    const THICKEST: f32 = 2.5;
+    let above = skeleton.ancestors(parent).filter_map(|joint| skeleton.joint(joint));
+    let thickest = above.map(|joint| joint.radius).fold(0.0, f32::max);
+    if thickest > 0.0 && own > 0.0 { (TAPER * thickest).min(THICKEST * own) } else { own }
 }

@@ -37,10 +37,14 @@ impl Session {
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: Way::Turn(drag) }));
     }
 
-    /// What a joint's angle x, y or z (0, 1, 2) turns about, in the world.
+    /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
+    /// limit leaves no room.
     pub fn ring(&self, joint: usize, axis: usize) -> Option<Ring> {
         let skeleton = &self.skeleton().skeleton;
-        skeleton.joint(joint).filter(|_| axis < 3)?;
+        let limit = skeleton.joint(joint)?.limits.get(axis)?;
+        if limit.is_some_and(|limit| limit.min == limit.max) {
+            return None;
+        }
         let world = skeleton.transform_to_base(joint);
         let local = skeleton.joints()[joint].rotation_axis(axis);
         // A mirror turns every rotation around.

@@ -112,6 +112,11 @@ impl Solving {
         self.solve.is_over()
     }
 
+    /// Whether its last iteration led to this pose, with the targets and options that it has now.
+    pub(super) fn led_to(&self, rig: &SkeletonRig, time: f64) -> bool {
+        rig.skeleton == self.written && rig.solver == self.options && rig.goals(time) == self.goals
+    }
+
     /// Follows what has changed since the last iteration.
     fn keep_up(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
         let goals = rig.goals(time);

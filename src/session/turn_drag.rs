@@ -54,9 +54,14 @@ impl TurnDrag {
         &self.typed
     }
 
-    /// How far the ring has been turned, radians.
-    pub fn turned(&self) -> f32 {
-        (self.last - self.start).clamp(f32::MIN, f32::MAX)
+    /// How far the ring has been turned to bring its angle to this one, radians.
+    pub fn turned_to(&self, angle: f32) -> f32 {
+        (angle - self.start).clamp(f32::MIN, f32::MAX)
+    }
+
+    /// The angle that the mouse or the typed number leads to, before limits; radians.
+    pub fn asked(&self) -> f32 {
+        self.last
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {

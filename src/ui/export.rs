@@ -4,7 +4,7 @@ use std::path::Path;
 
 use egui::{DragValue, Grid, Ui};
 
-use super::dialogs::ask;
+use super::dialogs::{ask, browse, folder, unless_there};
 use super::row::Field;
 use crate::document::Timeline;
 use crate::export::Format;
@@ -58,7 +58,13 @@ const CHOICES: [Choice; 6] = [
     },
 ];
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut Vec<Action>) {
+pub(super) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    export: &Export,
+    is_new: bool,
+    actions: &mut Vec<Action>,
+) {
     ui.set_width(460.0);
     let path = export.path.to_string_lossy();
     let change = |export: Export| Action::OpenDialog(Dialog::Export(export));
@@ -117,10 +123,12 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, export: &Export, actions: &mut 
         }
     });
     ui.add_space(4.0);
-    let (typed, entered) = ask(ui, "To", &path);
+    let (typed, entered) = ask(ui, "To", &path, is_new);
     if typed != path {
         actions.push(change(Export { path: typed.clone().into(), ..export.clone() }));
     }
+    folder(ui, session, &Dialog::Export(Export { path: typed.clone().into(), ..export.clone() }));
+    ui.add_space(4.0);
     buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
 }
 
@@ -142,12 +150,12 @@ fn buttons(
         let accept = ui.add_enabled(why_not.is_none(), egui::Button::new("Export"));
         let accept = accept.on_disabled_hover_text(why_not.unwrap_or_default());
         if (accept.clicked() || entered) && why_not.is_none() {
-            actions.push(Action::Export(export.clone()));
+            let back = Dialog::Export(export.clone());
+            let path = session.full_path(&back, &export.path);
+            let action = Action::Export(Export { path: path.clone(), ..export.clone() });
+            actions.push(unless_there(session, path, action, back));
         }
-        if ui.button("Browse…").on_hover_text("The system's own dialog, where it has one").clicked()
-        {
-            actions.push(Action::ChoosePath);
-        }
+        browse(ui, actions);
         if ui.button("Cancel").clicked() {
             actions.push(Action::CloseDialog);
         }

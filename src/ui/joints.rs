@@ -12,9 +12,10 @@ const ROWS: f32 = 9.0;
 const NONE_SELECTED: &str = "Select a joint first";
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    tree(ui, session, actions);
-    ui.add_space(4.0);
+    // Above the tree: it grows with every joint, and no button may move under the mouse.
     buttons(ui, session, actions);
+    ui.add_space(4.0);
+    tree(ui, session, actions);
 }
 
 /// Marks whether a joint of the tree has the keyboard.
@@ -195,6 +196,23 @@ fn respond(
     }
 }
 
+/// Deletes the selected joints; asks first what becomes of children that are not selected too.
+pub(super) fn delete(session: &Session) -> Action {
+    let joints = session.selection().to_vec();
+    let is_left = |parent: Option<usize>| parent.is_some_and(|parent| joints.contains(&parent));
+    let skeleton = &session.skeleton().skeleton;
+    let leaves_children = skeleton
+        .joints()
+        .iter()
+        .enumerate()
+        .any(|(child, joint)| is_left(joint.parent) && !joints.contains(&child));
+    if leaves_children {
+        Action::OpenDialog(Dialog::DeleteJoints { joints })
+    } else {
+        Action::Delete(joints)
+    }
+}
+
 /// Asks for a joint's name.
 pub(super) fn rename(session: &Session, joint: usize) -> Action {
     let name = session.skeleton().skeleton.joint(joint).map(|joint| joint.name.clone());
@@ -206,19 +224,17 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let none = selected.is_none().then_some(NONE_SELECTED);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
-        let tooltip = "Hang a joint on the selected one's tip (A). Ctrl+click in the view puts its \
-                       tip at the pointer";
-        if row::button(ui, "Add child", tooltip, none)
-            && let Some(parent) = selected
-        {
-            actions.push(Action::AddChild { parent, tip: None });
+        let tooltip = "Add a joint at the tip of the selected one, else of the last (A). \
+                       Ctrl+click in the view puts its tip there";
+        if row::button(ui, "Add child", tooltip, None) {
+            actions.push(Action::AddJoint { tip: None });
         }
         if row::button(ui, "Add root", "Begin another tree with a point that is locked", None) {
             actions.push(Action::AddRoot);
         }
-        let tooltip = "Remove the selected joints with all that hangs from them (Delete)";
+        let tooltip = "Delete the selected joints; asks whether their children stay (Delete)";
         if row::button(ui, "Delete", tooltip, none) {
-            actions.push(Action::Delete(session.selection().to_vec()));
+            actions.push(delete(session));
         }
         if row::button(ui, "Rename…", "Give the selected joint another name (F2)", none)
             && let Some(joint) = selected

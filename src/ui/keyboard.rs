@@ -7,8 +7,15 @@ use super::{joints, menu, timeline};
 use crate::document::{AxisView, RigKind};
 use crate::session::{Action, Constraint, Dialog, PointDrag, Session};
 
-/// Keys that act wherever the keyboard is.
+/// Keys that act wherever the keyboard is; while a dialog has it, only Esc does.
 pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.is_asking() {
+        let escapes = ui.input(|input| input.key_pressed(Key::Escape));
+        if escapes && !egui::Popup::is_any_open(ui.ctx()) {
+            actions.push(Action::CloseDialog);
+        }
+        return;
+    }
     let pressed = |modifiers, key| {
         ui.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
     };
@@ -92,6 +99,9 @@ fn was_typing(ui: &Ui) -> bool {
 
 /// Single keys, while no widget or the viewport or the tree of joints has the keyboard.
 pub(super) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.is_asking() {
+        return;
+    }
     if session.drag().is_some() {
         drag(ui, session, actions);
     } else {
@@ -108,8 +118,8 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
         actions.push(Action::Select((0..session.skeleton_pose().len()).collect()));
     }
-    if let Some(parent) = selected.filter(|_| pressed(Key::A)) {
-        actions.push(Action::AddChild { parent, tip: None });
+    if pressed(Key::A) {
+        actions.push(Action::AddJoint { tip: None });
     }
     if pressed(Key::T) {
         actions.extend(joints::toggle_target(session));
@@ -118,7 +128,7 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(joints::rename(session, joint));
     }
     if selected.is_some() && (pressed(Key::Delete) || pressed(Key::Backspace)) {
-        actions.push(Action::Delete(session.selection().to_vec()));
+        actions.push(joints::delete(session));
     }
     if pressed(Key::R) {
         actions.push(Action::Run(!session.is_running()));

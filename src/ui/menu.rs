@@ -76,15 +76,15 @@ fn recent(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 pub(super) fn open() -> Action {
-    Action::Ask(Dialog::Open { path: String::new() })
+    Action::Ask(Dialog::open())
 }
 
 pub(super) fn save_as() -> Action {
-    Action::Ask(Dialog::SaveAs { path: "ik-arm.json".to_owned() })
+    Action::Ask(Dialog::save_as())
 }
 
 pub(super) fn save_picture() -> Action {
-    Action::Ask(Dialog::SavePicture { path: "ik-arm.png".to_owned() })
+    Action::Ask(Dialog::save_picture())
 }
 
 fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

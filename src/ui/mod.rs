@@ -35,6 +35,7 @@ mod slider;
 mod solver;
 mod statistics;
 mod status;
+mod strokes;
 pub mod style;
 mod symbol;
 mod targets;
@@ -46,6 +47,7 @@ mod wrist;
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
 pub use frame_times::{Frame, FrameTimes, Spread};
+pub use strokes::strokes;
 
 use crate::document::RigKind;
 use crate::render::Counts;

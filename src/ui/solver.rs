@@ -206,33 +206,21 @@ pub(super) fn why_not(session: &Session) -> Option<&'static str> {
     }
 }
 
-/// Always as high, so that nothing below moves.
+/// Of the pose that is shown. Always as high, so that nothing below moves.
 fn report(ui: &mut Ui, session: &Session) {
-    let report = session.solving().map(crate::session::Solving::report);
+    let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
     row::pair(ui, "Iterations", |ui| {
-        value(ui, report.map_or_else(none, |report| report.iterations.to_string()))
+        let made = status.map(|status| status.report.iterations);
+        value(ui, made.filter(|made| *made > 0).map_or_else(none, |made| made.to_string()))
+            .on_hover_text("Iterations of the run that led to this pose")
     });
     row::pair(ui, "Error", |ui| {
-        value(ui, report.map_or_else(none, |report| number::short(report.error)))
+        value(ui, status.map_or_else(none, |status| number::short(status.report.error)))
             .on_hover_text("The largest distance from a tip to its target, in the world")
     });
-    row::pair(ui, "State", |ui| ui.label(state(session)));
-}
-
-fn state(session: &Session) -> &'static str {
-    let Some(solving) = session.solving() else { return "not run yet" };
-    let report = solving.report();
-    if report.converged {
-        "reached"
-    } else if report.resting {
-        "at rest, out of reach"
-    } else if solving.is_running() {
-        "running"
-    } else if solving.is_spent() {
-        "gave up"
-    } else {
-        "paused"
-    }
+    row::pair(ui, "State", |ui| {
+        ui.label(status.map_or("no target", |status| status.state.describe()))
+    });
 }

@@ -1,5 +1,6 @@
 //! The line at the bottom: what just happened, or what the keys do now, or how the arm stands.
 
+use egui::accesskit::Role;
 use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
 use super::Machine;
@@ -7,7 +8,7 @@ use crate::document::{Arm, RigKind};
 use crate::kinematics::solve::Method;
 use crate::kinematics::two_bone::{Pose, Reach};
 use crate::rig::Crowd;
-use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, Solving, TurnDrag};
+use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, SolverStatus, TurnDrag};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
@@ -18,9 +19,26 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mu
                 show_job(ui, job, actions);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(line(session)).truncate().selectable(false));
+                let is_error = session.drag().is_none() && session.has_failed();
+                match is_error {
+                    true => error(ui, &line(session)),
+                    false => {
+                        ui.add(Label::new(line(session)).truncate().selectable(false));
+                    }
+                }
             });
         });
+    });
+}
+
+/// Text in the colour of errors, which a screen reader announces.
+pub(super) fn error(ui: &mut Ui, text: &str) {
+    let colour = ui.visuals().error_fg_color;
+    let label = Label::new(RichText::new(text).color(colour)).selectable(false);
+    let response = ui.add(if ui.layout().is_horizontal() { label.truncate() } else { label.wrap() });
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_role(Role::Alert);
+        node.set_label(text);
     });
 }
 
@@ -123,18 +141,16 @@ fn describe_skeleton(session: &Session) -> String {
         _ => format!("{count} {one}s"),
     };
     let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
-    let reports = session.solving().map(Solving::report);
-    if let Some(report) = reports.filter(|report| report.iterations > 0 || report.converged) {
-        let how = match (report.converged, report.resting) {
-            (true, _) => "reached",
-            (false, true) => "at rest out of reach",
-            (false, false) => "not there yet",
-        };
-        let name = method_name(report.method);
-        line.push(format!(
-            "{name}: {how} after {}",
-            count(report.iterations as usize, "iteration")
-        ));
+    if let Some(SolverStatus { state, report }) = session.solver_status() {
+        line.push(match report.iterations {
+            0 => state.describe().to_owned(),
+            made => format!(
+                "{}: {} after {}",
+                method_name(report.method),
+                state.describe(),
+                count(made as usize, "iteration")
+            ),
+        });
     }
     match session.selected().and_then(|joint| joints.get(joint)) {
         Some(joint) => line.insert(0, joint.name.clone()),
@@ -163,7 +179,7 @@ fn describe_pose(session: &Session) -> String {
 fn describe_drag(session: &Session, drag: &Drag) -> String {
     match (drag.point(), drag.turn()) {
         (Some(point), _) => describe_move(session, drag.grip(), point),
-        (_, Some(turn)) => describe_turn(drag.grip(), turn),
+        (_, Some(turn)) => describe_turn(session, drag.grip(), turn),
         (None, None) => String::new(),
     }
 }
@@ -191,7 +207,16 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     )
 }
 
-fn describe_turn(grip: Grip, drag: &TurnDrag) -> String {
+/// What was turned, which at a limit is less than the mouse has gone around.
+fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
+    const AT_LIMIT: f32 = 1e-5;
+    let joints = session.skeleton().skeleton.joints();
+    let angle = match grip {
+        Grip::Ring(joint, axis) => joints.get(joint).map(|joint| joint.rotation[axis.min(2)]),
+        _ => None,
+    };
+    let angle = angle.unwrap_or(drag.asked());
+    let limit = if (angle - drag.asked()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
         Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
             format!("Turn about {}", ["x", "y", "z"][axis.min(2)])
@@ -199,9 +224,9 @@ fn describe_turn(grip: Grip, drag: &TurnDrag) -> String {
         _ => "Bend".to_owned(),
     };
     format!(
-        "{verb}: {:+.1}°{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
+        "{verb}: {:+.1}°{limit}{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
          take back",
-        drag.turned().to_degrees(),
+        drag.turned_to(angle).to_degrees(),
         typed(drag.typed()),
     )
 }

@@ -16,6 +16,7 @@ struct Tones {
     text: Color32,
     weak: Color32,
     strong: Color32,
+    error: Color32,
 }
 
 impl Tones {
@@ -31,6 +32,7 @@ impl Tones {
                 text: grey(0xd8, 0xdd, 0xe4),
                 weak: grey(0x9d, 0xa6, 0xb3),
                 strong: grey(0xf5, 0xf7, 0xfa),
+                error: grey(0xff, 0x8a, 0x80),
             },
             Theme::Light => Self {
                 panel: grey(0xf5, 0xf7, 0xf9),
@@ -41,6 +43,7 @@ impl Tones {
                 text: grey(0x2a, 0x2f, 0x37),
                 weak: grey(0x59, 0x62, 0x70),
                 strong: grey(0x10, 0x13, 0x18),
+                error: grey(0xb3, 0x1d, 0x1d),
             },
         }
     }
@@ -112,6 +115,7 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.faint_bg_color = tones.button;
     visuals.weak_text_color = Some(tones.weak);
     visuals.hyperlink_color = accent;
+    visuals.error_fg_color = tones.error;
     visuals.window_stroke = Stroke::new(1.0, tones.line);
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);
@@ -163,6 +167,7 @@ mod tests {
                 tones.text,
                 tones.weak,
                 tones.strong,
+                tones.error,
                 colour(palette.upper),
                 colour(palette.lower),
                 colour(palette.accent),

@@ -1,8 +1,8 @@
 //! The view of the scene: what the pointer does in it.
 
 use egui::{
-    CursorIcon, Event, EventFilter, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Role,
-    Sense, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
+    CursorIcon, Event, EventFilter, Label, MouseWheelUnit, PointerButton, Pos2, Rect, Response,
+    RichText, Role, Sense, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::Vec3;
 
@@ -85,6 +85,9 @@ pub(super) fn ui(
     let pointed = pointer.filter(|_| over).and_then(|at| grips.at(at));
     grips.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     compass::ui(ui, rect, session, actions);
+    if has_joints(session) && !session.skeleton().has_bones() {
+        invite(ui, rect);
+    }
 
     let Some(pointer) = pointer else {
         keys(ui, &response, session, actions);
@@ -98,8 +101,7 @@ pub(super) fn ui(
     if over && matches!(held, Held::Nothing) {
         point(session, grips.joint_at(pointer), actions);
     }
-    let has_joints = session.rig() == RigKind::Skeleton && session.crowd().is_none();
-    if has_joints && response.clicked() && !on_compass {
+    if has_joints(session) && response.clicked() && !on_compass {
         select(ui, session, &picture, &grips, pointer, actions);
     }
     if response.double_clicked() && !on_compass {
@@ -117,6 +119,18 @@ pub(super) fn ui(
     rect
 }
 
+fn has_joints(session: &Session) -> bool {
+    session.rig() == RigKind::Skeleton && session.crowd().is_none()
+}
+
+/// Says how to begin, where there is nothing to see yet.
+fn invite(ui: &mut Ui, rect: Rect) {
+    let line = |text: &str, size: f32| Label::new(RichText::new(text).size(size)).selectable(false);
+    let at = Rect::from_center_size(rect.center_top() + vec2(0.0, 64.0), vec2(360.0, 24.0));
+    ui.put(at, line("Click to place the first joint", 18.0));
+    ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next one", 13.5));
+}
+
 /// Says which joint the pointer is on.
 fn point(session: &Session, joint: Option<usize>, actions: &mut Vec<Action>) {
     if session.pointed() != joint {
@@ -124,8 +138,9 @@ fn point(session: &Session, joint: Option<usize>, actions: &mut Vec<Action>) {
     }
 }
 
-/// A click selects the joint under the pointer, Shift adds it or takes it away; a click beside all
-/// selects none. Ctrl adds a bone from the selected joint's tip to the pointer.
+/// A click selects the joint under the mouse, Shift adds it to the selection or removes it; a click
+/// beside all joints selects none. Ctrl adds a bone that ends at the mouse, as does the first click
+/// of a skeleton without bones.
 fn select(
     ui: &Ui,
     session: &Session,
@@ -140,12 +155,11 @@ fn select(
         Some(Grip::Ring(..)) => return,
         _ => grips.joint_at(pointer),
     };
-    if modifiers.command {
-        if let Some(parent) = session.selected() {
-            let tip = session.skeleton_pose().tip(parent);
-            let at = picture.ray(pointer).meets_plane(tip, picture.projection.forward);
-            actions.extend(at.map(|tip| Action::AddChild { parent, tip: Some(tip) }));
-        }
+    let is_first = joint.is_none() && !session.skeleton().has_bones();
+    if modifiers.command || is_first && modifiers.is_none() {
+        let base = session.next_base();
+        let at = picture.ray(pointer).meets_plane(base, picture.projection.forward);
+        actions.extend(at.map(|tip| Action::AddJoint { tip: Some(tip) }));
         return;
     }
     let mut selection = if modifiers.shift { session.selection().to_vec() } else { Vec::new() };

@@ -92,8 +92,12 @@ kinds! {
         parent: v.joint(),
         tip: if v.coin() { None } else { Some(v.small_point()) },
     };
+    AddJoint: Build 4, |v| Action::AddJoint {
+        tip: if v.coin() { None } else { Some(v.small_point()) },
+    };
     AddRoot: Build 1, |_| Action::AddRoot;
     Delete: Build 2, |v| Action::Delete(v.some_joints());
+    Dissolve: Build 2, |v| Action::Dissolve(v.some_joints());
     Rename: Build 2, |v| Action::Rename { joint: v.joint(), name: v.name() };
     Reparent: Build 3, |v| Action::Reparent {
         joint: v.joint(),
@@ -164,21 +168,26 @@ kinds! {
     OpenDialog: Look 2, |v| Action::OpenDialog(v.dialog());
     CloseDialog: Look 1, |_| Action::CloseDialog;
     Report: Look 1, |v| Action::Report(v.name());
+    Fail: Look 1, |v| Action::Fail(v.name());
 
     CopyPose: Look 1, |_| Action::CopyPose;
     SavePicture: Look 1, |v| Action::SavePicture(v.name());
     Export: Look 1, |v| Action::Export(v.export());
     Exporting: Look 1, |v| Action::Exporting(v.job());
     CancelExport: Look 1, |_| Action::CancelExport;
-    Exported: Look 1, |v| Action::Exported(v.name());
+    Exported: Look 1, |v| Action::Exported(if v.coin() { Ok(v.name()) } else { Err(v.name()) });
+    StopExportAndQuit: Look 1, |_| Action::StopExportAndQuit;
     Ask: Look 1, |v| Action::Ask(v.dialog());
     ChoosePath: Look 1, |_| Action::ChoosePath;
+    ChoseNothing: Look 1, |_| Action::ChoseNothing;
+    NoSystemDialog: Look 1, |v| Action::NoSystemDialog(v.dialog());
     Open: Files 1, |v| Action::Open { path: v.path(), skeleton: None };
     Opened: Files 1, |v| Action::Opened { document: Box::new(v.document()), file: v.file() };
+    NotOpened: Look 1, |v| Action::NotOpened { path: v.path(), why: v.name() };
     Save: Look 1, |_| Action::Save;
     SaveAs: Look 1, |v| Action::SaveAs(v.path());
     Saved: Files 4, |v| Action::Saved(v.path());
-    NotSaved: Look 1, |v| Action::NotSaved(v.name());
+    NotSaved: Look 1, |v| Action::NotSaved { path: v.path(), why: v.name() };
     SaveAnd: Files 1, |v| Action::SaveAnd(Box::new(leaving(v)));
     Discard: Files 1, |v| Action::Discard(Box::new(leaving(v)));
     Recover: Files 1, |v| Action::Recover { document: Box::new(v.document()), file: v.file() };

@@ -8,20 +8,33 @@ use crate::{Broken, hold};
 
 /// All but the view, which is not undone.
 pub fn is_same(a: &Document, b: &Document) -> bool {
-    let Document { rig, arm, skeleton, keys, timeline, camera: _, display, metres } = a;
-    *rig == b.rig
-        && *arm == b.arm
+    a.rig == b.rig && a.display == b.display && has_same_content(a, b)
+}
+
+/// All but how it is looked at.
+pub fn has_same_content(a: &Document, b: &Document) -> bool {
+    let Document {
+        rig: _,
+        arm,
+        skeleton,
+        keys,
+        timeline,
+        camera: _,
+        other_camera: _,
+        display: _,
+        metres,
+    } = a;
+    *arm == b.arm
         && *skeleton == b.skeleton
         && *keys == b.keys
         && *timeline == b.timeline
-        && *display == b.display
         && *metres == b.metres
 }
 
 /// As it is saved, with a view of no importance.
 pub fn saved(document: &Document) -> Result<String, Broken> {
     let camera = Document::default().camera;
-    let document = Document { camera, ..document.clone() };
+    let document = Document { camera, other_camera: None, ..document.clone() };
     io::to_json(&document).map_err(|error| Broken(format!("a document can be saved: {error}")))
 }
 

@@ -15,11 +15,11 @@ use crate::{Broken, hold};
 
 /// Everything that a file could hold is finite and in its range.
 pub fn document(document: &Document) -> Result<(), Broken> {
-    let Document { rig: _, arm, skeleton, keys: _, timeline, camera, display: _, metres } =
-        document;
+    let Document { arm, skeleton, timeline, camera, other_camera, metres, .. } = document;
     self::arm(arm)?;
     self::skeleton(skeleton)?;
     self::camera(camera)?;
+    other_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
     hold!(metres.is_none_or(is_above_0), "a unit is longer than nothing: {metres:?}");
     keys(document)

@@ -119,10 +119,17 @@ impl Bench {
         self.session().arm().cursor()
     }
 
-    /// One frame of the window: the input, what it asks for, and if that is anything, once more.
+    /// One frame of the window: its input, one key press or mouse button after the other.
     pub fn frame(&mut self, events: impl IntoIterator<Item = Event>) {
         self.now += SECONDS_PER_FRAME;
-        self.pass(events.into_iter().collect());
+        for stroke in ui::strokes(events.into_iter().collect()) {
+            self.stroke(stroke);
+        }
+    }
+
+    /// A pass of the panels, and if they ask for anything, another one.
+    fn stroke(&mut self, events: Vec<Event>) {
+        self.pass(events);
         let app = self.harness.state_mut();
         if app.actions.is_empty() {
             return;

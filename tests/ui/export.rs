@@ -80,7 +80,7 @@ fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
     let cancel = bench.rect(Role::Button, "Cancel").center();
     bench.click_at(cancel);
     assert_eq!(progress.step(31, 120), Err(Cancelled));
-    bench.tell(Action::Exported("Export cancelled".to_owned()));
+    bench.tell(Action::Exported(Ok("Export cancelled".to_owned())));
     bench.settle();
     assert!(bench.says("Export cancelled") && !bench.says("25 %"));
 }

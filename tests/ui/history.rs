@@ -31,7 +31,7 @@ fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
         bench.key_with(CTRL, Key::Z);
         assert_eq!((bench.hand(), bench.session().arm().elbow_spin), (Vec3::X * 300.0, 0.0));
         bench.key_with(CTRL, Key::Z);
-        assert_eq!(bench.session().document(), &Document::default());
+        assert_eq!(bench.session().document(), &ik_arm::io::new_document());
         assert!(bench.says("Undone: move hand"));
         bench.key_with(CTRL, Key::Z);
         assert!(bench.says("There is nothing to undo"));
@@ -68,9 +68,9 @@ fn a_drag_of_the_hand_is_one_step() {
     let mut bench = Bench::new();
     let hand = bench.cursor_place();
     bench.drag_and_drop(PointerButton::Primary, hand, hand + egui::vec2(50.0, 20.0));
-    assert_ne!(bench.session().document(), &Document::default());
+    assert_ne!(bench.session().document(), &ik_arm::io::new_document());
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document(), &Document::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn undo_while_something_is_dragged_takes_the_drag_back() {
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(50.0, 0.0));
     assert_ne!(bench.session().arm(), &Document::default().arm);
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document(), &Document::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
     assert!(!bench.session().is_editing());
 }
 
@@ -134,7 +134,7 @@ fn hundreds_of_steps_can_be_undone() {
     let steps = (0..900).map(|step| Action::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
     bench.apply(steps);
     bench.apply((0..900).map(|_| Action::Undo));
-    assert_eq!(bench.session().document(), &Document::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
 }
 
 #[test]
@@ -181,7 +181,8 @@ fn what_is_not_saved_stays_open_and_unsaved() {
     bench.click(Role::Button, "Save");
     bench.settle();
     bench.key(Key::Enter);
-    bench.tell(Action::NotSaved("Not saved: the disk is full".to_owned()));
+    let why = "the disk is full".to_owned();
+    bench.tell(Action::NotSaved { path: "ik-arm.json".into(), why });
     bench.settle();
     assert!(bench.says("Not saved: the disk is full"));
     assert!(bench.session().is_unsaved());
@@ -196,8 +197,9 @@ fn a_save_that_was_given_up_does_not_end_the_program_later() {
     bench.apply([Action::Quit]);
     bench.click(Role::Button, "Save");
     bench.settle();
-    bench.key(Key::F1);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
     assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
 }
 
@@ -250,6 +252,6 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
 
     let mut bench = Bench::after([Action::OpenDialog(dialog)]);
     bench.click(Role::Button, "Discard it");
-    assert_eq!(bench.session().document(), &Document::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
     assert!(bench.session().has_settled_recovery());
 }

@@ -124,7 +124,7 @@ fn a_length_that_no_bone_can_have_is_refused_with_a_word() {
             let message =
                 format!("The {bone} length is {typed}; it must be a finite number above 0");
             assert_eq!(bench.session().message(), Some(message.as_str()));
-            assert!(bench.shows(Role::Label, &message), "the status line says it");
+            assert!(bench.shows(Role::Alert, &message), "the status line says it");
             assert_eq!(
                 bench.node(Role::SpinButton, &format!("{slider} value")).value(),
                 Some(format!("{:.1}", value(&Arm::default(), slider)))

@@ -93,10 +93,12 @@ fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
     let mut bench = built();
     select(&mut bench, "joint_1");
     bench.click(Role::Button, "Delete");
+    bench.click(Role::Button, "Delete children too");
     assert_eq!(names(&bench), ["root", "joint"]);
     assert_eq!(bench.session().selection(), [1]);
     select(&mut bench, "root");
     bench.click(Role::Button, "Delete");
+    bench.click(Role::Button, "Delete children too");
     assert!(names(&bench).is_empty());
     assert!(bench.says("No joints yet"));
     bench.click(Role::Button, "Add root");
@@ -107,7 +109,7 @@ fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
 fn without_a_selection_what_needs_one_is_disabled() {
     let mut bench = built();
     bench.apply([Action::Select(Vec::new())]);
-    for name in ["Add child", "Delete", "Rename…", "Add target"] {
+    for name in ["Delete", "Rename…", "Add target"] {
         assert!(!is_enabled(&bench, Role::Button, name), "{name}");
     }
     for name in ["Run", "Step", "Reset", "Race all solvers"] {
@@ -379,7 +381,10 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     assert!(bench.session().selection().is_empty());
     bench.apply([Action::Select(vec![1])]);
     bench.key(Key::Delete);
-    assert_eq!(names(&bench), ["root"]);
+    bench.settle();
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(names(&bench), ["root", "joint_1"], "its child is kept");
 }
 
 #[test]
@@ -414,12 +419,14 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
 fn files_are_asked_for_opened_and_saved() {
     let mut bench = Bench::new();
     bench.key_with(Modifiers::COMMAND, Key::O);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Open { path: String::new() }));
+    assert_eq!(bench.session().dialog(), Some(&Dialog::open()));
     bench.frame([]);
     bench.frame([egui::Event::Text("scene.js3d".to_owned())]);
     bench.key(Key::Enter);
     let open = Effect::Open { path: "scene.js3d".into(), skeleton: None };
     assert_eq!(bench.effects(), [open]);
+    let document = Box::new(bench.session().document().clone());
+    bench.apply([Action::Opened { document, file: None }]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
     bench.settle();

@@ -31,10 +31,11 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
         file.slither.map(|Object(slither)| slither),
         odd,
     )?;
-    let camera = match file.camera {
+    let seen_from = match file.camera {
         Some(Object(file)) => camera(&at("camera"), &file)?,
         None => first_view(rig, &skeleton),
     };
+    let other_camera = file.other_camera.map(|Object(file)| camera(&at("other_camera"), &file));
     let display = file.display.map(|layers| layers.into_iter().collect()).unwrap_or_default();
     let metres = file.metres_per_unit.map(|Number(metres)| above_0(at("metres_per_unit"), metres));
     let timeline = file.timeline.map(|Object(file)| timeline(at("timeline"), &file));
@@ -44,7 +45,8 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
         skeleton,
         keys: Keys::default(),
         timeline: timeline.transpose()?.unwrap_or_default(),
-        camera,
+        camera: seen_from,
+        other_camera: other_camera.transpose()?,
         display,
         metres: metres.transpose()?,
     };

@@ -27,6 +27,8 @@ pub struct File {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub metres_per_unit: Option<Number>,
     pub camera: Option<Object<View>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_camera: Option<Object<View>>,
     pub display: Option<Vec<Layer>>,
 }
 
@@ -148,6 +150,7 @@ impl File {
             timeline: Some(Object(Timeline::new(document.timeline))),
             metres_per_unit: document.metres.map(Number),
             camera: Some(Object(View::new(camera))),
+            other_camera: document.other_camera.as_ref().map(View::new).map(Object),
             display: Some(display.layers().collect()),
         }
     }

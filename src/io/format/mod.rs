@@ -25,6 +25,7 @@
 //!   "timeline": { "start", "end", "frame_rate" },
 //!   "metres_per_unit": number,
 //!   "camera": { "target", "yaw", "pitch", "distance", "orthographic" },
+//!   "other_camera": as "camera",                      of the rig that is not shown
 //!   "display": ["cursor", "pointer", "inner_limit", "outer_limit", "grid_xy", "grid_xz", "grid_yz",
 //!               "ground", "axes", "labels", "shadow", "trail", "onion_skins", "hand", "globe",
 //!               "references"]

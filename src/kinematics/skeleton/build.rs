@@ -74,6 +74,43 @@ impl Skeleton {
         Moved(moved)
     }
 
+    /// Removes joints and attaches their children to the next ancestor that stays, or makes them
+    /// roots. No child moves: limits that would keep one from its new angles are widened.
+    ///
+    /// # Errors
+    ///
+    /// If a child's place below its new parent would not be finite; the skeleton is unchanged then.
+    pub fn dissolve(&mut self, joints: &[usize]) -> Result<Moved, SkeletonError> {
+        let before = self.clone();
+        for child in 0..self.joints.len() {
+            let above = self.joints[child].parent;
+            if !above.is_some_and(|parent| joints.contains(&parent)) || joints.contains(&child) {
+                continue;
+            }
+            let parent = before.ancestors(child).skip(1).find(|above| !joints.contains(above));
+            let near = before.joints[child].rotation;
+            let (offset, rotation) = before.placed_under(child, parent, near);
+            if let Err(error) = check_place(child, offset, rotation) {
+                *self = before;
+                return Err(error);
+            }
+            let joint = &mut self.joints[child];
+            (joint.parent, joint.offset, joint.rotation) = (parent, offset, rotation);
+            joint.widen_limits(rotation);
+        }
+        Ok(self.remove(joints))
+    }
+
+    /// The offset and the angles, nearest to `near`, with which a joint would stand where it does now
+    /// as a child of `parent`.
+    pub fn placed_under(&self, joint: usize, parent: Option<usize>, near: Vec3) -> (Vec3, Vec3) {
+        let pose = self.pose_in_skeleton();
+        let above = parent.map_or(Affine3A::IDENTITY, |parent| pose.full(parent));
+        let local = above.inverse() * pose.full(joint);
+        let like = Joint { rotation: near, ..self.joints[joint].clone() };
+        (local.translation.into(), like.angles_of(local.matrix3))
+    }
+
     /// Hangs a joint, with all that hangs from it, from another parent, or from none. It stays where
     /// it is in the world, as far as its limits let it.
     ///
@@ -91,16 +128,9 @@ impl Skeleton {
         if let Some(parent) = parent.filter(|parent| self.hangs_from(*parent, joint)) {
             return Err(SkeletonError::Cycle { joint, parent });
         }
-        let pose = self.pose_in_skeleton();
-        let above = parent.map_or(Affine3A::IDENTITY, |parent| pose.full(parent));
-        let local = above.inverse() * pose.full(joint);
-        let (offset, rotation) =
-            (Vec3::from(local.translation), self.joints[joint].angles_of(local.matrix3));
-        for (field, value) in [("offset", offset), ("rotation", rotation)] {
-            if !value.is_finite() {
-                return Err(SkeletonError::NotFinite { joint, field, value });
-            }
-        }
+        let near = self.joints[joint].rotation;
+        let (offset, rotation) = self.placed_under(joint, parent, near);
+        check_place(joint, offset, rotation)?;
         let moved = &mut self.joints[joint];
         (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
         moved.clamp();
@@ -207,4 +237,13 @@ impl Skeleton {
         self.joints = joints;
         Moved(moved)
     }
+}
+
+fn check_place(joint: usize, offset: Vec3, rotation: Vec3) -> Result<(), SkeletonError> {
+    for (field, value) in [("offset", offset), ("rotation", rotation)] {
+        if !value.is_finite() {
+            return Err(SkeletonError::NotFinite { joint, field, value });
+        }
+    }
+    Ok(())
 }

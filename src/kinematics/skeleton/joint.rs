@@ -95,6 +95,15 @@ impl Joint {
         within(&self.limits, rotation)
     }
 
+    /// Widens the limits that do not contain these angles until they do.
+    pub fn widen_limits(&mut self, angles: Vec3) {
+        for (limit, angle) in self.limits.iter_mut().zip(angles.to_array()) {
+            if let Some(Limit { min, max }) = limit {
+                (*min, *max) = (min.min(angle), max.max(angle));
+            }
+        }
+    }
+
     pub fn is_limited(&self) -> bool {
         self.limits.iter().any(Option::is_some)
     }

@@ -3,14 +3,14 @@
 use egui::{Event, EventFilter, Id, Key, Modifiers, Ui};
 
 use super::{held, ruler};
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Action, Session};
 use crate::ui::keyboard;
 
 /// The keys for keys, wherever no text has the keyboard.
 pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     let is_busy = ui.text_edit_focused()
         || session.drag().is_some()
-        || session.dialog().is_some_and(|dialog| *dialog != Dialog::Statistics)
+        || session.is_asking()
         || egui::Popup::is_any_open(ui.ctx());
     if is_busy {
         return;

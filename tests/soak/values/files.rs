@@ -55,17 +55,23 @@ impl Values<'_> {
 
     pub fn dialog(&mut self) -> Dialog {
         let path = || "x.json".to_owned();
-        match self.random.below(10) {
+        match self.random.below(13) {
             0 => Dialog::About,
             1 => Dialog::Shortcuts,
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
             3 => Dialog::Unsaved { then: Box::new(Action::Quit) },
             4 => Dialog::SavePicture { path: path() },
             5 => Dialog::Export(self.export()),
-            6 => Dialog::Open { path: path() },
-            7 => Dialog::SaveAs { path: path() },
+            6 => Dialog::Open { path: path(), problem: None },
+            7 => Dialog::SaveAs { path: path(), problem: Some(self.name()) },
             8 => {
                 Dialog::ChooseSkeleton { path: self.path(), names: vec![self.name(), self.name()] }
+            }
+            9 => Dialog::Exporting,
+            10 => Dialog::DeleteJoints { joints: self.some_joints() },
+            11 => {
+                let (then, back) = (Box::new(Action::SaveAs(self.path())), Box::new(self.dialog()));
+                Dialog::Replace { path: self.path(), then, back }
             }
             _ => Dialog::Rename { joint: self.joint(), name: self.name() },
         }

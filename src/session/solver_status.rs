@@ -1,0 +1,62 @@
+use super::{Session, Solving};
+use crate::kinematics::solve::{Report, SolveError};
+
+/// How the pose that is shown stands to its targets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverStatus {
+    pub state: SolverState,
+    /// Of the pose that is shown; its iterations are those of the run that led to it, else 0.
+    pub report: Report,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolverState {
+    /// Every tip is within the tolerance of its target, whoever brought it there.
+    Reached,
+    Running,
+    /// Further iterations would change nothing.
+    AtRest,
+    /// The iterations are used up.
+    GaveUp,
+    Paused,
+    /// No run led to this pose: there was none, or something was changed since.
+    NotSolved,
+}
+
+impl SolverState {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Reached => "reached",
+            Self::Running => "running",
+            Self::AtRest => "at rest, out of reach",
+            Self::GaveUp => "gave up",
+            Self::Paused => "paused",
+            Self::NotSolved => "not solved yet",
+        }
+    }
+}
+
+impl Session {
+    /// State and residual of the pose that is shown; `None` without an enabled target.
+    pub fn solver_status(&self) -> Option<SolverStatus> {
+        let rig = self.skeleton();
+        if rig.slither.is_some() || rig.goals(self.clock.time).is_empty() {
+            return None;
+        }
+        let run = self.solving.as_ref();
+        let current = run.filter(|run| run.led_to(rig, self.clock.time));
+        let fresh = || -> Result<Report, SolveError> {
+            Ok(Solving::new(rig, self.clock.time)?.report())
+        };
+        let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
+        let state = match current {
+            _ if self.is_running() => SolverState::Running,
+            _ if report.converged => SolverState::Reached,
+            Some(_) if report.resting => SolverState::AtRest,
+            Some(run) if run.is_spent() => SolverState::GaveUp,
+            Some(_) if report.iterations > 0 => SolverState::Paused,
+            _ => SolverState::NotSolved,
+        };
+        Some(SolverStatus { state, report })
+    }
+}

@@ -1,0 +1,163 @@
+//! The first minute with skeletons: what the switch shows, and how one is built by mouse.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, vec2};
+use glam::Vec3;
+use ik_arm::session::Action;
+
+use crate::bench::Bench;
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+
+fn names(bench: &Bench) -> Vec<String> {
+    let joints = bench.session().skeleton().skeleton.joints();
+    joints.iter().map(|joint| joint.name.clone()).collect()
+}
+
+/// Every base and tip, on screen.
+fn ends(bench: &Bench) -> Vec<egui::Pos2> {
+    let pose = bench.session().skeleton_pose();
+    let points = (0..pose.len()).flat_map(|joint| [pose.base(joint), pose.tip(joint)]);
+    points.map(|point| bench.place(point)).collect()
+}
+
+fn new_skeleton() -> Bench {
+    let mut bench = Bench::new();
+    bench.choose(&["File", "New skeleton"]);
+    bench
+}
+
+#[test]
+fn the_skeleton_switch_of_a_new_window_shows_the_human_framed() {
+    let mut bench = Bench::new();
+    let arm_view = *bench.session().camera();
+    bench.click(Role::Button, "Skeleton");
+    assert!(names(&bench).contains(&"head".to_owned()));
+    let ends = ends(&bench);
+    let box_of_human = egui::Rect::from_points(&ends);
+    assert!(bench.viewport().contains_rect(box_of_human), "all of it is seen");
+    assert!(box_of_human.height() > 0.4 * bench.viewport().height(), "and it is large");
+
+    let view = bench.session().camera().orbited(0.5, 0.1);
+    bench.apply([Action::SetCamera(view)]);
+    bench.click(Role::Button, "Arm");
+    assert_eq!(*bench.session().camera(), arm_view, "the arm is seen as it was");
+    bench.click(Role::Button, "Skeleton");
+    assert_eq!(*bench.session().camera(), view, "and so is the Human");
+}
+
+#[test]
+fn undoing_a_switch_brings_back_its_view_too() {
+    let mut bench = Bench::new();
+    let arm_view = *bench.session().camera();
+    bench.click(Role::Button, "Skeleton");
+    let view = *bench.session().camera();
+    bench.apply([Action::Undo]);
+    assert_eq!(*bench.session().camera(), arm_view);
+    bench.apply([Action::Redo]);
+    assert_eq!(*bench.session().camera(), view);
+}
+
+#[test]
+fn each_rig_keeps_its_view_in_a_file() {
+    let mut bench = Bench::new();
+    bench.click(Role::Button, "Skeleton");
+    let document = bench.session().document();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("views.json");
+    ik_arm::io::save(document, &path).expect("saved");
+    let opened = ik_arm::io::open(&path, None).expect("opened");
+    assert_eq!(&opened.document, document);
+    assert!(opened.document.other_camera.is_some());
+}
+
+#[test]
+fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
+    let mut bench = new_skeleton();
+    bench.apply([Action::Select(Vec::new())]);
+    assert!(bench.says("Click to place the first joint"));
+    let centre = bench.viewport().center();
+    bench.click_at(centre + vec2(0.0, -120.0));
+    bench.settle();
+    assert_eq!(names(&bench).len(), 2, "a click places the first bone");
+    assert!(!bench.says("Click to place the first joint"));
+    let tip = bench.session().skeleton_pose().tip(1);
+    assert!(bench.place(tip).distance(centre + vec2(0.0, -120.0)) < 2.0, "where the mouse is");
+
+    bench.apply([Action::Select(Vec::new())]);
+    bench.hold(CTRL);
+    bench.click_at(centre + vec2(90.0, -170.0));
+    bench.hold(Modifiers::NONE);
+    bench.settle();
+    assert_eq!(names(&bench).len(), 3, "Ctrl+click with nothing selected continues the last one");
+    assert_eq!(bench.session().skeleton().skeleton.joints()[2].parent, Some(1));
+
+    bench.apply([Action::Select(Vec::new())]);
+    bench.key(Key::A);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().skeleton.joints()[3].parent, Some(2), "and so does A");
+}
+
+#[test]
+fn a_skeleton_without_any_joint_gets_a_root_and_a_joint_by_one_click() {
+    for by_key in [false, true] {
+        let mut bench = new_skeleton();
+        bench.apply([Action::Delete(vec![0])]);
+        assert!(names(&bench).is_empty());
+        assert!(bench.says("Click to place the first joint"));
+        if by_key {
+            bench.key(Key::A);
+        } else {
+            bench.click_at(bench.viewport().center() + vec2(0.0, -100.0));
+        }
+        bench.settle();
+        assert_eq!(names(&bench), ["root", "joint"]);
+        bench.apply([Action::Undo]);
+        assert!(names(&bench).is_empty(), "it is one step");
+    }
+}
+
+#[test]
+fn add_child_stays_under_the_mouse() {
+    let mut bench = new_skeleton();
+    let button = bench.rect(Role::Button, "Add child");
+    for count in 2..14 {
+        bench.click(Role::Button, "Add child");
+        assert_eq!(names(&bench).len(), count);
+        assert_eq!(bench.rect(Role::Button, "Add child"), button, "with {count} joints");
+    }
+}
+
+#[test]
+fn a_bone_that_leaves_the_view_makes_the_camera_zoom_out() {
+    let mut bench = new_skeleton();
+    for _ in 0..12 {
+        bench.click(Role::Button, "Add child");
+    }
+    bench.wait(0.5);
+    for end in ends(&bench) {
+        assert!(bench.viewport().contains(end), "{end:?}");
+    }
+}
+
+#[test]
+fn a_view_that_shows_the_new_bone_stays() {
+    let mut bench = new_skeleton();
+    let view = bench.session().camera().zoomed(6.0, glam::Vec2::ZERO, 1.0);
+    bench.apply([Action::SetCamera(view)]);
+    bench.click(Role::Button, "Add child");
+    bench.wait(0.5);
+    assert_eq!(*bench.session().camera(), view);
+}
+
+#[test]
+fn bones_of_one_skeleton_are_about_as_thick_however_long_they_are() {
+    let mut bench = new_skeleton();
+    let tips = [Vec3::Y, Vec3::Y * 1.1, Vec3::new(3.0, 1.1, 0.0), Vec3::new(3.0, 1.3, 0.0)];
+    bench.apply(tips.map(|tip| Action::AddJoint { tip: Some(tip) }));
+    let joints = &bench.session().skeleton().skeleton.joints()[1..];
+    for joint in joints {
+        assert!((0.02..=0.15).contains(&joint.radius), "{} of {}", joint.radius, joint.axis);
+        assert!(joint.radius <= 0.5 * joint.axis.length(), "no bone is thicker than long");
+    }
+}

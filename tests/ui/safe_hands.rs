@@ -1,0 +1,412 @@
+//! Nothing that a person types goes astray: dialogs take the keyboard, keys mean what they meant when
+//! they were pressed, and what is only looked at is no change.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton};
+use egui_kittest::kittest::NodeT as _;
+use glam::Vec3;
+use ik_arm::document::{Camera, Layer, RigKind, Theme};
+use ik_arm::io::Example;
+use ik_arm::session::{Action, Dialog, DragInput, Effect, Grip, Job, SolverState};
+
+use crate::bench::Bench;
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+
+fn human() -> Bench {
+    Bench::after([Action::OpenExample(Example::find("human").expect("there"))])
+}
+
+fn joint_named(bench: &Bench, name: &str) -> usize {
+    bench.session().skeleton().skeleton.find(name).expect("a joint of that name")
+}
+
+/// The text of a dialog's field.
+fn typed(bench: &Bench, prompt: &str) -> String {
+    bench.node(Role::TextInput, prompt).accesskit_node().value().unwrap_or_default()
+}
+
+#[test]
+fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selects_its_text() {
+    for (modifiers, key, prompt) in [
+        (CTRL, Key::S, "Save the document to"),
+        (CTRL, Key::O, "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf"),
+        (CTRL, Key::P, "Save the viewport as PNG to"),
+        (CTRL, Key::E, "To"),
+    ] {
+        let mut bench = human();
+        bench.click_at(bench.empty_place());
+        bench.settle();
+        let before = bench.session().clone();
+        bench.key_with(modifiers, key);
+        bench.settle();
+        bench.type_text("a1s7r5t.csv");
+        bench.settle();
+        assert_eq!(typed(&bench, prompt), "a1s7r5t.csv", "{prompt}");
+        assert_eq!(bench.session().camera(), before.camera(), "{prompt}");
+        assert_eq!(bench.session().document(), before.document(), "{prompt}");
+        bench.key(Key::Escape);
+        bench.settle();
+        assert_eq!(bench.session().dialog(), None, "{prompt}");
+    }
+}
+
+#[test]
+fn a_joint_is_named_after_a_click_on_it() {
+    let mut bench = human();
+    let joint = joint_named(&bench, "head");
+    let tip = bench.session().skeleton_pose().tip(joint);
+    let base = bench.session().skeleton_pose().base(joint);
+    bench.click_at(bench.place(base.lerp(tip, 0.5)));
+    bench.settle();
+    assert_eq!(bench.session().selected(), Some(joint));
+    let joints = bench.session().skeleton_pose().len();
+    bench.key(Key::F2);
+    bench.settle();
+    bench.type_text("Start 5");
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().skeleton.joints()[joint].name, "Start 5");
+    assert_eq!(bench.session().skeleton_pose().len(), joints, "no letter adds a joint");
+    assert!(!bench.session().is_running(), "no letter runs the solver");
+}
+
+#[test]
+fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_into_it() {
+    let mut bench = human();
+    bench.apply([Action::Select(vec![3])]);
+    bench.click_at(bench.empty_place());
+    bench.apply([Action::Select(vec![3])]);
+    let press = |key| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let text = |text: &str| Event::Text(text.to_owned());
+    bench.frame([press(Key::F2), press(Key::A), text("a"), press(Key::T), text("t")]);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Rename { joint: 3, name: "at".to_owned() }));
+}
+
+#[test]
+fn nothing_behind_an_open_question_answers() {
+    let mut bench = human();
+    bench.apply([Action::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
+    bench.click_at(bench.empty_place());
+    bench.key_with(CTRL, Key::Q);
+    bench.settle();
+    assert!(matches!(bench.session().dialog(), Some(Dialog::Unsaved { .. })));
+    let before = bench.session().clone();
+    for key in [Key::A, Key::R, Key::S, Key::T, Key::Num1, Key::Num5, Key::F, Key::K, Key::F1] {
+        bench.key(key);
+    }
+    for key in [Key::Z, Key::Y, Key::O, Key::E, Key::P, Key::S, Key::Num3] {
+        bench.key_with(CTRL, key);
+    }
+    bench.frame([Event::Copy]);
+    bench.wheel(3.0);
+    bench.settle();
+    assert_eq!(bench.session(), &before);
+    assert_eq!(bench.effects(), []);
+    let place = bench.empty_place();
+    bench.drag_and_drop(PointerButton::Primary, place, place + egui::vec2(100.0, 60.0));
+    bench.settle();
+    assert_eq!(bench.session().camera(), before.camera());
+
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None, "Esc cancels");
+    bench.key_with(CTRL, Key::Q);
+    bench.settle();
+    bench.key(Key::Enter);
+    bench.settle();
+    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "Enter saves");
+}
+
+#[test]
+fn a_key_has_the_modifiers_that_were_held_when_it_was_pressed() {
+    let mut bench = Bench::new();
+    bench.click_at(bench.empty_place());
+    bench.settle();
+    let key = |pressed| Event::Key {
+        key: Key::Num1,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: CTRL,
+    };
+    bench.frame([
+        Event::ModifiersChanged(CTRL),
+        key(true),
+        key(false),
+        Event::ModifiersChanged(Modifiers::NONE),
+    ]);
+    bench.wait(0.5);
+    let back = Camera::default().along(ik_arm::document::AxisView::Back);
+    assert_eq!(bench.session().camera().yaw, back.yaw);
+}
+
+#[test]
+fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
+    let mut bench = human();
+    bench.apply([Action::Select(vec![4])]);
+    let at = bench.empty_place();
+    bench.move_to(at);
+    let count = bench.session().skeleton_pose().len();
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: CTRL,
+    };
+    bench.frame([
+        Event::ModifiersChanged(CTRL),
+        button(true),
+        button(false),
+        Event::ModifiersChanged(Modifiers::NONE),
+    ]);
+    bench.settle();
+    assert_eq!(bench.session().skeleton_pose().len(), count + 1);
+}
+
+#[test]
+fn what_is_only_looked_at_is_no_unsaved_change() {
+    for look in [
+        Action::SetTheme(Theme::Light),
+        Action::Show(Layer::Globe, true),
+        Action::Show(Layer::Labels, false),
+        Action::ShowCrowd(true),
+        Action::ShowRig(RigKind::Skeleton),
+        Action::ShowExplain(false),
+        Action::SetCamera(Camera::default().orbited(1.0, 0.2)),
+    ] {
+        let mut bench = Bench::new();
+        bench.apply_moving([look.clone()]);
+        assert!(!bench.session().is_unsaved(), "{look:?}");
+        bench.apply_moving([Action::Quit]);
+        assert_eq!(bench.session().dialog(), None, "{look:?}");
+    }
+}
+
+#[test]
+fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
+    let mut bench = Bench::after([Action::Show(Layer::Globe, true)]);
+    bench.apply([Action::SetElbowSpin(0.5), Action::Show(Layer::Globe, false)]);
+    assert!(bench.session().is_unsaved());
+    bench.apply([Action::Undo]);
+    assert!(bench.session().is_unsaved(), "only the globe is back");
+    bench.apply([Action::Undo]);
+    assert!(!bench.session().is_unsaved(), "the spin is back");
+    bench.apply([Action::Redo, Action::Redo]);
+    assert!(bench.session().is_unsaved());
+    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
+    bench.apply([Action::Show(Layer::Globe, true)]);
+    assert!(!bench.session().is_unsaved());
+    assert_eq!(bench.tell(Action::Quit), Some(Effect::Quit));
+}
+
+#[test]
+fn after_a_limit_the_reading_says_what_was_turned() {
+    let mut bench = human();
+    let joint = joint_named(&bench, "left_shin");
+    bench.apply([Action::Select(vec![joint])]);
+    let limits = bench.session().skeleton().skeleton.joints()[joint].limits;
+    let free: Vec<_> = (0..3)
+        .filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max))
+        .collect();
+    let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
+    let limit = limits[axis].expect("limited");
+    let ring = bench.session().ring(joint, axis).expect("the free axis has a ring");
+    for fixed in (0..3).filter(|other| *other != axis) {
+        assert_eq!(bench.session().ring(joint, fixed), None, "a fixed axis has none");
+    }
+    let grip = Grip::Ring(joint, axis);
+    let before = bench.session().skeleton().skeleton.joints()[joint].rotation[axis];
+    let projection = bench.session().camera().projection(1.0);
+    let ray = projection.ray(projection.project(ring.centre).expect("seen") + glam::Vec2::X * 0.05);
+    bench.apply([Action::Grab { grip, ray, forward: projection.forward }]);
+    let most = (limit.max - limit.min).to_degrees();
+    bench.apply([Action::TypeOffset(format!("{}", most + 90.0))]);
+    bench.apply([Action::Drag(DragInput { ray, precise: false, snap: false })]);
+    let now = bench.session().skeleton().skeleton.joints()[joint].rotation[axis];
+    assert_eq!(now, limit.max);
+    let turned = (now - before).to_degrees();
+    assert!(bench.says(&format!("{turned:+.1}°, at its limit")), "{turned}");
+    bench.apply([Action::CancelEdit]);
+}
+
+#[test]
+fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
+    let example = Example::find("ten-joints").expect("there");
+    let mut bench = Bench::after([Action::OpenExample(example)]);
+    let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
+    let tip_to_target = |bench: &Bench| {
+        let session = bench.session();
+        let target = session.skeleton().targets[0];
+        session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
+    };
+    assert_eq!(status(&bench).state, SolverState::NotSolved);
+    bench.apply_moving([Action::Run(true)]);
+    bench.wait(3.0);
+    assert_eq!(status(&bench).state, SolverState::Reached);
+    assert!(bench.says("reached after"), "the status line says so");
+
+    bench.apply([Action::SetRotation { joint: 2, rotation: Vec3::splat(0.7) }]);
+    assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody turned a joint");
+    assert!(bench.shows(Role::Label, "not solved yet"));
+    assert!(!bench.says("reached after"));
+    assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
+
+    bench.apply([Action::Undo]);
+    assert_eq!(status(&bench).state, SolverState::Reached, "it is the solved pose again");
+    let mut target = bench.session().skeleton().targets[0];
+    target.home += Vec3::splat(0.5);
+    bench.apply([Action::SetTarget(target)]);
+    assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody moved the target");
+    assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
+}
+
+#[test]
+fn deleting_a_joint_asks_what_becomes_of_its_children() {
+    let mut bench = human();
+    let shoulder = joint_named(&bench, "left_upper_arm");
+    let names = |bench: &Bench| -> Vec<String> {
+        let joints = bench.session().skeleton().skeleton.joints();
+        joints.iter().map(|joint| joint.name.clone()).collect()
+    };
+    let places = |bench: &Bench| -> Vec<(Vec3, Vec3)> {
+        let pose = bench.session().skeleton_pose();
+        (0..pose.len()).map(|joint| (pose.base(joint), pose.tip(joint))).collect()
+    };
+    let before = (names(&bench), places(&bench));
+    bench.apply([Action::Select(vec![shoulder])]);
+    bench.click_at(bench.empty_place() + egui::vec2(0.0, 1.0));
+    bench.apply([Action::Select(vec![shoulder])]);
+    bench.key(Key::Delete);
+    bench.settle();
+    assert!(bench.node(Role::Button, "Keep children").is_focused(), "the default keeps them");
+    bench.key(Key::Escape);
+    bench.settle();
+    assert_eq!(names(&bench), before.0, "Esc deletes nothing");
+    bench.key(Key::Delete);
+    bench.settle();
+    bench.key(Key::Enter);
+    bench.settle();
+    let (mut kept, mut stay) = before.clone();
+    kept.remove(shoulder);
+    stay.remove(shoulder);
+    assert_eq!(names(&bench), kept);
+    for ((base, tip), (now_base, now_tip)) in stay.into_iter().zip(places(&bench)) {
+        assert!(base.distance(now_base) < 1e-4 && tip.distance(now_tip) < 1e-4, "nothing moves");
+    }
+    bench.apply([Action::Undo]);
+    assert_eq!((names(&bench), places(&bench)), before);
+
+    bench.apply([Action::Select(vec![shoulder])]);
+    bench.key(Key::Delete);
+    bench.settle();
+    bench.click(Role::Button, "Delete children too");
+    assert!(names(&bench).len() < kept.len());
+
+    let leaf = names(&bench).len() - 1;
+    bench.apply([Action::Select(vec![leaf])]);
+    bench.click(Role::Button, "Delete");
+    assert_eq!(names(&bench).len(), leaf, "a joint without children is deleted at once");
+}
+
+#[test]
+fn an_export_over_a_file_asks_and_the_folder_is_remembered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let there = folder.path().join("walk.glb");
+    std::fs::write(&there, "precious").expect("written");
+    let mut bench = human();
+    bench.key_with(CTRL, Key::E);
+    bench.settle();
+    bench.type_text(&there.display().to_string());
+    bench.key(Key::Enter);
+    bench.settle();
+    assert!(bench.says("walk.glb is there already"));
+    assert_eq!(bench.effects(), []);
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.effects(), [], "Enter twice overwrites nothing");
+    let Some(Dialog::Export(export)) = bench.session().dialog() else { panic!("it is kept") };
+    assert_eq!(export.path, there, "with its path");
+    bench.click(Role::Button, "Export");
+    bench.click(Role::Button, "Replace");
+    let effects = bench.effects();
+    assert!(matches!(&effects[..], [Effect::Export(export)] if export.path == there));
+
+    bench.key_with(CTRL, Key::E);
+    bench.settle();
+    assert!(bench.says(&format!("In {}", folder.path().display())), "the folder is shown");
+    bench.type_text("other.glb");
+    bench.key(Key::Enter);
+    bench.settle();
+    let effects = bench.effects();
+    let other = folder.path().join("other.glb");
+    assert!(matches!(&effects[..], [Effect::Export(export)] if export.path == other));
+    assert_eq!(bench.session().export_folder(), Some(folder.path()));
+}
+
+#[test]
+fn saving_as_over_another_file_asks_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let there = folder.path().join("there.json");
+    std::fs::write(&there, "precious").expect("written");
+    let mut bench = human();
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    bench.type_text(&there.display().to_string());
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.effects(), []);
+    bench.click(Role::Button, "Replace");
+    assert_eq!(bench.effects(), [Effect::Save(there)]);
+}
+
+#[test]
+fn quitting_during_an_export_asks() {
+    let mut bench = Bench::new();
+    let progress = std::sync::Arc::new(ik_arm::io::Progress::default());
+    let job = Job { path: "walk.glb".into(), progress };
+    bench.apply_moving([Action::Exporting(job.clone())]);
+    bench.key_with(CTRL, Key::Q);
+    bench.wait(0.2);
+    assert!(bench.says("walk.glb is being exported"));
+    assert_eq!(bench.effects(), []);
+    bench.key(Key::Enter);
+    bench.wait(0.2);
+    assert_eq!(bench.session().dialog(), None, "Enter lets it go on");
+    assert!(!job.progress.is_cancelled());
+    bench.key_with(CTRL, Key::Q);
+    bench.wait(0.2);
+    bench.click_at(bench.rect(Role::Button, "Stop the export and quit").center());
+    bench.wait(0.2);
+    assert!(job.progress.is_cancelled());
+    assert_eq!(bench.effects(), [Effect::Quit]);
+}
+
+#[test]
+fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_like_one() {
+    let mut bench = Bench::new();
+    bench.key_with(CTRL, Key::O);
+    bench.settle();
+    bench.type_text("/nowhere/walk.bvh");
+    bench.key(Key::Enter);
+    bench.settle();
+    let effects = bench.effects();
+    assert!(matches!(effects[..], [Effect::Open { .. }]));
+    let why = "/nowhere/walk.bvh: there is no such file".to_owned();
+    bench.apply([Action::NotOpened { path: "/nowhere/walk.bvh".into(), why: why.clone() }]);
+    let prompt = "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf";
+    assert_eq!(typed(&bench, prompt), "/nowhere/walk.bvh");
+    assert!(bench.shows(Role::Alert, &why), "in the dialog");
+    bench.key(Key::Escape);
+    bench.settle();
+    assert!(bench.shows(Role::Alert, &format!("Not opened: {why}")), "in the status line");
+    bench.apply([Action::SetElbowSpin(0.3)]);
+    assert!(!bench.says("Not opened"), "until the next change");
+}
