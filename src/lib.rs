@@ -1,7 +1,7 @@
 //! A 3D inverse-kinematics arm to pose, look into and understand.
 //!
-//! The crate is the program `ik-arm` and, without its default features, solvers that take nothing
-//! but `glam` and `nalgebra`:
+//! The crate is the program `ik-arm` and, without its default features, solvers that depend
+//! on `glam`, `nalgebra`, `multiversion` and `thiserror` alone:
 //!
 //! ```
 //! use glam::Vec3;

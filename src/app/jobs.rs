@@ -71,10 +71,7 @@ pub(super) fn export(
     (job, thread)
 }
 
-fn say_exported(
-    path: &Path,
-    exported: Result<Vec<String>, ExportError>,
-) -> Result<String, String> {
+fn say_exported(path: &Path, exported: Result<Vec<String>, ExportError>) -> Result<String, String> {
     match exported {
         Ok(notes) => Ok(match &notes[..] {
             [] => format!("Exported {}", path.display()),

@@ -58,7 +58,7 @@ pub fn run() -> ExitCode {
 
 #[derive(clap::Args, Default)]
 struct GuiArgs {
-    /// Document, .js3d scene of Scotty3D, or .bvh motion, to open in it
+    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, to open in it
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Which of a scene's skeletons

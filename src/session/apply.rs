@@ -311,7 +311,8 @@ impl Session {
         let document = Document { rig: RigKind::Skeleton, ..Document::default() };
         self.replace_document(document, None);
         self.select(vec![0]);
-        self.set_camera(self.framing_all());
+        // As far away as a rig of a unit or two needs.
+        self.set_camera(self.settled_camera().framing(Vec3::Y * 0.5, 1.0, super::ASPECT));
     }
 
     fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {

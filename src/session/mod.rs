@@ -55,8 +55,8 @@ pub use staging::{Ghost, OnionSkin, Staging};
 pub use turn_drag::{Ring, TurnDrag};
 pub use view_drag::{Motion, ViewDrag};
 
-use crate::io;
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
+use crate::io;
 use crate::kinematics::skeleton::Pose as SkeletonPose;
 use crate::kinematics::two_bone::Pose;
 use clock::Clock;
@@ -359,5 +359,4 @@ impl Session {
     fn point(&mut self, joint: Option<usize>) {
         self.pointed = joint.filter(|joint| *joint < self.skeleton_pose.len());
     }
-
 }

@@ -45,9 +45,8 @@ impl Session {
         }
         let run = self.solving.as_ref();
         let current = run.filter(|run| run.led_to(rig, self.clock.time));
-        let fresh = || -> Result<Report, SolveError> {
-            Ok(Solving::new(rig, self.clock.time)?.report())
-        };
+        let fresh =
+            || -> Result<Report, SolveError> { Ok(Solving::new(rig, self.clock.time)?.report()) };
         let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
         let state = match current {
             _ if self.is_running() => SolverState::Running,

@@ -54,14 +54,14 @@ impl TurnDrag {
         &self.typed
     }
 
-    /// How far the ring has been turned to bring its angle to this one, radians.
-    pub fn turned_to(&self, angle: f32) -> f32 {
-        (angle - self.start).clamp(f32::MIN, f32::MAX)
+    /// How far the mouse or the typed number turns the ring, before limits; radians.
+    pub fn turned(&self) -> f32 {
+        self.turned_to(self.last)
     }
 
-    /// The angle that the mouse or the typed number leads to, before limits; radians.
-    pub fn asked(&self) -> f32 {
-        self.last
+    /// How far the ring turns from its angle at the press to this one, radians.
+    pub fn turned_to(&self, angle: f32) -> f32 {
+        (angle - self.start).clamp(f32::MIN, f32::MAX)
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {

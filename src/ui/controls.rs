@@ -165,15 +165,19 @@ pub(super) fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static st
 
 fn resets(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (name, tooltip) = match session.rig() {
-        RigKind::Arm => ("Reset pose", "Arm, spin, root and lengths as at first"),
+        RigKind::Arm => (
+            "Reset pose",
+            "Reset hand, pin, elbow, root, lengths, soft limits, FK and hand orientation",
+        ),
         RigKind::Skeleton => ("Bind pose", "Every joint without rotation"),
     };
     ui.horizontal(|ui| {
         if ui.button(name).on_hover_text(tooltip).clicked() {
             actions.push(Action::ResetPose);
         }
-        let all =
-            ui.button("Reset all").on_hover_text("Pose, guides, display and view as at first");
+        let all = ui
+            .button("Reset all")
+            .on_hover_text("Reset the pose, guides, display and view, and hide the crowd");
         if all.clicked() {
             actions.push(Action::ResetAll);
         }

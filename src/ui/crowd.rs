@@ -3,7 +3,7 @@
 use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 
 use super::Machine;
-use super::status::grouped;
+use super::number::grouped;
 use crate::rig::{Crowd, SolvedBy};
 use crate::session::{Action, Session};
 
@@ -49,7 +49,7 @@ fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
         ui.spacing_mut().slider_width = 110.0;
         let slider = Slider::new(&mut arms, 1..=Crowd::MOST)
             .logarithmic(true)
-            .custom_formatter(|value, _| grouped(value as u32))
+            .custom_formatter(|value, _| grouped(value as u64))
             .custom_parser(|text| text.replace(',', "").trim().parse().ok());
         if ui.add(slider).labelled_by(label.id).changed() {
             actions.push(Action::SetCrowd(arms));

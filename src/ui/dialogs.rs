@@ -80,7 +80,9 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
 fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
-    let modal = Modal::new(Id::unique(("dialog", title.to_owned()))).frame(frame);
+    let id = Id::unique(("dialog", title.to_owned()));
+    let area = Modal::default_area(id).fade_in(false);
+    let modal = Modal::new(id).area(area).frame(frame);
     let shown = modal.show(ui.ctx(), |ui| {
         ui.heading(title);
         ui.add_space(6.0);

@@ -19,6 +19,19 @@ pub(super) fn short(value: f32) -> String {
     }
 }
 
+/// A whole number with thousands apart: "1,000,000".
+pub(super) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
 /// A number that is dragged or typed.
 pub(super) struct Number<'a, N = f32> {
     /// What it is called where there is nothing else to see.
@@ -95,3 +108,16 @@ impl<N: Numeric> Number<'_, N> {
 /// Marks a number that Esc has just left.
 #[derive(Clone, Copy, Default)]
 struct Left;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_have_their_thousands_apart() {
+        let cases = [(0, "0"), (999, "999"), (1_000, "1,000"), (12_345_678, "12,345,678")];
+        for (number, text) in cases {
+            assert_eq!(grouped(number), text);
+        }
+    }
+}

@@ -6,6 +6,7 @@ use egui::{Align, Color32, Grid, Layout, RichText, Role, Sense, Stroke, Ui, Widg
 use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 
 use super::frame_times::{Frame, FrameTimes};
+use super::number::grouped;
 use super::{Machine, plot, style};
 use crate::kinematics::solve::Method;
 use crate::scene::Palette;
@@ -71,7 +72,7 @@ pub(super) fn ui(ui: &mut Ui, machine: &Machine) {
     grid("parts", 3).show(ui, |ui| parts(ui, machine));
     ui.separator();
     grid("counts", 2).show(ui, |ui| {
-        let count = |count: Option<u64>| count.map_or("–".to_owned(), spaced);
+        let count = |count: Option<u64>| count.map_or("–".to_owned(), grouped);
         let per_second = times.per_second().map(|it| it.round() as u64);
         row(ui, "Frames a second", "While something moves", &count(per_second));
         let counts = machine.counts;
@@ -239,30 +240,9 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// A whole number in groups of three digits.
-fn spaced(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_in_groups_of_three() {
-        let cases = [(0, "0"), (999, "999"), (1_000, "1 000"), (12_345_678, "12 345 678")];
-        for (number, text) in cases {
-            assert_eq!(spaced(number), text);
-        }
-    }
 
     #[test]
     fn the_graph_ends_at_a_round_number_above_nearly_all_frames() {

@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
 use super::Machine;
+use super::number::grouped;
 use crate::document::{Arm, RigKind};
 use crate::kinematics::solve::Method;
 use crate::kinematics::two_bone::{Pose, Reach};
@@ -35,7 +36,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mu
 pub(super) fn error(ui: &mut Ui, text: &str) {
     let colour = ui.visuals().error_fg_color;
     let label = Label::new(RichText::new(text).color(colour)).selectable(false);
-    let response = ui.add(if ui.layout().is_horizontal() { label.truncate() } else { label.wrap() });
+    let response =
+        ui.add(if ui.layout().is_horizontal() { label.truncate() } else { label.wrap() });
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_role(Role::Alert);
         node.set_label(text);
@@ -116,21 +118,8 @@ fn describe(session: &Session) -> String {
 fn describe_crowd(crowd: &Crowd) -> String {
     match crowd.arms {
         1 => "A crowd of 1 arm".to_owned(),
-        arms => format!("A crowd of {} arms", grouped(arms)),
+        arms => format!("A crowd of {} arms", grouped(arms.into())),
     }
-}
-
-/// With thousands apart: "1,000,000".
-pub(super) fn grouped(number: u32) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
 }
 
 fn describe_skeleton(session: &Session) -> String {
@@ -215,8 +204,8 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
         Grip::Ring(joint, axis) => joints.get(joint).map(|joint| joint.rotation[axis.min(2)]),
         _ => None,
     };
-    let angle = angle.unwrap_or(drag.asked());
-    let limit = if (angle - drag.asked()).abs() > AT_LIMIT { ", at its limit" } else { "" };
+    let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));
+    let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
         Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
             format!("Turn about {}", ["x", "y", "z"][axis.min(2)])
@@ -226,7 +215,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     format!(
         "{verb}: {:+.1}°{limit}{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
          take back",
-        drag.turned_to(angle).to_degrees(),
+        turned.to_degrees(),
         typed(drag.typed()),
     )
 }

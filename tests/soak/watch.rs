@@ -157,7 +157,10 @@ impl Watch {
     fn check_saved(&self, action: &Action, is_replaced: bool) -> Result<(), Broken> {
         let session = &self.session;
         if !session.is_unsaved() {
-            let is_saved = self.saved.as_ref().is_some_and(|it| past::has_same_content(it, session.document()));
+            let is_saved = self
+                .saved
+                .as_ref()
+                .is_some_and(|it| past::has_same_content(it, session.document()));
             hold!(is_saved, "what counts as saved is as it was saved");
         }
         let is_written = matches!(action, Action::Saved(_)) && !is_replaced;

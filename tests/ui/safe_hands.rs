@@ -213,9 +213,8 @@ fn after_a_limit_the_reading_says_what_was_turned() {
     let joint = joint_named(&bench, "left_shin");
     bench.apply([Action::Select(vec![joint])]);
     let limits = bench.session().skeleton().skeleton.joints()[joint].limits;
-    let free: Vec<_> = (0..3)
-        .filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max))
-        .collect();
+    let free: Vec<_> =
+        (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
     let limit = limits[axis].expect("limited");
     let ring = bench.session().ring(joint, axis).expect("the free axis has a ring");

@@ -180,8 +180,7 @@ fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
     bench.apply([Action::Delete(vec![0])]);
-    for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F]
-    {
+    for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F] {
         bench.key(key);
         bench.settle();
     }

@@ -86,7 +86,7 @@ fn every_part_has_its_median_and_its_slowest() {
             assert!((figure.center().y - row.center().y).abs() < 3.0, "{part}: {figure:?}");
         }
     }
-    for figure in ["60", "57", "12", "3", "10 871", "1 234 567"] {
+    for figure in ["60", "57", "12", "3", "10,871", "1,234,567"] {
         assert!(bench.shows(Role::Label, figure), "{figure}");
     }
     assert!(bench.shows(Role::Label, "Test adapter (of tests)"));

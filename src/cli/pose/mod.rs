@@ -26,7 +26,7 @@ Joints have the order and the numbers of the file; the targets are those that ar
 Without --solver no tip is brought anywhere and the report is null. A solve that does not converge is no failure.
 A file that shows the arm has no pose here: `ik-arm solve` poses arms."#)]
 pub struct Args {
-    /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
+    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, or - for standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Which skeleton of a scene; the first if nothing is said

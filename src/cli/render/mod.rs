@@ -30,7 +30,7 @@ With FILE what it shows, from where it is looked at there, unless --view says ot
 How long a crowd takes, without a window:
   ik-arm render --crowd 100000 --frames 60 --timings --solve gpu")]
 pub struct Args {
-    /// Document of ik-arm, scene of Scotty3D (.js3d) or motion (.bvh), or - for standard input
+    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, or - for standard input
     #[arg(
         value_name = "FILE",
         conflicts_with_all = ["hand", "elbow_spin", "root", "upper", "lower"]
