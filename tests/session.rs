@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig, Slither, Space,
-    Swivel, Target, Timeline,
+    Arm, Camera, Channel, Display, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig,
+    Slither, Space, Swivel, Target, Timeline,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::reach::Softening;
@@ -266,6 +266,16 @@ fn check_arm(arm: &Arm, pose: &Pose) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// A document without its cameras, which undo leaves alone.
+fn without_views(document: &Document) -> Document {
+    Document { camera: Camera::default(), other_camera: None, ..document.clone() }
+}
+
+/// A document without all that only says how it is looked at.
+fn content(document: &Document) -> Document {
+    Document { rig: RigKind::Arm, display: Display::default(), ..without_views(document) }
+}
+
 proptest! {
     #![proptest_config(config(200))]
 
@@ -320,18 +330,18 @@ proptest! {
             session.apply(Action::Redo);
         }
         let last = session.document().clone();
-        prop_assert!(session.is_unsaved() || last == first);
+        prop_assert!(session.is_unsaved() || content(&last) == content(&first));
         while session.undo_name().is_some() {
             session.apply(Action::Undo);
             check(&session)?;
         }
-        prop_assert_eq!(session.document(), &first);
+        prop_assert_eq!(without_views(session.document()), without_views(&first));
         prop_assert!(!session.is_unsaved());
         while session.redo_name().is_some() {
             session.apply(Action::Redo);
             check(&session)?;
         }
-        prop_assert_eq!(session.document(), &last);
+        prop_assert_eq!(without_views(session.document()), without_views(&last));
     }
 }
 
@@ -447,7 +457,7 @@ fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
     assert_eq!(session.arm().elbow_spin, 1.0);
     assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
     session.apply(Action::Discard(Box::new(opened)));
-    assert_eq!(session.document(), &ik_arm::io::new_document());
+    assert_eq!(session.document(), &Document::default());
 }
 
 #[test]

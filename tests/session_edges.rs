@@ -2,15 +2,21 @@
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Channel, Ray, RigKind, Swivel, Theme};
+use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Swivel, Theme};
 use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Session, TurnDrag,
+    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Preferences,
+    Session, TurnDrag,
 };
 
 fn ray() -> Ray {
     Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
+}
+
+/// With a skeleton that is a root alone.
+fn session() -> Session {
+    Session::with_document(Preferences::default(), Document::default())
 }
 
 #[test]
@@ -23,7 +29,7 @@ fn a_camera_that_looks_from_nowhere_is_not_taken() {
         Camera { distance: 0.0, ..camera },
         Camera { distance: f32::NAN, ..camera },
     ] {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(Action::SetCamera(wrong));
         session.apply(Action::GlideTo(wrong));
         for seconds in [0.0, 0.1, 1.0] {
@@ -41,7 +47,7 @@ fn a_view_that_is_dragged_to_nowhere_stays() {
         (Motion::Zoom, Vec2::NAN, 1.0),
         (Motion::Orbit, Vec2::X, f32::INFINITY),
     ] {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(Action::GrabView(motion, Vec2::ZERO));
         session.apply(Action::DragView { to, aspect });
         assert_eq!(session.camera(), &Camera::default(), "after {motion:?} to {to}");
@@ -50,7 +56,7 @@ fn a_view_that_is_dragged_to_nowhere_stays() {
 
 #[test]
 fn a_picture_at_no_time_changes_nothing() {
-    let mut session = Session::default();
+    let mut session = session();
     let to = Camera { yaw: 3.0, ..Camera::default() };
     session.apply(Action::GlideTo(to));
     session.apply(Action::Play(true));
@@ -67,7 +73,7 @@ fn a_picture_at_no_time_changes_nothing() {
 #[test]
 fn what_is_about_a_fourth_axis_is_not_done() {
     for axis in [3, usize::MAX] {
-        let mut session = Session::default();
+        let mut session = session();
         let before = session.document().clone();
         session.apply(Action::SetLimit { joint: 0, axis, limit: None });
         assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
@@ -95,7 +101,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
 
 #[test]
 fn a_pointer_is_on_no_joint_that_is_not_there() {
-    let mut session = Session::default();
+    let mut session = session();
     for (joint, expected) in [(Some(0), Some(0)), (Some(1), None), (Some(usize::MAX), None)] {
         session.apply(Action::Point(joint));
         assert_eq!(session.pointed(), expected);
@@ -104,7 +110,7 @@ fn a_pointer_is_on_no_joint_that_is_not_there() {
 
 #[test]
 fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
-    let mut session = Session::default();
+    let mut session = session();
     session.apply(Action::AddChild { parent: 0, tip: None });
     session.apply(Action::Key(vec![Channel::Rotation(1), Channel::Hand]));
     session.apply(Action::BeginEdit);
@@ -118,7 +124,7 @@ fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
 
 #[test]
 fn keys_that_are_made_while_others_move_stay() {
-    let mut session = Session::default();
+    let mut session = session();
     session.apply(Action::Key(vec![Channel::Hand]));
     session.apply(Action::BeginEdit);
     let keys = vec![(Channel::Hand, 0.0)];
@@ -138,7 +144,7 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
     for change in
         [Action::Delete(vec![2]), Action::AddRoot, Action::Reparent { joint: 2, parent: None }]
     {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(hang.clone());
         session.apply(Action::AddChild { parent: 1, tip: None });
         let grip = Grip::Tip(1, Handle::Free);
@@ -155,7 +161,7 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
 #[test]
 fn a_race_ends_when_the_joints_become_others() {
     for change in [Action::Delete(vec![3]), Action::AddRoot, Action::Undo] {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(Action::OpenExample(Example::find("ten-joints").expect("an example")));
         session.apply(Action::AddChild { parent: 0, tip: None });
         session.apply(Action::Race(true));
@@ -174,7 +180,7 @@ fn a_race_ends_when_the_joints_become_others() {
 
 #[test]
 fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
-    let mut session = Session::default();
+    let mut session = session();
     session.apply(Action::SwitchTo(Lead::Angles));
     let before = session.document().clone();
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
@@ -206,7 +212,7 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
         vec![Action::SetRoot(Vec3::splat(far)), Action::SetHand(Vec3::splat(far))],
         vec![Action::SetUpper(far), Action::SetLower(far), Action::SetHand(Vec3::splat(-far))],
     ] {
-        let mut session = Session::default();
+        let mut session = session();
         for action in actions {
             session.apply(action);
         }
@@ -222,7 +228,7 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
 
 #[test]
 fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
-    let mut session = Session::default();
+    let mut session = session();
     let far = Vec3::new(-1e19, 0.7, -f32::MAX);
     for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
         session.apply(Action::AddChild { parent, tip });
@@ -239,7 +245,7 @@ fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
 
 #[test]
 fn undo_and_redo_keep_the_sign_of_a_zero() {
-    let mut session = Session::default();
+    let mut session = session();
     let text = |session: &Session| to_json(session.document()).expect("saved");
     let mut texts = vec![text(&session)];
     for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
@@ -262,7 +268,7 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 #[test]
 fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(Action::SetSwivel(Swivel::Pole));
         session.apply(Action::SetPole(Vec3::new(0.0, 0.0, pole)));
         let grip = Grip::Pole(Handle::Axis(2));
@@ -278,7 +284,7 @@ fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
 
 #[test]
 fn the_same_revision_is_saved_as_the_same_text() {
-    let mut session = Session::default();
+    let mut session = session();
     let (revision, text) = (session.revision(), to_json(session.document()).expect("saved"));
     session.apply(Action::BeginEdit);
     for x in [1.0, -0.0] {
@@ -292,7 +298,7 @@ fn the_same_revision_is_saved_as_the_same_text() {
 #[test]
 fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
     for angle in [f32::MAX, f32::MIN] {
-        let mut session = Session::default();
+        let mut session = session();
         session.apply(Action::SetRotation { joint: 0, rotation: Vec3::X * angle });
         let axis = session.ring(0, 0).expect("a ring").axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
