@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use egui::{FullOutput, RawInput, Rect, ViewportId};
+use egui::{Event, FullOutput, RawInput, Rect, ViewportId};
 use egui_winit::WindowSettings;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -48,6 +48,8 @@ pub(super) struct AppWindow {
     staging: Staging,
     /// The scene as it is to be drawn; the memory is that of the one before last.
     scene: Option<Scene>,
+    /// What has been typed since a file dialog was asked for.
+    held_keys: Vec<Event>,
     /// When the last frame began, if it asked for another one at once.
     moving_since: Option<Instant>,
     frames: u64,
@@ -99,6 +101,7 @@ impl AppWindow {
             machine,
             staging: Staging::default(),
             scene: None,
+            held_keys: Vec::new(),
             moving_since: None,
             frames: 0,
             title: TITLE.to_owned(),
@@ -263,11 +266,21 @@ impl AppWindow {
         session: &mut Session,
         frame: &mut Frame,
     ) -> (FullOutput, Rect, Vec<Effect>) {
-        let strokes = ui::strokes(std::mem::take(&mut input.events));
+        let mut events = std::mem::take(&mut self.held_keys);
+        if !session.is_asking() {
+            // The system's dialog had the keyboard.
+            events.clear();
+        }
+        events.append(&mut input.events);
+        let strokes = ui::strokes(events);
         let mut output = FullOutput::default();
         let mut viewport = Rect::ZERO;
         let mut effects = Vec::new();
         for events in strokes {
+            let events = match session.is_choosing() {
+                true => ui::hold_typed(events, &mut self.held_keys),
+                false => events,
+            };
             let dropped_files = std::mem::take(&mut input.dropped_files);
             let stroke = RawInput { events, dropped_files, ..input.clone() };
             let (shown, rect, asked) = self.run_stroke(stroke, session, frame);

@@ -99,6 +99,11 @@ impl Session {
         self.choosing || self.dialog.as_ref().is_some_and(Dialog::is_modal)
     }
 
+    /// Whether the system's file dialog has been asked for and has not answered.
+    pub fn is_choosing(&self) -> bool {
+        self.choosing
+    }
+
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {
         // What waits for the document to be saved waits for no other question.
         let is_saving = match &dialog {

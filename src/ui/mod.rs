@@ -47,7 +47,7 @@ mod wrist;
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
 pub use frame_times::{Frame, FrameTimes, Spread};
-pub use strokes::strokes;
+pub use strokes::{hold_typed, strokes};
 
 use crate::document::RigKind;
 use crate::render::Counts;

@@ -1,6 +1,6 @@
 //! The input of one frame, split at every key press and mouse button.
 
-use egui::Event;
+use egui::{Event, Key};
 
 /// Splits a frame's events so that the panels can answer each key press and mouse button before the
 /// next one arrives.
@@ -28,6 +28,19 @@ pub fn strokes(events: Vec<Event>) -> Vec<Vec<Event>> {
     parts
 }
 
+/// Moves what is typed from a stroke to `held`, for the dialog that is about to open. Esc stays: it
+/// ends the waiting.
+pub fn hold_typed(stroke: Vec<Event>, held: &mut Vec<Event>) -> Vec<Event> {
+    let is_typed = |event: &Event| match event {
+        Event::Key { key, .. } => *key != Key::Escape,
+        Event::Text(_) | Event::Ime(_) | Event::Copy | Event::Cut | Event::Paste(_) => true,
+        _ => false,
+    };
+    let (typed, rest) = stroke.into_iter().partition(is_typed);
+    held.extend::<Vec<_>>(typed);
+    rest
+}
+
 /// Releases of mouse buttons count too: clicks are read at the release.
 fn is_press(event: &Event) -> bool {
     match event {
@@ -39,7 +52,7 @@ fn is_press(event: &Event) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use egui::{Key, Modifiers};
+    use egui::Modifiers;
 
     use super::*;
 
@@ -73,6 +86,18 @@ mod tests {
         let [first, second] = &parts[..] else { panic!("{parts:?}") };
         assert_eq!(first[1], text("a"));
         assert_eq!(second[1], text("b"));
+    }
+
+    #[test]
+    fn what_is_typed_is_held_but_not_esc_nor_the_mouse() {
+        let text = Event::Text("a".to_owned());
+        let escape = key(Key::Escape, true, Modifiers::NONE);
+        let moved = Event::PointerMoved(egui::pos2(1.0, 2.0));
+        let pressed = key(Key::A, true, Modifiers::NONE);
+        let mut held = vec![Event::Text("b".to_owned())];
+        let stroke = vec![pressed.clone(), moved.clone(), text.clone(), escape.clone()];
+        assert_eq!(hold_typed(stroke, &mut held), [moved, escape]);
+        assert_eq!(held[1..], [pressed, text]);
     }
 
     #[test]

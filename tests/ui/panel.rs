@@ -151,7 +151,7 @@ fn reset_all_resets_everything_but_what_the_user_likes() {
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset all");
-    assert_eq!(bench.session().document(), &Default::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
     assert_eq!(bench.session().preferences().theme, Theme::Light);
 }
 
@@ -236,5 +236,5 @@ fn a_panel_can_be_made_wider() {
     bench.drag_and_drop(egui::PointerButton::Primary, edge, edge + egui::vec2(60.0, 0.0));
     bench.settle();
     assert!((bench.viewport().left() - edge.x - 63.0).abs() < 12.0, "{:?}", bench.viewport());
-    assert_eq!(bench.session().document(), &Default::default());
+    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
 }
