@@ -20,15 +20,18 @@
 //!
 //! ```text
 //! D  = clamp(|c|, |δ|, L)
-//! hₑ = ½ (D + δ·L/D)
-//! oₑ = ½ √((L+D)(L−D) · (D+δ)/D · (D−δ)/D)         Heron's formula, factored
+//! a  = d₁ − hₑ = (L−D)(D−δ) / 2D                   the law of cosines, factored
+//! b  = d₁ + hₑ = (L+D)(D+δ) / 2D
+//! hₑ = d₁ − a if a ≤ b, else b − d₁
+//! oₑ = √(min(a, b) · (d₁ + |hₑ|))
 //! ```
 //!
-//! No arc cosine and no tangent stands between the cursor and the elbow, so the pose is as exact
-//! near a straight or folded arm as anywhere else: limb lengths and hand hold to 3e-7·L. The
-//! textbook form (d₁² − d₂² + D²)/2D misses by 3e-4·L when one bone is thirty times the other.
-//! The elbow itself is ill-conditioned where the arm is nearly straight or folded, whatever the
-//! formula: there oₑ moves like √(L − D).
+//! No arc cosine and no tangent stands between the cursor and the elbow, and nothing cancels. hₑ and
+//! oₑ come from the same one of a and b, the smaller, so hₑ² + oₑ² = d₁² whatever its rounding. So
+//! the pose is as exact near a straight or folded arm as anywhere else: limb lengths and hand hold
+//! to 3e-7·L. The textbook form (d₁² − d₂² + D²)/2D misses by 3e-4·L when one bone is thirty times
+//! the other. The elbow itself is ill-conditioned where the arm is nearly straight or folded,
+//! whatever the formula: there oₑ moves like √(L − D).
 //!
 //! # What breaks
 //!
@@ -41,7 +44,7 @@
 //!
 //! E. Palmieri, *IK-Rigging in three.js*, 2014, section 2 (hierarchy, θ_z, θ_y, θ_e); R. Juckett,
 //! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles
-//! of a Needle-like Triangle*, 2014 (why Heron's formula must be factored).
+//! of a Needle-like Triangle*, 2014 (why the products must stay factored).
 
 mod placing;
 

@@ -144,15 +144,16 @@ impl Scaled {
     #[inline(always)]
     fn elbow_in_socket<const ANY: bool>(self, distance: f32) -> (f32, f32) {
         let Self { upper, sum, difference, .. } = self;
-        let per_distance = 1.0 / distance;
-        // L·(δ/D) rather than δ·(L/D): D is never less than |δ|, but it may be tiny beside L.
-        let along = 0.5 * (distance + sum * (difference * per_distance));
-        let squared = (sum + distance)
-            * (sum - distance)
-            * ((distance + difference) * per_distance)
-            * ((distance - difference) * per_distance);
-        let out = 0.5 * squared.max(0.0).sqrt();
-        if ANY && distance < NOWHERE { (0.0, upper) } else { (between(along, -upper, upper), out) }
+        let per_diameter = 0.5 / distance;
+        let ahead = (sum - distance) * ((distance - difference) * per_diameter);
+        let behind = (sum + distance) * ((distance + difference) * per_diameter);
+        let is_ahead = ahead <= behind;
+        let missing = if is_ahead { ahead } else { behind };
+        let along = upper - missing;
+        // With the same `missing`, its rounding leaves h_e² + o_e² at d₁².
+        let out = (missing * (upper + along)).sqrt();
+        let along = if is_ahead { along } else { -along };
+        if ANY && distance < NOWHERE { (0.0, upper) } else { (along, out) }
     }
 }
 
@@ -168,7 +169,8 @@ impl Sight {
         };
         let (near, near_flat) = (cursor * scale, flat * flat_scale);
         let far = near.length();
-        let direction = near * (1.0 / far);
+        // A division rounds once, a reciprocal and a product twice: it shows in the upper length.
+        let direction = near / far;
         let heading = near_flat * (1.0 / near_flat.length());
         let facing = if ANY && cursor == Vec3::ZERO {
             last
