@@ -1,32 +1,45 @@
-//! The cases that break careless jobs, by name.
+//! The cases that break careless jobs: those of ozz-animation's `two_bone_ik_job_tests.cc`, and more.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DAffine3, DVec3, Quat, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 use ik_arm::kinematics::job::TwoBoneJob;
 use ik_arm::kinematics::two_bone::Reach;
 
 use crate::skeleton::*;
 
-#[test]
-fn start_joint_correction_turns_the_limb_to_the_target() {
-    let around = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0)];
-    let parents = [
+/// ozz's parents, and a mirror of one axis.
+fn parents() -> [DAffine3; 7] {
+    [
         DAffine3::IDENTITY,
         DAffine3::from_translation(DVec3::Y),
         DAffine3::from_rotation_x(PI / 3.0),
         DAffine3::from_scale(DVec3::splat(2.0)),
+        DAffine3::from_scale(DVec3::new(1.0, 2.0, 1.0)),
         DAffine3::from_scale(DVec3::splat(-3.0)),
         DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)),
-    ];
-    for parent in parents {
-        let skeleton = Skeleton { parent, ..Skeleton::square() };
+    ]
+}
+
+#[test]
+fn under_every_parent_the_start_joint_turns_the_limb_to_the_target() {
+    let around = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0)];
+    // As ozz has it, and with the elbow's own frame turned by a right angle.
+    let turned = Skeleton {
+        middle: Local { rotation: DQuat::from_rotation_z(FRAC_PI_2), ..Local::at(DVec3::Y) },
+        end: Local::at(DVec3::NEG_Y),
+        ..Skeleton::square()
+    };
+    for (parent, own) in parents().into_iter().flat_map(|p| [(p, Skeleton::square()), (p, turned)])
+    {
+        let skeleton = Skeleton { parent, ..own };
         let pole = parent.transform_vector3(DVec3::Y).as_vec3();
         for (quarters, target) in around.into_iter().enumerate() {
             let target = parent.transform_point3(target);
             let job = TwoBoneJob { pole, hinge: Vec3::Z, ..skeleton.job(target) };
             let correction = run(job);
             is_at(&skeleton, &correction, target);
+            assert!(skeleton.off_ss(&correction, target) <= EXACT);
             same_turn(correction.start, DVec3::Y, -FRAC_PI_2 * quarters as f64);
             same_turn(correction.middle, DVec3::Z, 0.0);
         }
@@ -34,7 +47,29 @@ fn start_joint_correction_turns_the_limb_to_the_target() {
 }
 
 #[test]
-fn pole() {
+fn under_every_parent_the_middle_joint_opens_and_closes_as_under_none() {
+    for target in [DVec3::new(0.5, 0.2, 0.1), DVec3::new(-0.3, 1.7, 0.4)] {
+        let ask = |parent: DAffine3| {
+            let skeleton = Skeleton { parent, ..Skeleton::square() };
+            let pole = parent.transform_vector3(DVec3::new(0.3, 1.0, -0.2)).as_vec3();
+            let target = parent.transform_point3(target.as_vec3().as_dvec3());
+            let job = TwoBoneJob { pole, hinge: Vec3::Z, twist: 0.4, ..skeleton.job(target) };
+            let correction = run(job);
+            assert_eq!(correction.reach, Reach::Reached, "{parent}");
+            assert!(skeleton.off_ss(&correction, target) <= EXACT, "{parent}");
+            correction
+        };
+        let under_none = ask(DAffine3::IDENTITY);
+        assert!(under_none.middle.w < 0.99, "nothing to open or close");
+        for correction in parents().map(ask) {
+            assert!(apart(correction.start.as_dquat(), under_none.start.as_dquat()) < 2e-6);
+            assert!(apart(correction.middle.as_dquat(), under_none.middle.as_dquat()) < 2e-6);
+        }
+    }
+}
+
+#[test]
+fn the_elbow_turns_to_the_pole() {
     let skeleton = Skeleton::square();
     let cases = [
         (Vec3::Y, DVec3::new(1.0, 1.0, 0.0), DVec3::X, 0.0),
@@ -65,7 +100,7 @@ fn without_a_pole_the_start_joint_makes_the_least_turn() {
 }
 
 #[test]
-fn pole_target_alignment() {
+fn a_pole_on_the_line_to_the_target_is_no_pole() {
     let skeleton = Skeleton::square();
     for aside in [0.0, 1e-9, 1e-6, 1e-3] {
         for sign in [1.0, -1.0] {
@@ -82,7 +117,7 @@ fn pole_target_alignment() {
 }
 
 #[test]
-fn zero_scale() {
+fn a_joint_of_scale_0_does_not_turn() {
     let target = DVec3::new(0.3, 0.4, 0.5);
     let none = Local { scale: DVec3::ZERO, ..Local::at(DVec3::ZERO) };
     let start = Skeleton { start: none, ..Skeleton::square() };
@@ -105,7 +140,7 @@ fn zero_scale() {
 }
 
 #[test]
-fn soften() {
+fn a_softened_hand_stays_behind_near_its_limits() {
     let skeleton = Skeleton::square();
     let reach = |distance: f64, softness| {
         run(TwoBoneJob { softness, pole: Vec3::Y, ..skeleton.job(DVec3::X * distance) }).reach
@@ -121,7 +156,7 @@ fn soften() {
 }
 
 #[test]
-fn twist() {
+fn a_twist_turns_the_limb_about_the_line_to_the_target() {
     let skeleton = Skeleton::square();
     let target = DVec3::new(1.0, 1.0, 0.0);
     for angle in [0.0, FRAC_PI_2, -FRAC_PI_2, 3.0, PI, 2.0 * PI, 1000.0] {
@@ -153,7 +188,7 @@ fn a_mirrored_model_twists_like_its_mirror_image() {
 }
 
 #[test]
-fn weight() {
+fn a_weight_makes_that_part_of_the_correction() {
     let skeleton = Skeleton::square();
     let at = |weight| {
         let job = skeleton.job(DVec3::X * 2.0);
@@ -178,7 +213,7 @@ fn weight() {
 }
 
 #[test]
-fn hinge_the_wrong_way_round() {
+fn a_hinge_axis_the_wrong_way_round_bends_the_limb_to_its_other_side() {
     let skeleton = Skeleton::square();
     let target = DVec3::new(1.0, 1.0, 0.0);
     let job = TwoBoneJob { pole: Vec3::Y, hinge: Vec3::NEG_Z, ..skeleton.job(target) };
@@ -248,7 +283,7 @@ fn a_folded_limb_opens_about_its_hinge_axis() {
 }
 
 #[test]
-fn zero_length_start_target() {
+fn a_target_at_the_start_joint_folds_the_limb() {
     let skeleton = Skeleton::square();
     let job = TwoBoneJob { pole: Vec3::Y, hinge: Vec3::Z, ..skeleton.job(DVec3::ZERO) };
     is_at(&skeleton, &run(job), DVec3::ZERO);
@@ -266,7 +301,7 @@ fn zero_length_start_target() {
 }
 
 #[test]
-fn zero_length_bone_chain() {
+fn a_bone_of_length_0_leaves_one_bone_to_point_at_the_target() {
     let none = Local::at(DVec3::ZERO);
     let target = DVec3::new(0.0, 0.0, 1.0);
     for skeleton in [

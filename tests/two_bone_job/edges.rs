@@ -1,6 +1,6 @@
 //! What is refused, and what is only just not.
 
-use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3, Quat, Vec3};
 use ik_arm::kinematics::job::{JobError, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
@@ -34,21 +34,26 @@ fn what_cannot_be_done_is_refused_by_name() {
     };
     let said = |job: TwoBoneJob| job.run().expect_err("refused").to_string();
 
-    let uneven = [scaled(1.0, 1.0, 1.01), scaled(0.0, 1.0, 1.0), scaled(2.0, -1.0, 2.0)];
-    for start in uneven {
-        let error = TwoBoneJob { start, ..job }.run();
-        assert!(matches!(error, Err(JobError::UnevenAxes { field: "start", .. })), "{error:?}");
-    }
-    assert!(TwoBoneJob { start: scaled(1.0, 1.0, 1.0009), ..job }.run().is_ok());
+    assert!(TwoBoneJob { middle: scaled(1.0, 1.0, 1.0009), ..job }.run().is_ok());
     assert!(TwoBoneJob { middle: sheared(0.0009), ..job }.run().is_ok());
+    for middle in [scaled(1.0, 1.0, 1.01), scaled(0.0, 1.0, 1.0), scaled(2.0, -1.0, 2.0)] {
+        let error = TwoBoneJob { middle, ..job }.run();
+        assert!(matches!(error, Err(JobError::UnevenAxes { field: "middle", .. })), "{error:?}");
+    }
     assert_eq!(
         said(TwoBoneJob { middle: scaled(1.0, 2.0, 1.0), ..job }),
-        "middle has axes of length 1, 2 and 1; they must be equal to one in a thousand"
+        "middle has axes of length 1, 2 and 1 in start joint space; they must be equal to one in a \
+         thousand"
     );
     assert_eq!(
-        said(TwoBoneJob { end: sheared(-1.0), ..job }),
-        "end has axes that are not perpendicular: the cosine between two is -0.70710677; it must \
-         be from -0.001 to 0.001"
+        said(TwoBoneJob { start: scaled(1.0, 2.0, 1.0), ..job }),
+        "middle has axes of length 1, 0.5 and 1 in start joint space; they must be equal to one in \
+         a thousand"
+    );
+    assert_eq!(
+        said(TwoBoneJob { middle: sheared(-1.0), ..job }),
+        "middle has axes that are not perpendicular in start joint space: the cosine between two is \
+         -0.70710677; it must be from -0.001 to 0.001"
     );
 
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -74,6 +79,50 @@ fn what_cannot_be_done_is_refused_by_name() {
     for weight in [-0.1, 1.1] {
         let expected = format!("weight is {weight}; it must be from 0 to 1");
         assert_eq!(said(TwoBoneJob { weight, ..job }), expected);
+    }
+}
+
+#[test]
+fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
+    let job = Skeleton::square().job(DVec3::X);
+    let flat = Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0));
+    let turn = Affine3A::from_quat(Quat::from_euler(glam::EulerRot::XYZ, 0.5, 0.9, -0.4));
+    let line = Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::X * 2.0, Vec3::NEG_X));
+    let plane = Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(0.5, -3.0, 0.0)));
+    for start in [flat, flat * turn, turn * flat, turn * flat * turn, line, plane] {
+        // The middle joint under it, as a skeleton would have it.
+        let middle = start * job.middle;
+        let error = TwoBoneJob { start, middle, ..job }.run().expect_err("refused");
+        assert_eq!(error, JobError::NotInvertible { field: "start" });
+        assert_eq!(
+            error.to_string(),
+            "start has axes in one plane; its matrix must have an inverse, or scale 0"
+        );
+    }
+    // Nothing turns under scale 0, whatever the middle joint is.
+    let start = Affine3A::from_scale(Vec3::ZERO);
+    for middle in [Affine3A::from_scale(Vec3::ZERO), flat, job.middle] {
+        let correction = run(TwoBoneJob { start, middle, ..job });
+        assert_eq!((correction.start, correction.middle), (Quat::IDENTITY, Quat::IDENTITY));
+        assert!(correction.hand_error.is_finite());
+    }
+    // Thin is not flat.
+    let parent = DAffine3::from_scale(DVec3::new(1.0, 1e-4, 1.0));
+    let skeleton = Skeleton { parent, ..Skeleton::square() };
+    let target = parent.transform_point3(DVec3::new(0.2, 0.7, 0.9));
+    let correction = run(skeleton.job(target));
+    assert_eq!(correction.reach, Reach::Reached);
+    assert!(skeleton.off_ss(&correction, target) <= EXACT);
+}
+
+#[test]
+fn the_end_joints_axes_do_not_matter() {
+    let job = TwoBoneJob { pole: Vec3::Y, ..Skeleton::square().job(DVec3::new(0.3, 0.8, 1.1)) };
+    let expected = run(job);
+    let nan = Mat3::from_cols(Vec3::NAN, Vec3::INFINITY, Vec3::ZERO);
+    for axes in [Mat3::ZERO, Mat3::from_diagonal(Vec3::new(1.0, 2.0, 1.0)), nan] {
+        let end = Affine3A::from_mat3_translation(axes, job.end.translation.into());
+        assert_eq!(run(TwoBoneJob { end, ..job }), expected);
     }
 }
 

@@ -109,6 +109,17 @@ impl Skeleton {
         Self { start: self.start.turned(by.start), middle: self.middle.turned(by.middle), ..*self }
     }
 
+    /// How far the hand is from a target after a correction, in start joint space and lengths of the
+    /// chain there.
+    pub fn off_ss(&self, by: &Correction, target: DVec3) -> f64 {
+        let [start, middle, end] = self.joints();
+        let to_ss = start.inverse();
+        let [elbow, hand] = [middle, end].map(|joint| to_ss.transform_point3(joint.translation));
+        let turned = to_ss.transform_point3(self.turned(by).points()[2]);
+        let length = elbow.length() + elbow.distance(hand);
+        turned.distance(to_ss.transform_point3(target)) / length
+    }
+
     pub fn job(&self, target: DVec3) -> TwoBoneJob {
         let [start, middle, end] = self.joints().map(|joint| {
             let axes = joint.matrix3.as_mat3();

@@ -1,22 +1,29 @@
 use glam::{DMat3, DQuat, DVec3};
 
-use super::TwoBoneJob;
+use super::{JobError, TwoBoneJob, error};
 
-/// The three joints, relative to the start joint, in model space.
+/// The three joints in start joint space, in its own unit.
 pub(super) struct Chain {
-    /// Where the start joint is.
-    pub start: DVec3,
-    /// From start to middle.
-    upper: DVec3,
-    /// From middle to end.
-    lower: DVec3,
-    start_axes: DMat3,
-    middle_axes: DMat3,
+    /// Where the start joint is, in model space.
+    start: DVec3,
+    /// M_s: the start joint's axes in model space. Where they have scale 0, nothing can turn, and
+    /// start joint space is model space.
+    axes: DMat3,
+    /// M_s⁻¹.
+    axes_inverse: DMat3,
+    can_turn: bool,
+    /// u, from start to middle.
+    upper_ss: DVec3,
+    /// l, from middle to end.
+    lower_ss: DVec3,
+    /// M_s⁻¹·M_m: the middle joint's axes; 0 where nothing turns.
+    middle_ss: DMat3,
     /// From middle joint space to start joint space, scales and mirrors left out: what an axis is
     /// turned by. (A turn about an axis is one about the axis's mirror image the other way round.)
     pub middle_turn: DQuat,
-    /// An ulp of the joints' largest coordinate, or a little more.
-    pub rounding: f64,
+    /// An ulp of the joints' largest model space coordinate, or a little more, along the axis where
+    /// it is longest here.
+    rounding_ss: f64,
 }
 
 /// The two bones in start joint space, in units of the chain's length.
@@ -32,48 +39,74 @@ pub(super) struct Limb {
 }
 
 impl Chain {
-    pub fn new(job: &TwoBoneJob) -> Self {
+    /// Refuses a start joint whose matrix has no inverse (scale 0 is accepted), and a middle joint
+    /// whose axes are uneven or skew in start joint space.
+    pub fn new(job: &TwoBoneJob) -> Result<Self, JobError> {
         let joints = [job.start, job.middle, job.end];
         let [start, middle, end] = joints.map(|joint| joint.translation.as_dvec3());
-        let [start_axes, middle_axes, _] = joints.map(|joint| joint.matrix3.as_dmat3());
+        let start_axes = job.start.matrix3.as_dmat3();
+        let can_turn = start_axes != DMat3::ZERO;
+        let axes = if can_turn { start_axes } else { DMat3::IDENTITY };
+        let axes_inverse = inverse(axes).ok_or(JobError::NotInvertible { field: "start" })?;
+        let middle_axes = if can_turn { job.middle.matrix3.as_dmat3() } else { DMat3::ZERO };
+        let middle_ss = axes_inverse * middle_axes;
+        error::check_similarity("middle", middle_ss)?;
         let largest = [start, middle, end].map(|point| point.abs().max_element());
-        Self {
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        Ok(Self {
             start,
-            upper: middle - start,
-            lower: end - middle,
-            start_axes,
-            middle_axes,
-            middle_turn: turn_between(start_axes, middle_axes),
-            rounding: largest.into_iter().fold(0.0, f64::max) * f64::from(f32::EPSILON),
-        }
+            axes,
+            axes_inverse,
+            can_turn,
+            upper_ss: axes_inverse * (middle - start),
+            lower_ss: axes_inverse * (end - middle),
+            middle_ss,
+            middle_turn: nearest_turn(middle_ss),
+            rounding_ss: largest * f64::from(f32::EPSILON) * longest_axis(axes_inverse),
+        })
     }
 
     /// L.
-    pub fn length(&self) -> f64 {
-        self.upper.length() + self.lower.length()
+    pub fn length_ss(&self) -> f64 {
+        self.upper_ss.length() + self.lower_ss.length()
     }
 
-    /// A vector of model space; nothing where the start joint has scale 0.
-    pub fn vector_ss(&self, vector: DVec3) -> Option<DVec3> {
-        (self.start_axes != DMat3::ZERO).then(|| self.start_axes.inverse() * vector)
+    /// A model space point.
+    pub fn point_ss(&self, point: DVec3) -> DVec3 {
+        self.vector_ss(point - self.start)
+    }
+
+    /// A model space vector.
+    pub fn vector_ss(&self, vector: DVec3) -> DVec3 {
+        self.axes_inverse * vector
+    }
+
+    /// A vector's length in model space.
+    pub fn length_in_model(&self, vector_ss: DVec3) -> f64 {
+        (self.axes * vector_ss).length()
     }
 
     /// Nothing where there is nothing to turn, or nothing that could turn it.
-    pub fn limb_ss(&self) -> Option<Limb> {
-        let (upper, lower) = (self.vector_ss(self.upper)?, self.vector_ss(self.lower)?);
-        let unit = upper.length() + lower.length();
-        let (upper_ss, lower_ss) = (upper / unit, lower / unit);
-        let is_jointed =
-            upper != DVec3::ZERO && lower != DVec3::ZERO && self.middle_axes != DMat3::ZERO;
-        let can_turn = (upper_ss + lower_ss).try_normalize().is_some();
-        let rounding = self.rounding / self.length();
-        (is_jointed || can_turn).then_some(Limb { upper_ss, lower_ss, unit, is_jointed, rounding })
+    pub fn limb(&self) -> Option<Limb> {
+        let unit = self.length_ss();
+        let (upper_ss, lower_ss) = (self.upper_ss / unit, self.lower_ss / unit);
+        let is_jointed = self.upper_ss != DVec3::ZERO
+            && self.lower_ss != DVec3::ZERO
+            && self.middle_ss != DMat3::ZERO;
+        let can_point = (upper_ss + lower_ss).try_normalize().is_some();
+        let rounding = self.rounding_ss / unit;
+        let limb = Limb { upper_ss, lower_ss, unit, is_jointed, rounding };
+        (self.can_turn && (is_jointed || can_point)).then_some(limb)
     }
 
-    /// From the start joint to the hand after both joints are turned, in model space.
-    pub fn hand(&self, start: DQuat, middle: DQuat) -> DVec3 {
-        let lower = turned(self.middle_axes, middle, self.lower);
-        turned(self.start_axes, start, self.upper + lower)
+    /// The hand after both joints are turned, by their matrices as they are given.
+    pub fn hand_ss(&self, start: DQuat, middle: DQuat) -> DVec3 {
+        let lower_ss = if self.middle_ss == DMat3::ZERO {
+            self.lower_ss
+        } else {
+            self.middle_ss * (middle * (self.middle_ss.inverse() * self.lower_ss))
+        };
+        start * (self.upper_ss + lower_ss)
     }
 }
 
@@ -89,20 +122,30 @@ impl Limb {
     }
 }
 
-/// A vector that hangs on a joint, after the joint is turned in its own space.
-fn turned(axes: DMat3, turn: DQuat, vector: DVec3) -> DVec3 {
-    if axes == DMat3::ZERO { vector } else { axes * (turn * (axes.inverse() * vector)) }
+/// `None` where the condition number is above a million: then rounding an axis to f32 moves what it
+/// spans by some percent.
+fn inverse(axes: DMat3) -> Option<DMat3> {
+    const WORST_CONDITION: f64 = 1e6;
+    if axes.determinant() == 0.0 {
+        return None;
+    }
+    let inverse = axes.inverse();
+    let condition = longest_axis(axes) * longest_axis(inverse);
+    (condition <= WORST_CONDITION).then_some(inverse)
 }
 
-/// The rotation that is nearest to what is between two joints, without scale and mirror: the polar
-/// decomposition by Newton's iteration, each step of which squares what is uneven or skew.
-fn turn_between(start_axes: DMat3, middle_axes: DMat3) -> DQuat {
+fn longest_axis(axes: DMat3) -> f64 {
+    axes.x_axis.length().max(axes.y_axis.length()).max(axes.z_axis.length())
+}
+
+/// The rotation that is nearest to axes, without scale and mirror: the polar decomposition by
+/// Newton's iteration, each step of which squares what is uneven or skew.
+fn nearest_turn(axes: DMat3) -> DQuat {
     const STEPS: usize = 3;
-    if start_axes == DMat3::ZERO || middle_axes == DMat3::ZERO {
+    if axes == DMat3::ZERO {
         return DQuat::IDENTITY;
     }
-    let between = start_axes.inverse() * middle_axes;
-    let even = between * between.determinant().cbrt().recip();
+    let even = axes * axes.determinant().cbrt().recip();
     let nearest = (0..STEPS).fold(even, |m, _| (m + m.inverse().transpose()) * 0.5);
     DQuat::from_mat3(&nearest).normalize()
 }

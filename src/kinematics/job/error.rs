@@ -1,4 +1,4 @@
-use glam::{Affine3A, DVec3};
+use glam::{DMat3, DVec3};
 use thiserror::Error;
 
 use super::{Softening, TwoBoneJob};
@@ -6,32 +6,42 @@ use super::{Softening, TwoBoneJob};
 /// A job that cannot be done.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum JobError {
-    /// A matrix or a vector has a number that is infinite or not a number.
+    /// A matrix or a vector has a number that is infinite or not a number (in `end`, its place: its
+    /// axes may be anything).
     #[error("{field} is not finite; each of its numbers must be")]
     NotFinite {
         /// The field of [`TwoBoneJob`].
         field: &'static str,
     },
-    /// A joint is scaled unevenly.
+    /// The start joint's axes are in one plane or on one line (to a condition number of 1e6), and are
+    /// not all 0.
+    #[error("{field} has axes in one plane; its matrix must have an inverse, or scale 0")]
+    NotInvertible {
+        /// The matrix: `"start"`.
+        field: &'static str,
+    },
+    /// In start joint space, the middle joint is scaled unevenly.
     #[error(
-        "{field} has axes of length {}, {} and {}; they must be equal to one in a thousand",
+        "{field} has axes of length {}, {} and {} in start joint space; they must be equal to one in \
+         a thousand",
         .lengths[0], .lengths[1], .lengths[2]
     )]
     UnevenAxes {
-        /// The matrix: `"start"`, `"middle"` or `"end"`.
+        /// The matrix: `"middle"`.
         field: &'static str,
-        /// Of its three columns.
+        /// Of the three columns of start⁻¹ · middle.
         lengths: [f32; 3],
     },
-    /// A joint is sheared.
+    /// In start joint space, the middle joint is sheared.
     #[error(
-        "{field} has axes that are not perpendicular: the cosine between two is {cosine}; it must be \
-         from -0.001 to 0.001"
+        "{field} has axes that are not perpendicular in start joint space: the cosine between two is \
+         {cosine}; it must be from -0.001 to 0.001"
     )]
     SkewAxes {
-        /// The matrix: `"start"`, `"middle"` or `"end"`.
+        /// The matrix: `"middle"`.
         field: &'static str,
-        /// Of the angle between the two axes that are farthest from perpendicular.
+        /// Of the angle between the two columns of start⁻¹ · middle that are farthest from
+        /// perpendicular.
         cosine: f32,
     },
     /// A number is outside its range.
@@ -47,13 +57,17 @@ pub enum JobError {
 }
 
 impl TwoBoneJob {
+    /// Refuses numbers that are not finite or out of their range.
     pub(super) fn checked(&self) -> Result<Softening, JobError> {
-        let joints = [("start", self.start), ("middle", self.middle), ("end", self.end)];
-        for (field, joint) in joints {
-            check_axes(field, joint)?;
-        }
-        let vectors = [("target", self.target), ("pole", self.pole), ("hinge", self.hinge)];
-        if let Some((field, _)) = vectors.into_iter().find(|(_, vector)| !vector.is_finite()) {
+        let are_finite = [
+            ("start", self.start.is_finite()),
+            ("middle", self.middle.is_finite()),
+            ("end", self.end.translation.is_finite()),
+            ("target", self.target.is_finite()),
+            ("pole", self.pole.is_finite()),
+            ("hinge", self.hinge.is_finite()),
+        ];
+        if let Some((field, _)) = are_finite.into_iter().find(|(_, is_finite)| !is_finite) {
             return Err(JobError::NotFinite { field });
         }
         if !self.twist.is_finite() {
@@ -71,14 +85,10 @@ fn out_of_range(field: &'static str, value: f32, range: &'static str) -> JobErro
     JobError::OutOfRange { field, value, range }
 }
 
-/// Refuses all that is not a rotation, a scale that is the same along each axis (or 0) and perhaps a
-/// mirror.
-fn check_axes(field: &'static str, joint: Affine3A) -> Result<(), JobError> {
+/// Refuses axes that are not those of a similarity: a rotation and a scale that is the same along
+/// each axis (or 0), mirrored or not.
+pub(super) fn check_similarity(field: &'static str, axes: DMat3) -> Result<(), JobError> {
     const DIFFERENT: f64 = 1e-3;
-    if !joint.is_finite() {
-        return Err(JobError::NotFinite { field });
-    }
-    let axes = joint.matrix3.as_dmat3();
     let lengths = [axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length()];
     let longest = lengths.into_iter().fold(0.0, f64::max);
     let shortest = lengths.into_iter().fold(longest, f64::min);

@@ -38,12 +38,15 @@
 //! The matrices, the target and the pole are in one space that the caller chooses: the model's, the
 //! world's, the start joint's parent's. It is called model space here. Vectors are columns: model =
 //! parent's model · local. The joints need not be each other's direct children; what lies between
-//! them stays as it is. No parent's matrix is needed: all is computed in f64 in the start joint's own
-//! space, relative to the start joint, where neither the model's place, turn and size nor a mirror
-//! above the start joint is to be seen. So the rotations are the same wherever the model stands.
+//! them stays as it is. No parent's matrix is needed: all is computed in f64 in start joint space,
+//! M_s⁻¹ · (point − start), with M_s the start joint's matrix. There both rotations are rigid whatever
+//! M_s is, so every M_s that has an inverse is right: moved, turned, scaled, mirrored, and unevenly
+//! scaled or sheared by what is above the start joint. The rotations are the same wherever the model
+//! stands. Bone lengths, limits, the twist's angle and the accuracy are those of start joint space.
 //!
-//! A mirror is right wherever it is above the start joint, and in a joint's own scale where that is
-//! the same along each axis (−1, −1, −1); for one that is not, see [`Correction::before_scales`].
+//! Only M_s⁻¹ · M_m, the middle joint's matrix in that space, must be a rotation and an even scale,
+//! mirrored or not. A mirror in a joint's own scale is right where that is the same along each axis
+//! (−1, −1, −1); for one that is not, see [`Correction::before_scales`].
 //!
 //! # The mathematics
 //!
@@ -85,15 +88,25 @@
 //!   scale 0: no correction.
 //! - A weight between 0 and 1 moves the hand on an arc, which need not pass near the target; where a
 //!   full correction is half a turn, its sense is not defined.
-//! - A joint's scale that is not the same along each axis cannot be turned by a rotation: it is
-//!   refused from a difference of one in a thousand, and less is ignored.
+//! - An uneven scale below the start joint changes the lower bone's length as that turns, which the
+//!   closed form does not know. Where M_s⁻¹ · M_m shows it, it is refused from a difference of one in
+//!   a thousand; less is ignored, and the hand is off by as much.
+//! - An uneven scale of the start joint's own (translation · rotation · *scale*) does not show: a
+//!   parent's may give the same M_s. The hand is then elsewhere. Give M_s without that scale.
+//! - A start joint whose axes are in one plane, such as one of scale (1, 0, 1), has no start joint
+//!   space: it is refused.
 //!
 //! # Accuracy
 //!
-//! The hand of a skeleton that is posed anew is within 1e-6 of the chain's length of a target within
-//! reach, as seen from the start joint's parent; where coordinates are large, add 4 ulp of the largest
-//! (f32 matrices cannot say better where the joints are). [`Correction::reach`] is measured with the
-//! rotations as they are returned: it never says [`Reach::Reached`] of a hand that is elsewhere.
+//! In start joint space the hand of a skeleton that is posed anew is within 1e-6 of the chain's length
+//! of a target within reach, the three matrices taken as exact; in model space that is as much longer
+//! or shorter as M_s makes it. [`Correction::reach`] is measured there too, with the rotations as they
+//! are returned: it never says [`Reach::Reached`] of a hand that is elsewhere.
+//!
+//! The matrices themselves are rounded to f32. Where coordinates are large, that adds some 4 ulp of
+//! the largest in model space. Where M_s is very uneven, start joint space magnifies the rounding of
+//! M_m as much (its condition number times): the middle joint is then not quite a similarity, and the
+//! hand is not called reached if that moves it by more than 7e-7 of the chain's length.
 //!
 //! # Other programs
 //!
@@ -149,7 +162,7 @@ pub struct TwoBoneJob {
     /// length. 0 to go by how the limb is bent.
     pub hinge: Vec3,
     /// How far the limb is turned about the line from start to target, from the pole (without one,
-    /// from the least turn): radians, right-handed from start to target in the start joint's space.
+    /// from the least turn): radians, right-handed from start to target in start joint space.
     /// Where that is mirrored in the model, it is left-handed there.
     pub twist: f32,
     /// s, how early the hand begins to fall behind near its limits: from 0 to less than 1. See
@@ -166,12 +179,13 @@ pub struct Correction {
     pub start: Quat,
     /// Δ₂, for the middle joint; of unit length, w ≥ 0.
     pub middle: Quat,
-    /// Whether the hand is at the target then: to 7e-7 of the chain's length (of which a limit may
-    /// cost 2e-7) and an ulp of the joints' largest coordinate. A hand that is not there, be it out
-    /// of reach, softened or not of full weight, is [`Reach::TooClose`] where it is farther from the
-    /// start joint than the target is, else [`Reach::TooFar`].
+    /// Whether the hand is at the target then, in start joint space: to 7e-7 of the chain's length
+    /// there, of which a limit may cost 2e-7. A hand that is not there, be it out of reach, softened
+    /// or not of full weight, is [`Reach::TooClose`] where it is farther from the start joint than
+    /// the target is, in that space, else [`Reach::TooFar`]. (Where the start joint has scale 0, in
+    /// model space.)
     pub reach: Reach,
-    /// How far the hand is from the target then, in model space.
+    /// How far the hand is from the target then, in model space: the matrices' own unit.
     pub hand_error: f32,
 }
 
@@ -206,12 +220,13 @@ impl TwoBoneJob {
     ///
     /// # Errors
     ///
-    /// Refuses what is not finite, a matrix whose axes differ in length or are not perpendicular by
-    /// more than one in a thousand (scale 0 is accepted), a softness outside [0, 1) and a weight
-    /// outside [0, 1], and says which it is.
+    /// Refuses what is not finite, a start joint whose matrix has no inverse, a middle joint whose
+    /// axes, in start joint space, differ in length or are not perpendicular by more than one in a
+    /// thousand (scale 0 of either is accepted), a softness outside [0, 1) and a weight outside
+    /// [0, 1], and says which it is.
     pub fn run(&self) -> Result<Correction, JobError> {
         let softening = self.checked()?;
-        let chain = Chain::new(self);
+        let chain = Chain::new(self)?;
         let full = self.solve(&chain, softening).unwrap_or_default();
         let part = |turn| stages::weight(turn, self.weight.into()).as_quat();
         Ok(self.measured(&chain, part(full.start), part(full.middle), full.left))
@@ -219,9 +234,9 @@ impl TwoBoneJob {
 
     /// Nothing where there is nothing to turn.
     fn solve(&self, chain: &Chain, softening: Softening) -> Option<Full> {
-        let limb = chain.limb_ss()?;
-        let target_ss = chain.vector_ss(self.target.as_dvec3() - chain.start)? / limb.unit;
-        let pole_ss = chain.vector_ss(self.pole.as_dvec3())?.try_normalize();
+        let limb = chain.limb()?;
+        let target_ss = chain.point_ss(self.target.as_dvec3()) / limb.unit;
+        let pole_ss = chain.vector_ss(self.pole.as_dvec3()).try_normalize();
         let hinge_ss = self.hinge.as_dvec3().try_normalize().map(|axis| chain.middle_turn * axis);
 
         let distance = stages::soften(&limb, target_ss.length(), softening);
@@ -236,23 +251,22 @@ impl TwoBoneJob {
 
     /// With where the rotations, as they are returned, leave the hand.
     fn measured(&self, chain: &Chain, start: Quat, middle: Quat, left: f64) -> Correction {
-        // What f32 makes of matrices and rotations; and of the limits, which are to be told from it.
+        // What f32 makes of the middle joint's axes and the rotations; and of the limits, which are
+        // to be told from it.
         const NEAR: f64 = 7e-7;
         const AT_LIMIT: f64 = 2e-7;
-        let length = chain.length();
-        let target = self.target.as_dvec3() - chain.start;
-        let hand = chain.hand(start.as_dquat(), middle.as_dquat());
-        let error = hand.distance(target);
-        let is_there = error <= NEAR * length + chain.rounding
-            && left * length <= AT_LIMIT * length + chain.rounding;
-        let reach = if is_there {
+        let target_ss = chain.point_ss(self.target.as_dvec3());
+        let hand_ss = chain.hand_ss(start.as_dquat(), middle.as_dquat());
+        let off_ss = hand_ss - target_ss;
+        let reach = if off_ss.length() <= NEAR * chain.length_ss() && left <= AT_LIMIT {
             Reach::Reached
-        } else if hand.length() > target.length() {
+        } else if hand_ss.length() > target_ss.length() {
             Reach::TooClose
         } else {
             Reach::TooFar
         };
-        Correction { start, middle, reach, hand_error: error.min(f32::MAX.into()) as f32 }
+        let hand_error = chain.length_in_model(off_ss).min(f32::MAX.into()) as f32;
+        Correction { start, middle, reach, hand_error }
     }
 }
 
