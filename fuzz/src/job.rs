@@ -1,4 +1,4 @@
-use glam::{Affine3A, DAffine3, DQuat, DVec3, Quat, Vec3};
+use glam::{Affine3A, DMat3, DQuat, DVec3, Quat, Vec3};
 use ik_arm::kinematics::job::{Correction, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
@@ -17,6 +17,10 @@ pub fn job(bits: &mut Bits<'_>) {
         weight: if bits.coin() { 1.0 } else { bits.number() },
         ..TwoBoneJob::new(start, middle, end, bits.vector())
     };
+    // Whatever is above them: often of an uneven scale.
+    let parent = if bits.coin() { bits.matrix() } else { Affine3A::IDENTITY };
+    let [start, middle, end] = [job.start, job.middle, job.end].map(|joint| parent * joint);
+    let job = TwoBoneJob { start, middle, end, ..job };
     match job.run() {
         Ok(correction) => check(&job, correction),
         Err(error) => is_readable(&error.to_string()),
@@ -43,43 +47,49 @@ fn check(job: &TwoBoneJob, correction: Correction) {
     if job.weight == 0.0 {
         assert_eq!([start, middle], [Quat::IDENTITY; 2]);
     }
-    let Some(twin) = twin(job, correction) else { return };
-    let [from, to] = [job.target.as_dvec3(), twin.hand];
-    let missed = from.distance(to);
-    // What the matrices are off from being a rotation and a scale is felt twice.
-    let blur = 1e-6 * twin.length + 4.0 * twin.rounding;
-    let off = (missed.min(f64::from(f32::MAX)) - f64::from(hand_error)).abs();
-    assert!(off <= blur + 1e-6 * missed, "{missed} away: {correction:?} of {job:?}");
-    let is_there = missed <= 2e-6 * twin.length + 4.0 * twin.rounding;
-    assert!(reach != Reach::Reached || is_there, "{missed} away: {correction:?} of {job:?}");
+    let Some(twin) = Twin::new(job, correction) else { return };
+    let Twin { off, missed, length, size } = twin;
+    let blur = 1e-6 * size * length + f64::from(f32::from_bits(4));
+    let differs = (missed.min(f64::from(f32::MAX)) - f64::from(hand_error)).abs();
+    assert!(differs <= blur + 1e-6 * missed, "{missed} away: {correction:?} of {job:?}");
+    let is_there = off <= 1e-6 * length;
+    assert!(reach != Reach::Reached || is_there, "{off} of {length}: {correction:?} of {job:?}");
 }
 
 /// Where the hand goes, by the joints' matrices alone.
 struct Twin {
-    hand: DVec3,
+    /// From the hand to the target, in start joint space and in model space.
+    off: f64,
+    missed: f64,
+    /// Of the chain, in start joint space.
     length: f64,
-    /// An ulp of the largest coordinate.
-    rounding: f64,
+    /// Of the start joint's axes together.
+    size: f64,
 }
 
-/// Nothing where a joint has no inverse, or the hand is farther than numbers go.
-fn twin(job: &TwoBoneJob, correction: Correction) -> Option<Twin> {
-    let [start, middle, end] = [job.start, job.middle, job.end].map(as_f64);
-    let own = start.inverse() * middle;
-    let of_middle = middle.inverse().transform_point3(end.translation);
-    let turned = |joint: DAffine3, turn: Quat| joint * DAffine3::from_quat(unit(turn));
-    let hand = turned(turned(start, correction.start) * own, correction.middle)
-        .transform_point3(of_middle);
-    let points = [start.translation, middle.translation, end.translation, job.target.as_dvec3()];
-    let largest = points.into_iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
-    let [upper, lower] = [(0, 1), (1, 2)].map(|(a, b)| points[a].distance(points[b]));
-    let length = upper + lower;
-    let rounding = largest * f64::from(f32::EPSILON) + f64::from(f32::from_bits(4));
-    hand.is_finite().then_some(Twin { hand, length, rounding })
+impl Twin {
+    /// Nothing where a joint has no inverse, or the hand is farther than numbers go.
+    fn new(job: &TwoBoneJob, correction: Correction) -> Option<Self> {
+        let start = job.start.matrix3.as_dmat3();
+        let middle = start.inverse() * job.middle.matrix3.as_dmat3();
+        let places = [job.start, job.middle, job.end].map(|joint| joint.translation.as_dvec3());
+        let upper = start.inverse() * (places[1] - places[0]);
+        let lower = start.inverse() * (places[2] - places[1]);
+        let turned: DVec3 = middle * (unit(correction.middle) * (middle.inverse() * lower));
+        let hand = unit(correction.start) * (upper + turned);
+        let off = hand - start.inverse() * (job.target.as_dvec3() - places[0]);
+        hand.is_finite().then(|| Self {
+            off: off.length(),
+            missed: (start * off).length(),
+            length: upper.length() + lower.length(),
+            size: size(start),
+        })
+    }
 }
 
-fn as_f64(joint: Affine3A) -> DAffine3 {
-    DAffine3::from_mat3_translation(joint.matrix3.as_dmat3(), joint.translation.as_dvec3())
+/// Their Frobenius norm.
+fn size(axes: DMat3) -> f64 {
+    axes.to_cols_array().map(|x| x * x).into_iter().sum::<f64>().sqrt()
 }
 
 fn unit(turn: Quat) -> DQuat {
