@@ -1,6 +1,4 @@
-// The sphere of every way that the Pointer can point, coloured by how far the elbow swings there:
-// met analytically, its far side and then its near side laid over what is behind them. Right from
-// inside too, where there is no near side.
+// The sphere of every direction of the Pointer, coloured by how far the elbow swings there.
 
 const RIM_OPACITY = 0.3;
 const FAR_OPACITY = 0.65; // of what the near side has
@@ -31,27 +29,9 @@ struct Laid {
     @builtin(frag_depth) depth: f32,
 }
 
-// A square around the sphere, turned towards the eye; the whole picture from inside.
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Side {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
-    let direction = 1.0 - 2.0 * f32(instance);
-    let to_centre = globe.centre - view.eye;
-    let away = length(to_centre);
-    let parallel = view.orthographic > 0.5;
-    if !parallel && away < globe.radius * 1.05 {
-        return Side(vec4f(corner, 0.5, 1.0), direction);
-    }
-    let facing = select(to_centre / away, view.forward, parallel);
-    let beside = dot(facing, view.right);
-    let helper = select(view.right, view.forward, beside * beside > 0.5 * dot(view.right, view.right));
-    let across = normalize(cross(helper, facing));
-    let upwards = cross(facing, across);
-    let tangent = sqrt(away * away - globe.radius * globe.radius) / away;
-    let seen_radius = globe.radius / select(tangent, 1.0, parallel);
-    let extent = seen_radius + 2.0 * pixel_size(dot(to_centre, view.forward));
-    let world = globe.centre + (across * corner.x + upwards * corner.y) * extent;
-    return Side(view.clip_from_world * vec4f(world, 1.0), direction);
+    return Side(covering(index, globe.centre, globe.radius), 1.0 - 2.0 * f32(instance));
 }
 
 // How far the elbow turns for every radian that the Pointer does: as `Reference::gain`.
@@ -80,31 +60,14 @@ fn isolines(level: f32) -> f32 {
 
 @fragment
 fn fragment(s: Side) -> Laid {
-    let ray = pixel_ray(s.position.xy);
-    let squared = dot(ray.direction, ray.direction);
-    let from_centre = ray.origin - globe.centre;
-    let middle = -dot(from_centre, ray.direction) / squared;
-    let miss = length(from_centre + ray.direction * middle);
-    let half_chord = sqrt(max(globe.radius * globe.radius - miss * miss, 0.0));
-    let half_along = half_chord * inverseSqrt(squared);
-    let along = middle + half_along * s.direction;
-    let met = ray.origin + ray.direction * along;
-
-    let level = log(1.0 + gain(normalize(met - globe.centre)));
+    let met = meet(pixel_ray(s.position.xy), globe.centre, globe.radius, s.direction);
+    let level = log(1.0 + gain(normalize(met.point - globe.centre)));
     let fill = ramp(level);
     let line = isolines(level) * LINE_OPACITY;
 
-    let turned = 1.0 - half_chord / globe.radius;
-    let turned_squared = turned * turned;
-    let rim = RIM_OPACITY * turned_squared * turned_squared * turned;
-    let size = pixel_size(middle);
-    let edge = saturate(0.5 + (globe.radius - miss) / size) * saturate(globe.radius / size);
-    let in_front = select(0.0, 1.0, along > nearest_along());
-    let behind_near = s.direction > 0.0 && middle - half_along > nearest_along();
-    let share = edge * in_front * select(1.0, FAR_OPACITY, behind_near);
-
-    let opacity = (fill.a + rim) * share;
+    let behind_near = s.direction > 0.0 && met.hides_far > 0.5;
+    let share = met.cover * select(1.0, FAR_OPACITY, behind_near);
+    let opacity = (fill.a + RIM_OPACITY * rim(met.grazing)) * share;
     let colour = mix(fill.rgb, globe.line.rgb, line);
-    let clip = view.clip_from_world * vec4f(met, 1.0);
-    return Laid(vec4f(colour, mix(opacity, share, line)), clip.z / clip.w);
+    return Laid(vec4f(colour, mix(opacity, share, line)), depth_of(met.point));
 }

@@ -1,12 +1,6 @@
 // What every shader of the scene sees: camera, lights, colours, and the planes' settings. Colours
 // are as a screen has them (sRGB); light is added up in linear space and then encoded.
 
-struct Shell {
-    centre: vec3f,
-    radius: f32,
-    colour: vec4f,
-}
-
 struct View {
     clip_from_world: mat4x4f,
     eye: vec3f,
@@ -28,7 +22,6 @@ struct View {
     ground: vec4f,
     grid: vec4f,
     axes: array<vec4f, 3>,
-    shells: array<Shell, 2>, // of radius 0 where there are fewer
 }
 
 @group(0) @binding(0) var<uniform> view: View;

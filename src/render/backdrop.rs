@@ -3,7 +3,6 @@ use super::{Gpu, pipeline};
 pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
     include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/shell.wgsl"),
     include_str!("../../shaders/backdrop.wgsl"),
 );
 

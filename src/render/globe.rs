@@ -1,14 +1,18 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
+use super::order::Side;
 use super::uniforms::Uniforms;
 use super::{Gpu, pipeline};
 use crate::scene::{Colour, Globe, Palette, Scene};
 
-pub(super) const SHADER: &str =
-    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/globe.wgsl"),);
+pub(super) const SHADER: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/sphere.wgsl"),
+    include_str!("../../shaders/globe.wgsl"),
+);
 
-/// The far side, then the near one.
+/// The far and the near one.
 const SIDES: u32 = 2;
 
 #[repr(C)]
@@ -26,7 +30,7 @@ struct Uniform {
 
 const _: () = assert!(size_of::<Uniform>() == 2 * 16 + Palette::GAINS * 16 + 2 * 16);
 
-/// Draws the globe of gains over everything solid.
+/// Draws the sides of the globe of gains.
 #[derive(Debug)]
 pub(super) struct Globes {
     pipeline: wgpu::RenderPipeline,
@@ -65,11 +69,15 @@ impl Globes {
         if self.shown { 2 * SIDES } else { 0 }
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, side: Side) {
+        let instance = match side {
+            Side::Far => 0,
+            Side::Near => 1,
+        };
         if self.shown {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(1, &self.uniforms.group, &[]);
-            pass.draw(0..4, 0..SIDES);
+            pass.draw(0..4, instance..instance + 1);
         }
     }
 }

@@ -15,13 +15,16 @@ mod instances;
 mod label;
 mod line;
 mod mesh;
+mod order;
 mod picture;
 mod pipeline;
 mod quads;
 mod renderer;
 mod shadow;
+mod shell;
 mod solid;
 mod solve;
+mod spheres;
 mod stopwatch;
 mod uniforms;
 mod view;
@@ -34,7 +37,7 @@ pub use solve::Solver;
 pub use stopwatch::{Lap, Stopwatch};
 
 /// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 9] {
+pub fn shaders() -> [(&'static str, &'static str); 10] {
     [
         ("arms", crowd::ARMS),
         ("backdrop", backdrop::SHADER),
@@ -43,6 +46,7 @@ pub fn shaders() -> [(&'static str, &'static str); 9] {
         ("line", line::SHADER),
         ("label", label::SHADER),
         ("shadow", shadow::SHADER),
+        ("shell", shell::SHADER),
         ("solid", solid::SHADER),
         ("solve", solve::SHADER),
     ]

@@ -1,3 +1,5 @@
+use core::ops::Range;
+
 use bytemuck::Pod;
 
 use super::instances::Instances;
@@ -52,10 +54,19 @@ impl<T: Pod + PartialEq> Quads<T> {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if let Some((buffer, count)) = self.instances.get() {
+        self.draw_some(pass, 0..self.instances.count());
+    }
+
+    /// Draws those of a part of the list, as far as there are any.
+    pub fn draw_some(&self, pass: &mut wgpu::RenderPass<'_>, part: Range<u32>) {
+        let Some((buffer, count)) = self.instances.get() else {
+            return;
+        };
+        let part = part.start..part.end.min(count);
+        if !part.is_empty() {
             pass.set_pipeline(&self.pipeline);
             pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..4, 0..count);
+            pass.draw(0..4, part);
         }
     }
 }

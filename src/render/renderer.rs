@@ -1,10 +1,10 @@
 use super::backdrop::Backdrop;
 use super::crowd::Crowds;
-use super::globe::Globes;
 use super::label::Labels;
 use super::line::Lines;
 use super::shadow::Shadows;
 use super::solid::Solids;
+use super::spheres::Spheres;
 use super::view::View;
 use super::{Canvas, Gpu};
 use crate::rig::CrowdTimes;
@@ -17,7 +17,7 @@ pub struct Renderer {
     solids: Solids,
     backdrop: Backdrop,
     shadows: Shadows,
-    globes: Globes,
+    spheres: Spheres,
     lines: Lines,
     labels: Labels,
     crowds: Crowds,
@@ -38,7 +38,7 @@ pub struct Counts {
 
 impl Renderer {
     /// How many lists and blocks of values are kept on the device.
-    pub const LISTS: usize = 5 + Solids::LISTS;
+    pub const LISTS: usize = 6 + Solids::LISTS;
 
     pub fn new(gpu: &Gpu) -> Self {
         let view = View::new(gpu);
@@ -46,7 +46,7 @@ impl Renderer {
             solids: Solids::new(gpu, view.layout()),
             backdrop: Backdrop::new(gpu, view.layout()),
             shadows: Shadows::new(gpu, view.layout()),
-            globes: Globes::new(gpu, view.layout()),
+            spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
             labels: Labels::new(gpu, view.layout()),
             crowds: Crowds::default(),
@@ -80,7 +80,7 @@ impl Renderer {
         let uploaded = self.view.upload(gpu, scene, size, scale)
             + self.solids.upload(gpu, scene, size)
             + self.shadows.upload(gpu, scene)
-            + self.globes.upload(gpu, scene)
+            + self.spheres.upload(gpu, scene, size)
             + self.lines.upload(gpu, scene)
             + self.labels.upload(gpu, scene, size, scale)
             + self.crowds.upload(gpu, self.view.layout(), scene, size);
@@ -99,7 +99,7 @@ impl Renderer {
         Backdrop::TRIANGLES
             + self.solids.triangles()
             + self.shadows.triangles()
-            + self.globes.triangles()
+            + self.spheres.triangles()
             + self.lines.triangles()
             + self.labels.triangles()
     }
@@ -144,7 +144,7 @@ impl Renderer {
         self.solids.draw(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
-        self.globes.draw(&mut pass);
+        self.spheres.draw(&mut pass);
         self.lines.draw(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);

@@ -9,7 +9,6 @@ use crate::scene::{Ball, Scene, Solid};
 pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
     include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/shell.wgsl"),
     include_str!("../../shaders/solid.wgsl"),
 );
 

@@ -5,9 +5,6 @@ use super::Gpu;
 use super::uniforms::Uniforms;
 use crate::scene::{Colour, Scene};
 
-/// The see-through spheres: the arm has two limits.
-const SHELLS: usize = 2;
-
 /// What every shader of the scene sees, as `view.wgsl` has it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -32,19 +29,9 @@ struct Uniform {
     ground: Vec4,
     grid: Vec4,
     axes: [Vec4; 3],
-    shells: [Sphere; SHELLS],
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct Sphere {
-    centre: Vec3,
-    radius: f32,
-    colour: Vec4,
-}
-
-const _: () = assert!(size_of::<Sphere>() == 32);
-const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16 + SHELLS * 32);
+const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16);
 
 /// The uniform on the device.
 #[derive(Debug)]
@@ -78,11 +65,6 @@ impl Uniform {
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
         let shown = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
-        let mut shells = [Sphere::zeroed(); SHELLS];
-        for (sphere, shell) in shells.iter_mut().zip(&scene.shells) {
-            let colour = screen(shell.colour);
-            *sphere = Sphere { centre: shell.centre, radius: shell.radius, colour };
-        }
         Self {
             clip_from_world: projection.clip_from_world,
             eye: projection.eye,
@@ -104,7 +86,6 @@ impl Uniform {
             ground: screen(palette.ground.with_opacity(Self::GROUND_OPACITY)),
             grid: screen(palette.grid),
             axes: palette.axes.map(screen),
-            shells,
         }
     }
 }

@@ -1,0 +1,209 @@
+use core::cmp::Ordering;
+use core::ops::Range;
+
+use crate::document::Projection;
+use crate::scene::Shell;
+
+/// One of the two sides of a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Surface {
+    /// Index of the sphere.
+    pub sphere: usize,
+    pub side: Side,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Near,
+    Far,
+}
+
+/// Sides of spheres from back to front, whatever order the spheres are listed in.
+///
+/// The order is exact where every two spheres are apart or one contains the other: what is inside a
+/// sphere comes between its far and its near side, and spheres that are apart go by the distance of
+/// their tangents. A plane separates two such spheres, the one of the points with tangents of equal
+/// length to both, and a ray from the eye crosses it at most once. Spheres that cut each other go by
+/// the same distance, although no order of whole sides is right for them.
+#[derive(Debug, Default)]
+pub(super) struct Order {
+    surfaces: Vec<Surface>,
+    /// The spheres from the largest to the smallest.
+    by_size: Vec<usize>,
+}
+
+impl Order {
+    /// Takes no memory if there were as many spheres before.
+    pub fn sort(&mut self, projection: &Projection, spheres: &[Shell]) -> &[Surface] {
+        self.surfaces.clear();
+        self.by_size.clear();
+        self.by_size.extend(0..spheres.len());
+        self.by_size.sort_unstable_by(|a, b| by_size(&spheres[*a], &spheres[*b]));
+        for sphere in self.by_size.iter().copied() {
+            let at = self.place(projection, spheres, sphere);
+            let sides = [Side::Far, Side::Near].map(|side| Surface { sphere, side });
+            self.surfaces.splice(at..at, sides);
+        }
+        &self.surfaces
+    }
+
+    /// Index of the first surface in front of a sphere that is not larger than those in the list.
+    fn place(&self, projection: &Projection, spheres: &[Shell], sphere: usize) -> usize {
+        let inner = &spheres[sphere];
+        let mut inside = 0..self.surfaces.len();
+        while let Some((_, sides)) =
+            self.outermost(inside.clone()).find(|(outer, _)| contains(&spheres[*outer], inner))
+        {
+            inside = sides.start + 1..sides.end;
+        }
+        let own = distance(inner, projection);
+        self.outermost(inside.clone())
+            .find(|(other, _)| distance(&spheres[*other], projection) < own)
+            .map_or(inside.end, |(_, sides)| sides.start)
+    }
+
+    /// The spheres of a part of the list that are inside no other one of it, from back to front, with
+    /// the indices of their far and near sides.
+    fn outermost(&self, part: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let mut start = part.start;
+        core::iter::from_fn(move || {
+            let rest = self.surfaces.get(start..part.end)?;
+            let sphere = rest.first()?.sphere;
+            let sides = start..start + rest.iter().rposition(|other| other.sphere == sphere)?;
+            start = sides.end + 1;
+            Some((sphere, sides))
+        })
+    }
+}
+
+/// Largest first; colours order spheres of the same centre and radius.
+fn by_size(a: &Shell, b: &Shell) -> Ordering {
+    let key = |sphere: &Shell| {
+        let [x, y, z] = sphere.centre.to_array();
+        let [red, green, blue, opacity] = sphere.colour.channels();
+        [sphere.radius, x, y, z, red, green, blue, opacity]
+    };
+    let pairs = key(b).into_iter().zip(key(a));
+    pairs.map(|(b, a)| b.total_cmp(&a)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
+
+fn contains(outer: &Shell, inner: &Shell) -> bool {
+    let apart = outer.centre.as_dvec3().distance(inner.centre.as_dvec3());
+    apart <= f64::from(outer.radius) - f64::from(inner.radius)
+}
+
+/// Square of the length of a tangent from the eye; negative inside. The depth of the centre in an
+/// orthographic picture, to which the former tends as the eye moves away.
+fn distance(sphere: &Shell, projection: &Projection) -> f64 {
+    let from_eye = sphere.centre.as_dvec3() - projection.eye.as_dvec3();
+    if projection.orthographic {
+        return from_eye.dot(projection.forward.as_dvec3());
+    }
+    from_eye.length_squared() - f64::from(sphere.radius).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec2, Vec3};
+
+    use super::*;
+    use crate::document::Camera;
+    use crate::scene::Colour;
+
+    fn shell(centre: [f32; 3], radius: f32) -> Shell {
+        Shell { centre: centre.into(), radius, colour: Colour([255; 4]) }
+    }
+
+    /// Apart, nested, nested in what is nested, touching, and the same twice.
+    fn shells() -> Vec<Shell> {
+        let mut shells = vec![
+            shell([0.0, 0.0, 0.0], 100.0),
+            shell([0.0, 0.0, 0.0], 40.0),
+            shell([0.0, 0.0, 90.0], 10.0),
+            shell([10.0, 5.0, 0.0], 12.0),
+            shell([130.0, 0.0, 20.0], 30.0),
+            shell([130.0, 0.0, 20.0], 30.0),
+            shell([125.0, 10.0, 25.0], 6.0),
+            shell([0.0, 0.0, -250.0], 149.0),
+            shell([30.0, 20.0, -330.0], 20.0),
+            shell([-90.0, 90.0, 60.0], 25.0),
+        ];
+        shells[5].colour = Colour([9, 9, 9, 255]);
+        shells
+    }
+
+    fn cameras() -> Vec<Camera> {
+        let mut cameras = Vec::new();
+        for step in 0_u8..24 {
+            let (yaw, pitch) = (f32::from(step) * 0.9, f32::from(step % 5) * 0.5 - 1.0);
+            for (target, distance) in
+                [(Vec3::ZERO, 900.0), (Vec3::new(20.0, 0.0, -30.0), 45.0), (Vec3::X * 90.0, 160.0)]
+            {
+                for orthographic in [false, true] {
+                    cameras.push(Camera { target, yaw, pitch, distance, orthographic });
+                }
+            }
+        }
+        cameras
+    }
+
+    /// Where a ray meets the sides of the spheres, as a surface and how far along it is.
+    fn met(projection: &Projection, at: Vec2, shells: &[Shell]) -> Vec<(Surface, f64)> {
+        let ray = projection.ray(at);
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize());
+        let sides = |(sphere, shell): (usize, &Shell)| {
+            let from_centre: DVec3 = origin - shell.centre.as_dvec3();
+            let middle = -from_centre.dot(direction);
+            let miss = (from_centre + direction * middle).length_squared();
+            let half = (f64::from(shell.radius).powi(2) - miss).sqrt();
+            [(Side::Near, middle - half), (Side::Far, middle + half)]
+                .map(|(side, along)| (Surface { sphere, side }, along))
+        };
+        let all = shells.iter().enumerate().flat_map(sides);
+        all.filter(|(_, along)| *along > 0.0 || projection.orthographic && along.is_finite())
+            .collect()
+    }
+
+    #[test]
+    fn every_ray_meets_the_sides_from_front_to_back() {
+        let (shells, mut order) = (shells(), Order::default());
+        let mut compared = 0;
+        for camera in cameras() {
+            let projection = camera.projection(1.5);
+            let sorted = order.sort(&projection, &shells);
+            assert_eq!(sorted.len(), 2 * shells.len());
+            let place = |surface| sorted.iter().position(|other| *other == surface);
+            for step in 0_u16..400 {
+                let (across, up) = (f32::from(step % 20), f32::from(step / 20));
+                let mut met = met(&projection, Vec2::new(across, up) / 10.0 - 0.95, &shells);
+                met.sort_by(|a, b| b.1.total_cmp(&a.1));
+                for pair in met.windows(2).filter(|pair| pair[0].1 - pair[1].1 > 1e-6) {
+                    let [back, front] = [pair[0].0, pair[1].0].map(place);
+                    assert!(back < front, "{camera:?} {across} {up}: {pair:?}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 50_000, "{compared}");
+    }
+
+    #[test]
+    fn the_order_does_not_depend_on_the_list() {
+        let (mut shells, mut order) = (shells(), Order::default());
+        shells.push(shell([95.0, 30.0, 0.0], 50.0)); // cuts others
+        for camera in cameras() {
+            let projection = camera.projection(1.5);
+            let sorted = |shells: &[Shell], order: &mut Order| -> Vec<_> {
+                let surfaces = order.sort(&projection, shells).iter();
+                surfaces.map(|surface| (shells[surface.sphere], surface.side)).collect()
+            };
+            let expected = sorted(&shells, &mut order);
+            let mut other = shells.clone();
+            for turn in 0..other.len() {
+                other.rotate_left(1);
+                other.swap(turn, 0);
+                assert_eq!(sorted(&other, &mut order), expected);
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+use core::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use super::Gpu;
+use super::order::Side;
+use super::quads::{self, Quads};
+use crate::scene::Shell;
+
+pub(super) const SHADER: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/sphere.wgsl"),
+    include_str!("../../shaders/shell.wgsl"),
+);
+
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
+struct Instance {
+    centre: Vec3,
+    radius: f32,
+    colour: [f32; 4],
+    side: f32,
+}
+
+const _: () = assert!(size_of::<Instance>() == 36);
+
+/// Draws the sides of shells in the order in which they are given.
+#[derive(Debug)]
+pub(super) struct Shells(Quads<Instance>);
+
+impl Shells {
+    pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
+        Self(Quads::new(
+            gpu,
+            &quads::Kind {
+                label: "shell",
+                shader: SHADER,
+                layouts: &[view],
+                attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32],
+                depth: wgpu::CompareFunction::Greater,
+            },
+        ))
+    }
+
+    /// Sends what has changed: how many bytes.
+    pub fn upload<'a>(&mut self, gpu: &Gpu, sides: impl Iterator<Item = (&'a Shell, Side)>) -> u64 {
+        self.0.upload(gpu, sides.map(|(shell, side)| Instance::new(shell, side)))
+    }
+
+    pub fn triangles(&self) -> u32 {
+        self.0.triangles()
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sides: Range<u32>) {
+        self.0.draw_some(pass, sides);
+    }
+}
+
+impl Instance {
+    fn new(shell: &Shell, side: Side) -> Self {
+        let side = match side {
+            Side::Near => -1.0,
+            Side::Far => 1.0,
+        };
+        let Shell { centre, radius, colour } = *shell;
+        Self { centre, radius, colour: colour.channels(), side }
+    }
+}

@@ -1,0 +1,70 @@
+use super::Gpu;
+use super::globe::Globes;
+use super::order::{Order, Side, Surface};
+use super::shell::Shells;
+use crate::scene::{Colour, Globe, Scene, Shell};
+
+/// Draws the see-through spheres, shells and globe, from back to front over everything solid.
+#[derive(Debug)]
+pub(super) struct Spheres {
+    shells: Shells,
+    globe: Globes,
+    order: Order,
+    /// The shells that have a size, then the globe.
+    spheres: Vec<Shell>,
+    /// How many sides of shells are behind the globe's far side and behind its near one.
+    behind_globe: [u32; 2],
+}
+
+impl Spheres {
+    pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
+        Self {
+            shells: Shells::new(gpu, view),
+            globe: Globes::new(gpu, view),
+            order: Order::default(),
+            spheres: Vec::new(),
+            behind_globe: [0; 2],
+        }
+    }
+
+    /// Sends what has changed: how many bytes. `size` is the picture's, in pixels.
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> u64 {
+        let projection = scene.camera.projection(size.0 as f32 / size.1 as f32);
+        self.spheres.clear();
+        self.spheres.extend(scene.shells.iter().filter(|shell| has_size(shell)));
+        let shells = self.spheres.len();
+        self.spheres.extend(scene.globe.filter(Globe::has_size).map(of_globe));
+        let surfaces = self.order.sort(&projection, &self.spheres);
+        let is_shell = |surface: &&Surface| surface.sphere < shells;
+        self.behind_globe = [Side::Far, Side::Near].map(|side| {
+            let behind = surfaces.iter().take_while(|it| is_shell(it) || it.side != side);
+            behind.filter(is_shell).count() as u32
+        });
+        let sides = surfaces.iter().filter(is_shell);
+        let sides = sides.map(|surface| (&self.spheres[surface.sphere], surface.side));
+        self.shells.upload(gpu, sides) + self.globe.upload(gpu, scene)
+    }
+
+    pub fn triangles(&self) -> u32 {
+        self.shells.triangles() + self.globe.triangles()
+    }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let [far, near] = self.behind_globe;
+        self.shells.draw(pass, 0..far);
+        self.globe.draw(pass, Side::Far);
+        self.shells.draw(pass, far..near);
+        self.globe.draw(pass, Side::Near);
+        self.shells.draw(pass, near..u32::MAX);
+    }
+}
+
+/// Whether the square of the radius is a number too.
+fn has_size(shell: &Shell) -> bool {
+    let radius = shell.radius;
+    shell.centre.is_finite() && radius > 0.0 && (radius * radius).is_finite()
+}
+
+fn of_globe(globe: Globe) -> Shell {
+    Shell { centre: globe.centre, radius: globe.radius, colour: Colour([0; 4]) }
+}
