@@ -4,7 +4,8 @@
 
 use allocation_counter::measure;
 use glam::Vec3;
-use ik_arm::document::{Arm, Display, Document, Goal, Layer, Theme};
+use ik_arm::document::{Arm, Display, Document, Goal, Layer, RigKind, Theme};
+use ik_arm::kinematics::skeleton::Skeleton;
 use ik_arm::render::{Canvas, Gpu, Renderer};
 use ik_arm::scene::{Ball, Line, Scene};
 use ik_arm::session::Staging;
@@ -75,6 +76,41 @@ fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
         let (uploading, _) = bench.frame(&scene);
         assert_eq!((uploading, bench.renderer.counts().uploaded), (0, 0));
     }
+}
+
+/// A skeleton of one joint with its name.
+fn named(name: &str) -> Scene {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    document.skeleton.skeleton = Skeleton::with_root(name);
+    let staging = Staging { selection: vec![0], ..Staging::default() };
+    Scene::new(&document, &staging, Theme::Dark)
+}
+
+#[test]
+fn a_letter_is_drawn_and_sent_once() {
+    let mut bench = Bench::new();
+    // The last is in no font of the program.
+    let names = ["Hand", "Hüfte", "左手"];
+    let scenes = names.map(named);
+    for scene in &scenes {
+        bench.frame(scene);
+    }
+    let mut sent = Vec::new();
+    for _ in 0..3 {
+        sent = scenes
+            .each_ref()
+            .map(|scene| {
+                bench.frame(scene);
+                bench.renderer.counts().uploaded
+            })
+            .into();
+        let (uploading, _) = bench.frame(&scenes[2]);
+        assert_eq!((uploading, bench.renderer.counts().uploaded), (0, 0));
+    }
+    let letters = 9 * 48 * 7;
+    assert!(sent.iter().all(|sent| *sent < letters), "places of letters alone: {sent:?}");
+    bench.frame(&named("Hände"));
+    assert!(bench.renderer.counts().uploaded > letters, "a new letter");
 }
 
 #[test]

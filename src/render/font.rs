@@ -1,20 +1,51 @@
-use ab_glyph::{Font as _, FontRef, GlyphId, PxScale, ScaleFont as _};
-use glam::Vec2;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// The letters that labels are written with, drawn once at one size.
+use ab_glyph::{Font as _, FontRef, GlyphId, OutlinedGlyph, PxScale, ScaleFont as _};
+use glam::Vec2;
+use unicode_normalization::UnicodeNormalization as _;
+use unicode_normalization::char::is_combining_mark;
+
+use super::SystemFace;
+use super::atlas::Atlas;
+
+/// Letters of labels, each drawn once at one size when it is first needed: from the fonts in the
+/// program, or else from the one that `find` returns. A letter that no font has is a box.
+///
+/// Letters are not shaped: each stands to the right of the one before, and none is joined to another.
 #[derive(Debug)]
 pub(super) struct Font {
-    /// Coverage, row by row, [`Self::WIDTH`] wide.
-    pub pixels: Vec<u8>,
-    pub height: u32,
-    font: FontRef<'static>,
-    size: PxScale,
-    glyphs: Vec<Option<Glyph>>,
+    pub atlas: Atlas,
+    faces: Vec<Face>,
+    find: fn(char) -> Option<SystemFace>,
+    pixels_per_em: f32,
+    letters: HashMap<char, Letter>,
+    missing: Letter,
+    /// Hash of the texts that the atlas was last emptied for and could not hold.
+    overflow: Option<u64>,
 }
 
-/// Where a letter is in the atlas, and where it stands beside the pen.
+#[derive(Debug)]
+struct Face {
+    /// Number of the system's face; `None` for a font in the program.
+    number: Option<u16>,
+    font: FontRef<'static>,
+    scale: PxScale,
+}
+
 #[derive(Clone, Copy, Debug)]
-struct Glyph {
+struct Letter {
+    /// Face and glyph, by which pairs are kerned.
+    glyph: Option<(usize, GlyphId)>,
+    advance: f32,
+    image: Option<Image>,
+    /// Whether the atlas had no room, so that a box stands for it.
+    is_left_out: bool,
+}
+
+/// Part of the atlas, and where it stands beside the pen.
+#[derive(Clone, Copy, Debug)]
+struct Image {
     source: Rectangle,
     from_pen: Vec2,
 }
@@ -27,62 +58,62 @@ pub(super) struct Rectangle {
 }
 
 impl Font {
-    pub const WIDTH: u32 = 512;
-    const ASCII: core::ops::RangeInclusive<char> = ' '..='~';
-    /// What labels have besides.
-    const SIGNS: [char; 3] = ['°', '·', '−'];
-    /// Between letters, so that none bleeds into its neighbour.
-    const GAP: u32 = 1;
+    /// Fonts in the program; each is asked for what the ones before it lack.
+    const BUILT_IN: [&[u8]; 2] =
+        [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR];
+    /// Drawn at once, so that a number that changes needs nothing new.
+    const FIRST: core::ops::RangeInclusive<char> = ' '..='~';
+    /// Number of letters that are kept.
+    const MOST_LETTERS: usize = 1 << 14;
 
-    /// `size` is the height of a line in pixels.
-    pub fn new(size: f32) -> Self {
-        let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
-            .unwrap_or_else(|_| unreachable!("the font in the program is a font"));
-        let mut drawn =
-            Self { pixels: Vec::new(), height: 0, font, size: size.into(), glyphs: Vec::new() };
-        let mut pen = (Self::GAP, Self::GAP);
-        let mut row_height = 0;
-        for letter in Self::letters() {
-            let glyph = drawn.font.glyph_id(letter).with_scale(drawn.size);
-            let Some(outline) = drawn.font.outline_glyph(glyph) else {
-                drawn.glyphs.push(None);
-                continue;
-            };
-            let bounds = outline.px_bounds();
-            let (width, height) = (bounds.width() as u32, bounds.height() as u32);
-            if pen.0 + width + Self::GAP > Self::WIDTH {
-                pen = (Self::GAP, pen.1 + row_height + Self::GAP);
-                row_height = 0;
+    /// `size` is the height of a line, `longest` the longest side of an atlas, both in pixels.
+    pub fn new(size: f32, longest: u32, find: fn(char) -> Option<SystemFace>) -> Self {
+        const NARROWEST: u32 = 512;
+        const TALLEST: u32 = 4096;
+        const LETTERS_IN_A_ROW: f32 = 32.0;
+        // A box fits into any atlas.
+        let size = size.min(longest as f32 / 4.0);
+        let row = (size * LETTERS_IN_A_ROW) as u32;
+        let width = row.checked_next_power_of_two().unwrap_or(longest).max(NARROWEST).min(longest);
+        let mut font = Self {
+            atlas: Atlas::new(width, TALLEST.min(longest)),
+            faces: Vec::new(),
+            find,
+            pixels_per_em: size,
+            letters: HashMap::new(),
+            missing: Letter { glyph: None, advance: 0.0, image: None, is_left_out: false },
+            overflow: None,
+        };
+        for data in Self::BUILT_IN {
+            let face = FontRef::try_from_slice(data)
+                .unwrap_or_else(|_| unreachable!("the font in the program is a font"));
+            if font.faces.is_empty() {
+                let units = face.units_per_em().unwrap_or_else(|| face.height_unscaled());
+                font.pixels_per_em = size * units / face.height_unscaled();
             }
-            row_height = row_height.max(height);
-            drawn.height = drawn.height.max(pen.1 + height + Self::GAP);
-            drawn.pixels.resize((Self::WIDTH * drawn.height) as usize, 0);
-            outline.draw(|x, y, cover| {
-                let index = (pen.1 + y) * Self::WIDTH + pen.0 + x;
-                drawn.pixels[index as usize] = (cover.clamp(0.0, 1.0) * 255.0).round() as u8;
-            });
-            drawn.glyphs.push(Some(Glyph {
-                source: Rectangle {
-                    at: Vec2::new(pen.0 as f32, pen.1 as f32),
-                    size: Vec2::new(width as f32, height as f32),
-                },
-                from_pen: Vec2::new(bounds.min.x, bounds.min.y),
-            }));
-            pen.0 += width + Self::GAP;
+            font.add_face(None, face);
         }
-        drawn
+        font.fill();
+        font
     }
 
-    fn letters() -> impl Iterator<Item = char> {
-        Self::ASCII.chain(Self::SIGNS)
-    }
-
-    fn index(letter: char) -> Option<usize> {
-        if Self::ASCII.contains(&letter) {
-            return Some(letter as usize - *Self::ASCII.start() as usize);
+    /// Draws the letters of texts that are not in the atlas. If it has no room for them all, it is
+    /// emptied for these texts; what does not fit even then is a box. So the same texts look the same
+    /// whatever was drawn before.
+    pub fn prepare<'a>(&mut self, texts: impl Iterator<Item = &'a str> + Clone) {
+        if self.hold(texts.clone()) {
+            return;
         }
-        let sign = Self::SIGNS.iter().position(|sign| *sign == letter)?;
-        Some(Self::ASCII.count() + sign)
+        let mut hasher = DefaultHasher::new();
+        texts.clone().for_each(|text| text.hash(&mut hasher));
+        let hash = hasher.finish();
+        if self.overflow != Some(hash) {
+            self.overflow = Some(hash);
+            self.atlas.clear();
+            self.letters.clear();
+            self.fill();
+            self.hold(texts);
+        }
     }
 
     /// The letters of a text whose baseline starts at `pen`: where each stands, and its source.
@@ -91,44 +122,409 @@ impl Font {
         text: &'a str,
         mut pen: Vec2,
     ) -> impl Iterator<Item = (Rectangle, Rectangle)> + use<'a> {
-        let scaled = self.font.as_scaled(self.size);
-        let mut last: Option<GlyphId> = None;
-        text.chars().filter_map(move |letter| {
-            let id = self.font.glyph_id(letter);
-            pen.x += last.map_or(0.0, |last| scaled.kern(last, id));
-            last = Some(id);
+        let mut last = None;
+        shown(text).filter_map(move |letter| {
+            let drawn = self.letters.get(&letter).unwrap_or(&self.missing);
+            pen.x += self.kern(last, drawn.glyph);
+            last = drawn.glyph;
             let start = pen.round();
-            pen.x += scaled.h_advance(id);
-            let glyph = (*self.glyphs.get(Self::index(letter)?)?)?;
-            let stands = Rectangle { at: start + glyph.from_pen, size: glyph.source.size };
-            Some((stands, glyph.source))
+            pen.x += drawn.advance;
+            let image = drawn.image?;
+            let stands = Rectangle { at: start + image.from_pen, size: image.source.size };
+            Some((stands, image.source))
         })
     }
+
+    /// Draws what an empty atlas begins with.
+    fn fill(&mut self) {
+        self.missing = self.draw_box();
+        for letter in Self::FIRST {
+            let drawn = self.draw(letter);
+            self.letters.insert(letter, drawn);
+        }
+    }
+
+    /// Draws the letters that are new. Whether all of the texts are there.
+    fn hold<'a>(&mut self, texts: impl Iterator<Item = &'a str>) -> bool {
+        let mut all = true;
+        for letter in texts.flat_map(shown) {
+            if let Some(drawn) = self.letters.get(&letter) {
+                all &= !drawn.is_left_out;
+            } else if self.letters.len() < Self::MOST_LETTERS {
+                let drawn = self.draw(letter);
+                all &= !drawn.is_left_out;
+                self.letters.insert(letter, drawn);
+            } else {
+                all = false;
+            }
+        }
+        all
+    }
+
+    fn kern(&self, last: Option<(usize, GlyphId)>, next: Option<(usize, GlyphId)>) -> f32 {
+        match (last, next) {
+            (Some((face, last)), Some((same, next))) if face == same => {
+                let face = &self.faces[face];
+                face.font.as_scaled(face.scale).kern(last, next)
+            }
+            _ => 0.0,
+        }
+    }
+
+    fn draw(&mut self, letter: char) -> Letter {
+        if letter.is_whitespace() {
+            return self.space(letter);
+        }
+        let built_in = (0..Self::BUILT_IN.len())
+            .find_map(|face| Some((face, self.faces[face].outline(letter)?)));
+        let found = built_in.or_else(|| {
+            let face = self.system_face(letter)?;
+            Some((face, self.faces[face].outline(letter)?))
+        });
+        match found {
+            Some((face, outline)) => self.draw_outline(letter, face, &outline),
+            None => self.missing,
+        }
+    }
+
+    fn draw_outline(&mut self, letter: char, face: usize, outline: &OutlinedGlyph) -> Letter {
+        let bounds = outline.px_bounds();
+        let size = (bounds.width() as u32, bounds.height() as u32);
+        let Some(at) = self.atlas.place(size) else {
+            return Letter { is_left_out: true, ..self.missing };
+        };
+        outline.draw(|x, y, cover| self.atlas.set((at.0 + x, at.1 + y), cover));
+        let Face { font, scale, .. } = &self.faces[face];
+        let id = font.glyph_id(letter);
+        let advance = font.as_scaled(*scale).h_advance(id);
+        // A mark stands over the letter before it, also in a font where each letter is as wide.
+        let (back, advance) =
+            if is_combining_mark(letter) { (advance, 0.0) } else { (0.0, advance) };
+        Letter {
+            glyph: Some((face, id)),
+            advance,
+            image: Some(Image {
+                source: rectangle(at, size),
+                from_pen: Vec2::new(bounds.min.x - back, bounds.min.y),
+            }),
+            is_left_out: false,
+        }
+    }
+
+    /// As wide as the font has it; an ideographic one as wide as an ideograph.
+    fn space(&self, letter: char) -> Letter {
+        const IDEOGRAPHIC: char = '\u{3000}';
+        let Face { font, scale, .. } = &self.faces[0];
+        let has_letter = font.glyph_id(letter) != GlyphId(0);
+        let id = font.glyph_id(if has_letter { letter } else { ' ' });
+        let advance = match letter {
+            IDEOGRAPHIC => self.pixels_per_em,
+            _ => font.as_scaled(*scale).h_advance(id),
+        };
+        Letter { glyph: Some((0, id)), advance, image: None, is_left_out: false }
+    }
+
+    /// An upright rectangle as high as a capital letter.
+    fn draw_box(&mut self) -> Letter {
+        const SIZE: Vec2 = Vec2::new(0.5, 0.7);
+        const SIDE_BEARING: f32 = 0.08;
+        const STROKE: f32 = 1.0 / 14.0;
+        let pixels = |ems: f32| (ems * self.pixels_per_em).round();
+        let size = Vec2::new(pixels(SIZE.x), pixels(SIZE.y)).max(Vec2::splat(2.0));
+        let (stroke, bearing) = (pixels(STROKE).max(1.0) as u32, pixels(SIDE_BEARING).max(1.0));
+        let (width, height) = (size.x as u32, size.y as u32);
+        let at = self.atlas.place((width, height));
+        let image = at.map(|at| {
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let from_edge = x.min(y).min(width - 1 - x).min(height - 1 - y);
+                let cover = if from_edge < stroke { 1.0 } else { 0.0 };
+                self.atlas.set((at.0 + x, at.1 + y), cover);
+            }
+            let from_pen = Vec2::new(bearing, -size.y);
+            Image { source: rectangle(at, (width, height)), from_pen }
+        });
+        let advance = size.x + 2.0 * bearing;
+        Letter { glyph: None, advance, image, is_left_out: false }
+    }
+
+    /// Index of the system's face that has a letter.
+    fn system_face(&mut self, letter: char) -> Option<usize> {
+        let SystemFace { number, data, index } = (self.find)(letter)?;
+        let known = self.faces.iter().position(|face| face.number == Some(number));
+        known.or_else(|| {
+            let font = FontRef::try_from_slice_and_index(data, index).ok()?;
+            self.add_face(Some(number), font);
+            Some(self.faces.len() - 1)
+        })
+    }
+
+    /// At the size at which all faces have as many pixels in an em.
+    fn add_face(&mut self, number: Option<u16>, font: FontRef<'static>) {
+        let height = font.height_unscaled();
+        let units = font.units_per_em().unwrap_or(height);
+        let scale = PxScale::from(self.pixels_per_em * height / units);
+        self.faces.push(Face { number, font, scale });
+    }
+}
+
+impl Face {
+    fn outline(&self, letter: char) -> Option<OutlinedGlyph> {
+        let id = self.font.glyph_id(letter);
+        if id == GlyphId(0) {
+            return None;
+        }
+        self.font.outline_glyph(id.with_scale(self.scale))
+    }
+}
+
+fn rectangle((x, y): (u32, u32), (width, height): (u32, u32)) -> Rectangle {
+    Rectangle { at: Vec2::new(x as f32, y as f32), size: Vec2::new(width as f32, height as f32) }
+}
+
+/// The letters of a text that take room, with their marks as part of them where there is such a
+/// letter: "u" and a diaeresis are "ü".
+fn shown(text: &str) -> impl Iterator<Item = char> + Clone {
+    text.nfc().filter(|letter| !is_ignored(*letter))
+}
+
+/// Whether a letter shows nothing in any font: control characters, and Unicode's
+/// Default_Ignorable_Code_Point, such as joiners, direction marks and variation selectors.
+fn is_ignored(letter: char) -> bool {
+    letter.is_control()
+        || matches!(
+            letter,
+            '\u{ad}'
+                | '\u{34f}'
+                | '\u{61c}'
+                | '\u{115f}'..='\u{1160}'
+                | '\u{17b4}'..='\u{17b5}'
+                | '\u{180b}'..='\u{180f}'
+                | '\u{200b}'..='\u{200f}'
+                | '\u{202a}'..='\u{202e}'
+                | '\u{2060}'..='\u{206f}'
+                | '\u{3164}'
+                | '\u{fe00}'..='\u{fe0f}'
+                | '\u{feff}'
+                | '\u{ffa0}'
+                | '\u{fff0}'..='\u{fff8}'
+                | '\u{1bca0}'..='\u{1bca3}'
+                | '\u{1d173}'..='\u{1d17a}'
+                | '\u{e0000}'..='\u{e0fff}'
+        )
 }
 
 #[cfg(test)]
 mod tests {
+    use epaint_default_fonts::{EGUI_ICONS, special_emojis};
+
     use super::*;
+
+    const SIZES: [f32; 4] = [9.0, 14.0, 28.0, 64.0];
+    const LONGEST: u32 = 2048;
+    /// For private use: no font in the program has it.
+    const NO_LETTER: char = '\u{10fffd}';
+
+    fn without_system_fonts(size: f32) -> Font {
+        Font::new(size, LONGEST, |_| None)
+    }
+
+    /// The icons that come with egui.
+    fn icons(letter: char) -> Option<SystemFace> {
+        let has_it = letter == special_emojis::GITHUB;
+        has_it.then_some(SystemFace { number: 7, data: EGUI_ICONS, index: 0 })
+    }
+
+    fn lay_out(font: &mut Font, text: &str) -> Vec<(Rectangle, Rectangle)> {
+        font.prepare([text].into_iter());
+        let laid: Vec<_> = font.lay_out(text, Vec2::ZERO).collect();
+        let (width, height) = font.atlas.size();
+        for (stands, source) in &laid {
+            let end = source.at + source.size;
+            assert!(end.x < width as f32 && end.y < height as f32, "{text}");
+            assert_eq!(stands.size, source.size);
+        }
+        laid
+    }
+
+    /// Sum of the coverage of what a text shows, in pixels.
+    fn ink(font: &mut Font, text: &str) -> f32 {
+        let laid = lay_out(font, text);
+        let pixels = |source: Rectangle| {
+            let (from, to) = (source.at.as_uvec2(), (source.at + source.size).as_uvec2());
+            (from.y..to.y).flat_map(move |y| (from.x..to.x).map(move |x| (x, y)))
+        };
+        let covers = laid.into_iter().flat_map(|(_, source)| pixels(source));
+        let sum: u32 = covers.map(|(x, y)| u32::from(font.atlas.rows(y..y + 1)[x as usize])).sum();
+        sum as f32 / 255.0
+    }
+
+    /// Letters that the fonts in the program have.
+    fn many_letters() -> Vec<char> {
+        let letters = ('\u{a1}'..'\u{2fff}').filter(|letter| !letter.is_whitespace());
+        let fonts = Font::BUILT_IN.map(|data| FontRef::try_from_slice(data).expect("a font"));
+        let has_outline = |letter: &char| {
+            fonts.iter().any(|font| {
+                let id = font.glyph_id(*letter);
+                id != GlyphId(0) && font.outline(id).is_some()
+            })
+        };
+        let letters = letters.filter(|letter| letter.nfc().eq([*letter]) && !is_ignored(*letter));
+        letters.filter(has_outline).collect()
+    }
 
     #[test]
     fn every_letter_of_a_label_is_drawn_inside_the_atlas() {
-        for size in [9.0, 14.0, 28.0, 64.0] {
-            let font = Font::new(size);
-            let text: String = Font::letters().filter(|letter| *letter != ' ').collect();
-            let laid: Vec<_> = font.lay_out(&text, Vec2::ZERO).collect();
-            assert_eq!(laid.len(), text.chars().count());
-            for (_, source) in laid {
-                let end = source.at + source.size;
-                assert!(end.x <= Font::WIDTH as f32 && end.y <= font.height as f32);
-            }
-            assert_eq!(font.pixels.len(), (Font::WIDTH * font.height) as usize);
+        for size in SIZES {
+            let mut font = without_system_fonts(size);
+            let text: String = Font::FIRST.skip(1).chain(['°', '·', '−', 'ü', 'Ж', '→']).collect();
+            assert_eq!(lay_out(&mut font, &text).len(), text.chars().count());
         }
     }
 
     #[test]
-    fn letters_outside_the_alphabet_take_room_and_draw_nothing() {
-        let font = Font::new(14.0);
-        let end = |text| font.lay_out(text, Vec2::ZERO).last().map(|(stands, _)| stands.at.x);
-        assert!(end("a\u{4e00}b") > end("ab"));
+    fn a_letter_without_a_glyph_is_a_box() {
+        for size in SIZES {
+            let mut font = without_system_fonts(size);
+            let [(stands, source)] = lay_out(&mut font, &NO_LETTER.to_string())[..] else {
+                panic!("one box")
+            };
+            let outer = source.size.element_product();
+            assert!(ink(&mut font, "\u{10fffd}") > 0.3 * outer, "its edges are drawn");
+            assert!(ink(&mut font, "\u{10fffd}") < 0.95 * outer, "it is empty inside");
+            assert_eq!(stands.at.y, -stands.size.y, "it stands on the line");
+            assert_eq!(lay_out(&mut font, "左手").len(), 2);
+            let end = |text, font: &mut Font| lay_out(font, text).last().map(|it| it.0.at.x);
+            assert!(end("a\u{10fffd}b", &mut font) > end("ab", &mut font), "it takes room");
+        }
+    }
+
+    #[test]
+    fn a_letter_that_the_program_lacks_comes_from_a_font_of_the_system() {
+        for size in SIZES {
+            let mut font = Font::new(size, LONGEST, icons);
+            let text = special_emojis::GITHUB.to_string();
+            let icon = lay_out(&mut font, &text);
+            let boxed = lay_out(&mut without_system_fonts(size), &text);
+            assert_ne!(icon[0].1, boxed[0].1);
+            assert!(ink(&mut font, &text) > 0.1 * size * size, "{size}");
+            assert_eq!(font.faces.len(), Font::BUILT_IN.len() + 1);
+            lay_out(&mut font, &text.repeat(3));
+            assert_eq!(font.faces.len(), Font::BUILT_IN.len() + 1);
+        }
+    }
+
+    #[test]
+    fn a_font_of_the_system_that_is_none_or_lacks_the_letter_leaves_a_box() {
+        let broken = |_| Some(SystemFace { number: 0, data: b"no font", index: 0 });
+        let lacking = |_| Some(SystemFace { number: 0, data: EGUI_ICONS, index: 0 });
+        let expected = lay_out(&mut without_system_fonts(14.0), "左");
+        for find in [broken, lacking] {
+            assert_eq!(lay_out(&mut Font::new(14.0, LONGEST, find), "左"), expected);
+        }
+    }
+
+    #[test]
+    fn u_with_a_diaeresis_is_one_letter_however_it_is_written() {
+        let mut font = without_system_fonts(28.0);
+        assert!(ink(&mut font, "ü") > ink(&mut font, "u") + 2.0);
+        assert_eq!(lay_out(&mut font, "Hu\u{308}fte"), lay_out(&mut font, "Hüfte"));
+    }
+
+    #[test]
+    fn a_mark_stands_over_the_letter_before_it() {
+        let mut font = without_system_fonts(28.0);
+        // There is no letter of both.
+        let laid = lay_out(&mut font, "q\u{301}q");
+        let plain = lay_out(&mut font, "qq");
+        assert_eq!((laid[0], laid[2]), (plain[0], plain[1]));
+        let middle = |stands: Rectangle| stands.at.x + stands.size.x / 2.0;
+        assert!((middle(laid[1].0) - middle(laid[0].0)).abs() < 6.0, "{laid:?}");
+    }
+
+    #[test]
+    fn what_shows_nothing_takes_no_room() {
+        let mut font = without_system_fonts(14.0);
+        let plain = lay_out(&mut font, "ab");
+        for letter in [
+            '\0',
+            '\n',
+            '\t',
+            '\u{7f}',
+            '\u{ad}',
+            '\u{200b}',
+            '\u{200d}',
+            '\u{202e}',
+            '\u{fe0f}',
+            '\u{feff}',
+            '\u{e0100}',
+        ] {
+            assert_eq!(lay_out(&mut font, &format!("a{letter}b")), plain, "{letter:?}");
+        }
+        for space in [' ', '\u{a0}', '\u{2003}', '\u{3000}'] {
+            let laid = lay_out(&mut font, &format!("a{space}b"));
+            assert!(laid.len() == 2 && laid[1].0.at.x > plain[1].0.at.x, "{space:?}");
+        }
+    }
+
+    #[test]
+    fn a_thousand_letters_are_in_one_atlas() {
+        let letters = many_letters();
+        assert!(letters.len() >= 1000, "{}", letters.len());
+        for size in [15.0, 30.0] {
+            let mut font = without_system_fonts(size);
+            let text: String = letters.iter().collect();
+            let mut sources: Vec<_> =
+                lay_out(&mut font, &text).into_iter().map(|(_, source)| source.at).collect();
+            assert_eq!(sources.len(), letters.len());
+            sources.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+            sources.dedup();
+            assert_eq!(sources.len(), letters.len(), "each has a place of its own");
+        }
+    }
+
+    #[test]
+    fn more_letters_than_an_atlas_holds_are_drawn_as_boxes_and_others_take_their_place() {
+        let letters = many_letters();
+        let all: String = letters.iter().collect();
+        let mut font = Font::new(40.0, 512, |_| None);
+        let laid = lay_out(&mut font, &all);
+        assert_eq!(laid.len(), letters.len(), "none is left out");
+        let boxed = font.missing.image.expect("a box").source;
+        let boxes = laid.iter().filter(|(_, source)| *source == boxed).count();
+        assert!((100..letters.len() - 50).contains(&boxes), "{boxes} boxes");
+
+        font.atlas.take_changed();
+        assert_eq!(lay_out(&mut font, &all), laid);
+        assert!(font.atlas.take_changed().is_empty(), "the same texts need nothing new");
+
+        for some in letters.chunks(40) {
+            let text: String = some.iter().collect();
+            let laid = lay_out(&mut font, &text);
+            assert!(laid.iter().all(|(_, source)| *source != boxed), "there is room for {text}");
+        }
+        assert_eq!(lay_out(&mut font, &all), laid, "whatever was drawn before");
+        assert_eq!(font.atlas.size(), (512, 512));
+    }
+
+    #[test]
+    fn the_number_of_letters_that_are_kept_has_an_end() {
+        let mut font = without_system_fonts(10.0);
+        let letters: Vec<_> = ('\u{20000}'..).take(3 * Font::MOST_LETTERS).collect();
+        for some in letters.chunks(1000) {
+            let text: String = some.iter().collect();
+            assert_eq!(lay_out(&mut font, &text).len(), some.len());
+            assert!(font.letters.len() <= Font::MOST_LETTERS);
+        }
+        let all: String = letters.iter().collect();
+        assert_eq!(lay_out(&mut font, &all).len(), letters.len());
+        assert!(font.letters.len() <= Font::MOST_LETTERS);
+    }
+
+    #[test]
+    fn any_size_has_letters() {
+        for size in [0.1, 1.0, 300.0, 1e4, f32::MAX] {
+            let mut font = without_system_fonts(size);
+            assert_eq!(lay_out(&mut font, "a左").len(), 2, "{size}");
+        }
     }
 }

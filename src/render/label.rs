@@ -1,10 +1,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
-use wgpu::util::DeviceExt as _;
 
-use super::Gpu;
 use super::font::{Font, Rectangle};
 use super::quads::{self, Quads};
+use super::{Gpu, SystemFace};
 use crate::scene::{Label, Scene, Side};
 
 pub(super) const SHADER: &str =
@@ -45,46 +44,57 @@ const _: () = assert!(size_of::<Instance>() == 48);
 #[derive(Debug)]
 pub(super) struct Labels {
     letters: Quads<Instance>,
-    atlas_layout: wgpu::BindGroupLayout,
-    atlas: Option<Atlas>,
+    sheet_layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    sheet: Option<Sheet>,
 }
 
-/// The letters at one scale.
+/// The letters at one scale, and those of them that the device has.
 #[derive(Debug)]
-struct Atlas {
+struct Sheet {
     scale: f32,
     font: Font,
+    texture: wgpu::Texture,
     group: wgpu::BindGroup,
 }
 
 impl Labels {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
-        let atlas_layout = atlas_layout(gpu);
+        let sheet_layout = sheet_layout(gpu);
         let letters = Quads::new(
             gpu,
             &quads::Kind {
                 label: "label",
                 shader: SHADER,
-                layouts: &[view, &atlas_layout],
+                layouts: &[view, &sheet_layout],
                 attributes: &wgpu::vertex_attr_array![
                     0 => Float32x4, 1 => Float32x4, 2 => Float32x4
                 ],
                 depth: wgpu::CompareFunction::Always,
             },
         );
-        Self { letters, atlas_layout, atlas: None }
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("letters"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { letters, sheet_layout, sampler, sheet: None }
     }
 
-    /// How many bytes were sent, the letters at a new scale aside.
+    /// How many bytes were sent.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
-        let atlas = match self.atlas.take() {
-            Some(atlas) if atlas.scale == scale => atlas,
-            _ => Atlas::new(gpu, &self.atlas_layout, scale),
+        let (layout, sampler) = (&self.sheet_layout, &self.sampler);
+        let mut sheet = match self.sheet.take() {
+            Some(sheet) if sheet.scale == scale => sheet,
+            _ => Sheet::new(gpu, layout, sampler, scale),
         };
+        sheet.font.prepare(scene.labels.iter().map(|label| scene.text(label)));
+        let sent = sheet.upload(gpu, layout, sampler);
         let size = Vec2::new(size.0 as f32, size.1 as f32);
-        let letters = scene.labels.iter().flat_map(|label| atlas.write(scene, label, size));
-        let sent = self.letters.upload(gpu, letters);
-        self.atlas = Some(atlas);
+        let letters = scene.labels.iter().flat_map(|label| sheet.write(scene, label, size));
+        let sent = sent + self.letters.upload(gpu, letters);
+        self.sheet = Some(sheet);
         sent
     }
 
@@ -93,58 +103,51 @@ impl Labels {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if let Some(atlas) = &self.atlas {
-            pass.set_bind_group(1, &atlas.group, &[]);
+        if let Some(sheet) = &self.sheet {
+            pass.set_bind_group(1, &sheet.group, &[]);
             self.letters.draw(pass);
         }
     }
 }
 
-impl Atlas {
-    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scale: f32) -> Self {
-        let font = Font::new(SIZE * scale);
-        let texture = gpu.device.create_texture_with_data(
-            &gpu.queue,
-            &wgpu::TextureDescriptor {
-                label: Some("letters"),
-                size: wgpu::Extent3d {
-                    width: Font::WIDTH,
-                    height: font.height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::R8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
+impl Sheet {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, sampler: &wgpu::Sampler, scale: f32) -> Self {
+        let font = Font::new(SIZE * scale, gpu.longest_side(), SystemFace::find);
+        let (texture, group) = texture(gpu, layout, sampler, font.atlas.size());
+        Self { scale, font, texture, group }
+    }
+
+    /// Sends the letters that are new: how many bytes.
+    fn upload(
+        &mut self,
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+    ) -> u64 {
+        let (width, height) = self.font.atlas.size();
+        let mut changed = self.font.atlas.take_changed();
+        if changed.is_empty() {
+            return 0;
+        }
+        if self.texture.height() != height {
+            (self.texture, self.group) = texture(gpu, layout, sampler, (width, height));
+            changed = 0..height;
+        }
+        let pixels = self.font.atlas.rows(changed.clone());
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: changed.start, z: 0 },
+                ..self.texture.as_image_copy()
             },
-            wgpu::util::TextureDataOrder::default(),
-            &font.pixels,
+            pixels,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(width),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d { width, height: changed.end - changed.start, depth_or_array_layers: 1 },
         );
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("letters"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("letters"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(
-                        &texture.create_view(&Default::default()),
-                    ),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(&sampler),
-                },
-            ],
-        });
-        Self { scale, font, group }
+        pixels.len() as u64
     }
 
     /// The letters of a label and of the halo under them; none if its point is not in the picture.
@@ -187,7 +190,8 @@ impl Atlas {
         colour: [f32; 4],
     ) -> Instance {
         let at = stands.at + offset;
-        let atlas = Vec2::new(Font::WIDTH as f32, self.font.height as f32);
+        let (width, height) = self.font.atlas.size();
+        let atlas = Vec2::new(width as f32, height as f32);
         let (from, size) = (source.at / atlas, source.size / atlas);
         Instance {
             place: [at.x, at.y, stands.size.x, stands.size.y],
@@ -197,7 +201,38 @@ impl Atlas {
     }
 }
 
-fn atlas_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+fn texture(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    sampler: &wgpu::Sampler,
+    (width, height): (u32, u32),
+) -> (wgpu::Texture, wgpu::BindGroup) {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("letters"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&Default::default());
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("letters"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&view),
+            },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) },
+        ],
+    });
+    (texture, group)
+}
+
+fn sheet_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,

@@ -4,6 +4,7 @@
 //! A [`Renderer`] holds the pipelines and is made once for a device; a [`Canvas`] is what it draws
 //! on. Each thing drawn has one file here and one shader of the same name.
 
+mod atlas;
 mod backdrop;
 mod canvas;
 mod compute;
@@ -26,6 +27,7 @@ mod solid;
 mod solve;
 mod spheres;
 mod stopwatch;
+mod system_fonts;
 mod uniforms;
 mod view;
 
@@ -35,6 +37,7 @@ pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::{Counts, Renderer};
 pub use solve::Solver;
 pub use stopwatch::{Lap, Stopwatch};
+pub use system_fonts::SystemFace;
 
 /// Every shader with the name of its file, whole as it is compiled.
 pub fn shaders() -> [(&'static str, &'static str); 10] {

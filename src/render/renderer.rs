@@ -37,8 +37,8 @@ pub struct Counts {
 }
 
 impl Renderer {
-    /// How many lists and blocks of values are kept on the device.
-    pub const LISTS: usize = 6 + Solids::LISTS;
+    /// How many lists, blocks of values and textures are kept on the device.
+    pub const LISTS: usize = 7 + Solids::LISTS;
 
     pub fn new(gpu: &Gpu) -> Self {
         let view = View::new(gpu);

@@ -1,0 +1,119 @@
+//! Pictures of joints' names, with letters that are in some font and letters that are in none.
+#![cfg(feature = "render")]
+
+mod pictures;
+
+use glam::Vec3;
+use ik_arm::document::{Display, Document, Layer, RigKind, Theme};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::render::{Canvas, Gpu, Picture, Renderer};
+use ik_arm::scene::Scene;
+use ik_arm::session::Staging;
+use image::RgbaImage;
+use pictures::{GPU, draw};
+
+/// For private use: no font is expected to have it.
+const NO_LETTER: char = '\u{10fffd}';
+
+/// Nothing but the names of joints that are too small to be seen.
+fn named(names: &[&str]) -> Scene {
+    let mut skeleton = Skeleton::default();
+    for (row, name) in names.iter().enumerate() {
+        let at = Vec3::new(-300.0, 180.0 - 24.0 * row as f32, 0.0);
+        let joint = Joint { offset: at, ..Joint::new(name, None, Vec3::X * 1e-3) };
+        skeleton.add(joint).expect("a joint");
+    }
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    document.skeleton.skeleton = skeleton;
+    document.display = Display::from_iter([Layer::Labels]);
+    let selection = (0..names.len()).collect();
+    let mut scene =
+        Scene::new(&document, &Staging { selection, ..Staging::default() }, Theme::Dark);
+    assert_eq!(scene.labels.len(), names.len());
+    scene.solids.clear();
+    scene.balls.clear();
+    scene.camera.target = Vec3::ZERO;
+    scene
+}
+
+/// How many pixels of a picture are as light as text.
+fn lit(image: &RgbaImage) -> usize {
+    image.pixels().filter(|pixel| pixel.0[1] > 180).count()
+}
+
+fn lit_by(name: &str) -> usize {
+    lit(&draw(&named(&[name])))
+}
+
+#[test]
+fn a_name_is_drawn() {
+    assert_eq!(lit(&draw(&named(&[]))), 0);
+    assert!(lit_by("Hand") > 30);
+}
+
+#[test]
+fn the_dots_of_an_umlaut_are_drawn() {
+    let light = |name: &str| -> u64 {
+        draw(&named(&[name])).pixels().map(|pixel| u64::from(pixel.0[1])).sum()
+    };
+    assert!(light("Hüfte") > light("Hufte") + 200);
+    assert_eq!(draw(&named(&["Hu\u{308}fte"])), draw(&named(&["Hüfte"])));
+}
+
+#[test]
+fn a_letter_that_no_font_has_is_a_box() {
+    let boxed = lit_by(&NO_LETTER.to_string());
+    // As high as a capital letter of 15 points, a pixel wide at least.
+    assert!((16..120).contains(&boxed), "{boxed}");
+    assert_eq!(lit_by(&NO_LETTER.to_string().repeat(3)), 3 * boxed);
+}
+
+#[test]
+fn letters_of_any_script_are_drawn_or_boxes() {
+    for name in ["左手", "왼손", "يد", "Рука", "χέρι", "हाथ", "🖐"] {
+        assert!(lit_by(name) > 16, "{name}");
+    }
+}
+
+#[test]
+fn what_shows_nothing_changes_nothing() {
+    let plain = draw(&named(&["ab"]));
+    for letter in ['\n', '\u{200b}', '\u{feff}', '\u{202e}', '\u{7}'] {
+        assert!(draw(&named(&[&format!("a{letter}b")])) == plain, "{letter:?}");
+    }
+}
+
+/// In rows of fifty.
+fn rows(letters: impl Iterator<Item = char>) -> Vec<String> {
+    let letters: Vec<_> = letters.collect();
+    letters.chunks(50).map(|row| row.iter().collect()).collect()
+}
+
+#[test]
+fn a_thousand_different_letters_are_drawn_at_any_scale() {
+    let latin = rows(('\u{a1}'..).filter(|letter| letter.is_alphabetic()).take(1000));
+    let ideographs = rows(('\u{4e00}'..).take(1000));
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    for names in [latin, ideographs] {
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        let scene = named(&names);
+        for (side, scale) in [(600, 1.0), (1200, 3.0), (300, 20.0)] {
+            let drawn = Picture::new(&gpu, side, side, scale).draw(&scene).expect("drawn");
+            assert!(lit(&drawn) > 1000, "{} lit at {scale}", lit(&drawn));
+        }
+    }
+}
+
+#[test]
+fn a_picture_does_not_depend_on_what_was_drawn_before() {
+    let gpu = Gpu::headless().expect("a graphics adapter");
+    let canvas = Canvas::new(&gpu, 480, 300);
+    let mut renderer = Renderer::new(&gpu);
+    let many = rows(('\u{a1}'..).filter(|letter| letter.is_alphabetic()).take(500));
+    let many: Vec<_> = many.iter().map(String::as_str).collect();
+    let scenes = [named(&["Hüfte", "左手"]), named(&many), named(&["Рука"]), named(&[])];
+    for scene in scenes.iter().chain(&scenes) {
+        renderer.draw(&gpu, scene, &canvas, 1.0);
+        assert!(canvas.read(&gpu).expect("read") == draw(scene));
+    }
+}
