@@ -1,8 +1,16 @@
 //! Colours, spacing and type of the panels, from the scene's own palette.
 
-use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2};
+use std::sync::Arc;
+
+use egui::epaint::text::{
+    FallbackRequest, FontInsert, FontPriority, FontProvider, InsertFontFamily,
+};
+use egui::{
+    Color32, Context, CornerRadius, FontData, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2,
+};
 
 use crate::document::Theme;
+use crate::render::SystemFace;
 use crate::scene::{Colour, Palette};
 
 /// The colours of the panels that are not the scene's.
@@ -49,8 +57,9 @@ impl Tones {
     }
 }
 
-/// Sets both themes' styles; once, at the start.
+/// Sets both themes' styles, and fonts of the system for letters that egui's lack; once, at the start.
 pub fn install(ctx: &Context) {
+    ctx.add_font_provider(font_provider(SystemFace::find));
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(egui_theme(theme), |style| {
             style.visuals = visuals(theme);
@@ -73,6 +82,18 @@ pub fn install(ctx: &Context) {
             .into();
         });
     }
+}
+
+/// Asked once for each letter that egui's fonts lack. What it finds comes after them in every family.
+fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> {
+    Arc::new(move |request: &FallbackRequest<'_>| {
+        let face = find(request.cluster.chars().next()?)?;
+        let name = format!("system {}", face.number);
+        let data = FontData { index: face.index, ..FontData::from_static(face.data) };
+        let families = [FontFamily::Proportional, FontFamily::Monospace]
+            .map(|family| InsertFontFamily { family, priority: FontPriority::Lowest });
+        Some(FontInsert::new(&name, data, families.into()))
+    })
 }
 
 /// Shows the panels in a theme.
@@ -187,5 +208,29 @@ mod tests {
                 assert!(contrast >= 4.5, "{theme:?}: {text:?} on {ground:?} has {contrast}");
             }
         }
+    }
+
+    #[test]
+    fn letters_that_egui_lacks_come_from_a_font_that_is_found() {
+        // Hack is egui's too, but for monospaced text alone.
+        let find = |letter| {
+            let data = epaint_default_fonts::HACK_REGULAR;
+            (letter == '╬').then_some(SystemFace { number: 3, data, index: 0 })
+        };
+        let ctx = Context::default();
+        let has = |letter: char| {
+            let mut found = false;
+            let font = FontId::proportional(13.0);
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                ui.label(format!("a{letter}"));
+                found = ui.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+            });
+            output.textures_delta.clear();
+            found
+        };
+        assert!(has('ü') && !has('╬') && !has('\u{10fffd}'));
+        ctx.add_font_provider(font_provider(find));
+        assert!(has('ü') && has('╬') && !has('\u{10fffd}'));
+        assert_eq!(ctx.fonts(|fonts| fonts.discovered_fonts().len()), 1);
     }
 }

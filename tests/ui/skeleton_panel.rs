@@ -3,6 +3,7 @@
 use core::f32::consts::FRAC_PI_2;
 
 use egui::accesskit::Role;
+use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers};
 use glam::Vec3;
 use ik_arm::document::{Path, RigKind};
@@ -86,6 +87,22 @@ fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
     bench.apply([Action::Rename { joint: 1, name: "hand".to_owned() }]);
     assert_eq!(names(&bench)[1], "joint");
     assert!(bench.says("Two joints are called \"hand\""));
+}
+
+#[test]
+fn a_name_may_have_letters_of_any_script_and_letters_that_no_font_has() {
+    let mut bench = built();
+    // Boxes where there is no font for them.
+    bench.harness.ctx.set_missing_glyph_policy(MissingGlyphPolicy::Tofu);
+    for name in ["Hüfte", "左手", "\u{10fffd}"] {
+        bench.click(Role::Button, "Rename…");
+        bench.key_with(Modifiers::COMMAND, Key::A);
+        bench.frame([egui::Event::Text(name.to_owned())]);
+        bench.key(Key::Enter);
+        bench.settle();
+        assert_eq!(names(&bench)[3], name);
+        assert!(bench.shows(Role::Button, &format!("Joint {name}")));
+    }
 }
 
 #[test]
