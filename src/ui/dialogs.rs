@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::accesskit::Role;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{
-    Align2, Button, Frame, Grid, Id, Key, Label, Modal, Rect, RichText, ScrollArea, TextEdit, Ui,
-    Window, pos2,
+    Align2, Button, Frame, Grid, Id, Key, Label, Modal, Rect, RichText, Role, ScrollArea, TextEdit,
+    Ui, WidgetInfo, Window, pos2,
 };
 
 use super::{Machine, export, shortcuts, statistics, status};
@@ -83,14 +82,11 @@ fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal = Modal::new(id).area(area).frame(frame);
-    let shown = modal.show(ui.ctx(), |ui| {
+    modal.show(ui.ctx(), |ui| {
+        ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
         ui.heading(title);
         ui.add_space(6.0);
         contents(ui);
-    });
-    ui.ctx().accesskit_node_builder(shown.response.id, |node| {
-        node.set_role(Role::Dialog);
-        node.set_label(title);
     });
 }
 
