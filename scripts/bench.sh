@@ -4,11 +4,16 @@
 # machine that does nothing else meanwhile.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# shellcheck source=scripts/setup.sh
+source scripts/setup.sh
 
+tools=(git:git python3:python3)
 page=docs/performance.md
 results=${CARGO_TARGET_DIR:-target}/criterion
 
 main() {
+    set_up
+    require_tools "${tools[@]}"
     if [[ ${1:-} != --tables ]]; then
         cargo bench --locked --no-default-features --features parallel \
             --bench two_bone --bench batch --bench curves --bench solve
@@ -32,7 +37,7 @@ main() {
 machine() {
     local processor memory
     processor=$(lscpu | sed -n 's/^Model name: *//p' | head -1)
-    memory=$(free -g | awk '/^Mem:/ { print $2 }')
+    memory=$(awk '$1 == "MemTotal:" { printf "%d", $2 / 1048576 }' /proc/meminfo)
     printf 'Measured on %s: %s, %s threads, %s GiB, %s; commit %s.\n\n' "$(date +%F)" \
         "$processor" "$(nproc)" "$memory" "$(rustc --version | cut -d' ' -f1-2)" \
         "$(git rev-parse --short HEAD)"

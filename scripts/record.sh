@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Films the hand being dragged in the real window, for README.md: assets/demo.gif. Needs ffmpeg.
+# Films the hand being dragged in the real window, for README.md: assets/demo.gif.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -18,6 +18,7 @@ film=assets/demo.gif
 
 main() {
     set_up virtual-display
+    require_tools ffmpeg:ffmpeg
     cargo build --release --locked
     trap clean_up EXIT
     open_window

@@ -4,7 +4,7 @@ set -euo pipefail
 
 # command:Debian package
 build_tools=(cc:gcc pkg-config:pkg-config)
-screen_tools=(Xvfb:xvfb xauth:xauth xdotool:xdotool import:imagemagick)
+screen_tools=(Xvfb:xvfb xdotool:xdotool import:imagemagick)
 # library:Debian package. They are loaded when the window opens, so no linker misses them.
 window_libraries=(
     libvulkan.so.1:libvulkan1
@@ -21,13 +21,18 @@ set_up() {
     if [[ ${1-} == virtual-display ]] && is_linux; then
         tools+=("${screen_tools[@]}")
     fi
-    if has_command apt-get; then
-        install_packages "${tools[@]}"
-        find_cargo || install_rust
-    else
-        name_what_is_missing "${tools[@]}"
-    fi
+    require_tools "${tools[@]}"
+    find_cargo || install_rust
     check_rust_version
+}
+
+# require_tools COMMAND:PACKAGE...: installs the commands that are missing, or names them and fails.
+require_tools() {
+    if has_command apt-get; then
+        install_packages "$@"
+    else
+        name_what_is_missing "$@"
+    fi
 }
 
 is_linux() {

@@ -12,18 +12,10 @@ files=$target/gltf
 
 main() {
     set_up
-    install_tools
+    require_tools "${tools[@]}"
     install_validator
     export_files
     validate_files
-}
-
-install_tools() {
-    if has_command apt-get; then
-        install_packages "${tools[@]}"
-    else
-        name_what_is_missing "${tools[@]}"
-    fi
 }
 
 install_validator() {

@@ -254,6 +254,9 @@ fn what_is_cancelled_on_its_way_leaves_no_file() {
 #[test]
 #[cfg(unix)]
 fn an_interrupted_export_leaves_no_file_and_exits_with_130() {
+    use nix::sys::signal::{Signal, kill};
+    use nix::unistd::Pid;
+
     let mut document = moving();
     document.timeline.end = 1000.0;
     let desk = Desk::new(&io::to_json(&document).expect("written"));
@@ -264,8 +267,7 @@ fn an_interrupted_export_leaves_no_file_and_exits_with_130() {
         while desk.names().len() == 1 {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
-        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        assert!(kill.expect("it runs").success());
+        kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGINT).expect("the program runs");
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(output.status.code(), Some(130), "{}", complaint(&output));
         assert!(complaint(&output).starts_with("ik-arm: cancelled; "), "{}", complaint(&output));
