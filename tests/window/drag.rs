@@ -1,37 +1,40 @@
-use crate::screen::{Places, Program, changed, drag, mouse_to, place_window, settled, xdotool};
+use crate::places::Places;
+use crate::screen::{Program, changed};
 
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
-    let mut program = Program::start(folder.path());
-    place_window();
-    let first = settled(folder.path());
+    let program = Program::open(folder.path());
+    let first = program.at_rest();
 
-    drag(places.thumb, places.rail_end);
-    let slid = settled(folder.path());
-    assert!(changed(&first, &slid, places.thumb, 6.0) > 40, "the thumb has not moved");
-    assert!(changed(&first, &slid, places.hand, 30.0) > 300, "the hand has not moved");
-    assert!(changed(&first, &slid, places.elbow, 40.0) > 300, "the elbow has not followed");
+    program.drag(places.thumb, places.rail_end);
+    program.wait_until("the thumb moves, and the hand and the elbow follow", |now| {
+        changed(&first, now, places.thumb, 6.0) > 40
+            && changed(&first, now, places.hand, 30.0) > 300
+            && changed(&first, now, places.elbow, 40.0) > 300
+    });
 
-    // Double-click on the rail resets it: the hand is back where it was.
-    mouse_to(places.rail_end);
-    xdotool(&["click", "--repeat", "2", "--delay", "80", "1"]);
-    let reset = settled(folder.path());
-    assert!(changed(&first, &reset, places.elbow, 40.0) < 40, "the hand has not been reset");
+    // Resets the slider.
+    program.double_click(places.rail_end);
+    program.wait_until("the hand is back where it was", |now| {
+        changed(&first, now, places.elbow, 40.0) < 40
+    });
 
+    let reset = program.at_rest();
     let to = places.hand + egui::vec2(90.0, -140.0);
-    drag(places.hand, to);
-    let dragged = settled(folder.path());
-    assert!(changed(&reset, &dragged, to, 30.0) > 300, "the hand is not where it was dragged");
-    assert!(changed(&reset, &dragged, places.elbow, 40.0) > 300, "the elbow has not followed");
+    program.drag(places.hand, to);
+    program.wait_until("the hand is where it was dragged, and the elbow follows", |now| {
+        changed(&reset, now, to, 30.0) > 300 && changed(&reset, now, places.elbow, 40.0) > 300
+    });
 
+    program.key("ctrl+z");
+    program.wait_until("the drag is undone", |now| changed(&reset, now, places.elbow, 40.0) < 40);
     // Without changes it does not ask whether to save them.
-    xdotool(&["key", "ctrl+z"]);
-    let undone = settled(folder.path());
-    assert!(changed(&reset, &undone, places.elbow, 40.0) < 40, "the drag has not been undone");
-    xdotool(&["key", "--repeat", "10", "--delay", "50", "ctrl+z"]);
-    xdotool(&["key", "ctrl+q"]);
+    for _ in 0..10 {
+        program.key("ctrl+z");
+    }
+    program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
 }

@@ -1,57 +1,45 @@
 //! The graphics device is lost.
 
-use std::path::Path;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
-
 use image::RgbImage;
 
+use crate::places::Places;
 use crate::recovery::{change, document_of, kept};
-use crate::screen::{
-    PATIENCE, Places, Program, SIZE, changed, drag, mouse_to, place_window, screenshot, settled,
-    xdotool,
-};
+use crate::screen::{Program, SIZE, changed, wait_for};
 
 /// Beside all that takes the keyboard.
 const NOWHERE: egui::Pos2 = egui::pos2(640.0, 12.0);
 
-/// The screen as it is to be when the device is lost and made anew: with the pointer where the menu
-/// was, and the keyboard at nothing.
-fn expected(places: &Places, folder: &Path) -> RgbImage {
-    mouse_to(NOWHERE);
-    xdotool(&["click", "1"]);
-    mouse_to(places.lose_device);
-    settled(folder)
+/// The screen as it is to be when the device has been made anew: mouse and keyboard at nothing.
+fn expected(program: &Program) -> RgbImage {
+    program.click(NOWHERE);
+    program.at_rest()
 }
 
 /// Through the menu Help.
-fn lose_device(places: &Places, folder: &Path) {
-    mouse_to(places.help);
-    xdotool(&["click", "1"]);
-    sleep(Duration::from_millis(700));
-    mouse_to(places.lose_device);
-    settled(folder);
-    xdotool(&["click", "1"]);
+fn lose_device(program: &Program, places: &Places) {
+    let before = program.at_rest();
+    let errors = program.count_errors();
+    program.click(places.help);
+    program
+        .wait_until("the menu opens", |now| changed(&before, now, places.lose_device, 20.0) > 100);
+    program.click(places.lose_device);
+    wait_for("the loss of the device", || (program.count_errors() > errors).then_some(()));
 }
 
-/// Waits until the menu is gone and all is as before, but for what the line at the bottom says.
-fn assert_comes_back(before: &RgbImage, folder: &Path) {
-    let given_up = Instant::now() + PATIENCE;
-    loop {
-        let differing = changed_above_the_status(before, &screenshot(folder));
-        if differing == 0 {
-            return;
-        }
-        assert!(Instant::now() < given_up, "{differing} pixels are others than before the loss");
-        sleep(Duration::from_millis(400));
-    }
+/// Waits until the new device has drawn all as before, but for the line at the bottom.
+fn assert_comes_back(program: &Program, before: &RgbImage) {
+    wait_for("a frame of the new device", || program.has_drawn_since_error().then_some(()));
+    program.mouse_to(NOWHERE);
+    program.wait_until("the picture as it was before the loss", |now| {
+        is_same_above_the_status(before, now)
+    });
 }
 
-/// How many pixels differ above the line at the bottom, which says what has happened.
-fn changed_above_the_status(a: &RgbImage, b: &RgbImage) -> usize {
+/// Whether all pixels are equal above the line at the bottom, which says what has happened.
+fn is_same_above_the_status(a: &RgbImage, b: &RgbImage) -> bool {
     const STATUS: u32 = 30;
-    let pixels = a.enumerate_pixels().zip(b.pixels());
-    pixels.filter(|((_, y, a), b)| *y + STATUS < SIZE.1 as u32 && a != b).count()
+    let mut pixels = a.enumerate_pixels().zip(b.pixels());
+    pixels.all(|((_, y, a), b)| y + STATUS >= SIZE.1 || a == b)
 }
 
 #[test]
@@ -59,33 +47,32 @@ fn changed_above_the_status(a: &RgbImage, b: &RgbImage) -> usize {
 fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_intact() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
-    let mut program = Program::start_to_debug(folder.path(), "1");
-    place_window();
-    let first = settled(folder.path());
-    drag(places.thumb, places.rail_end);
-    let before = expected(&places, folder.path());
-    assert!(changed(&first, &before, places.elbow, 40.0) > 300, "the elbow has not followed");
+    let program = Program::open_to_debug(folder.path(), "1");
+    let first = program.at_rest();
+    program.drag(places.thumb, places.rail_end);
+    program.wait_until("the elbow follows", |now| changed(&first, now, places.elbow, 40.0) > 300);
+    let before = expected(&program);
 
     for _ in 0..4 {
-        lose_device(&places, folder.path());
-        assert_comes_back(&before, folder.path());
+        lose_device(&program, &places);
+        assert_comes_back(&program, &before);
     }
-    drag(places.rail_end, places.thumb);
-    let dragged = settled(folder.path());
-    assert!(changed(&before, &dragged, places.elbow, 40.0) > 300, "nothing moves any more");
-    for _ in 0..2 {
-        xdotool(&["key", "ctrl+z"]);
-        settled(folder.path());
-    }
-    let undone = settled(folder.path());
-    assert!(
-        changed(&first, &undone, places.elbow, 40.0) < 40,
-        "what was done before the loss is not undone"
-    );
-    xdotool(&["key", "ctrl+q"]);
+    program.drag(places.rail_end, places.thumb);
+    program.wait_until("the elbow follows still", |now| {
+        changed(&before, now, places.elbow, 40.0) > 300
+    });
+    program.key("ctrl+z");
+    program.wait_until("the drag after the losses is undone", |now| {
+        changed(&before, now, places.elbow, 40.0) < 40
+    });
+    program.key("ctrl+z");
+    program.wait_until("the drag before the losses is undone", |now| {
+        changed(&first, now, places.elbow, 40.0) < 40
+    });
+    program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
+    assert_eq!(program.count_errors(), 4);
     let errors = program.errors();
-    assert_eq!(errors.matches("ERROR").count(), 4, "{errors}");
     assert!(!errors.contains("panicked"), "{errors}");
 }
 
@@ -94,12 +81,11 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
 fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
-    let mut program = Program::start_to_debug(folder.path(), "fail-devices:2");
-    place_window();
-    let before = expected(&places, folder.path());
-    lose_device(&places, folder.path());
-    assert_comes_back(&before, folder.path());
-    xdotool(&["key", "ctrl+q"]);
+    let program = Program::open_to_debug(folder.path(), "fail-devices:2");
+    let before = expected(&program);
+    lose_device(&program, &places);
+    assert_comes_back(&program, &before);
+    program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
 }
 
@@ -108,9 +94,9 @@ fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
 fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_all_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let places = Places::new();
-    let mut program = Program::start_to_debug(folder.path(), "fail-devices:3");
-    change(&places, folder.path());
-    lose_device(&places, folder.path());
+    let program = Program::open_to_debug(folder.path(), "fail-devices:3");
+    change(&program, &places);
+    lose_device(&program, &places);
     assert_eq!(program.end(), Some(1));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
     let errors = program.errors();
@@ -119,12 +105,9 @@ fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_a
     let hand = document_of(first).arm.cursor();
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
-    let mut program = Program::start(folder.path());
-    place_window();
-    let offered = settled(folder.path());
-    xdotool(&["key", "Return"]);
-    let opened = settled(folder.path());
-    assert!(changed(&offered, &opened, places.thumb, 6.0) > 40, "the document is not opened");
-    program.0.kill().expect("killed");
-    program.end();
+    let program = Program::open(folder.path());
+    let offered = program.at_rest();
+    program.key("Return");
+    program.wait_until("the document opens", |now| changed(&offered, now, places.thumb, 6.0) > 40);
+    program.kill();
 }

@@ -6,6 +6,8 @@
 #![cfg(all(feature = "app", target_os = "linux"))]
 
 mod drag;
+mod keyboard;
 mod loss;
+mod places;
 mod recovery;
 mod screen;

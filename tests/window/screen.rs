@@ -1,174 +1,264 @@
-//! The program, the mouse and the screen.
+//! Drives the program by keyboard and mouse, and waits for what the screen shows.
+//!
+//! No helper sleeps for a fixed time and hopes: each waits for a frame, a picture or a state, and
+//! panics after [`PATIENCE`] with what it waited for. A picture that does not come is kept in a file.
 
-use std::io::Read as _;
-use std::path::Path;
+use std::cell::RefCell;
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
+use std::sync::{Arc, Mutex};
+use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
-use ik_arm::session::Session;
-use ik_arm::ui::{self, Machine};
+use egui::Pos2;
 use image::RgbImage;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
-pub const SIZE: (f32, f32) = (1280.0, 800.0);
-/// What the harness leaves free around the panels, and the window does not.
-const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
+/// Of the screen and of the window, in pixels.
+pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
+/// A screen that does not change for as long is at rest. Shorter than a text cursor blinks.
+const REST: Duration = Duration::from_millis(300);
+const POLL: Duration = Duration::from_millis(50);
 
-/// Where things are in the window, in points: the same panels laid out without one.
-pub struct Places {
-    pub thumb: egui::Pos2,
-    pub rail_end: egui::Pos2,
-    pub hand: egui::Pos2,
-    pub elbow: egui::Pos2,
-    pub help: egui::Pos2,
-    /// In the menu Help, while that is open.
-    pub lose_device: egui::Pos2,
+/// The program with its window, ended with the test.
+pub struct Program {
+    child: RefCell<Child>,
+    /// What it has written to standard error, line by line.
+    log: Arc<Mutex<Vec<String>>>,
+    listener: RefCell<Option<JoinHandle<()>>>,
 }
-
-impl Places {
-    pub fn new() -> Self {
-        let session = Session::default();
-        let machine = Machine { shows_debug_actions: true, ..Machine::default() };
-        let mut harness = Harness::builder()
-            .with_size(egui::vec2(SIZE.0, SIZE.1) + 2.0 * HARNESS_MARGIN)
-            .with_context_setup(ui::style::install)
-            .build_ui(|ui| {
-                ui::show(ui, &Session::default(), &machine, None, &mut Vec::new());
-            });
-        let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
-        let rail = rail.translate(-HARNESS_MARGIN);
-        let viewport = harness
-            .get_by(|node| {
-                node.role() == egui::accesskit::Role::Image
-                    && node.label().is_some_and(|label| label.starts_with("Viewport"))
-            })
-            .rect()
-            .translate(-HARNESS_MARGIN);
-        let help = harness.get_by_label("Help");
-        let help_place = help.rect().center() - HARNESS_MARGIN;
-        help.click();
-        harness.run();
-        let lose_device = harness.get_by_label("Lose the graphics device").rect().center();
-        let projection = session.camera().projection(viewport.aspect_ratio());
-        let place = |point| {
-            let at = projection.project(point).expect("in the picture");
-            viewport.center() + egui::vec2(at.x, -at.y) * viewport.size() / 2.0
-        };
-        let track = rail.x_range().shrink(8.5);
-        let part = (session.arm().cursor().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
-        Self {
-            thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
-            rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
-            hand: place(session.arm().root + session.pose().hand),
-            elbow: place(session.arm().root + session.pose().elbow),
-            help: help_place,
-            lose_device: lose_device - HARNESS_MARGIN,
-        }
-    }
-}
-
-/// The program, ended with the test.
-pub struct Program(pub Child);
 
 impl Program {
-    pub fn start(settings: &Path) -> Self {
-        Self(Self::command(settings).spawn().expect("started"))
+    /// Starts it and waits for its first picture. Its settings are in a folder.
+    pub fn open(settings: &Path) -> Self {
+        Self::open_to_debug(settings, "")
     }
 
-    /// With what `IK_ARM_DEBUG` asks for, and its errors kept.
-    pub fn start_to_debug(settings: &Path, asked: &str) -> Self {
-        let mut command = Self::command(settings);
-        let command = command.env("IK_ARM_DEBUG", asked).stderr(Stdio::piped());
-        Self(command.spawn().expect("started"))
-    }
-
-    fn command(settings: &Path) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-        command
+    /// Also sets `IK_ARM_DEBUG`.
+    pub fn open_to_debug(settings: &Path, debug: &str) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
             .env("XDG_CONFIG_HOME", settings)
             .env("XDG_DATA_HOME", settings)
-            .env_remove("IK_ARM_DEBUG")
-            .env_remove("WAYLAND_DISPLAY");
-        command
-    }
-
-    /// What it has said on stderr until its end.
-    pub fn errors(&mut self) -> String {
-        let mut said = String::new();
-        let mut stderr = self.0.stderr.take().expect("kept");
-        stderr.read_to_string(&mut said).expect("text");
-        said
-    }
-
-    pub fn end(&mut self) -> Option<i32> {
-        let given_up = Instant::now() + PATIENCE;
-        while Instant::now() < given_up {
-            if let Some(status) = self.0.try_wait().expect("waited for") {
-                return status.code();
+            .env("IK_ARM_DEBUG", debug)
+            .env("RUST_LOG", "error,ik_arm=trace")
+            .env_remove("WAYLAND_DISPLAY")
+            // Its own dialogs ask for paths, not the desktop's.
+            .env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent")
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let stderr = BufReader::new(child.stderr.take().expect("piped"));
+        let log = Arc::new(Mutex::new(Vec::new()));
+        let lines = Arc::clone(&log);
+        let listener = std::thread::spawn(move || {
+            for line in stderr.lines().map_while(Result::ok) {
+                lines.lock().expect("no panic").push(line);
             }
-            sleep(Duration::from_millis(100));
+        });
+        let (child, listener) = (RefCell::new(child), RefCell::new(Some(listener)));
+        let program = Self { child, log, listener };
+        program.place_window();
+        program.at_rest();
+        program
+    }
+
+    /// Moves the window to the corner of the screen and gives it the keyboard, as no window manager
+    /// does.
+    fn place_window(&self) {
+        let window = wait_for("the window", || {
+            assert!(!self.has_ended(), "{}", self.errors());
+            let found = xdotool(&["search", "--onlyvisible", "--name", "^ik-arm"]);
+            found.lines().next().map(str::to_owned)
+        });
+        xdotool(&["windowmove", &window, "0", "0", "windowfocus", &window]);
+        wait_for("the keyboard's focus", || (xdotool(&["getwindowfocus"]) == window).then_some(()));
+    }
+
+    // Keyboard and mouse. Each waits until the program has drawn a frame, or has ended.
+
+    /// Presses keys together, by their X names: `"ctrl+s"`, `"Return"`, `"shift+Tab"`.
+    pub fn key(&self, keys: &str) {
+        self.input(&["key", keys]);
+    }
+
+    pub fn type_text(&self, text: &str) {
+        for letter in text.chars() {
+            self.input(&["type", "--", &letter.to_string()]);
         }
-        None
+    }
+
+    pub fn mouse_to(&self, at: Pos2) {
+        let (x, y) = (at.x.round(), at.y.round());
+        // Where the mouse is already, no event follows.
+        if !xdotool(&["getmouselocation"]).starts_with(&format!("x:{x} y:{y} ")) {
+            self.input(&["mousemove", &x.to_string(), &y.to_string()]);
+        }
+    }
+
+    pub fn click(&self, at: Pos2) {
+        self.mouse_to(at);
+        self.input(&["click", "1"]);
+    }
+
+    pub fn double_click(&self, at: Pos2) {
+        self.mouse_to(at);
+        self.input(&["click", "--repeat", "2", "--delay", "80", "1"]);
+    }
+
+    pub fn drag(&self, from: Pos2, to: Pos2) {
+        const STEPS: u8 = 6;
+        self.mouse_to(from);
+        self.input(&["mousedown", "1"]);
+        for step in 1..=STEPS {
+            // The first steps are short: a frame may see them together with the press.
+            let part = (f32::from(step) / f32::from(STEPS)).powi(2);
+            self.mouse_to(from + (to - from) * part);
+        }
+        self.input(&["mouseup", "1"]);
+    }
+
+    fn input(&self, arguments: &[&str]) {
+        let before = self.frames();
+        xdotool(arguments);
+        wait_for(&format!("a frame after {arguments:?}"), || {
+            (self.frames() > before || self.has_ended()).then_some(())
+        });
+    }
+
+    // The screen.
+
+    /// Waits until the program has drawn something, and the screen has not changed for a while.
+    pub fn at_rest(&self) -> RgbImage {
+        let mut last = (self.frames(), screenshot());
+        let mut since = Instant::now();
+        wait_for_screen("the screen at rest", |screen| {
+            let now = (self.frames(), screen.clone());
+            if now != last {
+                (last, since) = (now, Instant::now());
+            }
+            last.0 > 0 && since.elapsed() > REST
+        })
+    }
+
+    /// Waits until the screen differs from a picture of it.
+    pub fn wait_for_change(&self, before: &RgbImage) -> RgbImage {
+        wait_for_screen("another picture", |screen| screen != before)
+    }
+
+    /// Waits for a picture of the screen about which something holds.
+    pub fn wait_until(&self, what: &str, holds: impl Fn(&RgbImage) -> bool) -> RgbImage {
+        wait_for_screen(what, holds)
+    }
+
+    /// How many frames it has drawn.
+    fn frames(&self) -> usize {
+        self.log.lock().expect("no panic").iter().filter(|line| is_frame(line)).count()
+    }
+
+    // What it says.
+
+    /// What it has written to standard error so far, without the lines about frames.
+    pub fn errors(&self) -> String {
+        let log = self.log.lock().expect("no panic");
+        log.iter().filter(|line| !is_frame(line)).fold(String::new(), |all, line| all + line + "\n")
+    }
+
+    pub fn count_errors(&self) -> usize {
+        self.log.lock().expect("no panic").iter().filter(|line| is_error(line)).count()
+    }
+
+    /// Whether it has drawn a frame after the last error that it has logged.
+    pub fn has_drawn_since_error(&self) -> bool {
+        let log = self.log.lock().expect("no panic");
+        log.iter().rev().take_while(|line| !is_error(line)).any(|line| is_frame(line))
+    }
+
+    // The end.
+
+    /// Asks it to end, as a system does that shuts down.
+    pub fn terminate(&self) {
+        let id = self.child.borrow().id().cast_signed();
+        kill(Pid::from_raw(id), Signal::SIGTERM).expect("the program runs");
+    }
+
+    /// Ends it at once, as a crash does.
+    pub fn kill(&self) {
+        self.child.borrow_mut().kill().expect("the program runs");
+        self.end();
+    }
+
+    /// Waits until it has ended and all that it said is heard; its exit code.
+    pub fn end(&self) -> Option<i32> {
+        let exited = || self.child.borrow_mut().try_wait().expect("a child");
+        let status = wait_for("the program's end", exited);
+        self.listener.take().map(JoinHandle::join);
+        status.code()
+    }
+
+    fn has_ended(&self) -> bool {
+        self.child.borrow_mut().try_wait().expect("a child").is_some()
     }
 }
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // It has ended already, unless the test failed.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-pub fn xdotool(arguments: &[&str]) -> String {
-    let output = Command::new("xdotool").args(arguments).output().expect("xdotool runs");
-    String::from_utf8_lossy(&output.stdout).trim().to_owned()
-}
-
-pub fn mouse_to(at: egui::Pos2) {
-    xdotool(&["mousemove", &at.x.round().to_string(), &at.y.round().to_string()]);
-    sleep(Duration::from_millis(60));
-}
-
-pub fn drag(from: egui::Pos2, to: egui::Pos2) {
-    const STEPS: u8 = 12;
-    mouse_to(from);
-    sleep(Duration::from_millis(300));
-    xdotool(&["mousedown", "1"]);
-    for step in 1..=STEPS {
-        mouse_to(from + (to - from) * f32::from(step) / f32::from(STEPS));
-    }
-    sleep(Duration::from_millis(300));
-    xdotool(&["mouseup", "1"]);
-}
-
-pub fn screenshot(folder: &Path) -> RgbImage {
-    let path = folder.join("screen.png");
-    let taken = Command::new("import").args(["-window", "root"]).arg(&path).status();
-    assert!(taken.expect("import runs").success());
-    image::open(path).expect("a picture").into_rgb8()
-}
-
-/// The screen once something is on it that does not change any more.
-pub fn settled(folder: &Path) -> RgbImage {
-    let given_up = Instant::now() + PATIENCE;
-    let mut last = screenshot(folder);
-    while Instant::now() < given_up {
-        sleep(Duration::from_millis(400));
-        let now = screenshot(folder);
-        if now == last && now.pixels().any(|pixel| pixel != now.get_pixel(0, 0)) {
-            return now;
+        if std::thread::panicking() {
+            eprintln!("{}", self.errors());
         }
-        last = now;
+        // It has ended already, unless the test failed.
+        let _ = self.child.get_mut().kill();
+        let _ = self.child.get_mut().wait();
     }
-    panic!("the screen does not come to rest");
+}
+
+fn is_frame(line: &str) -> bool {
+    line.contains("TRACE") && line.ends_with("drawn")
+}
+
+fn is_error(line: &str) -> bool {
+    line.contains("ERROR")
+}
+
+/// Polls until there is something.
+pub fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        if let Some(found) = found() {
+            return found;
+        }
+        if Instant::now() > deadline {
+            let file = keep(&screenshot(), what);
+            panic!("waited {PATIENCE:?} for {what}; the screen is in {}", file.display());
+        }
+        sleep(POLL);
+    }
+}
+
+fn wait_for_screen(what: &str, mut holds: impl FnMut(&RgbImage) -> bool) -> RgbImage {
+    wait_for(what, || Some(screenshot()).filter(&mut holds))
+}
+
+pub fn screenshot() -> RgbImage {
+    let part = format!("{}x{}+0+0", SIZE.0, SIZE.1);
+    let taken = Command::new("import")
+        .args(["-window", "root", "-crop", &part, "-depth", "8", "rgb:-"])
+        .output()
+        .expect("import runs");
+    RgbImage::from_raw(SIZE.0, SIZE.1, taken.stdout).expect("the screen is as large as the window")
+}
+
+/// Writes a picture to a file of that name, to look at.
+pub fn keep(screen: &RgbImage, name: &str) -> PathBuf {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("png");
+    screen.save(&file).expect("written");
+    file
 }
 
 /// How many pixels differ within `radius` of a place.
-pub fn changed(a: &RgbImage, b: &RgbImage, at: egui::Pos2, radius: f32) -> usize {
+pub fn changed(a: &RgbImage, b: &RgbImage, at: Pos2, radius: f32) -> usize {
     let near = |x: u32, y: u32| egui::pos2(x as f32, y as f32).distance(at) <= radius;
     let differs = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| {
         (0..3).any(|channel| a.0[channel].abs_diff(b.0[channel]) > 24)
@@ -177,21 +267,7 @@ pub fn changed(a: &RgbImage, b: &RgbImage, at: egui::Pos2, radius: f32) -> usize
     pixels.filter(|((x, y, a), b)| near(*x, *y) && differs(a, b)).count()
 }
 
-/// Puts the window where the screen begins, and gives it the keyboard.
-pub fn place_window() {
-    let window = await_window();
-    xdotool(&["windowmove", &window, "0", "0"]);
-    xdotool(&["windowfocus", &window]);
-}
-
-pub fn await_window() -> String {
-    let given_up = Instant::now() + PATIENCE;
-    while Instant::now() < given_up {
-        let found = xdotool(&["search", "--onlyvisible", "--name", "^ik-arm"]);
-        if let Some(window) = found.lines().next() {
-            return window.to_owned();
-        }
-        sleep(Duration::from_millis(200));
-    }
-    panic!("no window appears");
+fn xdotool(arguments: &[&str]) -> String {
+    let output = Command::new("xdotool").args(arguments).output().expect("xdotool runs");
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }

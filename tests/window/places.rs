@@ -1,0 +1,68 @@
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use ik_arm::session::Session;
+use ik_arm::ui::{self, Machine};
+
+use crate::screen::SIZE;
+
+/// What the harness leaves free around the panels, and the window does not.
+const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
+
+/// Where things are in the window, in points: the same panels laid out without one.
+pub struct Places {
+    pub thumb: egui::Pos2,
+    pub rail_end: egui::Pos2,
+    /// The box beside the slider, for the same number.
+    pub number: egui::Pos2,
+    pub hand: egui::Pos2,
+    pub elbow: egui::Pos2,
+    pub help: egui::Pos2,
+    /// In the menu Help, while that is open.
+    pub lose_device: egui::Pos2,
+}
+
+impl Places {
+    pub fn new() -> Self {
+        let session = Session::default();
+        let machine = Machine { shows_debug_actions: true, ..Machine::default() };
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(SIZE.0 as f32, SIZE.1 as f32) + 2.0 * HARNESS_MARGIN)
+            .with_context_setup(ui::style::install)
+            .build_ui(|ui| {
+                ui::show(ui, &Session::default(), &machine, None, &mut Vec::new());
+            });
+        let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
+        let rail = rail.translate(-HARNESS_MARGIN);
+        let number =
+            harness.get_by_role_and_label(egui::accesskit::Role::SpinButton, "Hand x value");
+        let number = number.rect().center() - HARNESS_MARGIN;
+        let viewport = harness
+            .get_by(|node| {
+                node.role() == egui::accesskit::Role::Image
+                    && node.label().is_some_and(|label| label.starts_with("Viewport"))
+            })
+            .rect()
+            .translate(-HARNESS_MARGIN);
+        let help = harness.get_by_label("Help");
+        let help_place = help.rect().center() - HARNESS_MARGIN;
+        help.click();
+        harness.run();
+        let lose_device = harness.get_by_label("Lose the graphics device").rect().center();
+        let projection = session.camera().projection(viewport.aspect_ratio());
+        let place = |point| {
+            let at = projection.project(point).expect("in the picture");
+            viewport.center() + egui::vec2(at.x, -at.y) * viewport.size() / 2.0
+        };
+        let track = rail.x_range().shrink(8.5);
+        let part = (session.arm().cursor().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
+        Self {
+            thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
+            rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
+            number,
+            hand: place(session.arm().root + session.pose().hand),
+            elbow: place(session.arm().root + session.pose().elbow),
+            help: help_place,
+            lose_device: lose_device - HARNESS_MARGIN,
+        }
+    }
+}
