@@ -50,7 +50,7 @@ pose_hand() {
 }
 
 take_picture() {
-    sleep 1
+    wait_for_rest
     import -window root "$picture"
 }
 

@@ -34,7 +34,9 @@ main() {
 # machine is.
 drag_around() {
     local step place
-    xdotool mousemove "${middle[@]}" sleep 0.5 mousedown 1
+    xdotool mousemove "${middle[@]}"
+    wait_for_rest
+    xdotool mousedown 1
     for ((step = 0; step <= steps; step++)); do
         place=$(awk -v t="$step" -v n="$steps" -v x="${middle[0]}" -v y="${middle[1]}" \
             -v a="$across" -v b="$up" 'BEGIN {
@@ -43,7 +45,7 @@ drag_around() {
             }')
         # shellcheck disable=SC2086 # two numbers
         xdotool mousemove $place
-        sleep 0.35
+        wait_for_rest
         import -window root "$frames/$(printf %03d "$step").png"
     done
     xdotool mouseup 1

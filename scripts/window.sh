@@ -21,9 +21,10 @@ clean_up() {
 }
 
 open_window() {
-    local window
+    local window empty
     start_virtual_display
     export DISPLAY=$virtual_display
+    empty=$(screen)
     # Remembered settings could move the arm or the panels away from hand_path.
     settings=$(mktemp -d)
     XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
@@ -32,8 +33,40 @@ open_window() {
     window=$(wait_for_window)
     # No window manager gives it the keyboard.
     xdotool windowfocus "$window"
-    # Without graphics hardware, the first frames take their time.
-    sleep 3
+    wait_for_screen_other_than "$empty"
+    wait_for_rest
+}
+
+# The picture on the screen, as a checksum.
+screen() {
+    import -window root -depth 8 rgb:- | cksum
+}
+
+# wait_for_screen_other_than CHECKSUM
+wait_for_screen_other_than() {
+    local deadline=$((SECONDS + 60))
+    while [[ $(screen) == "$1" ]]; do
+        if ((SECONDS > deadline)); then
+            printf 'The screen does not change.\n' >&2
+            return 1
+        fi
+        sleep 0.1
+    done
+}
+
+# Waits until the screen has not changed for half a second.
+wait_for_rest() {
+    local last now deadline=$((SECONDS + 60))
+    now=$(screen)
+    until [[ $now == "${last-}" ]]; do
+        if ((SECONDS > deadline)); then
+            printf 'The screen does not come to rest.\n' >&2
+            return 1
+        fi
+        sleep 0.5
+        last=$now
+        now=$(screen)
+    done
 }
 
 wait_for_window() {
@@ -48,18 +81,21 @@ wait_for_window() {
     head -n 1 <<<"$window"
 }
 
+# drag X1 Y1 X2 Y2: at the speed of a hand. The first steps are short: a frame may see them together
+# with the press.
 drag() {
     local x1=$1 y1=$2 x2=$3 y2=$4 step steps=12
+    local square=$((steps * steps))
     xdotool mousemove "$x1" "$y1" sleep 0.3 mousedown 1 sleep 0.1
     for ((step = 1; step <= steps; step++)); do
-        xdotool mousemove \
-            $((x1 + (x2 - x1) * step / steps)) $((y1 + (y2 - y1) * step / steps)) sleep 0.05
+        xdotool mousemove $((x1 + (x2 - x1) * step * step / square)) \
+            $((y1 + (y2 - y1) * step * step / square)) sleep 0.05
     done
     xdotool mouseup 1 sleep 0.3
 }
 
 close_window() {
-    local deadline=$((SECONDS + 15))
+    local deadline=$((SECONDS + 60))
     # Without changes it does not ask whether to save them.
     xdotool key --repeat 40 --delay 20 ctrl+z
     xdotool key ctrl+q
