@@ -151,6 +151,25 @@ fn timings_are_one_line_of_json_and_need_no_picture() {
     assert!(!line["adapter"].as_str().expect("a name").is_empty());
 }
 
+/// Drivers write there, too: Mesa where `XDG_RUNTIME_DIR` is not set, and OpenGL's.
+#[test]
+fn nothing_is_written_to_standard_error_when_all_is_well() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arm = file(&folder, "arm.json", ik_arm::io::Example::ALL[0].text);
+    let out = folder.path().join("arm.png");
+    let out = out.to_str().expect("a path in UTF-8");
+    for arguments in [&["render", "-o", out, "--size", "64x64"][..], &["export", &arm, "-o", out]] {
+        let output = command(arguments)
+            .env_remove("XDG_RUNTIME_DIR")
+            .env_remove("NODEVICE_SELECT")
+            .env_remove("RUST_LOG")
+            .output()
+            .expect("the program runs");
+        assert!(output.status.success(), "{arguments:?}");
+        assert_eq!(complaint(&output), "", "{arguments:?}");
+    }
+}
+
 #[test]
 fn without_a_graphics_adapter_it_says_what_to_install() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -67,11 +67,15 @@ impl Graphics {
         panels: &Context,
         proxy: EventLoopProxy<UserEvent>,
     ) -> Result<Self, GraphicsError> {
-        let descriptor =
-            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display));
-        let instance = wgpu::Instance::new(descriptor);
-        let surface = instance.create_surface(Arc::clone(window))?;
-        let gpu = Gpu::new(instance, Some(&surface))?;
+        let (gpu, surface) = Gpu::with_gl_as_fallback(|backends| {
+            let display = Box::new(display.clone());
+            let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
+            let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };
+            let instance = wgpu::Instance::new(descriptor);
+            let surface = instance.create_surface(Arc::clone(window))?;
+            let gpu = Gpu::new(instance, Some(&surface))?;
+            Ok::<_, GraphicsError>((gpu, surface))
+        })?;
         let fault = Arc::new(OnceLock::new());
         let found = Arc::clone(&fault);
         gpu.on_fault(move |why| {

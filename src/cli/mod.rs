@@ -5,6 +5,7 @@ mod examples;
 mod export;
 mod open;
 mod pose;
+mod quiet;
 mod render;
 mod solve;
 
@@ -45,7 +46,11 @@ enum Command {
 /// Runs the program with the process's own arguments.
 pub fn run() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
-    match Cli::parse().command {
+    let command = Cli::parse().command;
+    if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
+        quiet::restart_without_device_select();
+    }
+    match command {
         Some(Command::Solve(args)) => solve::run(&args),
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),

@@ -44,8 +44,28 @@ impl Gpu {
     ///
     /// If there is no adapter, or it gives no device.
     pub fn headless() -> Result<Self, GpuError> {
-        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        Self::new(wgpu::Instance::new(descriptor), None)
+        Self::with_gl_as_fallback(|backends| {
+            let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+            let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };
+            Self::new(wgpu::Instance::new(descriptor), None)
+        })
+    }
+
+    /// Makes something of all backends but OpenGL, and if that fails, of all: OpenGL's drivers write
+    /// to standard error even where it is not chosen. `WGPU_BACKEND` limits the backends.
+    ///
+    /// # Errors
+    ///
+    /// The last of `make`'s.
+    pub(crate) fn with_gl_as_fallback<T, E>(
+        mut make: impl FnMut(wgpu::Backends) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let all = wgpu::Backends::from_env().unwrap_or_default();
+        let without_gl = all - wgpu::Backends::GL;
+        if without_gl.is_empty() || without_gl == all {
+            return make(all);
+        }
+        make(without_gl).or_else(|_| make(all))
     }
 
     /// A device that can show what it draws on `surface`, if there is one.

@@ -37,4 +37,5 @@ fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
     }
     program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
+    assert_eq!(program.errors(), "", "it has nothing to complain about");
 }

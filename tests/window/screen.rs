@@ -43,8 +43,9 @@ impl Program {
             .env("XDG_CONFIG_HOME", settings)
             .env("XDG_DATA_HOME", settings)
             .env("IK_ARM_DEBUG", debug)
-            .env("RUST_LOG", "error,ik_arm=trace")
+            .env("RUST_LOG", "error,ik_arm::app::window=trace")
             .env_remove("WAYLAND_DISPLAY")
+            .env_remove("XDG_RUNTIME_DIR")
             // Its own dialogs ask for paths, not the desktop's.
             .env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent")
             .stderr(Stdio::piped())

@@ -1,0 +1,34 @@
+//! Keeps graphics drivers from writing to standard error while all is well.
+
+/// Replaces this process by one with Mesa's Vulkan layer "device select" switched off, if the layer
+/// would only complain.
+///
+/// The layer asks the Wayland compositor for its GPU. Without `XDG_RUNTIME_DIR` there is nobody to
+/// ask, and libwayland prints an error each time. The layer's switch is an environment variable,
+/// which has to be set before a process starts: changing it later is unsafe.
+pub(super) fn restart_without_device_select() {
+    #[cfg(target_os = "linux")]
+    linux::restart();
+}
+
+#[cfg(target_os = "linux")]
+mod linux {
+    use std::env;
+    use std::os::unix::process::CommandExt as _;
+    use std::path::Path;
+    use std::process::Command;
+
+    const SWITCH: &str = "NODEVICE_SELECT";
+
+    pub(super) fn restart() {
+        let runtime_folder = env::var_os("XDG_RUNTIME_DIR").unwrap_or_default();
+        if Path::new(&runtime_folder).is_absolute() || env::var_os(SWITCH).is_some() {
+            return;
+        }
+        let (Ok(program), mut arguments) = (env::current_exe(), env::args_os()) else { return };
+        let name = arguments.next().unwrap_or_default();
+        // Returns only if it fails; then this process goes on, with the layer's complaints.
+        let error = Command::new(program).arg0(name).args(arguments).env(SWITCH, "1").exec();
+        log::debug!("not restarted: {error}");
+    }
+}
