@@ -52,8 +52,9 @@ fn channels(glb: &Glb) -> Vec<Moving> {
 // For the validator
 
 #[test]
-fn every_file_is_written_for_the_validator_if_it_asks() {
-    let Some(folder) = std::env::var_os("IK_ARM_GLB_DIR") else { return };
+#[ignore = "writes files for the Khronos glTF validator: scripts/validate-gltf.sh"]
+fn every_file_is_written_for_the_validator() {
+    let folder = std::env::var_os("IK_ARM_GLB_DIR").expect("a folder in IK_ARM_GLB_DIR");
     for (name, document) in all() {
         let path = Path::new(&folder).join(format!("{name}.glb"));
         io::write(&path, &glb(&document)).expect("it is written");
