@@ -11,3 +11,4 @@ mod loss;
 mod places;
 mod recovery;
 mod screen;
+mod typing;

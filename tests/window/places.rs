@@ -1,6 +1,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use ik_arm::session::Session;
+use ik_arm::document::RigKind;
+use ik_arm::session::{Action, Session};
 use ik_arm::ui::{self, Machine};
 
 use crate::screen::SIZE;
@@ -16,6 +17,11 @@ pub struct Places {
     pub number: egui::Pos2,
     pub hand: egui::Pos2,
     pub elbow: egui::Pos2,
+    /// In the viewport, with nothing under it.
+    pub empty: egui::Pos2,
+    pub skeleton_switch: egui::Pos2,
+    /// The middle of the Human's head, while that is shown.
+    pub head: egui::Pos2,
     pub help: egui::Pos2,
     /// In the menu Help, while that is open.
     pub lose_device: egui::Pos2,
@@ -43,16 +49,24 @@ impl Places {
             })
             .rect()
             .translate(-HARNESS_MARGIN);
+        let switch = harness.get_by_role_and_label(egui::accesskit::Role::Button, "Skeleton");
+        let skeleton_switch = switch.rect().center() - HARNESS_MARGIN;
         let help = harness.get_by_label("Help");
         let help_place = help.rect().center() - HARNESS_MARGIN;
         help.click();
         harness.run();
         let lose_device = harness.get_by_label("Lose the graphics device").rect().center();
-        let projection = session.camera().projection(viewport.aspect_ratio());
-        let place = |point| {
+        let place_in = |session: &Session, point| {
+            let projection = session.camera().projection(viewport.aspect_ratio());
             let at = projection.project(point).expect("in the picture");
             viewport.center() + egui::vec2(at.x, -at.y) * viewport.size() / 2.0
         };
+        let place = |point| place_in(&session, point);
+        let mut human = Session::default();
+        human.apply(Action::ShowRig(RigKind::Skeleton));
+        let head = human.skeleton().skeleton.find("head").expect("the Human has a head");
+        let pose = human.skeleton_pose();
+        let head = place_in(&human, pose.base(head).midpoint(pose.tip(head)));
         let track = rail.x_range().shrink(8.5);
         let part = (session.arm().cursor().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
         Self {
@@ -61,6 +75,9 @@ impl Places {
             number,
             hand: place(session.arm().root + session.pose().hand),
             elbow: place(session.arm().root + session.pose().elbow),
+            empty: viewport.left_top() + egui::vec2(40.0, 40.0),
+            skeleton_switch,
+            head,
             help: help_place,
             lose_device: lose_device - HARNESS_MARGIN,
         }

@@ -121,6 +121,11 @@ impl Program {
         self.input(&["mouseup", "1"]);
     }
 
+    /// Gives xdotool several commands at once, as fast as keys can follow each other.
+    pub fn quickly(&self, arguments: &[&str]) {
+        self.input(arguments);
+    }
+
     fn input(&self, arguments: &[&str]) {
         let before = self.frames();
         xdotool(arguments);
