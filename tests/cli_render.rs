@@ -27,7 +27,7 @@ fn picture(arguments: &[&str]) -> image::RgbaImage {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("arm.png");
     let output = render(&out, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", complaint(&output));
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
     assert!(output.stdout.is_empty(), "a picture alone prints nothing");
     image::open(out).expect("a picture").into_rgba8()
 }

@@ -66,8 +66,8 @@ impl Program {
         program
     }
 
-    /// Moves the window to the corner of the screen and gives it the keyboard, as no window manager
-    /// does.
+    /// Moves the window to the corner of the screen and gives it the keyboard: there is no window
+    /// manager to do so.
     fn place_window(&self) {
         let window = wait_for("the window", || {
             assert!(!self.has_ended(), "{}", self.errors());
@@ -253,12 +253,14 @@ pub fn screenshot() -> RgbImage {
         .args(["-window", "root", "-crop", &part, "-depth", "8", "rgb:-"])
         .output()
         .expect("import runs");
+    assert!(taken.status.success(), "{}", String::from_utf8_lossy(&taken.stderr));
     RgbImage::from_raw(SIZE.0, SIZE.1, taken.stdout).expect("the screen is as large as the window")
 }
 
-/// Writes a picture to a file of that name, to look at.
-pub fn keep(screen: &RgbImage, name: &str) -> PathBuf {
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("png");
+/// Writes a picture to a file called after `what`, to look at.
+pub fn keep(screen: &RgbImage, what: &str) -> PathBuf {
+    let name = what.replace(|letter: char| !letter.is_alphanumeric(), "_");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
     screen.save(&file).expect("written");
     file
 }
