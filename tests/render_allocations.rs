@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Display, Document, Goal, Layer, RigKind, Theme};
 use ik_arm::kinematics::skeleton::Skeleton;
 use ik_arm::render::{Canvas, Gpu, Renderer};
-use ik_arm::scene::{Ball, Line, Scene};
+use ik_arm::scene::{Ball, Line, Scene, Shell};
 use ik_arm::session::Staging;
 
 const SIZE: (u32, u32) = (480, 300);
@@ -144,6 +144,29 @@ fn what_a_changed_picture_takes_does_not_depend_on_how_much_is_in_it() {
         assert!(bench.renderer.counts().uploaded > more as u64 * 80, "all of it has changed");
     }
     assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");
+}
+
+#[test]
+fn what_shells_take_does_not_depend_on_how_many_there_are() {
+    let mut bench = Bench::new();
+    let mut costs = Vec::new();
+    for count in [4_u8, 40] {
+        let scenes = HANDS.map(|hand| {
+            let mut scene = scene(hand, 20);
+            let colour = scene.palette.guide;
+            scene.shells.extend((0..count).map(|step| {
+                let part = f32::from(step);
+                Shell { centre: hand * part / 10.0, radius: 20.0 + part, colour }
+            }));
+            scene
+        });
+        let rounds: Vec<_> =
+            (0..4).map(|_| scenes.each_ref().map(|scene| bench.frame(scene))).collect();
+        costs.push([0, 1, 2].map(|scene| least(rounds[2..].iter().map(|round| round[scene]))));
+        bench.frame(&scenes[2]);
+        assert_eq!(bench.frame(&scenes[2]).0, 0, "nothing has changed");
+    }
+    assert_eq!(costs[0], costs[1]);
 }
 
 #[test]
