@@ -153,6 +153,6 @@ mod tests {
             std::fs::write(folder.path().join(name), "").expect("written");
         }
         assert_eq!(existing(&path), Some(folder.path().join("walk_07.png")));
-        assert_eq!(existing(&folder.path().join("walk_1.png")).is_some(), true);
+        assert!(existing(&folder.path().join("walk_1.png")).is_some());
     }
 }

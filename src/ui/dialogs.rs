@@ -70,7 +70,7 @@ pub(super) fn ui(
 fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     let now = dialog.map(std::mem::discriminant);
     let id = Id::unique("open dialog");
-    let before = ui.data_mut(|data| data.get_temp_mut_or_default::<Option<_>>(id).clone());
+    let before = ui.data_mut(|data| *data.get_temp_mut_or_default::<Option<_>>(id));
     ui.data_mut(|data| data.insert_temp(id, now));
     now != before
 }
