@@ -12,7 +12,7 @@ use crate::session::Staging;
 const THICKEST: (f32, f32) = (0.45, 0.028);
 /// But a bone's reach never makes it more slender than this part of its length, so that the first
 /// bones of a new skeleton are as thick as they will be when it is complete.
-const SLENDEREST: f32 = 0.1;
+const SLENDEREST: f32 = 0.07;
 /// A joint that is a point is drawn as large as this part of the skeleton's reach at most.
 const POINT: f32 = 0.02;
 /// How much a slender bone tapers to its tip; one that is shorter than so many of its radii does not,
