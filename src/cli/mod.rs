@@ -45,7 +45,9 @@ enum Command {
 
 /// Runs the program with the process's own arguments.
 pub fn run() -> ExitCode {
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
+    // rfd logs an error where the system has no file dialog; ours asks instead.
+    let filter = env_logger::Env::default().default_filter_or("error,rfd=off");
+    env_logger::Builder::from_env(filter).init();
     let command = Cli::parse().command;
     if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
         quiet::restart_without_device_select();

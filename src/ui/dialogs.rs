@@ -23,6 +23,10 @@ pub(super) fn ui(
 ) {
     let is_new = is_new(ui, session.dialog());
     let Some(dialog) = session.dialog() else { return };
+    if is_new && dialog.is_modal() {
+        // What had the keyboard until now would have the first key, too.
+        ui.memory_mut(|memory| memory.stop_text_input());
+    }
     let title = match dialog {
         Dialog::About => "About ik-arm",
         Dialog::Shortcuts => "Shortcuts",
@@ -60,7 +64,7 @@ pub(super) fn ui(
             ask_path(ui, session, &SAVE_AS, (path, problem.as_deref()), is_new, actions);
         }
         Dialog::ChooseSkeleton { path, names } => choose_skeleton(ui, path, names, actions),
-        Dialog::Rename { joint, name } => rename(ui, *joint, name, is_new, actions),
+        Dialog::Rename { joint, name } => rename(ui, session, *joint, name, is_new, actions),
         Dialog::DeleteJoints { joints } => delete_joints(ui, session, joints, actions),
         Dialog::Statistics => {}
     });
@@ -276,24 +280,39 @@ fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Vec
             }
         }
     });
-    if ui.button("Keep the first").clicked() {
+    if first_button(ui, "Keep the first") {
         actions.push(Action::CloseDialog);
     }
 }
 
-fn rename(ui: &mut Ui, joint: usize, name: &str, is_new: bool, actions: &mut Vec<Action>) {
+fn rename(
+    ui: &mut Ui,
+    session: &Session,
+    joint: usize,
+    name: &str,
+    is_new: bool,
+    actions: &mut Vec<Action>,
+) {
     ui.set_width(300.0);
     let (typed, entered) = ask(ui, "The joint's name", name, is_new);
     if typed != name {
         actions.push(Action::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
     }
+    let other = session.skeleton().skeleton.find(typed.trim()).filter(|other| *other != joint);
+    let why_not = match other {
+        _ if typed.trim().is_empty() => Some("A joint needs a name"),
+        Some(_) => Some("Another joint has this name"),
+        None => None,
+    };
+    if let Some(why_not) = why_not {
+        status::error(ui, why_not);
+    }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let can_go = !typed.trim().is_empty();
         let accept = ui
-            .add_enabled(can_go, Button::new("Rename"))
-            .on_disabled_hover_text("A joint needs a name");
-        if (accept.clicked() || entered) && can_go {
+            .add_enabled(why_not.is_none(), Button::new("Rename"))
+            .on_disabled_hover_text(why_not.unwrap_or_default());
+        if (accept.clicked() || entered) && why_not.is_none() {
             actions.push(Action::Rename { joint, name: typed.trim().to_owned() });
         }
         if ui.button("Cancel").clicked() {

@@ -409,3 +409,43 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     bench.apply([Action::SetElbowSpin(0.3)]);
     assert!(!bench.says("Not opened"), "until the next change");
 }
+
+#[test]
+fn enter_in_the_frame_of_the_key_that_asks_is_the_answer() {
+    let mut bench = human();
+    bench.apply([Action::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
+    bench.click_at(bench.empty_place());
+    let key = |key, modifiers| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    bench.frame([
+        Event::ModifiersChanged(CTRL),
+        key(Key::Q, CTRL),
+        Event::ModifiersChanged(Modifiers::NONE),
+        key(Key::Enter, Modifiers::NONE),
+    ]);
+    bench.settle();
+    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "Enter saves");
+}
+
+#[test]
+fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
+    let mut bench = human();
+    bench.apply([Action::Select(vec![joint_named(&bench, "head")])]);
+    bench.key(Key::F2);
+    bench.settle();
+    bench.type_text("neck");
+    bench.key(Key::Enter);
+    bench.settle();
+    assert!(bench.shows(Role::Alert, "Another joint has this name"));
+    assert_eq!(typed(&bench, "The joint's name"), "neck", "what was typed is kept");
+    bench.type_text("2");
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+    joint_named(&bench, "neck2");
+}
