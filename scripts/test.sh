@@ -15,7 +15,8 @@ main() {
     step "Format" cargo fmt --check
     step "Clippy" check_features
     step "Tests" cargo test --locked
-    step "Tests, no features" cargo test --locked --no-default-features
+    step "Tests, no features" cargo test --locked --no-default-features \
+        --lib --test batch --test crowd_solve
     step "glTF validator" scripts/validate-gltf.sh
     step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
     step "Window" test_window
@@ -40,9 +41,9 @@ step() {
     printf '==> %s: %d s\n' "$current_step" $((SECONDS - started))
 }
 
-# All targets compile without warnings in each set of features. Only two sets run their tests: those of
-# `document` and `render` are among the tests of the default set, and nothing in the code differs but
-# `parallel`, which the set without features lacks, too.
+# All targets compile without warnings in each set of features. Their tests are among those of the
+# default set, and the code that they run differs by `parallel` alone, which shares batches and crowds
+# out among the cores: those are tested without it, too.
 check_features() {
     local features
     for features in "" --no-default-features \

@@ -25,7 +25,7 @@ pub(super) fn ui(
     let Some(dialog) = session.dialog() else { return };
     if is_new && dialog.is_modal() {
         // What had the keyboard until now would have the first key, too.
-        ui.memory_mut(|memory| memory.stop_text_input());
+        ui.memory_mut(egui::Memory::stop_text_input);
     }
     let title = match dialog {
         Dialog::About => "About ik-arm",
