@@ -250,6 +250,7 @@ impl Session {
             }
             Action::SaveAs(path) => {
                 (self.dialog, self.choosing) = (None, false);
+                self.end_glide();
                 return Some(Effect::Save(path));
             }
             Action::Saved(path) => return self.saved(path),
@@ -279,6 +280,13 @@ impl Session {
     /// Where the view is or is going.
     pub fn settled_camera(&self) -> Camera {
         self.glide.map_or(self.document.camera, |glide| glide.target())
+    }
+
+    /// Brings the view to where it is going.
+    pub(super) fn end_glide(&mut self) {
+        if let Some(glide) = self.glide.take() {
+            self.set_camera(glide.target());
+        }
     }
 
     fn reset_all(&mut self) {

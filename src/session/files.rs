@@ -80,7 +80,8 @@ impl Session {
     }
 
     /// Writes to where the document is from, or asks for a place if it is from nowhere.
-    pub(super) fn save(&self) -> Effect {
+    pub(super) fn save(&mut self) -> Effect {
+        self.end_glide();
         match &self.file {
             Some(path) => Effect::Save(path.clone()),
             None => Effect::ChoosePath(Dialog::save_as()),

@@ -217,9 +217,7 @@ impl Session {
             self.stop_run();
         }
         self.view_drag = None;
-        if let Some(glide) = self.glide.take() {
-            self.set_camera(glide.target());
-        }
+        self.end_glide();
         let mut after = self.shown.clone();
         after.show(rig);
         self.commit(after);

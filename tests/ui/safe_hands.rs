@@ -449,3 +449,12 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     assert_eq!(bench.session().dialog(), None);
     joint_named(&bench, "neck2");
 }
+
+#[test]
+fn a_view_that_is_on_its_way_is_saved_as_it_will_be() {
+    let mut bench = Bench::new();
+    let back = bench.session().camera().along(ik_arm::document::AxisView::Back);
+    bench.apply_moving([Action::GlideTo(back)]);
+    bench.tell(Action::SaveAs("view.json".into()));
+    assert_eq!(*bench.session().camera(), back);
+}
