@@ -5,7 +5,7 @@ use core::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use ik_arm::kinematics::spline::Spline;
-use ik_arm::kinematics::swivel::{Carried, Reference, Stereographic};
+use ik_arm::kinematics::twist::{Stereographic, TransportedFrame, TwistReference};
 use ik_arm::kinematics::two_bone::Facing;
 
 fn facings() -> Vec<Facing> {
@@ -19,18 +19,18 @@ fn facings() -> Vec<Facing> {
     (0..1024).map(facing).collect()
 }
 
-fn swivel(criterion: &mut Criterion) {
+fn twist_reference(criterion: &mut Criterion) {
     let facings = facings();
     let mut group = criterion.benchmark_group("swivel");
     group.throughput(Throughput::Elements(facings.len() as u64));
     let references = [
-        ("limb", Reference::Limb),
-        ("pole", Reference::Pole(Vec3::new(0.0, 400.0, -100.0))),
-        ("stereographic", Reference::Stereographic(Stereographic::default())),
-        ("transport", Reference::Transport),
+        ("limb", TwistReference::Limb),
+        ("pole", TwistReference::Pole(Vec3::new(0.0, 400.0, -100.0))),
+        ("stereographic", TwistReference::Stereographic(Stereographic::default())),
+        ("transport", TwistReference::Transport),
     ];
     for (name, reference) in references {
-        let last = Some(Carried::new(Facing::default()));
+        let last = Some(TransportedFrame::new(Facing::default()));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 for facing in &facings {
@@ -65,5 +65,5 @@ fn spline(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, swivel, spline);
+criterion_group!(benches, twist_reference, spline);
 criterion_main!(benches);

@@ -11,8 +11,8 @@ mod rigs;
 
 use std::time::Instant;
 
+use ik_arm::kinematics::chain_ik::{Method, Report, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::Skeleton;
-use ik_arm::kinematics::solve::{Method, Options, Report, Target, solve};
 use rigs::{Random, chain, length, reachable, shake, tree};
 
 /// In the order of columns: one per random case.
@@ -49,7 +49,7 @@ impl Kind {
     }
 
     /// A rig in its bind pose or any other, and targets that it can reach.
-    fn case(self, random: &mut Random) -> (Skeleton, Vec<Target>) {
+    fn case(self, random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
         let (mut skeleton, tips) = match self {
             Self::Chain(joints) => (chain(random, joints, 1.0), vec![joints]),
             Self::Tree(targets) => tree(random, targets, 1.0),
@@ -86,9 +86,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn outcome(
     method: Method,
-    (mut skeleton, targets): (Skeleton, Vec<Target>),
+    (mut skeleton, targets): (Skeleton, Vec<TipTarget>),
 ) -> Result<Outcome, Box<dyn std::error::Error>> {
-    let options = Options { method, ..Options::default() };
+    let options = SolverOptions { method, ..SolverOptions::default() };
     let start = Instant::now();
     let report = solve(&mut skeleton, &targets, &options)?;
     let microseconds = start.elapsed().as_secs_f64() * 1e6;

@@ -13,7 +13,7 @@
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!
-//! Trees of joints have [solvers](kinematics::solve) that bring any number of tips to their targets.
+//! Trees of joints have [solvers](kinematics::chain_ik) that bring any number of tips to their targets.
 //!
 //! # The house
 //!

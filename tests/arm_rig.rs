@@ -7,7 +7,7 @@ use common::{
     within, yaw_and_pitch,
 };
 use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
-use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::rig::{ArmRig, Cone, Part};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -32,7 +32,7 @@ const PARENTS: [(Part, Option<Part>); 11] = [
 struct Standing {
     case: Case,
     root: Vec3,
-    pose: Pose,
+    pose: TwoBonePose,
     rig: ArmRig,
 }
 
@@ -44,7 +44,7 @@ impl Standing {
 
     /// What a point of the arm may be off by.
     fn bound(&self) -> f64 {
-        let Pose { elbow, hand, .. } = self.pose;
+        let TwoBonePose { elbow, hand, .. } = self.pose;
         let points = [self.root.as_dvec3(), self.in_world(elbow), self.in_world(hand)];
         world_bound(limits(self.case.arm).1, &points)
     }

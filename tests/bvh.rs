@@ -143,7 +143,7 @@ fn the_arm_comes_back_where_it_was() {
     document.timeline.end = 1.0;
     for time in [0.0, 0.3, 0.7, 1.0] {
         document.keys.insert(Channel::Hand, time, random.vector(600.0));
-        document.keys.insert(Channel::ElbowSpin, time, random.vector(5.0).with_y(0.0).with_z(0.0));
+        document.keys.insert(Channel::Twist, time, random.vector(5.0).with_y(0.0).with_z(0.0));
         document.keys.insert(Channel::Root, time, random.vector(100.0));
     }
     let exported = export(&document);

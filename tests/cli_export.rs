@@ -9,7 +9,7 @@ use std::process::{Command, Output, Stdio};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, Timeline};
 use ik_arm::export::{ExportError, Options, export};
-use ik_arm::io::{self, Batch, Example, Progress};
+use ik_arm::io::{self, Example, FileBatch, Progress};
 use tempfile::TempDir;
 
 /// A folder with a file in it.
@@ -208,7 +208,7 @@ fn a_sequence_replaces_what_was_there_or_nothing() {
 #[test]
 fn a_batch_that_is_dropped_leaves_nothing() {
     let desk = Desk::moving();
-    let mut batch = Batch::beside(&desk.out("x")).expect("a folder");
+    let mut batch = FileBatch::beside(&desk.out("x")).expect("a folder");
     batch.add("x".as_ref(), b"new").expect("written");
     drop(batch);
     assert_eq!(desk.names(), ["file"]);

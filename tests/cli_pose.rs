@@ -183,7 +183,7 @@ fn what_is_odd_in_a_file_is_said_beside_the_pose() {
     assert_eq!(answer(&output).joints.len(), 1);
 }
 
-// Solving
+// SolverRun
 
 #[test]
 fn every_solver_says_how_near_it_came() {
@@ -356,7 +356,7 @@ fn a_time_moves_what_moves_by_itself_and_the_targets() {
 
     let mut document = keyed_chain();
     let target = &mut document.skeleton.targets[0];
-    target.motion.path = ik_arm::document::Path::Circle;
+    target.motion.path = ik_arm::document::TargetPath::Circle;
     let expected = target.at(1.0);
     let scene = Scene::new(&io::to_json(&document).expect("written"));
     assert_eq!(scene.pose(&["--time", "1"]).targets[0].target, expected);

@@ -289,10 +289,10 @@ fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
 
 #[test]
 fn a_time_moves_what_is_keyed() {
-    use ik_arm::document::{Channel, Document, Layer};
+    use ik_arm::document::{Channel, Document, Overlay};
     let folder = tempfile::tempdir().expect("a folder");
     let mut document = Document::default();
-    document.display = document.display.with(Layer::Trail, false);
+    document.display = document.display.with(Overlay::Trail, false);
     for (time, x) in [(-1.0, -100.0), (0.0, 100.0), (2.0, 300.0), (3.0, 0.0)] {
         document.keys.insert(Channel::Hand, time, glam::Vec3::new(x, 200.0, 50.0));
     }
@@ -307,7 +307,7 @@ fn a_time_moves_what_is_keyed() {
     assert_eq!(picture(&[&moving]), picture(&[&moving, "--time", "0"]));
     assert_ne!(picture(&[&moving]), picture(&[&moving, "--time", "1"]));
     // The trail is drawn as the document's display has it.
-    document.display = document.display.with(Layer::Trail, true);
+    document.display = document.display.with(Overlay::Trail, true);
     let trailing = file(&folder, "trailing.json", &json(&document));
     assert_ne!(picture(&[&moving]), picture(&[&trailing]));
 }

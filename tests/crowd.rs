@@ -8,9 +8,9 @@ use glam::{DVec3, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{Gpu, Picture, Solver};
-use ik_arm::rig::{Crowd, Ranks, SolvedBy};
+use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 use ik_arm::scene::Scene;
-use ik_arm::session::{Action, Session, Staging};
+use ik_arm::session::{Action, Overlays, Session};
 use image::RgbaImage;
 use rigs::Random;
 
@@ -19,11 +19,11 @@ fn crowd(arms: u32) -> Crowd {
     Crowd { arms, bones, time: 3.25, solved_by: SolvedBy::Cpu }
 }
 
-fn ranks(crowd: &Crowd) -> Ranks {
-    let mut ranks = Ranks::default();
-    ranks.muster(crowd);
-    ranks.ask(crowd);
-    ranks
+fn arrays(crowd: &Crowd) -> CrowdArrays {
+    let mut arrays = CrowdArrays::default();
+    arrays.resize(crowd);
+    arrays.ask(crowd);
+    arrays
 }
 
 fn at(of: &[Vec<f32>; 3], arm: usize) -> Vec3 {
@@ -35,21 +35,21 @@ fn elbow_angle(elbow: DVec3, hand: DVec3) -> f64 {
     (-elbow).angle_between(hand - elbow).to_degrees()
 }
 
-/// Asks `ranks` of the device and of the batch solver, and compares: hands and lengths to 1e-5 of the
+/// Asks `arrays` of the device and of the batch solver, and compares: hands and lengths to 1e-5 of the
 /// arm, elbows too where they are well bent.
-fn agree(gpu: &Gpu, bones: TwoBone, ranks: &mut Ranks) {
+fn agree(gpu: &Gpu, bones: TwoBone, arrays: &mut CrowdArrays) {
     let mut solver = Solver::new(gpu).expect("compute shaders");
-    solver.reserve(gpu, ranks.len() as u32);
-    solver.solve(gpu, bones, ranks).expect("a device");
+    solver.reserve(gpu, arrays.len() as u32);
+    solver.solve(gpu, bones, arrays).expect("a device");
     let [elbows, hands] = solver.read(gpu).expect("poses");
-    ranks.solve(bones).expect("a batch");
+    arrays.solve(bones).expect("a batch");
     let length = f64::from(bones.outer_limit());
-    for arm in 0..ranks.len() {
+    for arm in 0..arrays.len() {
         let [elbow, hand] = [at(&elbows, arm), at(&hands, arm)].map(Vec3::as_dvec3);
         let [elbow_here, hand_here] =
-            [at(&ranks.elbow, arm), at(&ranks.hand, arm)].map(Vec3::as_dvec3);
+            [at(&arrays.elbow, arm), at(&arrays.hand, arm)].map(Vec3::as_dvec3);
         let within = |what: &str, error: f64, bound: f64| {
-            let cursor = at(&ranks.cursor, arm);
+            let cursor = at(&arrays.cursor, arm);
             assert!(error.abs() <= bound * length, "{what} of {arm} at {cursor}: {error:e}");
         };
         within("the hand", hand.distance(hand_here), 1e-5);
@@ -66,16 +66,16 @@ fn device_and_batch_agree_on_a_hundred_thousand_random_arms() {
     let mut random = Random(11);
     for (upper, lower, arms) in [(200.0, 300.0, 100_000), (1.0, 1.0, 10_000), (0.3, 9.0, 10_000)] {
         let bones = TwoBone::new(upper, lower).expect("lengths");
-        let mut ranks = ranks(&Crowd { bones, ..crowd(arms) });
-        for arm in 0..ranks.len() {
+        let mut arrays = arrays(&Crowd { bones, ..crowd(arms) });
+        for arm in 0..arrays.len() {
             let cursor = random.direction() * bones.outer_limit() * random.within(0.0..1.3);
             for (axis, part) in cursor.to_array().into_iter().enumerate() {
-                ranks.cursor[axis][arm] = part;
+                arrays.cursor[axis][arm] = part;
             }
             let spin = random.within(-4.0..4.0);
-            (ranks.sin[arm], ranks.cos[arm]) = spin.sin_cos();
+            (arrays.sin[arm], arrays.cos[arm]) = spin.sin_cos();
         }
-        agree(&gpu, bones, &mut ranks);
+        agree(&gpu, bones, &mut arrays);
     }
 }
 
@@ -88,13 +88,13 @@ fn device_and_batch_agree_where_a_cursor_has_no_direction_and_on_the_limits() {
         let fars = [0.0, 1e-20, 1.0, 100.0, 250.0, 499.0, 500.0, 501.0, 1e6];
         let cursors =
             axes.into_iter().flat_map(|axis| fars.map(|far| axis * far)).collect::<Vec<_>>();
-        let mut ranks = ranks(&Crowd { bones, ..crowd(cursors.len() as u32) });
+        let mut arrays = arrays(&Crowd { bones, ..crowd(cursors.len() as u32) });
         for (arm, cursor) in cursors.into_iter().enumerate() {
             for (axis, part) in cursor.to_array().into_iter().enumerate() {
-                ranks.cursor[axis][arm] = part;
+                arrays.cursor[axis][arm] = part;
             }
         }
-        agree(&gpu, bones, &mut ranks);
+        agree(&gpu, bones, &mut arrays);
     }
 }
 
@@ -104,35 +104,35 @@ fn spins_are_angles_and_targets_stay_about_their_arm_and_come_round() {
     let mut first = None;
     for step in 0..=8 {
         crowd.time = Crowd::PERIOD * step as f32 / 8.0;
-        let ranks = ranks(&crowd);
+        let arrays = arrays(&crowd);
         let mut reached = 0;
-        for arm in 0..ranks.len() {
-            let (cos, sin) = (f64::from(ranks.cos[arm]), f64::from(ranks.sin[arm]));
+        for arm in 0..arrays.len() {
+            let (cos, sin) = (f64::from(arrays.cos[arm]), f64::from(arrays.sin[arm]));
             assert!((cos * cos + sin * sin - 1.0).abs() < 1e-6, "{cos}, {sin}");
-            let far = at(&ranks.cursor, arm).length() / crowd.bones.outer_limit();
+            let far = at(&arrays.cursor, arm).length() / crowd.bones.outer_limit();
             assert!((0.1..1.6).contains(&far), "a target is {far} arms away");
             reached += usize::from(far <= 1.0);
         }
         assert!((5_000..19_500).contains(&reached), "{reached} are in reach: all or none is dull");
         match &first {
-            None => first = Some(ranks.cursor),
-            Some(first) if step == 8 => assert_eq!(*first, ranks.cursor),
-            Some(first) => assert_ne!(*first, ranks.cursor),
+            None => first = Some(arrays.cursor),
+            Some(first) if step == 8 => assert_eq!(*first, arrays.cursor),
+            Some(first) => assert_ne!(*first, arrays.cursor),
         }
     }
 }
 
 #[test]
 fn more_arms_leave_those_that_are_there_where_they_are() {
-    let few = ranks(&crowd(100));
-    let mut ranks = few;
-    let shoulders = ranks.shoulder.clone();
-    ranks.muster(&crowd(5_000));
-    for (before, after) in shoulders.iter().zip(&ranks.shoulder) {
+    let few = arrays(&crowd(100));
+    let mut arrays = few;
+    let shoulders = arrays.shoulder.clone();
+    arrays.resize(&crowd(5_000));
+    for (before, after) in shoulders.iter().zip(&arrays.shoulder) {
         assert_eq!(before[..], after[..100]);
     }
     let bounds = crowd(5_000).bounds().1;
-    for (x, z) in ranks.shoulder[0].iter().zip(&ranks.shoulder[1]) {
+    for (x, z) in arrays.shoulder[0].iter().zip(&arrays.shoulder[1]) {
         assert!(x.hypot(*z) + 500.0 <= bounds * 1.001);
     }
 }
@@ -183,7 +183,7 @@ fn what_is_behind_the_eye_is_not_drawn() {
     let with = draw(&mut picture(&gpu), &crowd(1), behind());
     let mut scene = Scene::new(
         &Document { camera: behind(), ..Document::default() },
-        &Staging { crowd: Some(crowd(1)), ..Staging::default() },
+        &Overlays { crowd: Some(crowd(1)), ..Overlays::default() },
         Theme::Dark,
     );
     scene.crowd = None;
@@ -238,15 +238,20 @@ fn behind() -> Camera {
 
 fn draw(picture: &mut Picture<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
     let document = Document { camera, ..Document::default() };
-    let staging = Staging { crowd: Some(*crowd), ..Staging::default() };
-    picture.draw(&Scene::new(&document, &staging, Theme::Dark)).expect("a picture")
+    let overlays = Overlays { crowd: Some(*crowd), ..Overlays::default() };
+    picture.draw(&Scene::new(&document, &overlays, Theme::Dark)).expect("a picture")
 }
 
 #[test]
 fn a_crowd_of_arms_that_numbers_cannot_square_is_not_drawn() {
     for length in [1e-30, 1e19, 1e38] {
         let bones = TwoBone::new(length, length).expect("lengths");
-        let staging = Staging { crowd: Some(Crowd { bones, ..crowd(10) }), ..Staging::default() };
-        assert_eq!(Scene::new(&Document::default(), &staging, Theme::Dark).crowd, None, "{length}");
+        let overlays =
+            Overlays { crowd: Some(Crowd { bones, ..crowd(10) }), ..Overlays::default() };
+        assert_eq!(
+            Scene::new(&Document::default(), &overlays, Theme::Dark).crowd,
+            None,
+            "{length}"
+        );
     }
 }

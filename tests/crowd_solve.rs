@@ -2,20 +2,20 @@
 
 use ik_arm::kinematics::batch::{Arms, Bones, Places, Points, PointsMut, Spin};
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::rig::{Crowd, Ranks, SolvedBy};
+use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 
 #[test]
 fn a_crowd_has_the_bits_of_a_batch() {
     const ARMS: u32 = 5_000;
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");
     let crowd = Crowd { arms: ARMS, bones, time: 3.25, solved_by: SolvedBy::Cpu };
-    let mut ranks = Ranks::default();
-    ranks.muster(&crowd);
-    ranks.ask(&crowd);
-    ranks.solve(bones).expect("a batch");
+    let mut arrays = CrowdArrays::default();
+    arrays.resize(&crowd);
+    arrays.ask(&crowd);
+    arrays.solve(bones).expect("a batch");
 
-    let [x, y, z] = &ranks.cursor;
-    let spin = Spin::Turn { cos: &ranks.cos, sin: &ranks.sin };
+    let [x, y, z] = &arrays.cursor;
+    let spin = Spin::Turn { cos: &arrays.cos, sin: &arrays.sin };
     let arms = Arms::new(Bones::Same(bones), Points { x, y, z }, spin).expect("a batch");
     let [mut elbow, mut hand] = [(); 2].map(|()| [(); 3].map(|()| vec![0.0; ARMS as usize]));
     let places = Places { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
@@ -24,7 +24,7 @@ fn a_crowd_has_the_bits_of_a_batch() {
     let bits = |of: &[Vec<f32>; 3]| {
         of.each_ref().map(|all| all.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
     };
-    assert_eq!(bits(&ranks.elbow), bits(&elbow));
-    assert_eq!(bits(&ranks.hand), bits(&hand));
+    assert_eq!(bits(&arrays.elbow), bits(&elbow));
+    assert_eq!(bits(&arrays.hand), bits(&hand));
     assert!(hand.iter().flatten().any(|coordinate| *coordinate != 0.0));
 }

@@ -8,15 +8,16 @@ use std::fs;
 use files::{Random, message, mutations};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Channel, Display, Document, Goal, Keys, Layer, Motion, Path, Quantity, RigKind,
-    SkeletonRig, Slither, Space, Swivel, Target, Timeline, Wrist,
+    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandSpace, Keys, Overlay,
+    Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
+    Wrist,
 };
 use ik_arm::io::{self, Example, Group, Opened};
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
-use ik_arm::kinematics::solve::{Method, Options, Root};
-use ik_arm::kinematics::swivel::Carried;
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::TransportedFrame;
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 
 fn open(text: &str) -> Opened {
@@ -51,7 +52,7 @@ fn every_document_is_read_again_bit_for_bit() {
 #[test]
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
-    document.arm.goal = Goal::Root(Vec3::new(-0.0, 1.0, 0.0));
+    document.arm.goal = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
     document.skeleton.skeleton.change(0, |root| root.rotation.y = -0.0).expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
     assert!(opened.arm.cursor().x.is_sign_negative() && opened.arm.cursor().z.is_sign_positive());
@@ -84,8 +85,8 @@ fn random_document(random: &mut Random) -> Document {
     let mut rig = SkeletonRig::new(random_skeleton(random));
     for joint in 0..rig.skeleton.joints().len() {
         if random.below(3) == 0 {
-            let paths = [Path::Still, Path::Circle, Path::FigureEight];
-            let motion = Motion {
+            let paths = [TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight];
+            let motion = TargetMotion {
                 path: random.one_of(&paths),
                 radius: random.any(),
                 period: random.above_0(),
@@ -94,7 +95,7 @@ fn random_document(random: &mut Random) -> Document {
             rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
         }
     }
-    rig.solver = Options {
+    rig.solver = SolverOptions {
         method: random.one_of(&Method::ALL),
         iterations: random.coin().then(|| 1 + random.below(1 << 31) as u32),
         tolerance: random.coin().then(|| random.above_0()),
@@ -103,7 +104,7 @@ fn random_document(random: &mut Random) -> Document {
         root: random.one_of(&[Root::Fixed, Root::Free]),
     };
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
-    rig.slither = random.coin().then(|| Slither {
+    rig.follow_path = random.coin().then(|| FollowPath {
         radius: random.any(),
         amplitude: random.any(),
         waves: random.below(1 << 32) as u32,
@@ -116,7 +117,7 @@ fn random_document(random: &mut Random) -> Document {
         end: start + f64::from(random.between(0.1, 100.0)) / 3.0,
         frame_rate: 1 + random.below(1000) as u32,
     };
-    let layers = Layer::all();
+    let layers = Overlay::all();
     Document {
         rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
         arm,
@@ -138,28 +139,28 @@ fn random_document(random: &mut Random) -> Document {
 
 fn random_arm(random: &mut Random) -> Arm {
     let facing = Facing::towards(random.point(), Facing::default());
-    let softening = Softening::new(
+    let soft_reach = SoftReach::new(
         random.between(0.0, 0.99),
         1.0 + random.any().abs().min(9.0),
         random.between(0.0, 3.1),
     );
     Arm {
         goal: match random.coin() {
-            true => Goal::Root(random.point()),
-            false => Goal::World(random.point()),
+            true => Cursor::Root(random.point()),
+            false => Cursor::World(random.point()),
         },
-        elbow_spin: random.any(),
+        twist: random.any(),
         root: random.point(),
         bones: TwoBone::new(random.above_0(), random.above_0()).expect("lengths"),
         facing: Facing::towards(random.point(), Facing::default()),
-        swivel: random.one_of(&Swivel::ALL),
+        twist_reference: random.one_of(&TwistReferenceKind::ALL),
         pole: random.point(),
-        carried: random.coin().then(|| Carried::new(facing)),
-        softening: softening.expect("a softening"),
-        weight: random.between(0.0, 1.0),
+        transported: random.coin().then(|| TransportedFrame::new(facing)),
+        soft_reach: soft_reach.expect("a softening"),
+        influence: random.between(0.0, 1.0),
         fk: Fk { shoulder: random.point(), bend: random.any(), stretch: random.above_0() },
         wrist: Wrist {
-            space: random.one_of(&[Space::Lower, Space::World]),
+            space: random.one_of(&[HandSpace::Lower, HandSpace::World]),
             angles: random.point(),
             roll: random.any(),
         },
@@ -167,7 +168,7 @@ fn random_arm(random: &mut Random) -> Arm {
 }
 
 fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
-    let layers = Layer::all().map(Channel::Layer);
+    let layers = Overlay::all().map(Channel::Overlay);
     let joints = (0..rig.skeleton.joints().len())
         .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
     let targets = rig.targets.iter();
@@ -181,7 +182,7 @@ fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
         for _ in 0..1 + random.below(5) {
             let value = match channel.quantity() {
                 Quantity::Point | Quantity::Angles => random.point(),
-                Quantity::Part => Vec3::new(random.between(0.0, 1.0), 0.0, 0.0),
+                Quantity::Fraction => Vec3::new(random.between(0.0, 1.0), 0.0, 0.0),
                 Quantity::Angle => Vec3::new(random.any(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.above_0(), 0.0, 0.0),
                 Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),
@@ -242,7 +243,7 @@ fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
     assert_eq!([base(0), base(1), base(2), base(3)].map(|base| base.y), [0.0, 1.0, 3.0, 0.0]);
     assert_eq!(rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
     assert_eq!(rig.skeleton.joints()[1].radius, 0.2);
-    assert_eq!((rig.targets.len(), rig.solver), (0, Options::default()));
+    assert_eq!((rig.targets.len(), rig.solver), (0, SolverOptions::default()));
 }
 
 #[test]
@@ -658,7 +659,7 @@ fn the_examples_are_what_they_are_called() {
     assert_eq!(count("ten-joints"), (10, 1));
     assert_eq!(count("degenerate"), (17, 5));
     let snake = rig("snake");
-    assert!(snake.slither.is_some() && snake.solver.root == Root::Free);
+    assert!(snake.follow_path.is_some() && snake.solver.root == Root::Free);
     let degenerate = rig("degenerate").skeleton;
     assert!(degenerate.transform().matrix3.determinant() < 0.0);
     assert!(degenerate.joints().iter().any(|joint| joint.axis == Vec3::ZERO));
@@ -710,10 +711,10 @@ fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
     let keys = &document.keys;
     let value = |channel, time| keys.value(channel, time).expect("keyed").to_array();
     assert_eq!(value(Channel::Hand, 1.5), [4.0, 5.0, 6.0]);
-    assert_eq!(value(Channel::ElbowSpin, 9.0), [7.0, 0.0, 0.0]);
+    assert_eq!(value(Channel::Twist, 9.0), [7.0, 0.0, 0.0]);
     assert_eq!(value(Channel::Rotation(0), 1.5), [0.0, 0.0, 2.0]);
     assert_eq!(value(Channel::Enabled(0), 1.5), [0.0; 3]);
-    assert_eq!(value(Channel::Layer(Layer::Cursor), 0.0), [1.0, 0.0, 0.0]);
+    assert_eq!(value(Channel::Overlay(Overlay::Cursor), 0.0), [1.0, 0.0, 0.0]);
     assert!(!keys.has(Channel::Root));
     assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24 });
     assert_eq!((document.metres, document.metres_per_unit()), (Some(0.01), 0.01));

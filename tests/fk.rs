@@ -6,9 +6,9 @@ use glam::{DMat3, DQuat, DVec3, Vec3};
 use ik_arm::kinematics::euler;
 use ik_arm::kinematics::fk::{Fk, blended};
 use ik_arm::kinematics::ik::Ik;
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::kinematics::swivel::{Reference, Stereographic};
-use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::{Stereographic, TwistReference};
+use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -49,12 +49,12 @@ fn directions() -> impl Strategy<Value = DVec3> {
     })
 }
 
-fn references() -> impl Strategy<Value = Reference> {
+fn references() -> impl Strategy<Value = TwistReference> {
     prop_oneof![
-        Just(Reference::Limb),
-        directions().prop_map(|pole| Reference::Pole(pole.as_vec3())),
-        Just(Reference::Stereographic(Stereographic::default())),
-        Just(Reference::Transport),
+        Just(TwistReference::Limb),
+        directions().prop_map(|pole| TwistReference::Pole(pole.as_vec3())),
+        Just(TwistReference::Stereographic(Stereographic::default())),
+        Just(TwistReference::Transport),
     ]
 }
 
@@ -73,16 +73,16 @@ fn twin(fk: Fk, bones: TwoBone) -> (DVec3, DVec3) {
     (elbow, elbow + lower * (DVec3::X * f64::from(bones.lower())))
 }
 
-fn apart(pose: &Pose, other: (DVec3, DVec3)) -> (f64, f64) {
+fn apart(pose: &TwoBonePose, other: (DVec3, DVec3)) -> (f64, f64) {
     (pose.elbow.as_dvec3().distance(other.0), pose.hand.as_dvec3().distance(other.1))
 }
 
-fn elbow_tolerance(pose: &Pose) -> f64 {
+fn elbow_tolerance(pose: &TwoBonePose) -> f64 {
     let angle = pose.elbow_angle().to_degrees();
     if (1.0..=179.0).contains(&angle) { 1e-5 } else { 5e-4 }
 }
 
-fn points(pose: &Pose) -> (DVec3, DVec3) {
+fn points(pose: &TwoBonePose) -> (DVec3, DVec3) {
     (pose.elbow.as_dvec3(), pose.hand.as_dvec3())
 }
 
@@ -121,7 +121,7 @@ proptest! {
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let pose = fk.pose(bones, Facing::default());
-        let ik = Ik { bones, reference, softening: Softening::default() };
+        let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let (cursor, spin) = ik.matching(&pose, None);
         let solved = ik.solve(cursor, spin, pose.facing, None).pose;
         let again = Fk::matching(&solved, fk).pose(bones, solved.facing);
@@ -138,13 +138,13 @@ proptest! {
         bones in arms(), direction in directions(), part in 0.0..1.2_f32, spin in 0.0..6.2_f32,
         reference in references()
     ) {
-        let ik = Ik { bones, reference, softening: Softening::default() };
+        let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let cursor = direction.as_vec3() * part * bones.outer_limit();
         let solved = ik.solve(cursor, spin, Facing::default(), None);
         let fk = Fk::matching(&solved.pose, Fk::default());
         let posed = fk.pose(bones, solved.pose.facing);
-        let (cursor, spin) = ik.matching(&posed, Some(solved.carried));
-        let again = ik.solve(cursor, spin, posed.facing, Some(solved.carried)).pose;
+        let (cursor, spin) = ik.matching(&posed, Some(solved.transported));
+        let again = ik.solve(cursor, spin, posed.facing, Some(solved.transported)).pose;
         for found in [posed, again] {
             let (elbow, hand) = apart(&found, points(&solved.pose));
             let l = length(bones);
@@ -208,7 +208,7 @@ proptest! {
 }
 
 /// The upper limb's axes as its points tell: x along it, z the hinge.
-fn frame(pose: &Pose) -> DMat3 {
+fn frame(pose: &TwoBonePose) -> DMat3 {
     let x = pose.elbow.as_dvec3().normalize();
     let z = pose.facing.direction.as_dvec3().cross(pose.outward().as_dvec3()).normalize();
     DMat3::from_cols(x, z.cross(x), z)
@@ -217,7 +217,7 @@ fn frame(pose: &Pose) -> DMat3 {
 #[test]
 fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
     let bones = TwoBone::new(2.0, 3.0).expect("lengths");
-    let ik = Ik { bones, reference: Reference::Limb, softening: Softening::default() };
+    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
     for twist in [0.0, 1.0, -2.5_f32] {
         for bend in [0.0, core::f32::consts::PI] {
             let fk = Fk { shoulder: Vec3::new(twist, 0.3, -0.7), bend, stretch: 1.0 };

@@ -6,17 +6,19 @@
 mod pictures;
 
 use glam::Vec3;
-use ik_arm::document::{Arm, AxisView, Camera, Document, Goal, Layer, Space, Swivel, Theme, Wrist};
+use ik_arm::document::{
+    Arm, AxisView, Camera, Cursor, Document, HandSpace, Overlay, Theme, TwistReferenceKind, Wrist,
+};
 use ik_arm::io::Example;
+use ik_arm::kinematics::chain_ik::{self, Method};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::solve::{self, Method};
 use ik_arm::render::Picture;
 use ik_arm::scene::{Colour, Scene};
-use ik_arm::session::{Ghost, Staging};
+use ik_arm::session::{Ghost, Overlays};
 use pictures::{GPU, SIZE, compare, draw, kept};
 
 fn scene(document: &Document, theme: Theme) -> Scene {
-    Scene::new(document, &Staging::default(), theme)
+    Scene::new(document, &Overlays::default(), theme)
 }
 
 fn check(name: &str, document: &Document, theme: Theme) {
@@ -24,10 +26,10 @@ fn check(name: &str, document: &Document, theme: Theme) {
 }
 
 fn posed(cursor: Vec3) -> Document {
-    Document { arm: Arm { goal: Goal::Root(cursor), ..Arm::default() }, ..Document::default() }
+    Document { arm: Arm { goal: Cursor::Root(cursor), ..Arm::default() }, ..Document::default() }
 }
 
-fn showing(mut document: Document, layers: &[Layer]) -> Document {
+fn showing(mut document: Document, layers: &[Overlay]) -> Document {
     for layer in layers {
         document.display = document.display.with(*layer, true);
     }
@@ -40,7 +42,7 @@ fn from(mut document: Document, target: Vec3, distance: f32) -> Document {
 }
 
 fn all_guides() -> Document {
-    from(showing(Document::default(), &Layer::GUIDES), Vec3::ZERO, 1650.0)
+    from(showing(Document::default(), &Overlay::GUIDES), Vec3::ZERO, 1650.0)
 }
 
 /// Close to the hand, whose Cursor is out of its reach.
@@ -50,12 +52,12 @@ fn too_far() -> Document {
 }
 
 fn folded() -> Document {
-    let document = showing(posed(Vec3::new(30.0, 40.0, 20.0)), &[Layer::InnerLimit]);
+    let document = showing(posed(Vec3::new(30.0, 40.0, 20.0)), &[Overlay::InnerLimit]);
     from(document, Vec3::new(-40.0, 20.0, -20.0), 640.0)
 }
 
 fn inside_the_outer_limit() -> Document {
-    let document = showing(posed(Vec3::new(150.0, 180.0, -120.0)), &Layer::GUIDES);
+    let document = showing(posed(Vec3::new(150.0, 180.0, -120.0)), &Overlay::GUIDES);
     from(document, Vec3::new(60.0, 120.0, -40.0), 380.0)
 }
 
@@ -106,17 +108,17 @@ fn the_arm_from_above() {
 #[test]
 fn a_guide_that_is_missing_is_noticed() {
     let cases = [
-        (Layer::Cursor, "too_far", too_far(), Theme::Light),
-        (Layer::Pointer, "default", Document::default(), Theme::Dark),
-        (Layer::InnerLimit, "folded", folded(), Theme::Dark),
-        (Layer::OuterLimit, "all_guides", all_guides(), Theme::Dark),
-        (Layer::Shadow, "default", Document::default(), Theme::Dark),
-        (Layer::Axes, "folded", folded(), Theme::Dark),
-        (Layer::Ground, "light", Document::default(), Theme::Light),
-        (Layer::GridXy, "default", Document::default(), Theme::Dark),
-        (Layer::GridXz, "default", Document::default(), Theme::Dark),
-        (Layer::GridYz, "default", Document::default(), Theme::Dark),
-        (Layer::Labels, "default", Document::default(), Theme::Dark),
+        (Overlay::Cursor, "too_far", too_far(), Theme::Light),
+        (Overlay::Pointer, "default", Document::default(), Theme::Dark),
+        (Overlay::InnerLimit, "folded", folded(), Theme::Dark),
+        (Overlay::OuterLimit, "all_guides", all_guides(), Theme::Dark),
+        (Overlay::Shadow, "default", Document::default(), Theme::Dark),
+        (Overlay::Axes, "folded", folded(), Theme::Dark),
+        (Overlay::Ground, "light", Document::default(), Theme::Light),
+        (Overlay::GridXy, "default", Document::default(), Theme::Dark),
+        (Overlay::GridXz, "default", Document::default(), Theme::Dark),
+        (Overlay::GridYz, "default", Document::default(), Theme::Dark),
+        (Overlay::Labels, "default", Document::default(), Theme::Dark),
     ];
     for (layer, name, document, theme) in cases {
         assert!(document.display.shows(layer), "{layer:?} is not in {name}");
@@ -132,7 +134,7 @@ fn example(name: &str) -> Document {
     let mut document = example.open().expect("it opens").document;
     let goals = document.skeleton.goals(0.0);
     let options = document.skeleton.solver;
-    solve::solve(&mut document.skeleton.skeleton, &goals, &options).expect("it can be solved");
+    chain_ik::solve(&mut document.skeleton.skeleton, &goals, &options).expect("it can be solved");
     document.camera.distance *= 0.9;
     document
 }
@@ -151,7 +153,7 @@ fn the_snake_on_its_way() {
 #[test]
 fn the_snake_some_seconds_later_is_another_picture() {
     let document = example("snake");
-    let later = Staging { time: 1.5, ..Staging::default() };
+    let later = Overlays { time: 1.5, ..Overlays::default() };
     let drawn = draw(&Scene::new(&document, &later, Theme::Dark));
     assert!(compare(&drawn, &kept("snake")).is_err());
 }
@@ -159,13 +161,13 @@ fn the_snake_some_seconds_later_is_another_picture() {
 #[test]
 fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let document = example("human");
-    let selected = Staging { selection: vec![6], ..Staging::default() };
+    let selected = Overlays { selection: vec![6], ..Overlays::default() };
     let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
     let bind = document.skeleton.skeleton.bind_pose();
     let ghosts = vec![Ghost { method: Method::Ccd, pose: bind }];
     let drawn =
-        draw(&Scene::new(&document, &Staging { ghosts, ..Staging::default() }, Theme::Dark));
+        draw(&Scene::new(&document, &Overlays { ghosts, ..Overlays::default() }, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");
     let unsolved = Example::find("human").expect("it is there").open().expect("it opens").document;
     let unsolved = Document { camera: document.camera, ..unsolved };
@@ -204,25 +206,25 @@ fn a_large_picture_is_the_same_picture() {
     assert!(mean < 2.5, "the mean differs by {mean}");
 }
 
-fn with(arm: Arm, layers: &[Layer]) -> Document {
+fn with(arm: Arm, layers: &[Overlay]) -> Document {
     showing(Document { arm: arm.settled(), ..Document::default() }, layers)
 }
 
 #[test]
 fn the_arm_as_an_animator_has_it() {
-    let pole = Arm { swivel: Swivel::Pole, ..Arm::default() };
+    let pole = Arm { twist_reference: TwistReferenceKind::Pole, ..Arm::default() };
     let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().pinned(true) };
-    let spun = Arm { elbow_spin: 1.0, ..pole };
-    let wrist = Wrist { space: Space::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
+    let spun = Arm { twist: 1.0, ..pole };
+    let wrist = Wrist { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
     let turned = Arm { wrist, ..Arm::default() };
     let angles = Fk { shoulder: Vec3::new(0.3, 0.6, 0.9), bend: 1.3, stretch: 1.0 };
-    let led = Arm { fk: angles, weight: 0.0, ..Arm::default() };
-    let cases: [(&str, Arm, &[Layer]); 5] = [
+    let led = Arm { fk: angles, influence: 0.0, ..Arm::default() };
+    let cases: [(&str, Arm, &[Overlay]); 5] = [
         ("pole", pole, &[]),
         ("pin", pinned, &[]),
-        ("references", spun, &[Layer::References]),
+        ("references", spun, &[Overlay::References]),
         ("turned", turned, &[]),
-        ("led", led, &[Layer::Globe]),
+        ("led", led, &[Overlay::Globe]),
     ];
     for (name, arm, layers) in cases {
         check(name, &with(arm, layers), Theme::Dark);

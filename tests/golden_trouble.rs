@@ -8,28 +8,28 @@
 mod pictures;
 
 use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
-use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Layer, Theme};
-use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme};
+use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Facing;
 use ik_arm::render::Picture;
 use ik_arm::rig::Cone;
 use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
-use ik_arm::session::Staging;
+use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pictures::{GPU, check, compare, draw, kept};
 
 const POLE: Vec3 = Vec3::new(180.0, 260.0, 200.0);
 
 fn scene(document: &Document, theme: Theme) -> Scene {
-    Scene::new(document, &Staging::default(), theme)
+    Scene::new(document, &Overlays::default(), theme)
 }
 
-fn globe(reference: Reference) -> Globe {
+fn globe(reference: TwistReference) -> Globe {
     let arm = Arm::default();
     Globe { centre: arm.root, radius: arm.bones.outer_limit(), reference }
 }
 
-fn globe_scene(reference: Reference, theme: Theme) -> Scene {
+fn globe_scene(reference: TwistReference, theme: Theme) -> Scene {
     let mut document = Document::default();
     document.camera = Camera { target: Vec3::ZERO, distance: 1650.0, ..document.camera };
     let mut scene = scene(&document, theme);
@@ -37,11 +37,11 @@ fn globe_scene(reference: Reference, theme: Theme) -> Scene {
     scene
 }
 
-fn references() -> [(&'static str, Reference); 3] {
+fn references() -> [(&'static str, TwistReference); 3] {
     [
-        ("limb", Reference::Limb),
-        ("pole", Reference::Pole(POLE)),
-        ("stereographic", Reference::Stereographic(Stereographic::default())),
+        ("limb", TwistReference::Limb),
+        ("pole", TwistReference::Pole(POLE)),
+        ("stereographic", TwistReference::Stereographic(Stereographic::default())),
     ]
 }
 
@@ -55,11 +55,12 @@ fn the_globe_of_each_reference_in_both_themes() {
 
 #[test]
 fn the_globe_seen_from_inside() {
-    let mut inside = globe_scene(Reference::Stereographic(Stereographic::default()), Theme::Dark);
-    let target = Vec3::NEG_X * globe(Reference::Limb).radius;
+    let mut inside =
+        globe_scene(TwistReference::Stereographic(Stereographic::default()), Theme::Dark);
+    let target = Vec3::NEG_X * globe(TwistReference::Limb).radius;
     inside.camera = Camera { target, yaw: 1.8, pitch: 0.2, distance: 430.0, ..inside.camera };
     let eye = inside.camera.projection(1.0).eye;
-    assert!(eye.distance(Vec3::ZERO) < globe(Reference::Limb).radius);
+    assert!(eye.distance(Vec3::ZERO) < globe(TwistReference::Limb).radius);
     check("globe_inside", &inside);
 }
 
@@ -76,7 +77,7 @@ fn another_reference_is_another_globe() {
 
 /// Nothing but a globe before an empty sky.
 fn bare(globe: Globe, theme: Theme, camera: Camera) -> Scene {
-    let display = Layer::all().fold(Display::default(), |all, one| all.with(one, false));
+    let display = Overlay::all().fold(Display::default(), |all, one| all.with(one, false));
     let mut scene = scene(&Document { display, camera, ..Document::default() }, theme);
     scene.solids.clear();
     scene.balls.clear();
@@ -121,7 +122,7 @@ fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[
     Some(colour)
 }
 
-fn gain(reference: Reference, direction: DVec3) -> f64 {
+fn gain(reference: TwistReference, direction: DVec3) -> f64 {
     let facing = Facing::towards(direction.as_vec3(), Facing::default());
     f64::from(reference.gain(facing))
 }
@@ -133,10 +134,10 @@ fn every_pixel_of_a_globe_has_the_colour_of_its_gain() {
     const OFF: f64 = 2.5 / 255.0;
     let tilted = Stereographic::new(Vec3::new(0.4, 0.8, 0.7), Vec3::Y).expect("a map");
     let references = [
-        Reference::Limb,
-        Reference::Pole(Vec3::new(-0.3, 0.2, 0.9) * 300.0),
-        Reference::Stereographic(tilted),
-        Reference::Transport,
+        TwistReference::Limb,
+        TwistReference::Pole(Vec3::new(-0.3, 0.2, 0.9) * 300.0),
+        TwistReference::Stereographic(tilted),
+        TwistReference::Transport,
     ];
     let outside =
         Camera { target: Vec3::ZERO, yaw: 0.5, pitch: 0.9, distance: 1700.0, orthographic: false };
@@ -179,9 +180,9 @@ fn every_pixel_of_a_globe_has_the_colour_of_its_gain() {
 #[test]
 fn a_pole_at_the_shoulder_is_a_calm_globe() {
     let camera = Camera { distance: 1700.0, ..Document::default().camera };
-    let calm = picture(&bare(globe(Reference::Transport), Theme::Dark, camera), 200);
+    let calm = picture(&bare(globe(TwistReference::Transport), Theme::Dark, camera), 200);
     for pole in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
-        let pole = globe(Reference::Pole(pole));
+        let pole = globe(TwistReference::Pole(pole));
         assert_eq!(picture(&bare(pole, Theme::Dark, camera), 200), calm);
     }
 }
@@ -196,7 +197,7 @@ fn a_globe_without_a_size_is_no_globe() {
         (Vec3::ZERO, f32::INFINITY),
         (Vec3::NAN, 1.0),
     ] {
-        let globe = Globe { centre, radius, reference: Reference::Limb };
+        let globe = Globe { centre, radius, reference: TwistReference::Limb };
         let mut with = plain.clone();
         with.add_globe(globe);
         assert_eq!(with, plain, "{globe:?}");
@@ -209,13 +210,13 @@ fn a_globe_without_a_size_is_no_globe() {
 #[test]
 fn every_singular_direction_is_marked_on_the_globe() {
     let expected = [
-        (Reference::Limb, vec![Vec3::Y, Vec3::NEG_Y]),
-        (Reference::Pole(Vec3::X * 30.0), vec![Vec3::X, Vec3::NEG_X]),
-        (Reference::Pole(Vec3::X * 1e-30), vec![Vec3::X, Vec3::NEG_X]),
-        (Reference::Pole(Vec3::X * 1e30), vec![Vec3::X, Vec3::NEG_X]),
-        (Reference::Pole(Vec3::ZERO), vec![]),
-        (Reference::Stereographic(Stereographic::default()), vec![Vec3::NEG_X]),
-        (Reference::Transport, vec![]),
+        (TwistReference::Limb, vec![Vec3::Y, Vec3::NEG_Y]),
+        (TwistReference::Pole(Vec3::X * 30.0), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::X * 1e-30), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::X * 1e30), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::ZERO), vec![]),
+        (TwistReference::Stereographic(Stereographic::default()), vec![Vec3::NEG_X]),
+        (TwistReference::Transport, vec![]),
     ];
     for (reference, directions) in expected {
         let mut marked = scene(&Document::default(), Theme::Dark);
@@ -266,7 +267,7 @@ fn the_ramp_of_gains_reads_without_its_hues() {
 fn striped(upper: Option<f32>, lower: Option<f32>) -> Scene {
     let mut document = Document::default();
     document.camera = Camera { distance: 720.0, ..document.camera };
-    document.display = document.display.with(Layer::Hand, false);
+    document.display = document.display.with(Overlay::Hand, false);
     let mut scene = scene(&document, Theme::Dark);
     let colours = [scene.palette.upper, scene.palette.lower];
     for (colour, stripes) in colours.into_iter().zip([upper, lower]) {
@@ -301,7 +302,7 @@ fn stripes_wind_right_handed_from_base_to_tip() {
         let place = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..place };
         let camera = Camera { target: Vec3::ZERO, distance: 300.0, ..Document::default().camera };
         let mut scene =
-            bare(globe(Reference::Transport), Theme::Light, camera.along(AxisView::Front));
+            bare(globe(TwistReference::Transport), Theme::Light, camera.along(AxisView::Front));
         scene.globe = None;
         let (colour, stripes) = (Colour([200, 200, 200, 255]), Some(winding));
         scene.solids.push(Solid { place, shape, colour, stripes });
@@ -331,7 +332,7 @@ fn hand(theme: Theme, yaw: f32) -> Scene {
         distance: 185.0,
         orthographic: false,
     };
-    let mut scene = bare(globe(Reference::Transport), theme, camera);
+    let mut scene = bare(globe(TwistReference::Transport), theme, camera);
     scene.globe = None;
     let colour = scene.palette.joint;
     let held_up = Mat3::from_cols(Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X);

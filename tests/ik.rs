@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
 use ik_arm::kinematics::ik::{Ik, Solved};
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -27,22 +27,22 @@ fn cursors() -> impl Strategy<Value = Vec3> {
     [-25.0..25.0_f32, -25.0..25.0, -25.0..25.0].prop_map(Vec3::from_array)
 }
 
-fn references() -> impl Strategy<Value = Reference> {
+fn references() -> impl Strategy<Value = TwistReference> {
     prop_oneof![
-        Just(Reference::Limb),
-        cursors().prop_map(Reference::Pole),
-        Just(Reference::Stereographic(Stereographic::default())),
-        Just(Reference::Transport),
+        Just(TwistReference::Limb),
+        cursors().prop_map(TwistReference::Pole),
+        Just(TwistReference::Stereographic(Stereographic::default())),
+        Just(TwistReference::Transport),
     ]
 }
 
-fn softenings() -> impl Strategy<Value = Softening> {
+fn softenings() -> impl Strategy<Value = SoftReach> {
     (0.0..0.9_f32, 1.0..2.0_f32, 0.0..2.0_f32)
         .prop_map(|(softness, stretch, angle)| soft(softness, stretch, angle))
 }
 
-fn soft(softness: f32, stretch: f32, angle: f32) -> Softening {
-    Softening::new(softness, stretch, angle).expect("a softening")
+fn soft(softness: f32, stretch: f32, angle: f32) -> SoftReach {
+    SoftReach::new(softness, stretch, angle).expect("a softening")
 }
 
 fn length(arm: TwoBone) -> f64 {
@@ -61,7 +61,7 @@ proptest! {
         bones in arms(), cursor in cursors(), spin in -7.0..7.0_f32
     ) {
         let plain = bones.solve(cursor, spin);
-        let ik = Ik { bones, reference: Reference::Limb, softening: Softening::default() };
+        let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
         let pose = ik.solve(cursor, spin, Facing::default(), None).pose;
         prop_assert_eq!(bits(pose.elbow), bits(plain.elbow));
         prop_assert_eq!(bits(pose.hand), bits(plain.hand));
@@ -71,22 +71,22 @@ proptest! {
     #[test]
     fn softening_never_changes_which_way_the_elbow_points(
         bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
-        reference in references(), softening in softenings()
+        reference in references(), soft_reach in softenings()
     ) {
-        let hard = Ik { bones, reference, softening: Softening::default() };
-        let soft = Ik { softening, ..hard };
+        let hard = Ik { bones, reference, soft_reach: SoftReach::default() };
+        let soft = Ik { soft_reach, ..hard };
         let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, spin, Facing::default(), None));
         prop_assert!(hard.pose.outward().distance(soft.pose.outward()) < 1e-6);
-        prop_assert_eq!(hard.carried, soft.carried);
+        prop_assert_eq!(hard.transported, soft.transported);
     }
 
     #[test]
     fn the_elbow_is_turned_from_the_reference_by_the_spin(
         bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32, reference in references()
     ) {
-        let ik = Ik { bones, reference, softening: Softening::default() };
-        let Solved { pose, carried, .. } = ik.solve(cursor, spin, Facing::default(), None);
-        let (w, e) = (pose.facing.direction.as_dvec3(), carried.outward.as_dvec3());
+        let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
+        let Solved { pose, transported, .. } = ik.solve(cursor, spin, Facing::default(), None);
+        let (w, e) = (pose.facing.direction.as_dvec3(), transported.outward.as_dvec3());
         let (sin, cos) = f64::from(spin).sin_cos();
         let expected = e * cos + w.cross(e) * sin;
         let elbow = w * f64::from(pose.along) + expected * f64::from(pose.out);
@@ -96,14 +96,14 @@ proptest! {
 
     #[test]
     fn a_softened_hand_is_on_the_line_to_the_cursor_and_its_limbs_are_stretched_alike(
-        bones in arms(), cursor in cursors(), reference in references(), softening in softenings()
+        bones in arms(), cursor in cursors(), reference in references(), soft_reach in softenings()
     ) {
-        let ik = Ik { bones, reference, softening };
+        let ik = Ik { bones, reference, soft_reach };
         let pose = ik.solve(cursor, 0.3, Facing::default(), None).pose;
         let (l, sigma) = (length(bones), f64::from(pose.stretch));
         let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
         let asked = cursor.as_dvec3();
-        let extent = softening.extent(bones, asked.length() as f32);
+        let extent = soft_reach.extent(bones, asked.length() as f32);
         prop_assert!(hand.distance(asked.normalize() * f64::from(extent.distance)) < 1e-6 * l);
         for (limb, rest) in [(elbow.length(), bones.upper()), ((hand - elbow).length(), bones.lower())]
         {
@@ -123,9 +123,9 @@ proptest! {
     #[test]
     fn a_pose_is_found_again_from_its_hand_and_its_elbow(
         bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
-        from in references(), to in references(), softening in softenings()
+        from in references(), to in references(), soft_reach in softenings()
     ) {
-        let from = Ik { bones, reference: from, softening };
+        let from = Ik { bones, reference: from, soft_reach };
         let to = Ik { reference: to, ..from };
         let solved = from.solve(cursor, spin, Facing::default(), None);
         let (cursor, spin) = to.matching(&solved.pose, None);
@@ -201,10 +201,10 @@ fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
     let mut last: Option<(DVec3, Solved)> = None;
     for step in 0..=STEPS {
         let cursor = way.at(TAU * step as f64 / STEPS as f64) * l;
-        let (facing, carried) = last.map_or((Facing::default(), None), |(_, solved)| {
-            (solved.pose.facing, Some(solved.carried))
+        let (facing, transported) = last.map_or((Facing::default(), None), |(_, solved)| {
+            (solved.pose.facing, Some(solved.transported))
         });
-        let solved = ik.solve(cursor.as_vec3(), 0.7, facing, carried);
+        let solved = ik.solve(cursor.as_vec3(), 0.7, facing, transported);
         if let Some((before, was)) = last
             && counts(before)
             && counts(cursor)
@@ -234,7 +234,7 @@ proptest! {
     ) {
         let map = Stereographic::default();
         let ik =
-            Ik { bones, reference: Reference::Stereographic(map), softening: soft(softness, 1.0, 0.0) };
+            Ik { bones, reference: TwistReference::Stereographic(map), soft_reach: soft(softness, 1.0, 0.0) };
         let avoided = Some(map.singular().as_dvec3());
         let excess = excess(ik, f64::from(softness), &way, avoided);
         prop_assert!(excess < ROUNDING, "faster than its bound by {}", excess);
@@ -244,16 +244,16 @@ proptest! {
     fn transported_a_soft_elbow_never_pops(
         bones in arms(), way in ways(), softness in 0.1..0.8_f32
     ) {
-        let ik = Ik { bones, reference: Reference::Transport, softening: soft(softness, 1.0, 0.0) };
+        let ik = Ik { bones, reference: TwistReference::Transport, soft_reach: soft(softness, 1.0, 0.0) };
         let excess = excess(ik, f64::from(softness), &way, None);
         prop_assert!(excess < ROUNDING, "faster than its bound by {}", excess);
     }
 }
 
 /// The elbow's speed over the cursor's where the cursor passes a point above the shoulder by a hair.
-fn speed_beside_vertical(reference: Reference, aside: f32) -> f64 {
+fn speed_beside_vertical(reference: TwistReference, aside: f32) -> f64 {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
-    let ik = Ik { bones, reference, softening: soft(0.2, 1.0, 0.0) };
+    let ik = Ik { bones, reference, soft_reach: soft(0.2, 1.0, 0.0) };
     let step = 0.1 * aside;
     let elbow = |x: f32| {
         ik.solve(Vec3::new(x, 1.2, aside), 0.0, Facing::default(), None).pose.elbow.as_dvec3()
@@ -265,9 +265,9 @@ fn speed_beside_vertical(reference: Reference, aside: f32) -> f64 {
 fn past_vertical_the_limbs_reference_breaks_any_bound_and_the_map_none() {
     for bound in [1e1, 1e2, 1e3, 1e4] {
         let aside = 0.5 / bound as f32;
-        let speed = speed_beside_vertical(Reference::Limb, aside);
+        let speed = speed_beside_vertical(TwistReference::Limb, aside);
         assert!(speed > bound, "{speed} at {aside}");
-        let map = Reference::Stereographic(Stereographic::default());
+        let map = TwistReference::Stereographic(Stereographic::default());
         let speed = speed_beside_vertical(map, aside.max(1e-3));
         assert!(speed < 3.0, "{speed} at {aside}");
     }
@@ -276,13 +276,13 @@ fn past_vertical_the_limbs_reference_breaks_any_bound_and_the_map_none() {
 #[test]
 fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
-    let speed = |softening, from: f32| {
-        let ik = Ik { bones, reference: Reference::Limb, softening };
+    let speed = |soft_reach, from: f32| {
+        let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
         let elbow = |x| ik.solve(Vec3::X * x, 0.0, Facing::default(), None).pose.elbow.as_dvec3();
         elbow(from).distance(elbow(2.0)) / f64::from(2.0 - from)
     };
     for (near, bound) in [(1e-2, 5.0), (1e-4, 50.0), (1e-6, 500.0)] {
-        assert!(speed(Softening::default(), 2.0 - near) > bound);
+        assert!(speed(SoftReach::default(), 2.0 - near) > bound);
         assert!(speed(soft(0.2, 1.0, 0.0), 2.0 - near) < 5.0);
     }
 }
@@ -291,11 +291,11 @@ fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
 fn transport_without_a_past_begins_on_the_map() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let solve = |reference| {
-        let ik = Ik { bones, reference, softening: Softening::default() };
+        let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         ik.solve(Vec3::new(0.3, 0.9, -0.4), 0.5, Facing::default(), None)
     };
-    let map = Reference::Stereographic(Stereographic::default());
-    assert_eq!(solve(Reference::Transport), solve(map));
+    let map = TwistReference::Stereographic(Stereographic::default());
+    assert_eq!(solve(TwistReference::Transport), solve(map));
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn a_cursor_farther_than_numbers_go_is_not_reached() {
     // √2 times as far as the largest number.
     let cursor = Vec3::new(0.0, FAR, FAR);
     let bones = TwoBone::new(1.0, FAR).expect("lengths");
-    let ik = Ik { bones, reference: Reference::Limb, softening: soft(0.1, 1.0, 0.0) };
+    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: soft(0.1, 1.0, 0.0) };
     let pose = ik.solve(cursor, 0.0, Facing::default(), None).pose;
     assert_eq!(pose.reach, Reach::TooFar);
     assert!((pose.hand.as_dvec3().length() / f64::from(FAR) - 1.0).abs() < 0.1, "{}", pose.hand);

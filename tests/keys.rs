@@ -2,7 +2,7 @@
 #![cfg(feature = "document")]
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, Keys, Layer, RigKind, Target, Timeline};
+use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::Limit;
 
@@ -21,7 +21,7 @@ fn every_channel_gives_the_document_its_value_and_nothing_else_changes() {
     let (point, on) = (Vec3::new(1.5, -2.5, 0.25), Vec3::ZERO);
     for (channel, value) in [
         (Channel::Hand, point),
-        (Channel::ElbowSpin, number(1.25)),
+        (Channel::Twist, number(1.25)),
         (Channel::Root, point),
         (Channel::Upper, number(123.0)),
         (Channel::Lower, number(45.0)),
@@ -30,7 +30,7 @@ fn every_channel_gives_the_document_its_value_and_nothing_else_changes() {
         (Channel::Offset(2), point),
         (Channel::Target(8), point),
         (Channel::Enabled(8), on),
-        (Channel::Layer(Layer::Cursor), on),
+        (Channel::Overlay(Overlay::Cursor), on),
     ] {
         let mut keyed = document.clone();
         keyed.keys.insert(channel, 1.0, value);
@@ -87,11 +87,11 @@ fn angles_stay_within_the_limits_of_their_joint() {
 #[test]
 fn switches_step() {
     let mut document = Document::default();
-    let limit = Channel::Layer(Layer::OuterLimit);
+    let limit = Channel::Overlay(Overlay::OuterLimit);
     for (time, on) in [(1.0, 1.0), (2.0, 0.0)] {
         document.keys.insert(limit, time, number(on));
     }
-    let shown = |time| document.at(time).display.shows(Layer::OuterLimit);
+    let shown = |time| document.at(time).display.shows(Overlay::OuterLimit);
     assert_eq!([0.0, 1.0, 1.99, 2.0].map(shown), [true, true, true, false]);
 }
 
@@ -100,12 +100,12 @@ fn huge_values_stay_finite() {
     let mut document = Document::default();
     for (time, x) in [(0.0, f32::MAX), (1.0, f32::MAX), (1.5, f32::MIN), (2.0, f32::MAX)] {
         document.keys.insert(Channel::Hand, time, Vec3::splat(x));
-        document.keys.insert(Channel::ElbowSpin, time, number(x));
+        document.keys.insert(Channel::Twist, time, number(x));
         document.keys.insert(Channel::Upper, time, number(x.abs()));
     }
     for step in 0..100 {
         let arm = document.at(f64::from(step) * 0.03).arm;
-        assert!(arm.cursor().is_finite() && arm.elbow_spin.is_finite(), "{arm:?}");
+        assert!(arm.cursor().is_finite() && arm.twist.is_finite(), "{arm:?}");
         assert!(arm.pose().hand.is_finite());
     }
 }

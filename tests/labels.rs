@@ -4,11 +4,11 @@
 mod pictures;
 
 use glam::Vec3;
-use ik_arm::document::{Display, Document, Layer, RigKind, Theme};
+use ik_arm::document::{Display, Document, Overlay, RigKind, Theme};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::render::{Canvas, Gpu, Picture, Renderer};
 use ik_arm::scene::Scene;
-use ik_arm::session::Staging;
+use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pictures::{GPU, draw};
 
@@ -25,10 +25,10 @@ fn named(names: &[&str]) -> Scene {
     }
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     document.skeleton.skeleton = skeleton;
-    document.display = Display::from_iter([Layer::Labels]);
+    document.display = Display::from_iter([Overlay::Labels]);
     let selection = (0..names.len()).collect();
     let mut scene =
-        Scene::new(&document, &Staging { selection, ..Staging::default() }, Theme::Dark);
+        Scene::new(&document, &Overlays { selection, ..Overlays::default() }, Theme::Dark);
     assert_eq!(scene.labels.len(), names.len());
     scene.solids.clear();
     scene.balls.clear();

@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::Ik;
 use ik_arm::kinematics::pop::{Change, Moment, Pop, Step};
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::kinematics::swivel::{Reference, Stereographic};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -21,25 +21,25 @@ fn config(cases: u32) -> ProptestConfig {
     }
 }
 
-fn map() -> Reference {
-    Reference::Stereographic(Stereographic::default())
+fn map() -> TwistReference {
+    TwistReference::Stereographic(Stereographic::default())
 }
 
-fn soft(softness: f32) -> Softening {
-    Softening::new(softness, 1.0, 0.0).expect("a softening")
+fn soft(softness: f32) -> SoftReach {
+    SoftReach::new(softness, 1.0, 0.0).expect("a softening")
 }
 
-fn arm(reference: Reference, softness: f32) -> Ik {
+fn arm(reference: TwistReference, softness: f32) -> Ik {
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");
-    Ik { bones, reference, softening: soft(softness) }
+    Ik { bones, reference, soft_reach: soft(softness) }
 }
 
 /// As a drag leaves it: each pose goes on from the one before.
 fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Moment> {
-    let (mut facing, mut carried) = (Facing::default(), None);
+    let (mut facing, mut transported) = (Facing::default(), None);
     let poses = cursors.into_iter().map(|cursor| {
-        let solved = ik.solve(cursor, 0.0, facing, carried);
-        (facing, carried) = (solved.pose.facing, Some(solved.carried));
+        let solved = ik.solve(cursor, 0.0, facing, transported);
+        (facing, transported) = (solved.pose.facing, Some(solved.transported));
         Moment {
             pose: solved.pose,
             cursor,
@@ -75,7 +75,7 @@ fn over_the_top() -> impl Iterator<Item = Vec3> + Clone {
 
 #[test]
 fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
-    let pops = pops(arm(Reference::Limb, 0.0), over_the_top());
+    let pops = pops(arm(TwistReference::Limb, 0.0), over_the_top());
     assert!(!pops.is_empty());
     let nearest = pops.iter().map(|pop| match pop {
         Pop::Singular { nearest } => f64::from(*nearest),
@@ -88,7 +88,7 @@ fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
 
 #[test]
 fn the_same_pass_is_calm_with_the_map_and_with_transport() {
-    for reference in [map(), Reference::Transport] {
+    for reference in [map(), TwistReference::Transport] {
         assert_eq!(pops(arm(reference, 0.0), over_the_top()), [], "{reference:?}");
     }
 }
@@ -100,7 +100,7 @@ fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
     for side in [1.0, -1.0] {
         let at = pole * side * 0.9 + pole.cross(aside).normalize() * 15.0;
         let pass = line(at - aside * 120.0, at + aside * 120.0, 50);
-        let pops = pops(arm(Reference::Pole(pole), 0.0), pass.clone());
+        let pops = pops(arm(TwistReference::Pole(pole), 0.0), pass.clone());
         let is_near = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.5);
         assert!(!pops.is_empty() && pops.iter().all(is_near), "{side}: {pops:?}");
         let nearest = pops.iter().map(|pop| match pop {
@@ -119,8 +119,8 @@ fn the_map_pops_only_behind_and_transport_not_even_there() {
     let on_map = pops_of(map());
     let is_singular = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.15);
     assert!(!on_map.is_empty() && on_map.iter().all(is_singular), "{on_map:?}");
-    assert_eq!(pops_of(Reference::Transport), []);
-    assert_eq!(pops_of(Reference::Limb), []);
+    assert_eq!(pops_of(TwistReference::Transport), []);
+    assert_eq!(pops_of(TwistReference::Limb), []);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn a_hand_that_runs_into_the_inner_limit_pops_unless_it_is_soft() {
 fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
     let past = line(Vec3::new(95.0, 4.0, 7.0), Vec3::new(-95.0, 4.0, 7.0), 14);
     for softness in [0.0, 0.2, 0.9] {
-        let pops = pops(arm(Reference::Transport, softness), past.clone());
+        let pops = pops(arm(TwistReference::Transport, softness), past.clone());
         assert!(pops.contains(&Pop::Shoulder), "{softness}: {pops:?}");
         let is_turn = |pop: &Pop| matches!(pop, Pop::Shoulder);
         assert!(pops.iter().all(is_turn), "{softness}: {pops:?}");
@@ -170,7 +170,7 @@ fn a_step_too_short_to_tell_from_rounding_is_none() {
 
 #[test]
 fn every_change_that_is_not_the_cursors_has_its_own_name() {
-    let ik = arm(Reference::Pole(Vec3::Y), 0.0);
+    let ik = arm(TwistReference::Pole(Vec3::Y), 0.0);
     let moment = moments(ik, [Vec3::new(300.0, 50.0, 0.0)])[0];
     let before = Moment { pinned_root: Some(Vec3::ZERO), weight: 0.5, ..moment };
     let with = |ik: Ik| Moment { ik, ..before };
@@ -178,9 +178,9 @@ fn every_change_that_is_not_the_cursors_has_its_own_name() {
     let fk = Fk { bend: 1.25, ..before.fk };
     let changed = [
         (Change::Lengths, with(Ik { bones, ..ik })),
-        (Change::Reference, with(Ik { reference: Reference::Limb, ..ik })),
-        (Change::Pole, with(Ik { reference: Reference::Pole(Vec3::X), ..ik })),
-        (Change::Softening, with(Ik { softening: soft(0.1), ..ik })),
+        (Change::TwistReference, with(Ik { reference: TwistReference::Limb, ..ik })),
+        (Change::Pole, with(Ik { reference: TwistReference::Pole(Vec3::X), ..ik })),
+        (Change::SoftReach, with(Ik { soft_reach: soft(0.1), ..ik })),
         (Change::Weight, Moment { weight: 0.25, ..before }),
         (Change::Angles, Moment { fk, ..before }),
         (Change::Spin, Moment { spin: 0.1, ..before }),
@@ -195,7 +195,7 @@ fn every_change_that_is_not_the_cursors_has_its_own_name() {
 
 #[test]
 fn what_does_not_pose_the_arm_is_no_change() {
-    let before = moments(arm(Reference::Limb, 0.0), [Vec3::X])[0];
+    let before = moments(arm(TwistReference::Limb, 0.0), [Vec3::X])[0];
     let elsewhere = Moment { cursor: Vec3::Y, ..before };
     let pinned = Moment { pinned_root: Some(Vec3::Y), ..before };
     let turned = Moment { fk: Fk { bend: 2.0, ..before.fk }, ..before };
@@ -211,8 +211,8 @@ fn elbow(ik: &Ik, cursor: DVec3) -> DVec3 {
     let w = cursor.normalize();
     let cos = (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);
     let towards = match ik.reference {
-        Reference::Pole(pole) => pole.as_dvec3(),
-        Reference::Stereographic(map) => {
+        TwistReference::Pole(pole) => pole.as_dvec3(),
+        TwistReference::Stereographic(map) => {
             let k = (w - map.singular().as_dvec3()).cross(map.up().as_dvec3());
             k.cross(w)
         }
@@ -229,10 +229,10 @@ fn cursors() -> impl Strategy<Value = Vec3> {
     })
 }
 
-fn references() -> impl Strategy<Value = Reference> {
+fn references() -> impl Strategy<Value = TwistReference> {
     prop_oneof![
-        Just(Reference::Limb),
-        Just(Reference::Pole(Vec3::new(30.0, -250.0, 120.0))),
+        Just(TwistReference::Limb),
+        Just(TwistReference::Pole(Vec3::new(30.0, -250.0, 120.0))),
         Just(map()),
     ]
 }
@@ -280,7 +280,7 @@ proptest! {
     fn an_arm_that_only_turns_has_no_swing_and_no_bend(from in cursors(), to in cursors()) {
         let to = to.normalize() * from.length();
         prop_assume!(from.distance(to) > 1.0 && from.dot(to) > -0.99 * from.dot(from));
-        let step = steps(arm(Reference::Transport, 0.0), [from, to])[0];
+        let step = steps(arm(TwistReference::Transport, 0.0), [from, to])[0];
         prop_assert!(step.swing.length() < 1e-3 && step.bend.length() < 1e-2, "{step:?}");
     }
 
@@ -289,7 +289,7 @@ proptest! {
         upper in 10.0..300.0_f32, lower in 10.0..300.0_f32, cursor in cursors(), count in 20..100_u16
     ) {
         let bones = TwoBone::new(upper, lower).expect("lengths");
-        let ik = Ik { bones, reference: map(), softening: soft(0.25) };
+        let ik = Ik { bones, reference: map(), soft_reach: soft(0.25) };
         let way = cursor.normalize();
         let (least, most) = (bones.inner_limit(), bones.outer_limit());
         let radial = line(way * least.max(1e-3 * most), way * (1.5 * most), count);

@@ -4,20 +4,20 @@
 
 use allocation_counter::measure;
 use glam::Vec3;
-use ik_arm::document::{Arm, Display, Document, Goal, Layer, RigKind, Theme};
+use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, RigKind, Theme};
 use ik_arm::kinematics::skeleton::Skeleton;
 use ik_arm::render::{Canvas, Gpu, Renderer};
 use ik_arm::scene::{Ball, Line, Scene, Shell};
-use ik_arm::session::Staging;
+use ik_arm::session::Overlays;
 
 const SIZE: (u32, u32) = (480, 300);
 
 /// An arm with all its guides, and `more` balls and lines around it.
 fn scene(hand: Vec3, more: usize) -> Scene {
-    let arm = Arm { goal: Goal::Root(hand), ..Arm::default() };
-    let display: Display = Layer::all().collect();
+    let arm = Arm { goal: Cursor::Root(hand), ..Arm::default() };
+    let display: Display = Overlay::all().collect();
     let document = Document { arm, display, ..Document::default() };
-    let mut scene = Scene::new(&document, &Staging::default(), Theme::Dark);
+    let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
     let colour = scene.palette.joint;
     for index in 0..more {
         let at = hand + Vec3::splat(index as f32 / more as f32);
@@ -82,8 +82,8 @@ fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
 fn named(name: &str) -> Scene {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     document.skeleton.skeleton = Skeleton::with_root(name);
-    let staging = Staging { selection: vec![0], ..Staging::default() };
-    Scene::new(&document, &staging, Theme::Dark)
+    let overlays = Overlays { selection: vec![0], ..Overlays::default() };
+    Scene::new(&document, &overlays, Theme::Dark)
 }
 
 #[test]

@@ -4,15 +4,17 @@
 
 use allocation_counter::measure;
 use glam::Vec3;
-use ik_arm::document::{Channel, Display, Document, Layer, Path, Swivel, Theme};
+use ik_arm::document::{
+    Channel, Display, Document, Overlay, TargetPath, Theme, TwistReferenceKind,
+};
 use ik_arm::io::Example;
 use ik_arm::scene::Scene;
-use ik_arm::session::{Action, Preferences, Session, Staging};
+use ik_arm::session::{Action, Overlays, Preferences, Session};
 
 /// What the window does between two frames, with what it keeps for it.
 struct Stage {
     session: Session,
-    staging: Staging,
+    overlays: Overlays,
     scene: Scene,
     shown: Scene,
 }
@@ -20,9 +22,9 @@ struct Stage {
 impl Stage {
     fn new(document: Document) -> Self {
         let session = Session::with_document(Preferences::default(), document);
-        let staging = session.staging();
-        let scene = Scene::new(session.shown(), &staging, Theme::Dark);
-        Self { session, staging, shown: scene.clone(), scene }
+        let overlays = session.overlays();
+        let scene = Scene::new(session.shown(), &overlays, Theme::Dark);
+        Self { session, overlays, shown: scene.clone(), scene }
     }
 
     /// Takes an action and makes the next scene: how often memory was taken for it, and whether it is
@@ -30,10 +32,10 @@ impl Stage {
     fn frame(&mut self, action: Action) -> (u64, bool) {
         self.session.apply(action);
         // Walked when it is first asked for.
-        self.session.staging();
+        self.session.overlays();
         let counted = measure(|| {
-            self.session.restage(&mut self.staging);
-            self.scene.refill(self.session.shown(), &self.staging, Theme::Dark);
+            self.session.write_overlays(&mut self.overlays);
+            self.scene.refill(self.session.shown(), &self.overlays, Theme::Dark);
         });
         let has_changed = self.scene != self.shown;
         std::mem::swap(&mut self.scene, &mut self.shown);
@@ -53,15 +55,15 @@ impl Stage {
 }
 
 fn all_layers_but_onion_skins() -> Display {
-    Layer::all().filter(|layer| *layer != Layer::OnionSkins).collect()
+    Overlay::all().filter(|layer| *layer != Overlay::OnionSkins).collect()
 }
 
 #[test]
 fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
-    for swivel in Swivel::ALL {
+    for twist_reference in TwistReferenceKind::ALL {
         let mut document =
             Document { display: all_layers_but_onion_skins(), ..Document::default() };
-        document.arm.swivel = swivel;
+        document.arm.twist_reference = twist_reference;
         document.arm = document.arm.pinned(true).settled();
         for (time, hand) in [(0.0, Vec3::X), (1.0, Vec3::Y)] {
             document.arm.set_cursor(hand * 300.0);
@@ -72,8 +74,8 @@ fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
             Action::SetHand(Vec3::new(250.0, 120.0, 60.0)),
             Action::SetHand(Vec3::new(-900.5, 120.25, 60.0)),
             Action::SetHand(Vec3::new(12.0, -40.0, 9.0)),
-            Action::SetElbowSpin(1.25),
-            Action::SetElbowSpin(-0.5),
+            Action::SetTwist(1.25),
+            Action::SetTwist(-0.5),
             Action::SetTime(0.5),
             Action::SetTime(0.25),
         ]);
@@ -88,7 +90,7 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
     let joints = document.skeleton.skeleton.joints().len();
     assert!(joints >= 10);
     let target = document.skeleton.targets.first_mut().expect("a target");
-    target.motion.path = Path::FigureEight;
+    target.motion.path = TargetPath::FigureEight;
     for (time, angle) in [(0.0, 0.2), (1.0, 0.9)] {
         let turned = Vec3::splat(angle);
         document.skeleton.skeleton.set_rotation(3, turned).expect("a joint");
@@ -96,7 +98,7 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
     }
     let mut stage = Stage::new(document);
     stage.session.apply(Action::Select(vec![joints - 1]));
-    assert!(stage.session.staging().trail.len() > 10, "a motion path");
+    assert!(stage.session.overlays().trail.len() > 10, "a motion path");
     stage.assert_takes_nothing(&[
         Action::SetTime(0.1),
         Action::SetTime(0.6),
@@ -113,7 +115,7 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
 fn solvers_that_race_take_no_memory() {
     let opened = Example::find("human").expect("an example").open().expect("it opens");
     let mut stage = Stage::new(opened.document);
-    stage.session.apply(Action::Race(true));
+    stage.session.apply(Action::Comparison(true));
     stage.frame(Action::Advance(0.0));
     for frame in 1..8 {
         let (taken, has_changed) = stage.frame(Action::Advance(f64::from(frame) / 60.0));
@@ -133,13 +135,13 @@ fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
     let mut scene: Option<Scene> = None;
     for example in Example::ALL {
         let mut document = example.open().expect("it opens").document;
-        for layers in [document.display, Layer::all().collect(), Display::from_iter([])] {
+        for layers in [document.display, Overlay::all().collect(), Display::from_iter([])] {
             document.display = layers;
             for theme in [Theme::Dark, Theme::Light] {
-                let staging = Staging::new(&document, 0.3);
-                let anew = Scene::new(&document, &staging, theme);
+                let overlays = Overlays::new(&document, 0.3);
+                let anew = Scene::new(&document, &overlays, theme);
                 let scene = scene.get_or_insert_with(|| anew.clone());
-                scene.refill(&document, &staging, theme);
+                scene.refill(&document, &overlays, theme);
                 assert_eq!(*scene, anew, "{}", example.name);
                 for (label, same) in scene.labels.iter().zip(&anew.labels) {
                     assert_eq!(scene.text(label), anew.text(same));

@@ -3,15 +3,15 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Display, Document, Layer, Motion, Path, Ray, RigKind, SkeletonRig,
-    Slither, Space, Swivel, Target, Timeline,
+    Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
+    SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
 };
 use ik_arm::io::Example;
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::Limit;
-use ik_arm::kinematics::solve::{Method, Options, Root};
-use ik_arm::kinematics::two_bone::Pose;
-use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, Lead, Session};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::two_bone::TwoBonePose;
+use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, PoseMode, Session};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -84,8 +84,12 @@ fn building() -> impl Strategy<Value = Action> {
 }
 
 fn posing() -> impl Strategy<Value = Action> {
-    let paths = prop_oneof![Just(Path::Still), Just(Path::Circle), Just(Path::FigureEight)];
-    let motion = (paths, numbers(), numbers()).prop_map(|(path, radius, period)| Motion {
+    let paths = prop_oneof![
+        Just(TargetPath::Still),
+        Just(TargetPath::Circle),
+        Just(TargetPath::FigureEight)
+    ];
+    let motion = (paths, numbers(), numbers()).prop_map(|(path, radius, period)| TargetMotion {
         path,
         radius,
         period,
@@ -102,17 +106,17 @@ fn posing() -> impl Strategy<Value = Action> {
         ),
         1 => (0..6_usize, numbers(), any::<bool>()).prop_map(|(method, damping, free)| {
             let root = if free { Root::Free } else { Root::Fixed };
-            Action::SetSolver(Options {
-                method: Method::ALL[method], damping, root, ..Options::default()
+            Action::SetSolver(SolverOptions {
+                method: Method::ALL[method], damping, root, ..SolverOptions::default()
             })
         }),
-        1 => any::<bool>().prop_map(|on| Action::SetSlither(on.then_some(Slither {
+        1 => any::<bool>().prop_map(|on| Action::SetFollowPath(on.then_some(FollowPath {
             radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0
         }))),
         1 => any::<bool>().prop_map(Action::Run),
         1 => Just(Action::Step),
         1 => Just(Action::ResetSolver),
-        1 => any::<bool>().prop_map(Action::Race),
+        1 => any::<bool>().prop_map(Action::Comparison),
         1 => any::<bool>().prop_map(Action::Play),
         2 => (0.0..60.0).prop_map(Action::Advance),
         1 => Just(Action::ResetPose),
@@ -121,24 +125,24 @@ fn posing() -> impl Strategy<Value = Action> {
 
 fn arming() -> impl Strategy<Value = Action> {
     let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
-    let softening = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
+    let soft_reach = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
     prop_oneof![
         3 => points().prop_map(Action::SetHand),
         2 => points().prop_map(Action::SetRoot),
         2 => any::<bool>().prop_map(Action::PinHand),
         1 => points().prop_map(Action::SetPin),
-        3 => (0..4_usize).prop_map(|swivel| Action::SetSwivel(Swivel::ALL[swivel])),
+        3 => (0..4_usize).prop_map(|twist_reference| Action::SetTwistReference(TwistReferenceKind::ALL[twist_reference])),
         2 => points().prop_map(Action::SetPole),
-        2 => softening.prop_map(|(softness, stretch, angle)| Action::SetSoftening(
-            Softening::new(softness, stretch, angle).expect("a softening")
+        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::SetSoftReach(
+            SoftReach::new(softness, stretch, angle).expect("a softening")
         )),
-        2 => parts().prop_map(Action::SetWeight),
-        2 => prop_oneof![Just(Lead::Hand), Just(Lead::Angles)].prop_map(Action::SwitchTo),
+        2 => parts().prop_map(Action::SetInfluence),
+        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(Action::SwitchTo),
         1 => points().prop_map(Action::SetShoulder),
         1 => numbers().prop_map(Action::SetBend),
         1 => points().prop_map(Action::SetWrist),
-        1 => prop_oneof![Just(Space::Lower), Just(Space::World)].prop_map(Action::SetWristSpace),
-        1 => Just(Action::StartJourney),
+        1 => prop_oneof![Just(HandSpace::Lower), Just(HandSpace::World)].prop_map(Action::SetWristSpace),
+        1 => Just(Action::ResetTransport),
         1 => any::<bool>().prop_map(|arm| {
             Action::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton })
         }),
@@ -150,7 +154,7 @@ fn channels() -> impl Strategy<Value = Channel> + Clone {
         prop_oneof![
             (0..Channel::OF_ARM.len()).prop_map(|channel| Channel::OF_ARM[channel]),
             Just(Channel::Translation),
-            Just(Channel::Layer(Layer::Cursor)),
+            Just(Channel::Overlay(Overlay::Cursor)),
         ],
         joints().prop_map(Channel::Rotation),
         joints().prop_map(Channel::Offset),
@@ -177,9 +181,9 @@ fn keying() -> impl Strategy<Value = Action> {
             Action::SetTimeline(Timeline { start, end, frame_rate })
         }),
         1 => points().prop_map(Action::SetHand),
-        1 => numbers().prop_map(Action::SetElbowSpin),
+        1 => numbers().prop_map(Action::SetTwist),
         1 => numbers().prop_map(Action::SetUpper),
-        1 => any::<bool>().prop_map(|shown| Action::Show(Layer::Cursor, shown)),
+        1 => any::<bool>().prop_map(|shown| Action::Show(Overlay::Cursor, shown)),
         1 => points().prop_map(Action::SetTranslation),
         1 => numbers().prop_map(|metres| Action::SetMetres(Some(metres))),
         1 => Just(Action::Undo),
@@ -253,10 +257,10 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
 }
 
 /// Where numbers are of a size, elbow and hand are as far from each other as the limbs are long.
-fn check_arm(arm: &Arm, pose: &Pose) -> Result<(), TestCaseError> {
+fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
     prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
-    prop_assert!((0.0..=1.0).contains(&arm.weight) && arm.cursor().is_finite());
-    prop_assert!(arm.carried.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3));
+    prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor().is_finite());
+    prop_assert!(arm.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3));
     let bones =
         [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
     let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
@@ -294,7 +298,7 @@ proptest! {
         for action in before {
             session.apply(action);
         }
-        for action in [Action::CancelEdit, Action::Race(false), Action::Play(false)] {
+        for action in [Action::CancelEdit, Action::Comparison(false), Action::Play(false)] {
             session.apply(action);
         }
         let (document, shown) = (session.document().clone(), session.shown().clone());
@@ -417,7 +421,7 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     session.apply(Action::SetHand(Vec3::Z * 50.0));
     session.apply(Action::ClearChannels(vec![Channel::Hand]));
     session.apply(Action::SetHand(Vec3::Z * 70.0));
-    session.apply(Action::SetElbowSpin(1.0));
+    session.apply(Action::SetTwist(1.0));
     assert_eq!(session.arm().cursor(), Vec3::Z * 70.0);
     assert_eq!(session.document().arm.cursor(), Vec3::Z * 70.0);
 }
@@ -451,10 +455,10 @@ fn selected_and_copied_keys_follow_their_joints() {
 fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
     let mut session = Session::default();
     session.apply(Action::Open { path: "slow.glb".into(), skeleton: None });
-    session.apply(Action::SetElbowSpin(1.0));
+    session.apply(Action::SetTwist(1.0));
     let opened = Action::Opened { document: Box::default(), file: None };
     session.apply(opened.clone());
-    assert_eq!(session.arm().elbow_spin, 1.0);
+    assert_eq!(session.arm().twist, 1.0);
     assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
     session.apply(Action::Discard(Box::new(opened)));
     assert_eq!(session.document(), &Document::default());
@@ -478,14 +482,14 @@ fn many_keys_move_at_once() {
 fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
     let mut session = halfway();
     session.apply(Action::SetTime(0.0));
-    let skins = Channel::Layer(Layer::OnionSkins);
+    let skins = Channel::Overlay(Overlay::OnionSkins);
     session.apply(Action::Key(vec![skins]));
     session.apply(Action::SetTime(0.5));
-    session.apply(Action::Show(Layer::OnionSkins, true));
+    session.apply(Action::Show(Overlay::OnionSkins, true));
     session.apply(Action::Key(vec![skins]));
     for (time, shown) in [(0.4, false), (0.6, true)] {
         session.apply(Action::SetTime(time));
-        assert_eq!(session.staging().onion_skins.is_empty(), !shown, "at {time} s");
+        assert_eq!(session.overlays().onion_skins.is_empty(), !shown, "at {time} s");
     }
 }
 
@@ -505,17 +509,17 @@ fn with_auto_key_every_edit_makes_a_key() {
     session.apply(Action::SetAutoKey(true));
     for (time, spin) in [(0.0, 6.0), (1.0, 0.5)] {
         session.apply(Action::SetTime(time));
-        session.apply(Action::SetElbowSpin(spin));
+        session.apply(Action::SetTwist(spin));
     }
     let keys = &session.document().keys;
     let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
-    assert_eq!(channels, [Channel::ElbowSpin]);
+    assert_eq!(channels, [Channel::Twist]);
     // The shorter way, past 0 and not back around.
-    let spun = keys.value(Channel::ElbowSpin, 1.0).expect("a key").x;
+    let spun = keys.value(Channel::Twist, 1.0).expect("a key").x;
     assert!((spun - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{spun}");
     // A switch gets no key by being switched.
-    session.apply(Action::Show(Layer::Cursor, false));
-    assert!(!session.document().keys.has(Channel::Layer(Layer::Cursor)));
+    session.apply(Action::Show(Overlay::Cursor, false));
+    assert!(!session.document().keys.has(Channel::Overlay(Overlay::Cursor)));
 }
 
 #[test]

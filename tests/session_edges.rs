@@ -2,11 +2,11 @@
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Swivel, Theme};
+use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Constraint, Drag, DragInput, Grip, Handle, Lead, Motion, PointDrag, Preferences,
+    Action, Constraint, Drag, DragInput, Grip, Handle, Motion, PointDrag, PoseMode, Preferences,
     Session, TurnDrag,
 };
 
@@ -164,24 +164,24 @@ fn a_race_ends_when_the_joints_become_others() {
         let mut session = session();
         session.apply(Action::OpenExample(Example::find("ten-joints").expect("an example")));
         session.apply(Action::AddChild { parent: 0, tip: None });
-        session.apply(Action::Race(true));
+        session.apply(Action::Comparison(true));
         session.apply(Action::Advance(1.0));
-        assert_eq!(session.staging().ghosts.len(), 6);
+        assert_eq!(session.overlays().ghosts.len(), 6);
         session.apply(Action::SetRotation { joint: 1, rotation: Vec3::X });
-        assert!(session.race().is_some());
+        assert!(session.comparison().is_some());
         if change == Action::Undo {
             session.apply(Action::Undo);
         }
         session.apply(change);
-        assert!(session.race().is_none(), "{:?}", session.message());
-        let _ = Scene::new(session.shown(), &session.staging(), Theme::Dark);
+        assert!(session.comparison().is_none(), "{:?}", session.message());
+        let _ = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
     }
 }
 
 #[test]
 fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
     let mut session = session();
-    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SwitchTo(PoseMode::Angles));
     let before = session.document().clone();
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         for wrong in [f32::INFINITY, f32::NAN, f32::MAX] {
@@ -219,7 +219,7 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
         for camera in [session.framing_all(), session.framing_selection()] {
             assert!(camera.is_valid(), "{camera:?}");
         }
-        let scene = Scene::new(session.shown(), &session.staging(), Theme::Dark);
+        let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
         assert!(scene.stage.centre.is_finite() && scene.stage.radius.is_finite());
         assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
         assert!(scene.solids.iter().all(|solid| solid.place.is_finite()));
@@ -269,7 +269,7 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
         let mut session = session();
-        session.apply(Action::SetSwivel(Swivel::Pole));
+        session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
         session.apply(Action::SetPole(Vec3::new(0.0, 0.0, pole)));
         let grip = Grip::Pole(Handle::Axis(2));
         session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });

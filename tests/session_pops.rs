@@ -2,10 +2,10 @@
 #![cfg(feature = "document")]
 
 use glam::Vec3;
-use ik_arm::document::{Arm, Channel, Document, Swivel, Timeline};
+use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
 use ik_arm::kinematics::pop::{Change, Pop};
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::session::{Action, Remedy, Session, Spike, What};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::session::{Action, PopFix, Session, Spike, What};
 
 fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
     session.apply(Action::SetHand(from));
@@ -47,24 +47,24 @@ fn changes(session: &Session) -> Vec<Change> {
 }
 
 /// Drags, does what is said to help against the one pop, and drags again: what cured it.
-fn cure(session: &mut Session, drag: fn(&mut Session)) -> Remedy {
+fn cure(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     drag(session);
     let spikes = standing(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
-    let remedy = Remedy::new(&spikes[0], session.arm()).expect("a remedy");
-    session.apply(remedy.action());
+    let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a remedy");
+    session.apply(pop_fix.action());
     assert_eq!(session.message(), None);
-    assert_eq!(Remedy::new(&spikes[0], session.arm()), None, "it is taken");
+    assert_eq!(PopFix::new(&spikes[0], session.arm()), None, "it is taken");
     drag(session);
     assert_eq!(standing(session), []);
-    remedy
+    pop_fix
 }
 
 #[test]
 fn each_remedy_cures_the_drag_that_asked_for_it() {
-    let map = Remedy::Measure(Swivel::Stereographic);
+    let map = PopFix::Measure(TwistReferenceKind::Stereographic);
     assert_eq!(cure(&mut Session::default(), over_the_top), map);
-    let soft = Remedy::Soften(Softening::new(0.25, 1.0, 0.0).expect("soft"));
+    let soft = PopFix::Soften(SoftReach::new(0.25, 1.0, 0.0).expect("soft"));
     assert_eq!(cure(&mut Session::default(), into_the_limit), soft);
     assert_eq!(cure(&mut Session::default(), fold_up), soft);
 }
@@ -73,39 +73,42 @@ fn each_remedy_cures_the_drag_that_asked_for_it() {
 fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
     let mut session = Session::default();
     session.apply(Action::SetPole(Vec3::new(0.0, 300.0, 10.0)));
-    session.apply(Action::SetSwivel(Swivel::Pole));
-    assert_eq!(cure(&mut session, over_the_top), Remedy::Measure(Swivel::Stereographic));
+    session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
+    assert_eq!(
+        cure(&mut session, over_the_top),
+        PopFix::Measure(TwistReferenceKind::Stereographic)
+    );
 }
 
 #[test]
 fn behind_the_body_the_map_pops_and_transport_cures_it() {
     let mut session = Session::default();
-    session.apply(Action::SetSwivel(Swivel::Stereographic));
+    session.apply(Action::SetTwistReference(TwistReferenceKind::Stereographic));
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
-    assert_eq!(cure(&mut session, behind), Remedy::Measure(Swivel::Transport));
+    assert_eq!(cure(&mut session, behind), PopFix::Measure(TwistReferenceKind::Transport));
 }
 
 #[test]
 fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let mut session = Session::default();
-    let almost_hard = Softening::new(0.01, 1.2, 0.0).expect("soft");
-    session.apply(Action::SetSoftening(almost_hard));
-    let expected = Remedy::KeepOpen(Softening::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
+    let almost_hard = SoftReach::new(0.01, 1.2, 0.0).expect("soft");
+    session.apply(Action::SetSoftReach(almost_hard));
+    let expected = PopFix::KeepOpen(SoftReach::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
     assert_eq!(cure(&mut session, fold_up), expected);
 
-    let spike = |pop, softening| {
-        let arm = Arm { softening, ..Arm::default() };
+    let spike = |pop, soft_reach| {
+        let arm = Arm { soft_reach, ..Arm::default() };
         let spike = Spike { at: 0, ratio: 9.0, pop, ik: arm.ik() };
-        Remedy::new(&spike, &arm)
+        PopFix::new(&spike, &arm)
     };
-    let soft = |softness| Softening::new(softness, 1.2, 0.3).expect("soft");
+    let soft = |softness| SoftReach::new(softness, 1.2, 0.3).expect("soft");
     for (from, to) in [(0.1, 0.25), (0.2, 0.4), (0.3, 0.5)] {
-        assert_eq!(spike(Pop::Straight, soft(from)), Some(Remedy::Soften(soft(to))), "{from}");
+        assert_eq!(spike(Pop::Straight, soft(from)), Some(PopFix::Soften(soft(to))), "{from}");
     }
     assert_eq!(spike(Pop::Straight, soft(0.5)), None);
-    let open = Softening::new(0.2, 1.0, 1.5).expect("soft");
+    let open = SoftReach::new(0.2, 1.0, 1.5).expect("soft");
     assert_eq!(spike(Pop::Folded, open), None);
 }
 
@@ -116,7 +119,7 @@ fn nothing_helps_a_cursor_that_passes_the_shoulder() {
     let spikes = standing(&session);
     assert!(spikes.iter().any(|spike| spike.pop == Pop::Shoulder), "{spikes:?}");
     for spike in spikes.iter().filter(|spike| spike.pop == Pop::Shoulder) {
-        assert_eq!(Remedy::new(spike, session.arm()), None);
+        assert_eq!(PopFix::new(spike, session.arm()), None);
     }
 }
 
@@ -144,7 +147,7 @@ fn keyed(channels: &[Channel]) -> Session {
     for (time, x, spin) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
         session.apply(Action::SetTime(time));
         session.apply(Action::SetHand(Vec3::new(x, 300.0, 20.0)));
-        session.apply(Action::SetElbowSpin(spin));
+        session.apply(Action::SetTwist(spin));
         session.apply(Action::Key(channels.to_vec()));
     }
     session
@@ -176,7 +179,7 @@ fn what_is_played_is_measured_and_its_beginning_again_is_no_step() {
 
 #[test]
 fn a_spin_that_is_played_is_marked_once_and_apart() {
-    let mut session = keyed(&[Channel::Hand, Channel::ElbowSpin]);
+    let mut session = keyed(&[Channel::Hand, Channel::Twist]);
     let before = changes(&session).len();
     play(&mut session, 10.0..10.9);
     assert_eq!(changes(&session)[before..], [Change::Spin]);

@@ -5,10 +5,10 @@ mod pictures;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
-use ik_arm::kinematics::swivel::Reference;
+use ik_arm::kinematics::twist::TwistReference;
 use ik_arm::render::Picture;
 use ik_arm::scene::{Ball, Colour, Globe, Scene, Shell};
-use ik_arm::session::Staging;
+use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pictures::{GPU, SIZE, check, compare, draw};
 
@@ -39,7 +39,7 @@ fn scene(shells: Vec<Shell>) -> Scene {
     let document = Document::default();
     let mut scene = Scene::new(
         &Document { display: [].into_iter().collect(), ..document },
-        &Staging::default(),
+        &Overlays::default(),
         Theme::Dark,
     );
     scene.solids.clear();
@@ -82,7 +82,7 @@ fn each_shell_is_seen() {
 #[test]
 fn the_order_of_the_list_changes_no_pixel() {
     let mut globe = scene(shells());
-    globe.add_globe(Globe { centre: Vec3::ZERO, radius: 150.0, reference: Reference::Limb });
+    globe.add_globe(Globe { centre: Vec3::ZERO, radius: 150.0, reference: TwistReference::Limb });
     for mut scene in [scene(shells()), globe] {
         let expected = draw(&scene);
         for _ in 1..scene.shells.len() {

@@ -4,11 +4,11 @@
 use std::cell::Cell;
 
 use glam::Vec3;
-use ik_arm::document::Slither;
+use ik_arm::document::FollowPath;
 use ik_arm::kinematics::follow;
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 
-const WAY: Slither = Slither { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
+const WAY: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
 
 /// Bones of uneven lengths along −x, the head first.
 fn snake() -> Skeleton {

@@ -9,7 +9,7 @@ use common::{
     limb_rotation, limits, out_of_reach, within, yaw_and_pitch,
 };
 use glam::{DMat3, DVec3, Vec2, Vec3};
-use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
+use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
@@ -57,7 +57,7 @@ impl Twin {
 }
 
 /// Compares points and limb lengths with the twin's, where the caller knows the facing.
-fn agrees(pose: &Pose, arm: TwoBone, twin: &Twin) -> TestCaseResult {
+fn agrees(pose: &TwoBonePose, arm: TwoBone, twin: &Twin) -> TestCaseResult {
     let length = limits(arm).1;
     let (elbow, hand) = (pose.elbow.as_dvec3(), pose.hand.as_dvec3());
     within("hand", hand.distance(twin.hand), EXACT * length)?;
@@ -133,7 +133,7 @@ proptest! {
     #[test]
     fn spinning_turns_the_elbow_about_the_pointer_and_leaves_the_hand(case in anywhere()) {
         let (still, spun) = (Case { spin: 0.0, ..case }.solve(), case.solve());
-        let unspun = Pose { elbow: still.elbow, spin: still.spin, ..spun };
+        let unspun = TwoBonePose { elbow: still.elbow, spin: still.spin, ..spun };
         prop_assert_eq!(unspun, still, "more than the elbow moved");
 
         let axis = case.cursor.as_dvec3().try_normalize().unwrap_or(DVec3::X);
@@ -245,7 +245,7 @@ proptest! {
         let arm = TwoBone::new(upper, if equal { upper } else { lower }).unwrap();
         let cursor = Vec3::from_array(cursor);
         let pose = arm.solve(cursor, spin);
-        let Pose { elbow, hand, distance, along, out, facing, .. } = pose;
+        let TwoBonePose { elbow, hand, distance, along, out, facing, .. } = pose;
         prop_assert!(elbow.is_finite() && hand.is_finite(), "{:?}", pose);
         prop_assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{:?}", pose);
         prop_assert!(facing.direction.is_normalized() && facing.heading.is_normalized());
@@ -357,7 +357,7 @@ fn too_close_folds_the_arm_along_the_line_to_the_cursor() {
 }
 
 /// Of the bits of elbows and hands.
-fn digest(poses: impl Iterator<Item = Pose>) -> u64 {
+fn digest(poses: impl Iterator<Item = TwoBonePose>) -> u64 {
     let coordinates = poses.flat_map(|pose| [pose.elbow, pose.hand]).flat_map(|it| it.to_array());
     // FNV-1a.
     coordinates.fold(0xcbf2_9ce4_8422_2325, |digest, coordinate| {

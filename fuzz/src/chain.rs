@@ -1,8 +1,10 @@
 use std::collections::HashSet;
 
 use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Vec3};
+use ik_arm::kinematics::chain_ik::{
+    ChainSolver, Method, Report, Root, SolverOptions, TipTarget, jacobian,
+};
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
-use ik_arm::kinematics::solve::{Method, Options, Report, Root, Solve, Target, jacobian};
 
 use super::bits::Bits;
 use super::opened::is_readable;
@@ -19,7 +21,7 @@ pub fn chain(data: &[u8]) {
         let _ = jacobian(&skeleton, joint);
     }
     for method in Method::ALL {
-        solve(&skeleton, &targets, &Options { method, ..options }, bits.finite_vector());
+        solve(&skeleton, &targets, &SolverOptions { method, ..options }, bits.finite_vector());
     }
 }
 
@@ -79,12 +81,12 @@ fn transform(bits: &mut Bits<'_>) -> Affine3A {
     }
 }
 
-fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<Target> {
+fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<TipTarget> {
     const MOST: usize = 3;
     // One more than there are.
     let places = skeleton.joints().len() + 1;
     let count = 1 + bits.below(MOST);
-    let target = |_| Target {
+    let target = |_| TipTarget {
         joint: bits.below(places),
         point: bits.vector(),
         weight: if bits.coin() { 1.0 } else { bits.number() },
@@ -92,11 +94,11 @@ fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<Target> {
     (0..count).map(target).collect()
 }
 
-fn options(bits: &mut Bits<'_>) -> Options {
+fn options(bits: &mut Bits<'_>) -> SolverOptions {
     const MOST: u8 = 40;
-    let usual = Options::default();
+    let usual = SolverOptions::default();
     let any = bits.byte();
-    Options {
+    SolverOptions {
         iterations: Some(u32::from(bits.byte() % MOST)),
         tolerance: (any & 1 == 1).then(|| bits.number()),
         damping: if any & 2 == 0 { usual.damping } else { bits.number() },
@@ -106,8 +108,8 @@ fn options(bits: &mut Bits<'_>) -> Options {
     }
 }
 
-fn solve(before: &Skeleton, targets: &[Target], options: &Options, elsewhere: Vec3) {
-    let mut solve = match Solve::new(before, targets, options) {
+fn solve(before: &Skeleton, targets: &[TipTarget], options: &SolverOptions, elsewhere: Vec3) {
+    let mut solve = match ChainSolver::new(before, targets, options) {
         Ok(solve) => solve,
         Err(error) => return is_readable(&error.to_string()),
     };
@@ -122,7 +124,7 @@ fn solve(before: &Skeleton, targets: &[Target], options: &Options, elsewhere: Ve
     case.check(&after, targets, solve.report());
 
     let moved: Vec<_> =
-        targets.iter().map(|target| Target { point: elsewhere, ..*target }).collect();
+        targets.iter().map(|target| TipTarget { point: elsewhere, ..*target }).collect();
     solve.retarget(&moved).expect("the same joints");
     solve.run();
     solve.write(&mut after);
@@ -132,13 +134,13 @@ fn solve(before: &Skeleton, targets: &[Target], options: &Options, elsewhere: Ve
 /// What a solve is of.
 struct Case<'a> {
     before: &'a Skeleton,
-    options: &'a Options,
+    options: &'a SolverOptions,
     /// How far roots and targets have been from the origin, in the world.
     way: f64,
 }
 
 impl Case<'_> {
-    fn check(&mut self, after: &Skeleton, targets: &[Target], report: Report) {
+    fn check(&mut self, after: &Skeleton, targets: &[TipTarget], report: Report) {
         let Self { before, options, .. } = *self;
         let is_free = options.root == Root::Free;
         let on_path: HashSet<usize> =
@@ -160,7 +162,7 @@ impl Case<'_> {
     }
 }
 
-fn farthest(skeleton: &Skeleton, targets: &[Target]) -> f64 {
+fn farthest(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
     let roots = skeleton.joints().iter().filter(|joint| joint.parent.is_none());
     let scale = scale(skeleton);
     let roots = roots.map(|root| scale * root.offset.as_dvec3().length());
@@ -182,7 +184,7 @@ fn is_rigid(joint: &Joint) {
 
 /// What is reported is how far the tips are from their targets, as far as 32 bits tell. Angles of many
 /// turns have few digits for the rest.
-fn is_truth(skeleton: &Skeleton, targets: &[Target], report: Report, way: f64) {
+fn is_truth(skeleton: &Skeleton, targets: &[TipTarget], report: Report, way: f64) {
     const COARSE: f64 = 1e-6;
     const FEW_TURNS: f32 = 100.0;
     assert!((0.0..=f32::MAX).contains(&report.error), "{report:?}");
@@ -212,7 +214,7 @@ struct Twin {
 }
 
 impl Twin {
-    fn new(skeleton: &Skeleton, target: &Target) -> Self {
+    fn new(skeleton: &Skeleton, target: &TipTarget) -> Self {
         let joints = skeleton.joints();
         let mut path: Vec<_> =
             skeleton.ancestors(target.joint).map(|joint| &joints[joint]).collect();

@@ -3,9 +3,9 @@ use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use ik_arm::kinematics::fk::{Fk, blended};
 use ik_arm::kinematics::ik::{Ik, Solved};
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::kinematics::swivel::{Carried, Reference, Stereographic};
-use ik_arm::kinematics::two_bone::{Facing, Pose, Reach, TwoBone};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::{Stereographic, TransportedFrame, TwistReference};
+use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 
 use super::bits::Bits;
 use super::job::job;
@@ -17,11 +17,11 @@ pub fn two_bone(data: &[u8]) {
     if bits.coin() {
         return job(bits);
     }
-    let (Some(bones), Some(softening)) = (bones(bits), softening(bits)) else { return };
+    let (Some(bones), Some(soft_reach)) = (bones(bits), soft_reach(bits)) else { return };
     let cursors = [bits.finite_vector(), bits.finite_vector()];
     let spin = bits.finite();
     plain(bones, cursors, spin);
-    let ik = Ik { bones, reference: reference(bits), softening };
+    let ik = Ik { bones, reference: reference(bits), soft_reach };
     let solved = solved_on(ik, cursors, spin);
     found_again(ik, &solved);
     forward(bits, bones, &solved.pose);
@@ -34,29 +34,29 @@ fn bones(bits: &mut Bits<'_>) -> Option<TwoBone> {
     bones.ok()
 }
 
-fn softening(bits: &mut Bits<'_>) -> Option<Softening> {
+fn soft_reach(bits: &mut Bits<'_>) -> Option<SoftReach> {
     let (softness, max_stretch, angle) = match bits.byte() {
-        0..64 => return Some(Softening::default()),
+        0..64 => return Some(SoftReach::default()),
         64..128 => (bits.number(), bits.number(), bits.number()),
         128.. => (bits.part(), 1.0 + bits.part(), PI * bits.part()),
     };
-    let softening = Softening::new(softness, max_stretch, angle);
+    let soft_reach = SoftReach::new(softness, max_stretch, angle);
     let can_be = (0.0..1.0).contains(&softness)
         && (1.0..=f32::MAX).contains(&max_stretch)
         && (0.0..PI).contains(&angle);
-    assert_eq!(softening.is_ok(), can_be);
-    softening.ok()
+    assert_eq!(soft_reach.is_ok(), can_be);
+    soft_reach.ok()
 }
 
-fn reference(bits: &mut Bits<'_>) -> Reference {
+fn reference(bits: &mut Bits<'_>) -> TwistReference {
     match bits.below(4) {
-        0 => Reference::Limb,
-        1 => Reference::Pole(bits.finite_vector()),
+        0 => TwistReference::Limb,
+        1 => TwistReference::Pole(bits.finite_vector()),
         2 => {
             let map = Stereographic::new(bits.finite_vector(), bits.finite_vector());
-            Reference::Stereographic(map.unwrap_or_default())
+            TwistReference::Stereographic(map.unwrap_or_default())
         }
-        _ => Reference::Transport,
+        _ => TwistReference::Transport,
     }
 }
 
@@ -87,12 +87,12 @@ fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
 /// With all its choices, from one cursor to the next.
 fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> Solved {
     let one = ik.solve(first, spin, Facing::default(), None);
-    let two = ik.solve(second, spin, one.pose.facing, Some(one.carried));
+    let two = ik.solve(second, spin, one.pose.facing, Some(one.transported));
     for (cursor, solved) in [(first, one), (second, two)] {
-        let Solved { pose, carried, slope } = solved;
+        let Solved { pose, transported, slope } = solved;
         is_whole(&pose);
-        is_frame(carried);
-        let most = ik.softening.max_stretch();
+        is_frame(transported);
+        let most = ik.soft_reach.max_stretch();
         assert!((0.0..=most).contains(&slope), "{slope}");
         assert!((1.0..=most).contains(&pose.stretch), "{pose:?}");
         assert!(ik.reference.gain(pose.facing) >= 0.0);
@@ -106,10 +106,10 @@ fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> Solved {
 }
 
 /// The cursor and the spin of a pose lead to it again.
-fn found_again(ik: Ik, Solved { pose, carried, .. }: &Solved) {
-    let (cursor, spin) = ik.matching(pose, Some(*carried));
+fn found_again(ik: Ik, Solved { pose, transported, .. }: &Solved) {
+    let (cursor, spin) = ik.matching(pose, Some(*transported));
     assert!(cursor.is_finite() && (0.0..TAU).contains(&spin), "{cursor}, {spin}");
-    let again = ik.solve(cursor, spin, pose.facing, Some(*carried)).pose;
+    let again = ik.solve(cursor, spin, pose.facing, Some(*transported)).pose;
     is_whole(&again);
     let length = limits(ik.bones)[1] * f64::from(pose.stretch);
     if length <= LARGEST {
@@ -122,7 +122,7 @@ fn found_again(ik: Ik, Solved { pose, carried, .. }: &Solved) {
 }
 
 /// Angles of a pose, the pose of any angles, and what is between the two.
-fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &Pose) {
+fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &TwoBonePose) {
     let last = Fk { shoulder: bits.finite_vector(), bend: bits.finite(), stretch: 1.0 };
     let fk = Fk::matching(pose, last);
     assert!(fk.shoulder.is_finite() && fk.bend.is_finite() && fk.stretch.is_finite(), "{fk:?}");
@@ -156,8 +156,8 @@ fn limits(bones: TwoBone) -> [f64; 2] {
     [(upper - lower).abs(), upper + lower]
 }
 
-fn is_whole(pose: &Pose) {
-    let Pose { elbow, hand, distance, along, out, facing, .. } = pose;
+fn is_whole(pose: &TwoBonePose) {
+    let TwoBonePose { elbow, hand, distance, along, out, facing, .. } = pose;
     assert!(elbow.is_finite() && hand.is_finite(), "{pose:?}");
     assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{pose:?}");
     assert!(*distance >= 0.0 && *out >= 0.0, "{pose:?}");
@@ -167,12 +167,12 @@ fn is_whole(pose: &Pose) {
     assert!(angles.into_iter().all(f32::is_finite), "{pose:?}");
 }
 
-fn is_frame(Carried { direction, outward }: Carried) {
+fn is_frame(TransportedFrame { direction, outward }: TransportedFrame) {
     assert!(direction.is_normalized() && outward.is_normalized(), "{direction}, {outward}");
     assert!(direction.dot(outward).abs() < 1e-5, "{direction}, {outward}");
 }
 
-fn has_its_lengths(pose: &Pose, bones: TwoBone, exact: f64) {
+fn has_its_lengths(pose: &TwoBonePose, bones: TwoBone, exact: f64) {
     let [_, length] = limits(bones);
     if length > LARGEST {
         return;

@@ -29,7 +29,7 @@ impl AppWindow {
         let scale = self.egui.egui_ctx().pixels_per_point();
         Shot {
             document: session.shown().clone(),
-            staging: session.staging(),
+            overlays: session.overlays(),
             theme: session.preferences().theme,
             size: pixels(self.viewport, scale),
             scale,

@@ -9,7 +9,7 @@ use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
 use winit::window::Window;
 
 use super::UserEvent;
-use crate::render::{Canvas, Counts, Gpu, GpuError, Lap, Renderer, Stopwatch};
+use crate::render::{Canvas, Counts, Gpu, GpuError, GpuTimer, Lap, Renderer};
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
@@ -39,7 +39,7 @@ pub(super) struct Graphics {
     pub(super) egui_renderer: egui_wgpu::Renderer,
     renderer: Renderer,
     picture: Shown,
-    pub(super) stopwatch: Option<Stopwatch>,
+    pub(super) gpu_timer: Option<GpuTimer>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
     /// Whether the surface still works but should be configured anew.
@@ -98,7 +98,7 @@ impl Graphics {
             egui_renderer,
             renderer: Renderer::new(&gpu),
             picture: Shown { canvas, texture, scene: None, drawn: false },
-            stopwatch: Stopwatch::new(&gpu),
+            gpu_timer: GpuTimer::new(&gpu),
             surface,
             config,
             stale: false,
@@ -128,7 +128,7 @@ impl Graphics {
 
     /// Whether the device measures how long it works.
     pub fn has_clock(&self) -> bool {
-        self.stopwatch.is_some()
+        self.gpu_timer.is_some()
     }
 
     /// A frame and how long the device worked on it, if that is known by now.
@@ -136,7 +136,7 @@ impl Graphics {
         // A device that is lost says so when it is asked, and has no buffers left to read.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.check().ok()?;
-        self.stopwatch.as_mut()?.read(&self.gpu)
+        self.gpu_timer.as_mut()?.read(&self.gpu)
     }
 
     /// Draws the scene for the panels to show, if it is not what they show already; leaves another
@@ -147,8 +147,8 @@ impl Graphics {
         (width, height): (u32, u32),
         scale: f32,
     ) -> Counts {
-        if let Some(stopwatch) = &mut self.stopwatch {
-            stopwatch.start();
+        if let Some(gpu_timer) = &mut self.gpu_timer {
+            gpu_timer.start();
         }
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
@@ -160,7 +160,7 @@ impl Graphics {
         }
         let canvas = &self.picture.canvas;
         self.renderer.upload(&self.gpu, scene, canvas.size(), scale);
-        let lap = self.stopwatch.as_mut().map(|stopwatch| stopwatch.lap(Lap::Scene));
+        let lap = self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.lap(Lap::Scene));
         self.gpu.queue.submit([self.renderer.encode(&self.gpu, canvas, lap)]);
         self.picture.drawn = true;
         match &mut self.picture.scene {

@@ -13,12 +13,12 @@ use crate::export::{self, ExportError, Format, Options};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, Picture};
 use crate::scene::Scene;
-use crate::session::{Action, Dialog, Export, Job, Staging};
+use crate::session::{Action, Dialog, Export, Job, Overlays};
 
 /// What a picture shows and how large it is, in pixels and pixels a point.
 pub(super) struct Shot {
     pub document: Document,
-    pub staging: Staging,
+    pub overlays: Overlays,
     pub theme: Theme,
     pub size: (u32, u32),
     pub scale: f32,
@@ -37,7 +37,7 @@ pub(super) fn save_picture(shot: Shot, path: PathBuf, proxy: EventLoopProxy<User
 
 fn draw(shot: &Shot, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless()?;
-    let scene = Scene::new(&shot.document, &shot.staging, shot.theme);
+    let scene = Scene::new(&shot.document, &shot.overlays, shot.theme);
     let (width, height) = shot.size;
     let image = Picture::new(&gpu, width, height, shot.scale).draw(&scene)?;
     Ok(render::save(&image, path)?)
@@ -56,7 +56,7 @@ pub(super) fn export(
         fps: Some(export.frame_rate),
         size: export.size,
         theme: shot.theme,
-        time: Some(shot.staging.time),
+        time: Some(shot.overlays.time),
         ..Options::default()
     };
     let thread = thread::spawn(move || {

@@ -106,17 +106,17 @@ impl Graphics {
                     store: wgpu::StoreOp::Store,
                 },
             })],
-            timestamp_writes: self.stopwatch.as_mut().map(|stopwatch| stopwatch.lap(Lap::Panels)),
+            timestamp_writes: self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.lap(Lap::Panels)),
             ..Default::default()
         });
         self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
-        if let Some(stopwatch) = &mut self.stopwatch {
-            stopwatch.stop(&mut encoder, drawn);
+        if let Some(gpu_timer) = &mut self.gpu_timer {
+            gpu_timer.stop(&mut encoder, drawn);
         }
         commands.push(encoder.finish());
         self.gpu.queue.submit(commands);
-        if let Some(stopwatch) = &self.stopwatch {
-            stopwatch.fetch();
+        if let Some(gpu_timer) = &self.gpu_timer {
+            gpu_timer.fetch();
         }
         window.pre_present_notify();
         let handed_over = Instant::now();

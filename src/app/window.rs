@@ -20,7 +20,7 @@ use super::present::Presented;
 use super::settings::Settings;
 use super::{AppError, UserEvent};
 use crate::scene::Scene;
-use crate::session::{Action, Effect, Session, Staging};
+use crate::session::{Action, Effect, Overlays, Session};
 use crate::ui::{self, Frame, Machine, style};
 
 pub(super) const TITLE: &str = "ik-arm";
@@ -45,7 +45,7 @@ pub(super) struct AppWindow {
     pub(super) window: Arc<Window>,
     pub(super) egui: egui_winit::State,
     machine: Machine,
-    staging: Staging,
+    overlays: Overlays,
     /// The scene as it is to be drawn; the memory is that of the one before last.
     scene: Option<Scene>,
     /// What has been typed since a file dialog was asked for.
@@ -99,7 +99,7 @@ impl AppWindow {
             window,
             egui,
             machine,
-            staging: Staging::default(),
+            overlays: Overlays::default(),
             scene: None,
             held_keys: Vec::new(),
             moving_since: None,
@@ -362,10 +362,10 @@ impl AppWindow {
         }
         let mut lap = laps();
         let (document, theme) = (session.shown(), session.preferences().theme);
-        session.restage(&mut self.staging);
+        session.write_overlays(&mut self.overlays);
         match &mut self.scene {
-            Some(scene) => scene.refill(document, &self.staging, theme),
-            None => self.scene = Some(Scene::new(document, &self.staging, theme)),
+            Some(scene) => scene.refill(document, &self.overlays, theme),
+            None => self.scene = Some(Scene::new(document, &self.overlays, theme)),
         }
         frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);

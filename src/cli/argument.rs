@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Display, Layer, Theme};
+use crate::document::{Display, Overlay, Theme};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 
 /// Why an argument is not what it stands for.
@@ -52,7 +52,7 @@ pub enum ThemeName {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Guides(Vec<Layer>);
+pub struct Guides(Vec<Overlay>);
 
 impl Size {
     const MAX: u32 = 8192;
@@ -117,7 +117,7 @@ impl FromStr for Point {
 impl Guides {
     pub fn shown_in(&self, display: Display) -> Display {
         let show = |display: Display, guide| display.with(guide, self.0.contains(&guide));
-        Layer::GUIDES.into_iter().fold(display, show)
+        Overlay::GUIDES.into_iter().fold(display, show)
     }
 }
 
@@ -129,10 +129,10 @@ impl FromStr for Guides {
             return Ok(Self(Vec::new()));
         }
         let guide = |name: &str| match name.trim() {
-            "cursor" => Ok(Layer::Cursor),
-            "pointer" => Ok(Layer::Pointer),
-            "inner" => Ok(Layer::InnerLimit),
-            "outer" => Ok(Layer::OuterLimit),
+            "cursor" => Ok(Overlay::Cursor),
+            "pointer" => Ok(Overlay::Pointer),
+            "inner" => Ok(Overlay::InnerLimit),
+            "outer" => Ok(Overlay::OuterLimit),
             _ => Err(ArgumentError::Guide(name.to_owned())),
         };
         text.split(',').map(guide).collect::<Result<_, _>>().map(Self)

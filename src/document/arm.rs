@@ -3,32 +3,32 @@ use glam::{DMat3, Vec3};
 use super::Wrist;
 use crate::kinematics::fk::{Fk, blended};
 use crate::kinematics::ik::{Ik, Solved};
-use crate::kinematics::reach::Softening;
-use crate::kinematics::swivel::{Carried, Reference, Stereographic, respun, wrapped};
-use crate::kinematics::two_bone::{Facing, LengthError, Pose, TwoBone};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::{Stereographic, TransportedFrame, TwistReference, respun, wrapped};
+use crate::kinematics::two_bone::{Facing, LengthError, TwoBone, TwoBonePose};
 use crate::rig::ArmRig;
 
 /// The arm as the user set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// Where the hand is asked to be.
-    pub goal: Goal,
+    pub goal: Cursor,
     /// ψ, radians, from where the swivel says.
-    pub elbow_spin: f32,
+    pub twist: f32,
     /// The shoulder, in the world.
     pub root: Vec3,
     pub bones: TwoBone,
     /// Where the arm last faced: decides for a cursor that does not say.
     pub facing: Facing,
-    pub swivel: Swivel,
-    /// What the elbow points at with [`Swivel::Pole`], in Root space.
+    pub twist_reference: TwistReferenceKind,
+    /// What the elbow points at with [`TwistReferenceKind::Pole`], in Root space.
     pub pole: Vec3,
     /// What the spin was last measured from: decides where the pole or the map does not, and goes on
-    /// with [`Swivel::Transport`]. Nothing where transport is as if it began here, on the map.
-    pub carried: Option<Carried>,
-    pub softening: Softening,
+    /// with [`TwistReferenceKind::Transport`]. Nothing where transport is as if it began here, on the map.
+    pub transported: Option<TransportedFrame>,
+    pub soft_reach: SoftReach,
     /// How far the hand leads (1) or the joints' own angles do (0).
-    pub weight: f32,
+    pub influence: f32,
     /// The joints' own angles.
     pub fk: Fk,
     pub wrist: Wrist,
@@ -36,16 +36,16 @@ pub struct Arm {
 
 /// Where the hand is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
+pub enum Cursor {
     /// In Root space: it goes with the shoulder.
     Root(Vec3),
     /// Pinned to the world: it stays when the shoulder moves.
     World(Vec3),
 }
 
-/// What the elbow's spin is measured from: see [`Reference`].
+/// What the elbow's spin is measured from: see [`TwistReference`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Swivel {
+pub enum TwistReferenceKind {
     #[default]
     Limb,
     Pole,
@@ -53,7 +53,7 @@ pub enum Swivel {
     Transport,
 }
 
-impl Swivel {
+impl TwistReferenceKind {
     pub const ALL: [Self; 4] = [Self::Limb, Self::Pole, Self::Stereographic, Self::Transport];
 
     /// As pictures and panels call it.
@@ -76,16 +76,16 @@ impl Arm {
     pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
         let cursor = Vec3::new(250.0, 120.0, 60.0);
         Ok(Self {
-            goal: Goal::Root(cursor),
-            elbow_spin: 0.0,
+            goal: Cursor::Root(cursor),
+            twist: 0.0,
             root: Vec3::ZERO,
             bones: TwoBone::new(upper, lower)?,
             facing: Facing::towards(cursor, Facing::default()),
-            swivel: Swivel::default(),
+            twist_reference: TwistReferenceKind::default(),
             pole: Vec3::new(100.0, 300.0, -100.0),
-            carried: None,
-            softening: Softening::default(),
-            weight: 1.0,
+            transported: None,
+            soft_reach: SoftReach::default(),
+            influence: 1.0,
             fk: Fk::default(),
             wrist: Wrist::default(),
         })
@@ -113,108 +113,119 @@ impl Arm {
     /// Where the hand is asked to be, in Root space.
     pub fn cursor(&self) -> Vec3 {
         match self.goal {
-            Goal::Root(cursor) => cursor,
-            Goal::World(cursor) => (cursor - self.root).clamp(Vec3::MIN, Vec3::MAX),
+            Cursor::Root(cursor) => cursor,
+            Cursor::World(cursor) => (cursor - self.root).clamp(Vec3::MIN, Vec3::MAX),
         }
     }
 
     /// Where the hand is asked to be, in the world.
     pub fn cursor_world(&self) -> Vec3 {
         match self.goal {
-            Goal::Root(cursor) => (self.root + cursor).clamp(Vec3::MIN, Vec3::MAX),
-            Goal::World(cursor) => cursor,
+            Cursor::Root(cursor) => (self.root + cursor).clamp(Vec3::MIN, Vec3::MAX),
+            Cursor::World(cursor) => cursor,
         }
     }
 
     /// Asks the hand to be elsewhere, in Root space; pinned it stays pinned.
     pub fn set_cursor(&mut self, cursor: Vec3) {
         self.goal = match self.goal {
-            Goal::Root(_) => Goal::Root(cursor),
-            Goal::World(_) => Goal::World((self.root + cursor).clamp(Vec3::MIN, Vec3::MAX)),
+            Cursor::Root(_) => Cursor::Root(cursor),
+            Cursor::World(_) => Cursor::World((self.root + cursor).clamp(Vec3::MIN, Vec3::MAX)),
         };
     }
 
     pub fn is_pinned(&self) -> bool {
-        matches!(self.goal, Goal::World(_))
+        matches!(self.goal, Cursor::World(_))
     }
 
     /// Pinned to the world or not, with the cursor where it is.
     #[must_use]
     pub fn pinned(self, pinned: bool) -> Self {
         let goal = match pinned {
-            true => Goal::World(self.cursor_world()),
-            false => Goal::Root(self.cursor()),
+            true => Cursor::World(self.cursor_world()),
+            false => Cursor::Root(self.cursor()),
         };
         if pinned == self.is_pinned() { self } else { Self { goal, ..self } }
     }
 
     /// The least and the most that the hand can be from the shoulder, as it leads.
     pub fn reach(&self) -> (f32, f32) {
-        let most = self.bones.outer_limit() * self.softening.max_stretch();
-        (self.softening.least_distance(self.bones), most.min(f32::MAX))
+        let most = self.bones.outer_limit() * self.soft_reach.max_stretch();
+        (self.soft_reach.least_distance(self.bones), most.min(f32::MAX))
     }
 
     /// Whether the limbs are, or can become, longer or shorter than at rest.
     pub fn is_stretching(&self) -> bool {
-        self.softening.max_stretch() > 1.0 || self.fk.stretch != 1.0
+        self.soft_reach.max_stretch() > 1.0 || self.fk.stretch != 1.0
     }
 
     /// Whether the hand leads, alone or with others.
     pub fn is_led_by_hand(&self) -> bool {
-        self.weight > 0.0
+        self.influence > 0.0
     }
 
     /// What the elbow's spin is measured from.
-    pub fn reference(&self) -> Reference {
-        self.reference_of(self.swivel)
+    pub fn reference(&self) -> TwistReference {
+        self.reference_of(self.twist_reference)
     }
 
     /// What it would be measured from with another choice.
-    pub fn reference_of(&self, swivel: Swivel) -> Reference {
-        match swivel {
-            Swivel::Limb => Reference::Limb,
-            Swivel::Pole => Reference::Pole(self.pole),
-            Swivel::Stereographic => Reference::Stereographic(Stereographic::default()),
-            Swivel::Transport => Reference::Transport,
+    pub fn reference_of(&self, twist_reference: TwistReferenceKind) -> TwistReference {
+        match twist_reference {
+            TwistReferenceKind::Limb => TwistReference::Limb,
+            TwistReferenceKind::Pole => TwistReference::Pole(self.pole),
+            TwistReferenceKind::Stereographic => {
+                TwistReference::Stereographic(Stereographic::default())
+            }
+            TwistReferenceKind::Transport => TwistReference::Transport,
         }
     }
 
     pub fn ik(&self) -> Ik {
-        Ik { bones: self.bones, reference: self.reference(), softening: self.softening }
+        Ik { bones: self.bones, reference: self.reference(), soft_reach: self.soft_reach }
     }
 
     /// The arm as its hand alone would have it.
     pub fn solve(&self) -> Solved {
-        self.ik().solve(self.cursor(), self.elbow_spin, self.facing, self.carried)
+        self.ik().solve(self.cursor(), self.twist, self.facing, self.transported)
     }
 
-    /// As its hand alone would have it with the same spin measured from elsewhere. `carried` is what
+    /// As its hand alone would have it with the same spin measured from elsewhere. `transported` is what
     /// another reference than its own goes on from.
-    pub fn pose_measured_from(&self, swivel: Swivel, carried: Option<Carried>) -> Pose {
-        let carried = if swivel == self.swivel { self.carried } else { carried };
-        let ik = Ik { reference: self.reference_of(swivel), ..self.ik() };
-        ik.solve(self.cursor(), self.elbow_spin, self.facing, carried).pose
+    pub fn pose_measured_from(
+        &self,
+        twist_reference: TwistReferenceKind,
+        transported: Option<TransportedFrame>,
+    ) -> TwoBonePose {
+        let transported =
+            if twist_reference == self.twist_reference { self.transported } else { transported };
+        let ik = Ik { reference: self.reference_of(twist_reference), ..self.ik() };
+        ik.solve(self.cursor(), self.twist, self.facing, transported).pose
     }
 
-    pub fn pose(&self) -> Pose {
+    pub fn pose(&self) -> TwoBonePose {
         self.blended_with(&self.solve().pose)
     }
 
     /// Between its angles and a solved pose.
-    fn blended_with(&self, solved: &Pose) -> Pose {
-        blended(self.fk, solved, self.weight, self.bones, self.cursor())
+    fn blended_with(&self, solved: &TwoBonePose) -> TwoBonePose {
+        blended(self.fk, solved, self.influence, self.bones, self.cursor())
     }
 
-    pub fn rig(&self, pose: &Pose) -> ArmRig {
+    pub fn rig(&self, pose: &TwoBonePose) -> ArmRig {
         ArmRig::new(self.bones, self.root, self.cursor(), pose)
     }
 
     /// The same arm, to be carried along from where another was.
     #[must_use]
     pub fn going_on_from(self, other: &Self) -> Self {
-        let begins = self.swivel == Swivel::Transport && self.carried.is_none();
-        if begins && other.swivel == self.swivel && other.cursor() != self.cursor() {
-            return Self { carried: Some(other.solve().carried), ..self };
+        let begins =
+            self.twist_reference == TwistReferenceKind::Transport && self.transported.is_none();
+        if begins
+            && other.twist_reference == self.twist_reference
+            && other.cursor() != self.cursor()
+        {
+            return Self { transported: Some(other.solve().transported), ..self };
         }
         self
     }
@@ -225,87 +236,87 @@ impl Arm {
     pub fn settled(self) -> Self {
         let solved = self.solve();
         let pose = self.blended_with(&solved.pose);
-        let carried = match (self.swivel, self.carried) {
-            (Swivel::Limb, _) | (Swivel::Transport, None) => None,
-            _ => Some(solved.carried),
+        let transported = match (self.twist_reference, self.transported) {
+            (TwistReferenceKind::Limb, _) | (TwistReferenceKind::Transport, None) => None,
+            _ => Some(solved.transported),
         };
         let wrist = self.wrist.settled(&pose);
-        Self { facing: solved.pose.facing, carried, wrist, ..self }
+        Self { facing: solved.pose.facing, transported, wrist, ..self }
     }
 
     /// The hand's rotation in the world, which is Root's too.
-    pub fn hand_rotation(&self, pose: &Pose) -> DMat3 {
+    pub fn hand_rotation(&self, pose: &TwoBonePose) -> DMat3 {
         self.wrist.rotation(pose)
     }
 
     /// How far the forearm is rolled at the hand, radians.
-    pub fn roll(&self, pose: &Pose) -> f32 {
+    pub fn roll(&self, pose: &TwoBonePose) -> f32 {
         self.wrist.settled(pose).roll
     }
 
     /// Measures the elbow's spin from elsewhere and leaves the elbow where it is.
     #[must_use]
-    pub fn measured_from(self, swivel: Swivel) -> Self {
-        if swivel == self.swivel {
+    pub fn measured_from(self, twist_reference: TwistReferenceKind) -> Self {
+        if twist_reference == self.twist_reference {
             return self;
         }
         let pose = self.solve().pose;
-        let to = Self { swivel, carried: None, facing: pose.facing, ..self };
-        let elbow_spin = respun(pose.spin, 0.0, to.reference().angle(pose.facing, None));
-        Self { elbow_spin, ..to }.settled()
+        let to = Self { twist_reference, transported: None, facing: pose.facing, ..self };
+        let twist = respun(pose.spin, 0.0, to.reference().angle(pose.facing, None));
+        Self { twist, ..to }.settled()
     }
 
     /// ψ as keys have it: that of the transported reference is measured from the map, so that playing
     /// needs no past.
     pub(super) fn keyed_spin(&self) -> f32 {
-        match self.carried {
-            Some(carried) if self.swivel == Swivel::Transport => {
+        match self.transported {
+            Some(transported) if self.twist_reference == TwistReferenceKind::Transport => {
                 let facing = Facing::towards(self.cursor(), self.facing);
-                self.spin_on_map(carried.to(facing.direction))
+                self.spin_on_map(transported.to(facing.direction))
             }
-            _ => self.elbow_spin,
+            _ => self.twist,
         }
     }
 
     /// A transported spin is measured from the map where it was last.
     pub(super) fn forget_way(&mut self) {
-        if let Some(carried) = self.carried
-            && self.swivel == Swivel::Transport
+        if let Some(transported) = self.transported
+            && self.twist_reference == TwistReferenceKind::Transport
         {
-            self.set_keyed_spin(self.spin_on_map(carried));
+            self.set_keyed_spin(self.spin_on_map(transported));
         }
     }
 
-    fn spin_on_map(&self, carried: Carried) -> f32 {
-        let map = Carried::new(Facing::towards(carried.direction, self.facing));
-        respun(self.elbow_spin, map.turn_to(carried), 0.0)
+    fn spin_on_map(&self, transported: TransportedFrame) -> f32 {
+        let map = TransportedFrame::new(Facing::towards(transported.direction, self.facing));
+        respun(self.twist, map.turn_to(transported), 0.0)
     }
 
     /// Sets ψ as keys have it.
     pub(super) fn set_keyed_spin(&mut self, spin: f32) {
-        self.elbow_spin = wrapped(spin);
-        if self.swivel == Swivel::Transport {
-            self.carried = None;
+        self.twist = wrapped(spin);
+        if self.twist_reference == TwistReferenceKind::Transport {
+            self.transported = None;
         }
     }
 
     /// The joints' own angles lead from here, and have the present pose.
     #[must_use]
     pub fn led_by_angles(self) -> Self {
-        Self { fk: Fk::matching(&self.pose(), self.fk), weight: 0.0, ..self }.settled()
+        Self { fk: Fk::matching(&self.pose(), self.fk), influence: 0.0, ..self }.settled()
     }
 
     /// The hand leads from here, and has the present pose.
     #[must_use]
     pub fn led_by_hand(self) -> Self {
         let pose = self.pose();
-        let past = match self.swivel {
-            Swivel::Transport => Some(self.solve().carried),
-            _ => self.carried,
+        let past = match self.twist_reference {
+            TwistReferenceKind::Transport => Some(self.solve().transported),
+            _ => self.transported,
         };
-        let carried = past.map(|carried| carried.to(pose.facing.direction));
-        let (cursor, elbow_spin) = self.ik().matching(&pose, carried);
-        let mut arm = Self { elbow_spin, weight: 1.0, facing: pose.facing, carried, ..self };
+        let transported = past.map(|transported| transported.to(pose.facing.direction));
+        let (cursor, twist) = self.ik().matching(&pose, transported);
+        let mut arm = Self { twist, influence: 1.0, facing: pose.facing, transported, ..self };
         arm.set_cursor(cursor);
         arm.settled()
     }
@@ -316,7 +327,7 @@ impl Arm {
     }
 
     /// A sphere around the arm as it stands, in the world: centre and radius.
-    pub fn bounds(&self, pose: &Pose) -> (Vec3, f32) {
+    pub fn bounds(&self, pose: &TwoBonePose) -> (Vec3, f32) {
         let points = [Vec3::ZERO, pose.elbow, pose.hand];
         let low = points.into_iter().fold(Vec3::MAX, Vec3::min);
         let high = points.into_iter().fold(Vec3::MIN, Vec3::max);

@@ -122,7 +122,7 @@ impl Camera {
         }
     }
 
-    /// Moved sideways so that what was at `from` in the picture, at the target's depth, is at `to`.
+    /// JointRemap sideways so that what was at `from` in the picture, at the target's depth, is at `to`.
     #[must_use]
     pub fn panned(self, from: Vec2, to: Vec2, aspect: f32) -> Self {
         let (across, upwards) = self.half_extent(aspect);

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
-use super::{Arm, Document, Goal, Layer, RigKind, SkeletonRig, Swivel, Wrist};
-use crate::kinematics::skeleton::{Moved, Skeleton};
+use super::{Arm, Cursor, Document, Overlay, RigKind, SkeletonRig, TwistReferenceKind, Wrist};
+use crate::kinematics::skeleton::{JointRemap, Skeleton};
 
 /// One thing of a document that keys can change in time.
 ///
@@ -12,7 +12,7 @@ pub enum Channel {
     /// The arm's cursor, in Root space, while it is not pinned.
     Hand,
     /// ψ in radians, unwrapped; with transport it is measured from the map.
-    ElbowSpin,
+    Twist,
     /// The arm's shoulder, in the world.
     Root,
     /// The upper limb's length.
@@ -24,7 +24,7 @@ pub enum Channel {
     /// What the elbow points at, in Root space.
     Pole,
     /// How far the arm's hand leads rather than its joints' angles, from 0 to 1.
-    Weight,
+    Influence,
     /// The shoulder's own angles in radians, unwrapped.
     Shoulder,
     /// The elbow's own bend in radians, unwrapped.
@@ -44,7 +44,7 @@ pub enum Channel {
     /// Whether the target of a joint counts.
     Enabled(usize),
     /// Whether a layer is shown.
-    Layer(Layer),
+    Overlay(Overlay),
 }
 
 /// What the values of a channel are.
@@ -55,7 +55,7 @@ pub enum Quantity {
     /// In units of the scene, above 0.
     Length,
     /// From 0 to 1.
-    Part,
+    Fraction,
     /// In radians.
     Angle,
     /// Three of them, in radians.
@@ -69,7 +69,7 @@ impl Quantity {
     pub fn width(self) -> usize {
         match self {
             Self::Point | Self::Angles => 3,
-            Self::Length | Self::Part | Self::Angle | Self::Switch => 1,
+            Self::Length | Self::Fraction | Self::Angle | Self::Switch => 1,
         }
     }
 }
@@ -85,10 +85,10 @@ impl Channel {
             | Self::Offset(_)
             | Self::Target(_) => Quantity::Point,
             Self::Upper | Self::Lower | Self::Stretch => Quantity::Length,
-            Self::Weight => Quantity::Part,
-            Self::ElbowSpin | Self::Bend => Quantity::Angle,
+            Self::Influence => Quantity::Fraction,
+            Self::Twist | Self::Bend => Quantity::Angle,
             Self::Shoulder | Self::Wrist | Self::Rotation(_) => Quantity::Angles,
-            Self::Enabled(_) | Self::Layer(_) => Quantity::Switch,
+            Self::Enabled(_) | Self::Overlay(_) => Quantity::Switch,
         }
     }
 
@@ -100,12 +100,12 @@ impl Channel {
     pub const OF_ARM: [Self; 12] = [
         Self::Hand,
         Self::Pin,
-        Self::ElbowSpin,
+        Self::Twist,
         Self::Pole,
         Self::Root,
         Self::Upper,
         Self::Lower,
-        Self::Weight,
+        Self::Influence,
         Self::Shoulder,
         Self::Bend,
         Self::Stretch,
@@ -113,19 +113,19 @@ impl Channel {
     ];
 
     /// What the arm's hand leads by.
-    pub const OF_HAND: [Self; 3] = [Self::Hand, Self::Pin, Self::ElbowSpin];
+    pub const OF_HAND: [Self; 3] = [Self::Hand, Self::Pin, Self::Twist];
 
     /// What the arm's joints lead by, and which of the two does.
-    pub const OF_JOINTS: [Self; 4] = [Self::Weight, Self::Shoulder, Self::Bend, Self::Stretch];
+    pub const OF_JOINTS: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
 
     /// Whether it shapes an arm as that is set.
     pub fn shapes(self, arm: &Arm) -> bool {
         match self {
             Self::Hand => !arm.is_pinned(),
             Self::Pin => arm.is_pinned(),
-            Self::Pole => arm.swivel == Swivel::Pole,
-            Self::Weight | Self::Shoulder | Self::Bend => arm.weight < 1.0,
-            Self::Stretch => arm.weight < 1.0 && arm.is_stretching(),
+            Self::Pole => arm.twist_reference == TwistReferenceKind::Pole,
+            Self::Influence | Self::Shoulder | Self::Bend => arm.influence < 1.0,
+            Self::Stretch => arm.influence < 1.0 && arm.is_stretching(),
             Self::Wrist => arm.wrist != Wrist::default(),
             other => other.rig() == Some(RigKind::Arm),
         }
@@ -152,13 +152,13 @@ impl Channel {
     pub fn rig(self) -> Option<RigKind> {
         match self {
             Self::Hand
-            | Self::ElbowSpin
+            | Self::Twist
             | Self::Root
             | Self::Upper
             | Self::Lower
             | Self::Pin
             | Self::Pole
-            | Self::Weight
+            | Self::Influence
             | Self::Shoulder
             | Self::Bend
             | Self::Stretch
@@ -168,7 +168,7 @@ impl Channel {
             | Self::Offset(_)
             | Self::Target(_)
             | Self::Enabled(_) => Some(RigKind::Skeleton),
-            Self::Layer(_) => None,
+            Self::Overlay(_) => None,
         }
     }
 
@@ -190,7 +190,7 @@ impl Channel {
 
     /// The same where the joints have new places; nothing if its joint is gone.
     #[must_use]
-    pub fn moved(self, moved: &Moved) -> Option<Self> {
+    pub fn moved(self, moved: &JointRemap) -> Option<Self> {
         Some(match self {
             Self::Rotation(joint) => Self::Rotation(moved.get(joint)?),
             Self::Offset(joint) => Self::Offset(moved.get(joint)?),
@@ -209,16 +209,16 @@ impl Channel {
         let target = |joint| Some(rig.targets[rig.target(joint)?]);
         Some(match self {
             Self::Hand => match arm.goal {
-                Goal::Root(cursor) => cursor,
-                Goal::World(_) => return None,
+                Cursor::Root(cursor) => cursor,
+                Cursor::World(_) => return None,
             },
             Self::Pin => match arm.goal {
-                Goal::World(cursor) => cursor,
-                Goal::Root(_) => return None,
+                Cursor::World(cursor) => cursor,
+                Cursor::Root(_) => return None,
             },
-            Self::ElbowSpin => number(arm.keyed_spin()),
+            Self::Twist => number(arm.keyed_spin()),
             Self::Pole => arm.pole,
-            Self::Weight => number(arm.weight),
+            Self::Influence => number(arm.influence),
             Self::Shoulder => arm.fk.shoulder,
             Self::Bend => number(arm.fk.bend),
             Self::Stretch => number(arm.fk.stretch),
@@ -231,7 +231,7 @@ impl Channel {
             Self::Offset(joint) => rig.skeleton.joint(joint)?.offset,
             Self::Target(joint) => target(joint)?.home,
             Self::Enabled(joint) => switch(target(joint)?.enabled),
-            Self::Layer(layer) => switch(display.shows(layer)),
+            Self::Overlay(layer) => switch(display.shows(layer)),
         })
     }
 
@@ -246,18 +246,18 @@ impl Channel {
         let on = value.x >= 0.5;
         match self {
             Self::Hand => {
-                if let Goal::Root(cursor) = &mut arm.goal {
+                if let Cursor::Root(cursor) = &mut arm.goal {
                     *cursor = value;
                 }
             }
             Self::Pin => {
-                if let Goal::World(cursor) = &mut arm.goal {
+                if let Cursor::World(cursor) = &mut arm.goal {
                     *cursor = value;
                 }
             }
-            Self::ElbowSpin => arm.set_keyed_spin(value.x),
+            Self::Twist => arm.set_keyed_spin(value.x),
             Self::Pole => arm.pole = value,
-            Self::Weight => arm.weight = value.x.clamp(0.0, 1.0),
+            Self::Influence => arm.influence = value.x.clamp(0.0, 1.0),
             Self::Shoulder => arm.fk.shoulder = value,
             Self::Bend => arm.fk.bend = value.x,
             Self::Stretch => arm.fk.stretch = value.x.max(f32::MIN_POSITIVE),
@@ -280,7 +280,7 @@ impl Channel {
                     rig.targets[target].enabled = on;
                 }
             }
-            Self::Layer(layer) => *display = display.with(layer, on),
+            Self::Overlay(layer) => *display = display.with(layer, on),
         }
     }
 }

@@ -12,7 +12,7 @@ pub enum Theme {
 /// One thing in the picture that can be switched on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Layer {
+pub enum Overlay {
     Cursor,
     Pointer,
     InnerLimit,
@@ -36,7 +36,7 @@ pub enum Layer {
     Hand,
 }
 
-impl Layer {
+impl Overlay {
     /// Everything, in the order in which it is offered.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_arm = Self::GUIDES.into_iter().chain(Self::OF_ARM);
@@ -71,12 +71,12 @@ pub struct Display {
 }
 
 impl Display {
-    pub fn shows(self, layer: Layer) -> bool {
+    pub fn shows(self, layer: Overlay) -> bool {
         self.shown & bit(layer) != 0
     }
 
     #[must_use]
-    pub fn with(mut self, layer: Layer, shown: bool) -> Self {
+    pub fn with(mut self, layer: Overlay, shown: bool) -> Self {
         if shown {
             self.shown |= bit(layer);
         } else {
@@ -86,14 +86,14 @@ impl Display {
     }
 
     /// What is shown.
-    pub fn layers(self) -> impl Iterator<Item = Layer> {
-        Layer::all().filter(move |layer| self.shows(*layer))
+    pub fn layers(self) -> impl Iterator<Item = Overlay> {
+        Overlay::all().filter(move |layer| self.shows(*layer))
     }
 }
 
 /// Shows these and nothing else.
-impl FromIterator<Layer> for Display {
-    fn from_iter<T: IntoIterator<Item = Layer>>(layers: T) -> Self {
+impl FromIterator<Overlay> for Display {
+    fn from_iter<T: IntoIterator<Item = Overlay>>(layers: T) -> Self {
         layers.into_iter().fold(Self { shown: 0 }, |display, layer| display.with(layer, true))
     }
 }
@@ -101,11 +101,11 @@ impl FromIterator<Layer> for Display {
 impl Default for Display {
     /// The whole scene, with Cursor, Pointer, hand and trail; the limits would veil the arm.
     fn default() -> Self {
-        let guides = [Layer::Cursor, Layer::Pointer, Layer::Hand, Layer::Trail];
-        Layer::SURROUNDINGS.into_iter().chain(guides).collect()
+        let guides = [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Trail];
+        Overlay::SURROUNDINGS.into_iter().chain(guides).collect()
     }
 }
 
-fn bit(layer: Layer) -> u32 {
+fn bit(layer: Overlay) -> u32 {
     1 << layer as u16
 }

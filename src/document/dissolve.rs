@@ -1,5 +1,5 @@
 use super::{Channel, Document};
-use crate::kinematics::skeleton::{Moved, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonError};
 
 /// A child that loses its parent and is attached to the next ancestor that stays.
 struct Orphan {
@@ -18,7 +18,7 @@ impl Document {
     /// # Errors
     ///
     /// If a child's place below its new parent would not be finite.
-    pub fn dissolve(&mut self, joints: &[usize]) -> Result<Moved, SkeletonError> {
+    pub fn dissolve(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
         let before = self.clone();
         let moved = self.skeleton.skeleton.dissolve(joints)?;
         self.follow(&moved);
@@ -33,7 +33,7 @@ impl Document {
         &mut self,
         before: &Self,
         orphan: &Orphan,
-        moved: &Moved,
+        moved: &JointRemap,
     ) -> Result<(), SkeletonError> {
         let Some(child) = moved.get(orphan.child) else { return Ok(()) };
         let keys = &before.keys;

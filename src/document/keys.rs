@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Arm, Channel, Document, Quantity, RigKind, Space, Swivel};
-use crate::kinematics::skeleton::Moved;
+use super::{Arm, Channel, Document, HandSpace, Quantity, RigKind, TwistReferenceKind};
+use crate::kinematics::skeleton::JointRemap;
 use crate::kinematics::spline::Spline;
 
 /// What changes in time: for every keyed channel, the knots that it goes through.
@@ -99,7 +99,7 @@ impl Keys {
         match channel.quantity() {
             Quantity::Switch => track.step(time),
             Quantity::Length => Some(track.at(time)?.max(Vec3::X * shortest(track))),
-            Quantity::Part => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
+            Quantity::Fraction => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
             Quantity::Point | Quantity::Angle | Quantity::Angles => track.at(time),
         }
     }
@@ -114,7 +114,7 @@ impl Keys {
     }
 
     /// Lets the keys follow their joints to new places; those whose joints are gone go too.
-    pub fn follow(&mut self, moved: &Moved) {
+    pub fn follow(&mut self, moved: &JointRemap) {
         let tracks = std::mem::take(&mut self.tracks).into_iter();
         let moved = tracks.filter_map(|(channel, track)| Some((channel.moved(moved)?, track)));
         self.tracks = moved.collect();
@@ -131,7 +131,7 @@ fn shortest(track: &Spline<Vec3>) -> f32 {
 
 impl Document {
     /// The document as it stands at a time: every keyed channel has the value that its keys give.
-    /// What moves without keys, such as a [`Slither`](super::Slither), is not in it: see
+    /// What moves without keys, such as a [`FollowPath`](super::FollowPath), is not in it: see
     /// [`SkeletonRig::at`](super::SkeletonRig::at).
     pub fn at(&self, time: f64) -> Cow<'_, Self> {
         if self.keys.is_empty() {
@@ -144,7 +144,7 @@ impl Document {
 
     /// Whether the pose of the rig that is shown changes in time.
     pub fn is_posed_by_time(&self) -> bool {
-        let slithers = self.rig == RigKind::Skeleton && self.skeleton.slither.is_some();
+        let slithers = self.rig == RigKind::Skeleton && self.skeleton.follow_path.is_some();
         slithers || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
     }
 
@@ -153,7 +153,7 @@ impl Document {
         let Some(mut value) = channel.value(self) else {
             return;
         };
-        if channel == Channel::ElbowSpin
+        if channel == Channel::Twist
             && let Some(near) = self.keys.value(channel, time)
         {
             value.x += ((near.x - value.x) / TAU).round() * TAU;
@@ -163,18 +163,18 @@ impl Document {
 
     /// Measures the arm's elbow from elsewhere and leaves it where it is, at every key of its spin too.
     #[must_use]
-    pub fn measured_from(&self, swivel: Swivel) -> Self {
-        let mut after = Self { arm: self.arm.measured_from(swivel), ..self.clone() };
-        let Some(track) = self.keys.track(Channel::ElbowSpin) else {
+    pub fn measured_from(&self, twist_reference: TwistReferenceKind) -> Self {
+        let mut after = Self { arm: self.arm.measured_from(twist_reference), ..self.clone() };
+        let Some(track) = self.keys.track(Channel::Twist) else {
             return after;
         };
         let mut shift = 0.0;
         for knot in track.knots() {
-            let posed = Arm { carried: None, ..self.at(knot.time).arm };
-            let measured = posed.measured_from(swivel).keyed_spin();
+            let posed = Arm { transported: None, ..self.at(knot.time).arm };
+            let measured = posed.measured_from(twist_reference).keyed_spin();
             let (old, turned) = (knot.value.x, measured - knot.value.x);
             shift = turned + ((shift - turned) / TAU).round() * TAU;
-            after.keys.insert(Channel::ElbowSpin, knot.time, Vec3::new(old + shift, 0.0, 0.0));
+            after.keys.insert(Channel::Twist, knot.time, Vec3::new(old + shift, 0.0, 0.0));
         }
         after
     }
@@ -182,7 +182,7 @@ impl Document {
     /// Measures the hand's angles in another space and leaves the hand as it is turned, at every key of
     /// its angles too.
     #[must_use]
-    pub fn with_wrist_in(&self, space: Space) -> Self {
+    pub fn with_wrist_in(&self, space: HandSpace) -> Self {
         let mut after = self.clone();
         after.arm.wrist = self.arm.wrist.measured_in(space, &self.arm.pose());
         let mut last = None;

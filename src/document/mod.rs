@@ -9,23 +9,23 @@ mod camera;
 mod channel;
 mod display;
 mod dissolve;
+mod follow_path;
 mod keys;
 mod skeleton;
-mod slither;
 mod timeline;
 mod wrist;
 
-pub use arm::{Arm, Goal, Swivel};
+pub use arm::{Arm, Cursor, TwistReferenceKind};
 pub use camera::{AxisView, Camera, Projection, Ray};
 pub use channel::{Channel, Quantity};
-pub use display::{Display, Layer, Theme};
+pub use display::{Display, Overlay, Theme};
+pub use follow_path::FollowPath;
 pub use keys::Keys;
-pub use skeleton::{Motion, Path, SkeletonRig, Target};
-pub use slither::Slither;
+pub use skeleton::{SkeletonRig, Target, TargetMotion, TargetPath};
 pub use timeline::Timeline;
-pub use wrist::{Space, Wrist};
+pub use wrist::{HandSpace, Wrist};
 
-use crate::kinematics::skeleton::{Moved, SkeletonError};
+use crate::kinematics::skeleton::{JointRemap, SkeletonError};
 
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,14 +90,14 @@ impl Document {
     /// # Errors
     ///
     /// None; [`Document::dissolve`] has some.
-    pub fn delete(&mut self, joints: &[usize]) -> Result<Moved, SkeletonError> {
+    pub fn delete(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
         let moved = self.skeleton.skeleton.remove(joints);
         self.follow(&moved);
         Ok(moved)
     }
 
     /// Lets targets and keys follow their joints to new places.
-    pub fn follow(&mut self, moved: &Moved) {
+    pub fn follow(&mut self, moved: &JointRemap) {
         self.skeleton.follow(moved);
         self.keys.follow(moved);
     }

@@ -2,9 +2,9 @@ use core::f32::consts::TAU;
 
 use glam::{Vec3, Vec3A};
 
-use super::{Camera, Slither};
-use crate::kinematics::skeleton::{Joint, Moved, Pose, Skeleton};
-use crate::kinematics::solve::{self, Options};
+use super::{Camera, FollowPath};
+use crate::kinematics::chain_ik::{self, SolverOptions};
+use crate::kinematics::skeleton::{Joint, JointRemap, Skeleton, SkeletonPose};
 
 /// A skeleton with its targets, and how it is brought to them.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,11 +12,11 @@ pub struct SkeletonRig {
     pub skeleton: Skeleton,
     /// At most one for a joint.
     pub targets: Vec<Target>,
-    pub solver: Options,
+    pub solver: SolverOptions,
     /// How many iterations a running solver makes between two pictures.
     pub iterations_per_frame: u32,
     /// The first root's chain follows its head along a path, as a function of time.
-    pub slither: Option<Slither>,
+    pub follow_path: Option<FollowPath>,
 }
 
 /// Where the tip of a joint's bone is asked to be.
@@ -27,13 +27,13 @@ pub struct Target {
     pub home: Vec3,
     pub weight: f32,
     pub enabled: bool,
-    pub motion: Motion,
+    pub motion: TargetMotion,
 }
 
 /// How a target moves by itself: a curve in the plane that faces +z, through the target's home.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    pub path: Path,
+pub struct TargetMotion {
+    pub path: TargetPath,
     /// In the world.
     pub radius: f32,
     /// How long once around takes, in seconds.
@@ -41,17 +41,17 @@ pub struct Motion {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Path {
+pub enum TargetPath {
     #[default]
     Still,
     Circle,
     FigureEight,
 }
 
-impl Motion {
+impl TargetMotion {
     /// A target that stays, and would go around at such a radius if it went.
     pub fn still(radius: f32) -> Self {
-        Self { path: Path::Still, radius, period: 4.0 }
+        Self { path: TargetPath::Still, radius, period: 4.0 }
     }
 
     /// How far from home, at a time in seconds; nothing at 0.
@@ -60,10 +60,10 @@ impl Motion {
         let (sin, cos) = turn.sin_cos();
         self.radius
             * match self.path {
-                Path::Still => Vec3::ZERO,
-                Path::Circle => Vec3::new(sin, cos - 1.0, 0.0),
+                TargetPath::Still => Vec3::ZERO,
+                TargetPath::Circle => Vec3::new(sin, cos - 1.0, 0.0),
                 // The lemniscate of Gerono.
-                Path::FigureEight => Vec3::new(sin, sin * cos, 0.0),
+                TargetPath::FigureEight => Vec3::new(sin, sin * cos, 0.0),
             }
     }
 }
@@ -71,7 +71,7 @@ impl Motion {
 impl Target {
     /// An enabled target that stays.
     pub fn new(joint: usize, home: Vec3, radius: f32) -> Self {
-        Self { joint, home, weight: 1.0, enabled: true, motion: Motion::still(radius) }
+        Self { joint, home, weight: 1.0, enabled: true, motion: TargetMotion::still(radius) }
     }
 
     pub fn at(&self, time: f64) -> Vec3 {
@@ -88,9 +88,9 @@ impl SkeletonRig {
         Self {
             skeleton,
             targets: Vec::new(),
-            solver: Options::default(),
+            solver: SolverOptions::default(),
             iterations_per_frame: 1,
-            slither: None,
+            follow_path: None,
         }
     }
 
@@ -111,7 +111,7 @@ impl SkeletonRig {
         };
         let of_target =
             |target: &Target| target.home.to_array().into_iter().chain([target.motion.radius]);
-        let slither = self.slither.iter().flat_map(|it| [it.radius, it.amplitude]);
+        let follow_path = self.follow_path.iter().flat_map(|it| [it.radius, it.amplitude]);
         let joints = self.skeleton.joints().iter().flat_map(of_joint);
         let targets = self.targets.iter().flat_map(of_target);
         self.skeleton
@@ -120,7 +120,7 @@ impl SkeletonRig {
             .into_iter()
             .chain(joints)
             .chain(targets)
-            .chain(slither)
+            .chain(follow_path)
     }
 
     /// From where all of it is seen at time 0.
@@ -146,9 +146,9 @@ impl SkeletonRig {
     }
 
     /// What a solver is asked for at a time: the targets that are switched on.
-    pub fn goals(&self, time: f64) -> Vec<solve::Target> {
+    pub fn goals(&self, time: f64) -> Vec<chain_ik::TipTarget> {
         let enabled = self.targets.iter().filter(|target| target.enabled);
-        let goal = |target: &Target| solve::Target {
+        let goal = |target: &Target| chain_ik::TipTarget {
             joint: target.joint,
             point: target.at(time),
             weight: target.weight,
@@ -158,20 +158,20 @@ impl SkeletonRig {
 
     /// The skeleton as it stands at a time.
     pub fn at(&self, time: f64) -> std::borrow::Cow<'_, Skeleton> {
-        match &self.slither {
+        match &self.follow_path {
             None => std::borrow::Cow::Borrowed(&self.skeleton),
-            Some(slither) => std::borrow::Cow::Owned(slither.pose(&self.skeleton, time)),
+            Some(follow_path) => std::borrow::Cow::Owned(follow_path.pose(&self.skeleton, time)),
         }
     }
 
     /// Whether anything moves by itself.
     pub fn is_moving(&self) -> bool {
-        let moves = |target: &Target| target.enabled && target.motion.path != Path::Still;
-        self.slither.is_some() || self.targets.iter().any(moves)
+        let moves = |target: &Target| target.enabled && target.motion.path != TargetPath::Still;
+        self.follow_path.is_some() || self.targets.iter().any(moves)
     }
 
     /// Lets the targets follow their joints to new places; those whose joints are gone go too.
-    pub fn follow(&mut self, moved: &Moved) {
+    pub fn follow(&mut self, moved: &JointRemap) {
         self.targets.retain_mut(|target| {
             moved.get(target.joint).map(|joint| target.joint = joint).is_some()
         });
@@ -208,21 +208,22 @@ impl SkeletonRig {
     }
 
     /// A sphere around a pose and the targets, in the world: centre and radius.
-    pub fn bounds(&self, pose: &Pose, time: f64) -> (Vec3, f32) {
+    pub fn bounds(&self, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
         self.bounds_with(self.reach(), pose, time)
     }
 
     /// [`SkeletonRig::bounds`] of one whose reach is known.
-    pub(crate) fn bounds_with(&self, reach: f32, pose: &Pose, time: f64) -> (Vec3, f32) {
+    pub(crate) fn bounds_with(&self, reach: f32, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
         let targets = self.targets.iter().map(|target| target.at(time));
-        let way = self.slither.iter().flat_map(|slither| slither.corners(&self.skeleton));
+        let way =
+            self.follow_path.iter().flat_map(|follow_path| follow_path.corners(&self.skeleton));
         let all = pose.points().chain(targets).chain(way);
         let (centre, radius) = around(all).unwrap_or_default();
         (centre, radius.max(0.25 * reach))
     }
 
     /// A sphere around the bones of some joints, if there are any.
-    pub fn bounds_of(&self, pose: &Pose, joints: &[usize]) -> Option<(Vec3, f32)> {
+    pub fn bounds_of(&self, pose: &SkeletonPose, joints: &[usize]) -> Option<(Vec3, f32)> {
         let ends = joints.iter().flat_map(|joint| [pose.base(*joint), pose.tip(*joint)]);
         let (centre, radius) = around(ends)?;
         Some((centre, radius.max(0.05 * self.reach())))

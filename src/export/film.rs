@@ -4,10 +4,10 @@ use std::path::Path;
 use super::format::Numbered;
 use super::{ExportError, Options};
 use crate::document::{Document, Theme};
-use crate::io::{self, Batch, Exported, Frames, Playback, Progress};
+use crate::io::{self, Exported, FileBatch, Frames, Playback, Progress};
 use crate::render::{Gpu, Picture};
 use crate::scene::Scene;
-use crate::session::Staging;
+use crate::session::Overlays;
 
 /// One picture.
 pub fn still(
@@ -38,7 +38,7 @@ pub fn sequence(
     let Some(numbered) = Numbered::new(path) else {
         return Err(ExportError::Ending { path: path.display().to_string() });
     };
-    let mut batch = Batch::beside(path)?;
+    let mut batch = FileBatch::beside(path)?;
     let gpu = Gpu::headless()?;
     let mut film = Film::new(document, options, &gpu)?;
     for frame in 0..frames.count() {
@@ -83,7 +83,7 @@ pub fn animation(
 /// Takes pictures of a document, one after the other.
 struct Film<'a> {
     playback: Playback,
-    staging: Staging,
+    overlays: Overlays,
     picture: Picture<'a>,
     theme: Theme,
 }
@@ -93,7 +93,7 @@ impl<'a> Film<'a> {
         let (width, height) = options.size;
         Ok(Self {
             playback: Playback::new(document),
-            staging: Staging::new(document, document.timeline.start),
+            overlays: Overlays::new(document, document.timeline.start),
             picture: Picture::of_size(gpu, width, height)?,
             theme: options.theme,
         })
@@ -102,8 +102,8 @@ impl<'a> Film<'a> {
     /// Rows from the top, four bytes for each pixel.
     fn picture(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
         let document = self.playback.at(time);
-        self.staging = std::mem::take(&mut self.staging).at(document, time);
-        let scene = Scene::new(document, &self.staging, self.theme);
+        self.overlays = std::mem::take(&mut self.overlays).at(document, time);
+        let scene = Scene::new(document, &self.overlays, self.theme);
         Ok(self.picture.draw(&scene)?.into_raw())
     }
 }

@@ -6,32 +6,33 @@
 //! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document. What
 //! a file made of a document cannot say is in the notes of [`Exported`].
 //!
-//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`Batch`]; nothing else
+//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]; nothing else
 //! writes to the disk.
 
-mod batch;
 mod bvh;
+mod csv;
 pub(crate) mod error;
 mod examples;
-mod field;
+mod file_batch;
 mod format;
 mod frames;
 mod gltf;
 mod js3d;
-mod layout;
+mod json_path;
+mod json_style;
 mod line;
 mod motion;
 mod open;
 mod progress;
 mod source;
-mod table;
 pub(crate) mod value;
 mod write;
 
-pub use batch::Batch;
 pub use bvh::{BvhUnit, to_bvh};
+pub use csv::to_csv;
 pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::{Example, Group, new_document};
+pub use file_batch::FileBatch;
 pub use format::{save, to_json};
 pub use frames::{Frames, Playback};
 pub use gltf::{GlbError, glb};
@@ -39,5 +40,4 @@ pub use line::{Answer, LONGEST_LINE, LineError, Past, solve_line};
 pub use motion::{Exported, MotionError};
 pub use open::{Opened, open, parse, read};
 pub use progress::{Cancelled, Progress};
-pub use table::to_csv;
 pub use write::{write, write_with};

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
 
 use super::error::{OpenError, Remark};
-use super::field::Field;
+use super::json_path::JsonPath;
 use super::source::{Source, Wrong};
 use super::value::Whole;
 use super::{bvh, format, gltf, js3d};
@@ -88,11 +88,11 @@ fn kind(source: &Source) -> Result<Kind, OpenError> {
     let read = json.deserialize_map(KindVisitor(&mut kind)).and_then(|()| json.end());
     match (kind, read) {
         (Some(kind), _) => Ok(kind),
-        (None, Err(error)) => Err(source.not_read(&Field::root(), &error)),
+        (None, Err(error)) => Err(source.not_read(&JsonPath::root(), &error)),
         (None, Ok(())) => {
             let reason = "neither \"format\" is there, as in a document of ik-arm, nor \"scene\", \
                           as in a .js3d file of Scotty3D, nor \"asset\", as in glTF";
-            Err(source.wrong(&Wrong::new(Field::root(), reason)))
+            Err(source.wrong(&Wrong::new(JsonPath::root(), reason)))
         }
     }
 }

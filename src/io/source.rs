@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 
 use super::error::{OpenError, Remark, shortened};
-use super::field::{Field, byte_at, line_and_column};
 use super::gltf::chunks::{self, Chunks};
+use super::json_path::{JsonPath, byte_at, line_and_column};
 
 /// A file's text, and what the file is called.
 pub struct Source {
@@ -21,12 +21,12 @@ pub struct Source {
 /// What is wrong or odd with a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wrong {
-    pub field: Field,
+    pub field: JsonPath,
     pub reason: String,
 }
 
 impl Wrong {
-    pub fn new(field: Field, reason: impl Into<String>) -> Self {
+    pub fn new(field: JsonPath, reason: impl Into<String>) -> Self {
         Self { field, reason: reason.into() }
     }
 }
@@ -40,7 +40,7 @@ pub struct Odd {
 }
 
 impl Odd {
-    pub fn push(&mut self, field: Field, reason: impl Into<String>) {
+    pub fn push(&mut self, field: JsonPath, reason: impl Into<String>) {
         const MOST: usize = 20;
         if self.first.len() < MOST {
             self.first.push(Wrong::new(field, reason));
@@ -114,14 +114,15 @@ impl Source {
     /// Reads the whole text; unknown fields are named to `ignored`.
     pub fn parse<T: DeserializeOwned>(
         &self,
-        mut ignored: impl FnMut(Field),
+        mut ignored: impl FnMut(JsonPath),
     ) -> Result<T, OpenError> {
         let mut json = serde_json::Deserializer::from_str(&self.text);
         let mut track = serde_path_to_error::Track::new();
         let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
-        let parsed = serde_ignored::deserialize(tracked, |path| ignored(Field::from(&path)));
-        let value = parsed.map_err(|error| self.not_read(&Field::from(&track.path()), &error))?;
-        json.end().map_err(|error| self.not_read(&Field::root(), &error))?;
+        let parsed = serde_ignored::deserialize(tracked, |path| ignored(JsonPath::from(&path)));
+        let value =
+            parsed.map_err(|error| self.not_read(&JsonPath::from(&track.path()), &error))?;
+        json.end().map_err(|error| self.not_read(&JsonPath::root(), &error))?;
         Ok(value)
     }
 
@@ -139,10 +140,10 @@ impl Source {
     }
 
     /// What the parser says, at the place of the value that it is about.
-    pub fn not_read(&self, field: &Field, error: &serde_json::Error) -> OpenError {
+    pub fn not_read(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
         let reason = without_position(error);
         if self.text.trim_ascii().is_empty() {
-            return self.wrong(&Wrong::new(Field::root(), "the file is empty"));
+            return self.wrong(&Wrong::new(JsonPath::root(), "the file is empty"));
         }
         let is_about_value =
             error.is_data() && !reason.starts_with("duplicate") || reason == OUT_OF_RANGE;
@@ -161,7 +162,7 @@ impl Source {
 
     /// What there is to say about a byte, and about which of the things there; empty for none.
     pub fn remark_about(&self, byte: usize, thing: &str, reason: &str) -> Remark {
-        let field = if thing.is_empty() { Field::root() } else { Field::root().key(thing) };
+        let field = if thing.is_empty() { JsonPath::root() } else { JsonPath::root().key(thing) };
         self.remark_at(byte, &field, reason)
     }
 
@@ -169,7 +170,7 @@ impl Source {
         self.remark_at(field.find(&self.text), field, reason)
     }
 
-    fn remark_at(&self, byte: usize, field: &Field, reason: &str) -> Remark {
+    fn remark_at(&self, byte: usize, field: &JsonPath, reason: &str) -> Remark {
         let has_lines = self.binary.is_none();
         let (line, column) = if has_lines { line_and_column(&self.text, byte) } else { (0, 0) };
         let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));

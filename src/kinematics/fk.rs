@@ -22,8 +22,8 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use super::euler;
 use super::ik::{length, reach};
-use super::swivel::angle_from_limb;
-use super::two_bone::{Facing, Pose, Reach, TwoBone};
+use super::twist::angle_from_limb;
+use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 
 /// The angles of the arm's two joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl Default for Fk {
 impl Fk {
     /// The angles of a pose, of all that there are the nearest to the last ones.
     #[must_use]
-    pub fn matching(pose: &Pose, last: Self) -> Self {
+    pub fn matching(pose: &TwoBonePose, last: Self) -> Self {
         let turned = Turned::of_pose(pose);
         let last_bend = euler::few_turns(f64::from(last.bend));
         // A bend that was negative stays so.
@@ -66,13 +66,13 @@ impl Fk {
 
     /// The pose of the angles; `last` is where the arm last faced. Its hand is where it is asked to
     /// be: [`Reach::Reached`] says no more than that.
-    pub fn pose(self, bones: TwoBone, last: Facing) -> Pose {
+    pub fn pose(self, bones: TwoBone, last: Facing) -> TwoBonePose {
         Turned::of_fk(self).pose(bones, last)
     }
 }
 
 /// The rotations of the upper and the lower limb: their +x along the limb, their +z the hinge.
-pub fn limb_rotations(pose: &Pose) -> (DMat3, DMat3) {
+pub fn limb_rotations(pose: &TwoBonePose) -> (DMat3, DMat3) {
     let Turned { upper, bend, .. } = Turned::of_pose(pose);
     let upper = DMat3::from_quat(upper);
     (upper, upper * DMat3::from_rotation_z(-bend))
@@ -82,7 +82,13 @@ pub fn limb_rotations(pose: &Pose) -> (DMat3, DMat3) {
 /// an arm that is stretched in one of the two go from one length to the other. The weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
 ///
 /// The hand is [`Reach::Reached`] only when it is within 1e-6·L of the cursor.
-pub fn blended(fk: Fk, solved: &Pose, weight: f32, bones: TwoBone, cursor: Vec3) -> Pose {
+pub fn blended(
+    fk: Fk,
+    solved: &TwoBonePose,
+    weight: f32,
+    bones: TwoBone,
+    cursor: Vec3,
+) -> TwoBonePose {
     if weight >= 1.0 {
         return *solved;
     }
@@ -95,7 +101,7 @@ pub fn blended(fk: Fk, solved: &Pose, weight: f32, bones: TwoBone, cursor: Vec3)
         _ if pose.distance > length(cursor) => Reach::TooClose,
         _ => Reach::TooFar,
     };
-    Pose { reach, ..pose }
+    TwoBonePose { reach, ..pose }
 }
 
 /// How the two limbs are turned, in f64: rounding of an angle is felt at the end of a long limb.
@@ -117,7 +123,7 @@ impl Turned {
         Self { upper, bend: bend.abs(), stretch: f64::from(fk.stretch) }
     }
 
-    fn of_pose(pose: &Pose) -> Self {
+    fn of_pose(pose: &TwoBonePose) -> Self {
         let [along, out, distance] = [pose.along, pose.out, pose.distance].map(f64::from);
         let at_shoulder = out.atan2(along);
         let at_hand = out.atan2(distance - along);
@@ -141,7 +147,7 @@ impl Turned {
         }
     }
 
-    fn pose(self, bones: TwoBone, last: Facing) -> Pose {
+    fn pose(self, bones: TwoBone, last: Facing) -> TwoBonePose {
         let bones = bones.stretched(self.stretch as f32);
         let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
         let (sin, _) = self.bend.sin_cos();
@@ -159,7 +165,7 @@ impl Turned {
             direction: direction.as_vec3().normalize(),
             heading: heading(direction).unwrap_or(last.heading),
         };
-        Pose {
+        TwoBonePose {
             elbow: saturated(axes.x_axis * upper),
             hand: saturated(direction * distance),
             reach: Reach::Reached,

@@ -1,8 +1,8 @@
 //! The arm's inverse kinematics with all its choices: what the elbow's spin is measured from, and how
 //! the hand meets its limits.
 //!
-//! [`TwoBone`] is the exact arm of the seed; [`Ik`] puts a [`Reference`] and a [`Softening`] around it.
-//! With [`Reference::Limb`] and nothing softened the two give the same, bit for bit.
+//! [`TwoBone`] is the exact arm of the seed; [`Ik`] puts a [`TwistReference`] and a [`SoftReach`] around it.
+//! With [`TwistReference::Limb`] and nothing softened the two give the same, bit for bit.
 //!
 //! Everything is in Root space, right-handed; lengths share any one unit, angles are radians.
 //!
@@ -16,29 +16,29 @@
 //! ```
 //!
 //! times as fast as the cursor; r' = dD/dd is [`Solved::slope`], g the reference's
-//! [gain](Reference::gain), d how far the cursor is from the shoulder. Where this is unbounded the
+//! [gain](TwistReference::gain), d how far the cursor is from the shoulder. Where this is unbounded the
 //! elbow pops: at a straight or folded arm without softness (oₑ → 0 while r' = 1), where the reference
 //! is singular (g → ∞), and at a cursor that crosses the shoulder (d → 0).
 
 use glam::Vec3;
 
-use super::reach::Softening;
-use super::swivel::{Carried, Reference, angle_from_limb, respun};
-use super::two_bone::{Facing, Pose, Reach, TwoBone};
+use super::soft_reach::SoftReach;
+use super::twist::{TransportedFrame, TwistReference, angle_from_limb, respun};
+use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 
 /// Bones with what their elbow's spin is measured from and how their hand meets its limits.
 ///
 /// ```
 /// use glam::Vec3;
 /// use ik_arm::kinematics::ik::Ik;
-/// use ik_arm::kinematics::reach::Softening;
-/// use ik_arm::kinematics::swivel::{Reference, Stereographic};
+/// use ik_arm::kinematics::soft_reach::SoftReach;
+/// use ik_arm::kinematics::twist::{TwistReference, Stereographic};
 /// use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 ///
 /// let ik = Ik {
 ///     bones: TwoBone::new(200.0, 300.0)?,
-///     reference: Reference::Stereographic(Stereographic::default()),
-///     softening: Softening::new(0.1, 1.0, 0.0)?,
+///     reference: TwistReference::Stereographic(Stereographic::default()),
+///     softening: SoftReach::new(0.1, 1.0, 0.0)?,
 /// };
 /// let solved = ik.solve(Vec3::new(0.0, 490.0, 0.0), 0.0, Facing::default(), None);
 /// assert!(solved.pose.distance < 490.0, "the hand lags behind before the arm is straight");
@@ -47,16 +47,16 @@ use super::two_bone::{Facing, Pose, Reach, TwoBone};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ik {
     pub bones: TwoBone,
-    pub reference: Reference,
-    pub softening: Softening,
+    pub reference: TwistReference,
+    pub soft_reach: SoftReach,
 }
 
 /// A solved arm, with what the next solve goes on from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved {
-    pub pose: Pose,
+    pub pose: TwoBonePose,
     /// Where the spin was measured from.
-    pub carried: Carried,
+    pub transported: TransportedFrame,
     /// r' = dD/dd, how fast the hand goes for the cursor, outwards.
     pub slope: f32,
 }
@@ -64,7 +64,7 @@ pub struct Solved {
 impl Ik {
     /// Poses the hand at `cursor` with the elbow turned by `spin` (ψ) from the reference.
     ///
-    /// `last` and `carried` are [`Pose::facing`] and [`Solved::carried`] of the last pose, for callers
+    /// `last` and `transported` are [`TwoBonePose::facing`] and [`Solved::transported`] of the last pose, for callers
     /// that keep them: they decide where the cursor or the reference does not, and transport goes on
     /// from them. Without a past it begins at the stereographic direction.
     ///
@@ -74,26 +74,32 @@ impl Ik {
     /// # Panics
     ///
     /// In debug builds, if an argument is not finite.
-    pub fn solve(&self, cursor: Vec3, spin: f32, last: Facing, carried: Option<Carried>) -> Solved {
+    pub fn solve(
+        &self,
+        cursor: Vec3,
+        spin: f32,
+        last: Facing,
+        transported: Option<TransportedFrame>,
+    ) -> Solved {
         let facing = Facing::towards(cursor, last);
-        let outward = self.reference.outward(facing, carried);
-        let carried = Carried { direction: facing.direction, outward };
+        let outward = self.reference.outward(facing, transported);
+        let transported = TransportedFrame { direction: facing.direction, outward };
         let spin = match self.reference {
-            Reference::Limb => spin,
+            TwistReference::Limb => spin,
             _ => spin + angle_from_limb(facing, outward),
         };
         let asked = length(cursor);
-        let extent = self.softening.extent(self.bones, asked.min(f32::MAX));
-        let pose = if self.softening.is_hard() {
+        let extent = self.soft_reach.extent(self.bones, asked.min(f32::MAX));
+        let pose = if self.soft_reach.is_hard() {
             self.bones.solve_from(cursor, spin, last)
         } else {
             let bones = self.bones.stretched(extent.stretch);
             let pose = bones.solve_at(facing, extent.distance, spin);
             let hand = if extent.distance == asked { cursor } else { pose.hand };
             let reach = reach(extent.distance, asked, self.bones);
-            Pose { hand, reach, stretch: extent.stretch, ..pose }
+            TwoBonePose { hand, reach, stretch: extent.stretch, ..pose }
         };
-        Solved { pose, carried, slope: extent.slope }
+        Solved { pose, transported, slope: extent.slope }
     }
 
     /// The cursor and the spin ψ, in [0, 2π), that give a pose: the hand where it is, the elbow out to
@@ -102,15 +108,19 @@ impl Ik {
     /// A soft limit that the hand cannot have come to keeps it from there. A limit that stretches says
     /// how long the limbs are where the hand is: a pose with others keeps its hand and gets another
     /// elbow.
-    pub fn matching(&self, pose: &Pose, carried: Option<Carried>) -> (Vec3, f32) {
-        let distance = self.softening.cursor_distance(self.bones, pose.distance);
-        let cursor = if self.softening.is_hard() || distance == pose.distance {
+    pub fn matching(
+        &self,
+        pose: &TwoBonePose,
+        transported: Option<TransportedFrame>,
+    ) -> (Vec3, f32) {
+        let distance = self.soft_reach.cursor_distance(self.bones, pose.distance);
+        let cursor = if self.soft_reach.is_hard() || distance == pose.distance {
             pose.hand
         } else {
             (pose.facing.direction * distance).clamp(Vec3::MIN, Vec3::MAX)
         };
         let facing = Facing::towards(cursor, pose.facing);
-        let reference = self.reference.angle(facing, carried);
+        let reference = self.reference.angle(facing, transported);
         (cursor, respun(angle_from_limb(facing, pose.outward()), 0.0, reference))
     }
 }

@@ -1,20 +1,20 @@
 //! Pure numbers: solvers that know nothing of files, windows or GPUs.
 
-mod arc;
 pub mod batch;
-mod direction;
+pub mod chain_ik;
 pub mod euler;
 pub mod fk;
 pub mod follow;
 pub mod ik;
 pub mod job;
+mod normalize;
 pub mod pop;
-pub mod reach;
+mod rotation_between;
 pub mod skeleton;
-pub mod solve;
+pub mod soft_reach;
 pub mod spline;
-pub mod swivel;
+pub mod twist;
 pub mod two_bone;
 
-pub(crate) use arc::arc;
-pub(crate) use direction::direction;
+pub(crate) use normalize::normalize;
+pub(crate) use rotation_between::rotation_between;

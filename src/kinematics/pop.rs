@@ -35,13 +35,13 @@ use glam::{DVec3, Vec3};
 
 use super::fk::Fk;
 use super::ik::Ik;
-use super::swivel::{Carried, Reference, Stereographic};
-use super::two_bone::Pose;
+use super::twist::{Stereographic, TransportedFrame, TwistReference};
+use super::two_bone::TwoBonePose;
 
 /// How the arm stood, and all that made it stand so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    pub pose: Pose,
+    pub pose: TwoBonePose,
     pub cursor: Vec3,
     pub ik: Ik,
     /// ψ.
@@ -58,9 +58,9 @@ pub struct Moment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
     Lengths,
-    Reference,
+    TwistReference,
     Pole,
-    Softening,
+    SoftReach,
     Weight,
     Angles,
     Spin,
@@ -97,9 +97,9 @@ pub enum Pop {
 impl Change {
     pub const ALL: [Self; 8] = [
         Self::Lengths,
-        Self::Reference,
+        Self::TwistReference,
         Self::Pole,
-        Self::Softening,
+        Self::SoftReach,
         Self::Weight,
         Self::Angles,
         Self::Spin,
@@ -116,12 +116,12 @@ impl Change {
         let references = (before.ik.reference, after.ik.reference);
         match self {
             Self::Lengths => before.ik.bones != after.ik.bones,
-            Self::Reference => match references {
-                (Reference::Pole(_), Reference::Pole(_)) => false,
+            Self::TwistReference => match references {
+                (TwistReference::Pole(_), TwistReference::Pole(_)) => false,
                 (one, other) => one != other,
             },
             Self::Pole => references.0 != references.1,
-            Self::Softening => before.ik.softening != after.ik.softening,
+            Self::SoftReach => before.ik.soft_reach != after.ik.soft_reach,
             Self::Weight => before.weight != after.weight,
             Self::Angles => after.weight < 1.0 && before.fk != after.fk,
             Self::Spin => before.spin != after.spin,
@@ -135,9 +135,9 @@ impl Change {
     pub fn name(self) -> &'static str {
         match self {
             Self::Lengths => "lengths",
-            Self::Reference => "reference",
+            Self::TwistReference => "reference",
             Self::Pole => "pole",
-            Self::Softening => "softening",
+            Self::SoftReach => "softening",
             Self::Weight => "weight",
             Self::Angles => "angles",
             Self::Spin => "spin",
@@ -182,19 +182,19 @@ impl Step {
 }
 
 /// Turn, bend and swing.
-fn parts(before: &Pose, after: &Pose) -> [DVec3; 3] {
+fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     let outward = before.outward();
-    let carried = Carried { direction: before.facing.direction, outward };
+    let transported = TransportedFrame { direction: before.facing.direction, outward };
     let [w, to] = [before, after].map(|pose| pose.facing.direction.as_dvec3());
-    let (out, carried) =
-        (outward.as_dvec3(), carried.to(after.facing.direction).outward.as_dvec3());
+    let (out, transported) =
+        (outward.as_dvec3(), transported.to(after.facing.direction).outward.as_dvec3());
     let [from, at] =
         [before, after].map(|pose| DVec3::new(pose.along.into(), pose.out.into(), 0.0));
     let side = after.outward().as_dvec3();
     [
-        (to - w) * from.x + (carried - out) * from.y,
-        to * (at.x - from.x) + (side + carried) * (0.5 * (at.y - from.y)),
-        (side - carried) * (0.5 * (from.y + at.y)),
+        (to - w) * from.x + (transported - out) * from.y,
+        to * (at.x - from.x) + (side + transported) * (0.5 * (at.y - from.y)),
+        (side - transported) * (0.5 * (from.y + at.y)),
     ]
 }
 
@@ -208,7 +208,7 @@ fn calm(before: &Moment, after: &Moment, sum: f64) -> f64 {
 
 /// Whether the hand is nearer to the outer limit than to the inner one.
 fn is_far_out(before: &Moment, after: &Moment, sum: f64) -> bool {
-    let least = f64::from(after.ik.softening.least_distance(after.ik.bones));
+    let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
@@ -219,11 +219,11 @@ fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
         direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_way(it, from, to))
     };
     match after.ik.reference {
-        Reference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
-        Reference::Pole(pole) => nearest(pole).min(nearest(-pole)),
-        Reference::Stereographic(map) => nearest(map.singular()),
+        TwistReference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
+        TwistReference::Pole(pole) => nearest(pole).min(nearest(-pole)),
+        TwistReference::Stereographic(map) => nearest(map.singular()),
         // Without a past it is as on the map.
-        Reference::Transport => nearest(Stereographic::default().singular()),
+        TwistReference::Transport => nearest(Stereographic::default().singular()),
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::compute::{self, Slot};
 use super::{Gpu, Solver, pipeline};
-use crate::rig::{Crowd, CrowdTimes, Ranks, SolvedBy};
+use crate::rig::{Crowd, CrowdArrays, CrowdTimes, SolvedBy};
 use crate::scene::{Colour, Scene};
 
 pub(super) const CULL: &str =
@@ -62,13 +62,13 @@ const _: () = assert!(size_of::<Level>() == 8);
 pub(super) struct Crowds {
     /// Made when there is first a crowd; the inner is nothing where the adapter has no compute
     /// shaders.
-    troupe: Option<Option<Troupe>>,
+    renderer: Option<Option<CrowdRenderer>>,
     times: Option<CrowdTimes>,
 }
 
 #[derive(Debug)]
-struct Troupe {
-    ranks: Ranks,
+struct CrowdRenderer {
+    arrays: CrowdArrays,
     solver: Solver,
     cull: wgpu::ComputePipeline,
     cull_layout: wgpu::BindGroupLayout,
@@ -102,58 +102,58 @@ impl Crowds {
         size: (u32, u32),
     ) -> u64 {
         let Some(crowd) = scene.crowd.filter(|crowd| crowd.arms > 0) else {
-            if let Some(Some(troupe)) = &mut self.troupe {
-                troupe.shown = None;
+            if let Some(Some(renderer)) = &mut self.renderer {
+                renderer.shown = None;
             }
             self.times = None;
             return 0;
         };
-        let troupe = self.troupe.get_or_insert_with(|| Troupe::new(gpu, view));
-        let Some(troupe) = troupe else {
+        let renderer = self.renderer.get_or_insert_with(|| CrowdRenderer::new(gpu, view));
+        let Some(renderer) = renderer else {
             return 0;
         };
         let mut sent = 0;
-        if troupe.shown != Some(crowd) {
-            sent += troupe.muster(gpu, &crowd);
-            let solve = troupe.solve(gpu, &crowd);
+        if renderer.shown != Some(crowd) {
+            sent += renderer.resize(gpu, &crowd);
+            let solve = renderer.solve(gpu, &crowd);
             self.times = solve.map(|solve| CrowdTimes { arms: crowd.arms, solve });
-            troupe.shown = Some(crowd);
+            renderer.shown = Some(crowd);
         }
-        sent + troupe.look(gpu, &crowd, scene, size)
+        sent + renderer.look(gpu, &crowd, scene, size)
     }
 
     pub fn times(&self) -> Option<CrowdTimes> {
         self.times
     }
 
-    fn shown(&self) -> Option<(&Troupe, Crowd)> {
-        let troupe = self.troupe.as_ref()?.as_ref()?;
-        Some((troupe, troupe.shown?))
+    fn shown(&self) -> Option<(&CrowdRenderer, Crowd)> {
+        let renderer = self.renderer.as_ref()?.as_ref()?;
+        Some((renderer, renderer.shown?))
     }
 
     /// Finds out on the device what is seen of it.
     pub fn cull(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some((troupe, crowd)) = self.shown() {
-            let group = (1, &troupe.room.cull);
-            compute::run_for_each(encoder, "cull", &troupe.cull, group, crowd.arms);
+        if let Some((renderer, crowd)) = self.shown() {
+            let group = (1, &renderer.room.cull);
+            compute::run_for_each(encoder, "cull", &renderer.cull, group, crowd.arms);
         }
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let Some((troupe, _)) = self.shown() else {
+        let Some((renderer, _)) = self.shown() else {
             return;
         };
-        pass.set_pipeline(&troupe.draw);
-        pass.set_bind_group(1, &troupe.room.draw, &[]);
-        for (level, group) in troupe.level_groups.iter().enumerate() {
+        pass.set_pipeline(&renderer.draw);
+        pass.set_bind_group(1, &renderer.room.draw, &[]);
+        for (level, group) in renderer.level_groups.iter().enumerate() {
             pass.set_bind_group(2, group, &[]);
             let offset = level * ARGUMENTS * size_of::<u32>();
-            pass.draw_indirect(&troupe.arguments, offset as u64);
+            pass.draw_indirect(&renderer.arguments, offset as u64);
         }
     }
 }
 
-impl Troupe {
+impl CrowdRenderer {
     fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Option<Self> {
         let solver = Solver::new(gpu)?;
         let flags = gpu.adapter.get_downlevel_capabilities().flags;
@@ -201,7 +201,7 @@ impl Troupe {
         let layouts = [&cull_layout, &draw_layout];
         let room = Room::new(gpu, &solver, layouts, [&uniform, &arguments]);
         Some(Self {
-            ranks: Ranks::default(),
+            arrays: CrowdArrays::default(),
             solver,
             cull,
             cull_layout,
@@ -217,8 +217,8 @@ impl Troupe {
     }
 
     /// Has as many arms as the crowd, there and here.
-    fn muster(&mut self, gpu: &Gpu, crowd: &Crowd) -> u64 {
-        let is_other = self.ranks.muster(crowd);
+    fn resize(&mut self, gpu: &Gpu, crowd: &Crowd) -> u64 {
+        let is_other = self.arrays.resize(crowd);
         let is_larger = self.solver.reserve(gpu, crowd.arms);
         if is_larger {
             let layouts = [&self.cull_layout, &self.draw_layout];
@@ -233,7 +233,7 @@ impl Troupe {
         if !(is_other || is_larger) {
             return 0;
         }
-        let [x, z] = &self.ranks.shoulder;
+        let [x, z] = &self.arrays.shoulder;
         let stride = u64::from(self.solver.stride()) * size_of::<f32>() as u64;
         for (offset, numbers) in [(0, x), (stride, z)] {
             gpu.queue.write_buffer(&self.room.shoulders, offset, bytemuck::cast_slice(numbers));
@@ -243,15 +243,15 @@ impl Troupe {
 
     /// How long solving took; nothing where it failed.
     fn solve(&mut self, gpu: &Gpu, crowd: &Crowd) -> Option<Duration> {
-        self.ranks.ask(crowd);
+        self.arrays.ask(crowd);
         match crowd.solved_by {
             SolvedBy::Gpu => {
-                let took = self.solver.solve(gpu, crowd.bones, &self.ranks);
+                let took = self.solver.solve(gpu, crowd.bones, &self.arrays);
                 took.inspect_err(|error| log::error!("the crowd was not solved: {error}")).ok()
             }
             SolvedBy::Cpu => {
-                let took = self.ranks.solve(crowd.bones).ok();
-                self.solver.take(gpu, &self.ranks);
+                let took = self.arrays.solve(crowd.bones).ok();
+                self.solver.take(gpu, &self.arrays);
                 took
             }
         }

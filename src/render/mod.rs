@@ -12,6 +12,7 @@ mod crowd;
 mod font;
 mod globe;
 mod gpu;
+mod gpu_timer;
 mod instances;
 mod label;
 mod line;
@@ -26,17 +27,16 @@ mod shell;
 mod solid;
 mod solve;
 mod spheres;
-mod stopwatch;
 mod system_fonts;
 mod uniforms;
 mod view;
 
 pub use canvas::{Canvas, ReadError};
 pub use gpu::{DeviceError, Gpu, GpuError};
+pub use gpu_timer::{GpuTimer, Lap};
 pub use picture::{DrawError, Picture, SaveError, Timings, save};
 pub use renderer::{Counts, Renderer};
 pub use solve::Solver;
-pub use stopwatch::{Lap, Stopwatch};
 pub use system_fonts::SystemFace;
 
 /// Every shader with the name of its file, whole as it is compiled.

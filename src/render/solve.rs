@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::compute::{self, Slot};
 use super::{Gpu, ReadError};
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::Ranks;
+use crate::rig::CrowdArrays;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/solve.wgsl");
 
@@ -100,10 +100,10 @@ impl Solver {
         &mut self,
         gpu: &Gpu,
         bones: TwoBone,
-        ranks: &Ranks,
+        arrays: &CrowdArrays,
     ) -> Result<Duration, wgpu::PollError> {
-        let Ranks { cursor: [x, y, z], cos, sin, .. } = ranks;
-        self.arms = ranks.len() as u32;
+        let CrowdArrays { cursor: [x, y, z], cos, sin, .. } = arrays;
+        self.arms = arrays.len() as u32;
         for (kind, numbers) in [x, y, z, cos, sin].into_iter().enumerate() {
             self.room.write(gpu, &self.room.asked, kind, numbers);
         }
@@ -129,9 +129,9 @@ impl Solver {
     }
 
     /// Sends poses that were solved elsewhere, there being [room](Self::reserve).
-    pub fn take(&mut self, gpu: &Gpu, ranks: &Ranks) {
-        self.arms = ranks.len() as u32;
-        for (kind, numbers) in ranks.elbow.iter().chain(&ranks.hand).enumerate() {
+    pub fn take(&mut self, gpu: &Gpu, arrays: &CrowdArrays) {
+        self.arms = arrays.len() as u32;
+        for (kind, numbers) in arrays.elbow.iter().chain(&arrays.hand).enumerate() {
             self.room.write(gpu, &self.room.posed, kind, numbers);
         }
     }

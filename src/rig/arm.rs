@@ -1,7 +1,7 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
 use super::Cone;
-use crate::kinematics::two_bone::{Pose, TwoBone};
+use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 
 /// What hangs in the hierarchy, parents before children.
 ///
@@ -83,7 +83,7 @@ impl ArmRig {
 
     /// Hangs a pose (Root space) below a shoulder at `root` (world). The `cursor` is in Root space,
     /// as it was given to the solver.
-    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &Pose) -> Self {
+    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &TwoBonePose) -> Self {
         let thickness = Self::thickness(arm);
         let (base_radius, tip_radius) =
             (Self::BASE_RADIUS * thickness, Self::TIP_RADIUS * thickness);

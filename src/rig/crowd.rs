@@ -64,7 +64,7 @@ pub struct CrowdTimes {
 
 /// The arms of a crowd: what each is asked and what it answers, kind beside kind.
 #[derive(Debug, Default)]
-pub struct Ranks {
+pub struct CrowdArrays {
     /// On the plane y = 0 of the world; the arms' Root spaces differ from it by no turn.
     pub shoulder: [Vec<f32>; 2],
     /// In Root space.
@@ -77,13 +77,13 @@ pub struct Ranks {
     spread: f32,
 }
 
-impl Ranks {
+impl CrowdArrays {
     /// Has as many arms as the crowd, with their shoulders where they belong. Says whether that is a
     /// change.
     ///
     /// Shoulders are set like the seeds of a sunflower (H. Vogel, *A Better Way to Construct the
     /// Sunflower Head*, 1979), so that more arms leave those that are there where they are.
-    pub fn muster(&mut self, crowd: &Crowd) -> bool {
+    pub fn resize(&mut self, crowd: &Crowd) -> bool {
         /// 2π(1 − 1/φ).
         const GOLDEN: f64 = 2.399_963_229_728_653;
         let (arms, spread) = (crowd.arms as usize, crowd.spread());

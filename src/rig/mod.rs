@@ -6,4 +6,4 @@ mod crowd;
 
 pub use arm::{ArmRig, Part};
 pub use cone::Cone;
-pub use crowd::{Crowd, CrowdTimes, Ranks, SolvedBy};
+pub use crowd::{Crowd, CrowdArrays, CrowdTimes, SolvedBy};

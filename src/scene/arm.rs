@@ -2,8 +2,8 @@ use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
 use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid, Words};
-use crate::document::{Arm, Display, Layer, Swivel};
-use crate::kinematics::two_bone::{Pose, Reach};
+use crate::document::{Arm, Display, Overlay, TwistReferenceKind};
+use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmRig, Cone, Part};
 
 /// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
@@ -18,20 +18,20 @@ const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
 /// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
+pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Display) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
-    let has_hand = display.shows(Layer::Hand);
+    let has_hand = display.shows(Overlay::Hand);
     add_limbs(scene, &rig, thickness, has_hand.then(|| arm.roll(pose)));
     if has_hand {
         add_hand(scene, arm, pose, thickness);
     }
     add_guides(scene, &rig, display);
-    if display.shows(Layer::Globe) {
+    if display.shows(Overlay::Globe) {
         let (centre, radius) = (arm.root, rig.outer_limit());
         scene.add_globe(Globe { centre, radius, reference: arm.reference() });
     }
-    if display.shows(Layer::Cursor) && arm.is_led_by_hand() {
+    if display.shows(Overlay::Cursor) && arm.is_led_by_hand() {
         add_cursor(scene, arm.cursor_world(), thickness);
         if arm.is_pinned() {
             add_pin(scene, arm.cursor_world(), thickness);
@@ -40,13 +40,13 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &Pose, display: Display) {
             add_gap(scene, &rig, arm, thickness);
         }
     }
-    if arm.swivel == Swivel::Pole && arm.is_led_by_hand() {
+    if arm.twist_reference == TwistReferenceKind::Pole && arm.is_led_by_hand() {
         add_pole(scene, &rig, arm.root + arm.pole, thickness, display);
     }
-    if display.shows(Layer::Labels) {
-        add_labels(scene, &rig, thickness, display.shows(Layer::References));
+    if display.shows(Overlay::Labels) {
+        add_labels(scene, &rig, thickness, display.shows(Overlay::References));
     }
-    if display.shows(Layer::Shadow) {
+    if display.shows(Overlay::Shadow) {
         add_shadows(scene, &rig, thickness);
     }
 }
@@ -76,7 +76,7 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>)
     }));
 }
 
-fn add_hand(scene: &mut Scene, arm: &Arm, pose: &Pose, thickness: f32) {
+fn add_hand(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, thickness: f32) {
     let rotation = arm.hand_rotation(pose).as_mat3();
     let place = Affine3A::from_mat3_translation(rotation, arm.root + pose.hand);
     scene.add_hand(place, HAND * thickness, scene.palette.joint);
@@ -98,10 +98,11 @@ fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
 
 /// What the elbow points at, with a line from there.
 fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display: Display) {
-    let (radius, colour) = (POLE_BALL * thickness, scene.palette.swivel(Swivel::Pole));
+    let (radius, colour) =
+        (POLE_BALL * thickness, scene.palette.twist_reference(TwistReferenceKind::Pole));
     scene.guide_balls.push(Ball { centre: pole, radius, colour });
     scene.lines.push(Line { from: rig.origin(Part::Elbow), to: pole, colour, dashed: true });
-    if display.shows(Layer::Labels) {
+    if display.shows(Overlay::Labels) {
         let (clearance, side, words) = (radius, Side::Above, Words::default());
         let label = Label { at: pole, clearance, side, words, colour };
         scene.add_label(label, format_args!("Pole"));
@@ -110,7 +111,7 @@ fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display
 
 fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
     let colour = scene.palette.guide;
-    if display.shows(Layer::Pointer) {
+    if display.shows(Overlay::Pointer) {
         scene.guide_solids.push(Solid {
             place: rig.world(Part::Pointer),
             shape: rig.pointer(),
@@ -119,8 +120,8 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
         });
     }
     for (layer, part, radius) in [
-        (Layer::InnerLimit, Part::InnerLimit, rig.inner_limit()),
-        (Layer::OuterLimit, Part::OuterLimit, rig.outer_limit()),
+        (Overlay::InnerLimit, Part::InnerLimit, rig.inner_limit()),
+        (Overlay::OuterLimit, Part::OuterLimit, rig.outer_limit()),
     ] {
         if display.shows(layer) && radius > 0.0 {
             scene.shells.push(Shell { centre: rig.origin(part), radius, colour });

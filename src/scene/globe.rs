@@ -1,13 +1,13 @@
 use glam::Vec3;
 
 use super::{Ball, Label, Palette, Scene, Side, Words};
-use crate::kinematics::swivel::Reference;
+use crate::kinematics::twist::TwistReference;
 
 /// The mark of a singular direction, as a part of the globe's radius.
 const MARK: f32 = 0.026;
 
 /// Every way that the Pointer can point, as a sphere that one can see through, coloured by the
-/// [gain](Reference::gain) of the reference there: how far the elbow swings for every radian that
+/// [gain](TwistReference::gain) of the reference there: how far the elbow swings for every radian that
 /// the Pointer turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Globe {
@@ -15,24 +15,24 @@ pub struct Globe {
     pub centre: Vec3,
     pub radius: f32,
     /// Its directions are Root's, which are the world's.
-    pub reference: Reference,
+    pub reference: TwistReference,
 }
 
 impl Globe {
     /// The unit vectors in which the reference is singular: none, one, or two opposite each other.
     ///
     /// A pole at the shoulder gives the elbow no direction anywhere, so that it is carried along, as
-    /// with [`Reference::Transport`]: none either.
+    /// with [`TwistReference::Transport`]: none either.
     pub fn singular(&self) -> impl Iterator<Item = Vec3> + Clone {
         let both = |axis: Vec3| [Some(axis), Some(-axis)];
         let directions = match self.reference {
-            Reference::Limb => both(Vec3::Y),
-            Reference::Pole(pole) => {
+            TwistReference::Limb => both(Vec3::Y),
+            TwistReference::Pole(pole) => {
                 let axis = pole.as_dvec3().try_normalize();
                 axis.map_or([None; 2], |axis| both(axis.as_vec3()))
             }
-            Reference::Stereographic(map) => [Some(map.singular()), None],
-            Reference::Transport => [None; 2],
+            TwistReference::Stereographic(map) => [Some(map.singular()), None],
+            TwistReference::Transport => [None; 2],
         };
         directions.into_iter().flatten()
     }

@@ -20,9 +20,9 @@ pub use label::{Label, Side, Words};
 pub use palette::{Colour, Palette};
 use scratch::Scratch;
 
-use crate::document::{Camera, Display, Document, Layer, RigKind, Theme};
+use crate::document::{Camera, Display, Document, Overlay, RigKind, Theme};
 use crate::rig::{Cone, Crowd};
-use crate::session::Staging;
+use crate::session::Overlays;
 
 /// A picture to be drawn.
 ///
@@ -113,14 +113,14 @@ const SIZES: core::ops::Range<f32> = 1e-12..1e15;
 
 impl Scene {
     /// The document as it stands, with what goes on around it.
-    pub fn new(document: &Document, staging: &Staging, theme: Theme) -> Self {
+    pub fn new(document: &Document, overlays: &Overlays, theme: Theme) -> Self {
         let mut scene = Self::empty(document, theme);
-        scene.refill(document, staging, theme);
+        scene.refill(document, overlays, theme);
         scene
     }
 
     /// Becomes what [`Scene::new`] would make, in the memory that it has.
-    pub fn refill(&mut self, document: &Document, staging: &Staging, theme: Theme) {
+    pub fn refill(&mut self, document: &Document, overlays: &Overlays, theme: Theme) {
         self.clear();
         let display = document.display;
         let (centre, reach, cell) = match document.rig {
@@ -132,7 +132,7 @@ impl Scene {
         };
         self.camera = document.camera;
         self.palette = Palette::new(theme);
-        if let Some(crowd) = staging.crowd {
+        if let Some(crowd) = overlays.crowd {
             if SIZES.contains(&crowd.bounds().1) {
                 self.stage = Stage::around_crowd(&crowd, display);
                 self.crowd = Some(crowd);
@@ -140,19 +140,19 @@ impl Scene {
             return;
         }
         self.stage = Stage::around(centre, reach, cell, display);
-        if display.shows(Layer::Axes) {
+        if display.shows(Overlay::Axes) {
             self.add_axes(reach);
         }
         match document.rig {
             RigKind::Arm => {
                 arm::add(self, &document.arm, &document.arm.pose(), display);
-                if display.shows(Layer::References) {
-                    references::add(self, &document.arm, staging.carried);
+                if display.shows(Overlay::References) {
+                    references::add(self, &document.arm, overlays.transported);
                 }
             }
-            RigKind::Skeleton => skeleton::add(self, &document.skeleton, staging, display),
+            RigKind::Skeleton => skeleton::add(self, &document.skeleton, overlays, display),
         }
-        motion::add(self, document, staging, reach);
+        motion::add(self, document, overlays, reach);
         self.leave_out_endless();
     }
 
@@ -268,10 +268,10 @@ impl Stage {
 
     fn around(centre: Vec3, reach: f32, cell: f32, display: Display) -> Self {
         Self {
-            grid_xy: display.shows(Layer::GridXy),
-            grid_xz: display.shows(Layer::GridXz),
-            grid_yz: display.shows(Layer::GridYz),
-            ground: display.shows(Layer::Ground),
+            grid_xy: display.shows(Overlay::GridXy),
+            grid_xz: display.shows(Overlay::GridXz),
+            grid_yz: display.shows(Overlay::GridYz),
+            ground: display.shows(Overlay::Ground),
             centre,
             radius: (Self::RADIUS * reach).min(f32::MAX),
             cell,

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{Ball, Colour, Line, Scene};
 use crate::document::{Document, RigKind};
 use crate::rig::Part;
-use crate::session::{OnionSkin, Staging};
+use crate::session::{OnionSkin, Overlays};
 
 /// A frame's dot, as a part of the rig's reach.
 const DOT: f32 = 0.004;
@@ -14,22 +14,22 @@ const NEAREST: f32 = 0.7;
 
 /// Adds the way of the hand or joint, with a dot for every frame, and the rig as it stands before and
 /// after.
-pub(super) fn add(scene: &mut Scene, document: &Document, staging: &Staging, reach: f32) {
-    add_trail(scene, staging, DOT * reach);
-    for skin in &staging.onion_skins {
+pub(super) fn add(scene: &mut Scene, document: &Document, overlays: &Overlays, reach: f32) {
+    add_trail(scene, overlays, DOT * reach);
+    for skin in &overlays.onion_skins {
         let plain = if skin.past { scene.palette.joint } else { scene.palette.accent };
         let colour = scene.palette.sky_top.mixed(plain, NEAREST * skin.opacity);
         add_skin(scene, skin, document.rig, colour, BONE * reach);
     }
 }
 
-fn add_trail(scene: &mut Scene, staging: &Staging, radius: f32) {
+fn add_trail(scene: &mut Scene, overlays: &Overlays, radius: f32) {
     let colour = scene.palette.accent;
-    for ends in staging.trail.windows(2).filter(|ends| ends[0] != ends[1]) {
+    for ends in overlays.trail.windows(2).filter(|ends| ends[0] != ends[1]) {
         let colour = colour.with_opacity(0.6);
         scene.lines.push(Line { from: ends[0], to: ends[1], colour, dashed: false });
     }
-    let dots = staging.trail.iter().map(|centre| Ball { centre: *centre, radius, colour });
+    let dots = overlays.trail.iter().map(|centre| Ball { centre: *centre, radius, colour });
     scene.balls.extend(dots);
 }
 

@@ -1,5 +1,5 @@
-use crate::document::{Swivel, Theme};
-use crate::kinematics::solve::Method;
+use crate::document::{Theme, TwistReferenceKind};
+use crate::kinematics::chain_ik::Method;
 
 /// A colour as a screen has it: sRGB, with opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,12 +102,12 @@ impl Palette {
     }
 
     /// The colour that a swivel reference has wherever they are beside each other.
-    pub fn swivel(&self, swivel: Swivel) -> Colour {
-        let [dark, light] = match swivel {
-            Swivel::Limb => [0xf2d06b, 0x866400],
-            Swivel::Pole => [0x8fd460, 0x3f7a15],
-            Swivel::Stereographic => [0x3fb8a5, 0x0b7466],
-            Swivel::Transport => [0xf08fb4, 0xb02a63],
+    pub fn twist_reference(&self, twist_reference: TwistReferenceKind) -> Colour {
+        let [dark, light] = match twist_reference {
+            TwistReferenceKind::Limb => [0xf2d06b, 0x866400],
+            TwistReferenceKind::Pole => [0x8fd460, 0x3f7a15],
+            TwistReferenceKind::Stereographic => [0x3fb8a5, 0x0b7466],
+            TwistReferenceKind::Transport => [0xf08fb4, 0xb02a63],
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
@@ -125,7 +125,7 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// The colour of a [gain](crate::kinematics::swivel::Reference::gain), as seen through as it is on
+    /// The colour of a [gain](crate::kinematics::twist::TwistReference::gain), as seen through as it is on
     /// the globe: calm at 0, hot at [`Palette::HOT`] and beyond, evenly in the logarithm of 1 + gain
     /// between.
     pub fn gain(&self, gain: f32) -> Colour {

@@ -1,9 +1,9 @@
 use core::fmt::{self, Display, Formatter};
 
 use super::{Ball, Label, Scene, Side, Words, arm};
-use crate::document::{Arm, Swivel};
-use crate::kinematics::swivel::Carried;
-use crate::kinematics::two_bone::Pose;
+use crate::document::{Arm, TwistReferenceKind};
+use crate::kinematics::twist::TransportedFrame;
+use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::ArmRig;
 
 /// On an arm as thick as the seed's.
@@ -14,15 +14,20 @@ const ELBOW: f32 = 13.0;
 const APART: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
 /// Adds the arm as every other swivel reference would have it with the same spin, thin, and how far
-/// each elbow is from the arm's. `carried` is what transport would measure from.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, carried: Option<Carried>) {
+/// each elbow is from the arm's. `transported` is what transport would measure from.
+pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedFrame>) {
     if !arm.is_led_by_hand() {
         return;
     }
     let own = arm.solve().pose;
-    let mut ghosts = Swivel::ALL.map(|swivel| {
-        let pose = arm.pose_measured_from(swivel, carried);
-        Ghost { swivel, pose, turn: own.elbow_turn_to(&pose), is_own: swivel == arm.swivel }
+    let mut ghosts = TwistReferenceKind::ALL.map(|twist_reference| {
+        let pose = arm.pose_measured_from(twist_reference, transported);
+        Ghost {
+            twist_reference,
+            pose,
+            turn: own.elbow_turn_to(&pose),
+            is_own: twist_reference == arm.twist_reference,
+        }
     });
     ghosts.sort_by(|a, b| a.turn.total_cmp(&b.turn));
     for ghost in ghosts.iter().filter(|ghost| !ghost.is_own) {
@@ -34,8 +39,8 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, carried: Option<Carried>) {
 }
 
 struct Ghost {
-    swivel: Swivel,
-    pose: Pose,
+    twist_reference: TwistReferenceKind,
+    pose: TwoBonePose,
     /// How far its elbow is turned from the arm's.
     turn: f32,
     is_own: bool,
@@ -44,7 +49,7 @@ struct Ghost {
 impl Ghost {
     fn add_limbs(&self, scene: &mut Scene, arm: &Arm) {
         let thickness = ArmRig::thickness(arm.bones);
-        let colour = scene.palette.swivel(self.swivel);
+        let colour = scene.palette.twist_reference(self.twist_reference);
         let [elbow, hand] = [self.pose.elbow, self.pose.hand].map(|point| arm.root + point);
         let radius = LIMB * thickness;
         scene.add_solid(arm.root, elbow, radius, radius, colour);
@@ -59,7 +64,7 @@ fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
     let Some(ghost) = shown else { return };
     let (ball, colour) = match ghost.is_own {
         true => (arm::ELBOW_BALL, scene.palette.text),
-        false => (ELBOW, scene.palette.swivel(ghost.swivel)),
+        false => (ELBOW, scene.palette.twist_reference(ghost.twist_reference)),
     };
     let label = Label {
         at: arm.root + ghost.pose.elbow,
@@ -80,7 +85,7 @@ impl Display for Names<'_> {
         let others = self.0.iter().filter(|ghost| !ghost.is_own);
         for (index, ghost) in own.chain(others).enumerate() {
             let between = if index > 0 { " · " } else { "" };
-            write!(f, "{between}{}", ghost.swivel.name())?;
+            write!(f, "{between}{}", ghost.twist_reference.name())?;
             if !ghost.is_own {
                 let turn = ghost.turn.to_degrees().round();
                 write!(f, " {}{:.0}°", if turn < 0.0 { '−' } else { '+' }, turn.abs())?;

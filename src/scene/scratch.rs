@@ -1,4 +1,4 @@
-use crate::kinematics::skeleton::{Pose, Skeleton};
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 
 /// Room for what a scene works out while it is made, and no picture shows: kept, so that it is not
 /// taken anew for every picture. What is left in it makes no two scenes differ.
@@ -6,7 +6,7 @@ use crate::kinematics::skeleton::{Pose, Skeleton};
 pub(super) struct Scratch {
     /// A skeleton that a way poses.
     pub posed: Skeleton,
-    pub pose: Pose,
+    pub pose: SkeletonPose,
     /// How far each joint is from its root.
     pub distances: Vec<f32>,
     /// How many bones are above each joint.

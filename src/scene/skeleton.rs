@@ -3,9 +3,9 @@ use glam::Vec3;
 use super::scratch::Scratch;
 use super::shadow::above_ground;
 use super::{Ball, Colour, Label, Line, Scene, Shadow, Side, Words};
-use crate::document::{Display, Layer, Path, SkeletonRig, Slither, Target};
-use crate::kinematics::skeleton::{Joint, Pose, Skeleton};
-use crate::session::Staging;
+use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
+use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose};
+use crate::session::Overlays;
 
 /// A bone is drawn no thicker than this part of its length, and this part of the skeleton's reach,
 /// whatever its radius is.
@@ -35,13 +35,13 @@ pub(super) fn stage(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32
 }
 
 /// Adds the bones, targets with their trails and gaps, ghosts, and the bones' shadows.
-pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, display: Display) {
+pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, overlays: &Overlays, display: Display) {
     let mut scratch = core::mem::take(&mut scene.scratch);
     let Scratch { posed, pose, distances, depths, are_leaves, named } = &mut scratch;
-    let skeleton = match &rig.slither {
+    let skeleton = match &rig.follow_path {
         None => &rig.skeleton,
-        Some(slither) => {
-            slither.write_pose(&rig.skeleton, staging.time, posed);
+        Some(follow_path) => {
+            follow_path.write_pose(&rig.skeleton, overlays.time, posed);
             posed
         }
     };
@@ -52,28 +52,28 @@ pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, staging: &Staging, displ
     let joints = skeleton.joints();
     let figure = Figure { joints, pose, depths, are_leaves, reach, scale };
     for joint in 0..joints.len() {
-        let colour = figure.colour(scene, joint, staging);
+        let colour = figure.colour(scene, joint, overlays);
         figure.add_bone(scene, joint, colour);
-        if display.shows(Layer::Shadow) {
+        if display.shows(Overlay::Shadow) {
             figure.add_shadow(scene, joint);
         }
     }
-    for ghost in &staging.ghosts {
+    for ghost in &overlays.ghosts {
         let colour = scene.palette.method(ghost.method);
         Figure { pose: &ghost.pose, ..figure }.add_ghost(scene, colour);
     }
-    if display.shows(Layer::Cursor) {
+    if display.shows(Overlay::Cursor) {
         for target in &rig.targets {
-            figure.add_target(scene, target, staging);
+            figure.add_target(scene, target, overlays);
         }
     }
-    if let Some(slither) = &rig.slither
-        && display.shows(Layer::Pointer)
+    if let Some(follow_path) = &rig.follow_path
+        && display.shows(Overlay::Pointer)
     {
-        add_way(scene, slither, skeleton, staging.time);
+        add_way(scene, follow_path, skeleton, overlays.time);
     }
-    if display.shows(Layer::Labels) {
-        figure.add_labels(scene, staging, named);
+    if display.shows(Overlay::Labels) {
+        figure.add_labels(scene, overlays, named);
     }
     scene.scratch = scratch;
 }
@@ -98,7 +98,7 @@ fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<boo
 #[derive(Clone, Copy)]
 struct Figure<'a> {
     joints: &'a [Joint],
-    pose: &'a Pose,
+    pose: &'a SkeletonPose,
     depths: &'a [usize],
     are_leaves: &'a [bool],
     /// In the world.
@@ -129,7 +129,7 @@ impl Figure<'_> {
     }
 
     /// Bones take turns in the limbs' colours from parent to child; the accent says selected.
-    fn colour(&self, scene: &Scene, joint: usize, staging: &Staging) -> Colour {
+    fn colour(&self, scene: &Scene, joint: usize, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
         let plain =
             if self.depths[joint].is_multiple_of(2) { palette.upper } else { palette.lower };
@@ -137,9 +137,9 @@ impl Figure<'_> {
             true => palette.joint,
             false => plain,
         };
-        if staging.selection.contains(&joint) {
+        if overlays.selection.contains(&joint) {
             palette.accent
-        } else if staging.pointed == Some(joint) {
+        } else if overlays.pointed == Some(joint) {
             colour.mixed(palette.guide, 0.3)
         } else {
             colour
@@ -177,8 +177,8 @@ impl Figure<'_> {
     }
 
     /// A ball where the target is, its trail, and the gap to the tip that does not reach it.
-    fn add_target(&self, scene: &mut Scene, target: &Target, staging: &Staging) {
-        let at = target.at(staging.time);
+    fn add_target(&self, scene: &mut Scene, target: &Target, overlays: &Overlays) {
+        let at = target.at(overlays.time);
         let tip = self.pose.tip(target.joint);
         let radius = TARGET * self.reach;
         let (guide, accent) = (scene.palette.guide, scene.palette.accent);
@@ -187,7 +187,7 @@ impl Figure<'_> {
         if !target.enabled {
             return;
         }
-        add_trail(scene, target, staging.time);
+        add_trail(scene, target, overlays.time);
         let gap = tip.distance(at);
         if gap > 1.5 * radius {
             scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
@@ -199,9 +199,9 @@ impl Figure<'_> {
     }
 
     /// The name of what is selected or pointed at.
-    fn add_labels(&self, scene: &mut Scene, staging: &Staging, named: &mut Vec<usize>) {
+    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, named: &mut Vec<usize>) {
         named.clear();
-        named.extend(staging.selection.iter().copied().chain(staging.pointed));
+        named.extend(overlays.selection.iter().copied().chain(overlays.pointed));
         named.sort_unstable();
         named.dedup();
         for joint in named.iter().copied().filter(|joint| *joint < self.joints.len()) {
@@ -224,7 +224,7 @@ fn residual_decimals(reach: f32) -> usize {
 
 /// Where a moving target has just been, fading.
 fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
-    if target.motion.path == Path::Still {
+    if target.motion.path == TargetPath::Still {
         return;
     }
     let (seconds, steps) = TRAIL;
@@ -238,10 +238,10 @@ fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
 }
 
 /// The way before a snake's head and behind its tail, once around.
-fn add_way(scene: &mut Scene, slither: &Slither, skeleton: &Skeleton, time: f64) {
+fn add_way(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
     let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
-    let head = slither.head(time);
-    let way = || slither.trail(skeleton.transform(), height, head, head + 1.0);
+    let head = follow_path.head(time);
+    let way = || follow_path.trail(skeleton.transform(), height, head, head + 1.0);
     let colour = scene.palette.guide.with_opacity(0.35);
     let pieces = way().zip(way().skip(1));
     scene.lines.extend(pieces.map(|(from, to)| Line { from, to, colour, dashed: false }));

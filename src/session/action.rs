@@ -4,12 +4,13 @@ use glam::{Vec2, Vec3};
 
 use super::{Constraint, Dialog, DragInput, Export, Grip, Job, Key, Motion, Navigation};
 use crate::document::{
-    Camera, Channel, Document, Layer, Ray, RigKind, Slither, Space, Swivel, Target, Theme, Timeline,
+    Camera, Channel, Document, FollowPath, HandSpace, Overlay, Ray, RigKind, Target, Theme,
+    Timeline, TwistReferenceKind,
 };
 use crate::io::Example;
-use crate::kinematics::reach::Softening;
+use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::Limit;
-use crate::kinematics::solve::Options;
+use crate::kinematics::soft_reach::SoftReach;
 use crate::rig::SolvedBy;
 
 /// Everything that can happen. Values are absolute, so that an action said twice is harmless.
@@ -18,21 +19,21 @@ pub enum Action {
     /// The cursor, in Root space.
     SetHand(Vec3),
     /// ψ in radians; wraps around.
-    SetElbowSpin(f32),
+    SetTwist(f32),
     SetRoot(Vec3),
     /// Where the hand is pinned, in the world.
     SetPin(Vec3),
     /// Pins the hand to the world, or lets it go with the shoulder; it stays where it is.
     PinHand(bool),
     /// Measures the elbow's spin from elsewhere; the elbow stays.
-    SetSwivel(Swivel),
+    SetTwistReference(TwistReferenceKind),
     /// What the elbow points at, in Root space.
     SetPole(Vec3),
-    SetSoftening(Softening),
+    SetSoftReach(SoftReach),
     /// How far the hand leads (1) or the joints' own angles do (0).
-    SetWeight(f32),
+    SetInfluence(f32),
     /// Lets the hand lead alone, or the angles; the pose stays.
-    SwitchTo(Lead),
+    SwitchTo(PoseMode),
     /// The shoulder's own angles about x, y and z in radians.
     SetShoulder(Vec3),
     /// The elbow's own bend β, radians.
@@ -40,15 +41,15 @@ pub enum Action {
     /// The hand's angles about x, y and z in radians.
     SetWrist(Vec3),
     /// What the hand's angles are measured in; the hand stays as it is turned.
-    SetWristSpace(Space),
+    SetWristSpace(HandSpace),
     /// Measures what is carried along with the Pointer from here.
-    StartJourney,
+    ResetTransport,
     SetUpper(f32),
     SetLower(f32),
     /// The arm as at first, or the skeleton without rotations; what is shown stays.
     ResetPose,
     ResetAll,
-    Show(Layer, bool),
+    Show(Overlay, bool),
     ShowRig(RigKind),
 
     /// Selects these joints and no others; the last is the one that is worked on.
@@ -99,7 +100,7 @@ pub enum Action {
         joint: usize,
         locked: bool,
     },
-    SetSlither(Option<Slither>),
+    SetFollowPath(Option<FollowPath>),
     /// Where the skeleton's own origin is, in the world.
     SetTranslation(Vec3),
 
@@ -109,7 +110,7 @@ pub enum Action {
     RemoveTarget(usize),
     /// Changes the target of the joint that it names.
     SetTarget(Target),
-    SetSolver(Options),
+    SetSolver(SolverOptions),
     SetIterationsPerFrame(u32),
     /// Whether the skeleton follows a target while that is dragged.
     SetFollow(bool),
@@ -122,7 +123,7 @@ pub enum Action {
     /// Back to the pose before the solver ran.
     ResetSolver,
     /// All solvers from the present pose, beside each other; or no longer.
-    Race(bool),
+    Comparison(bool),
     /// Lets the time go on, or stand.
     Play(bool),
     /// In seconds.
@@ -267,7 +268,7 @@ pub enum Action {
 
 /// What poses the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lead {
+pub enum PoseMode {
     /// Inverse kinematics: where the hand is asked to be.
     Hand,
     /// Forward kinematics: the joints' own angles.

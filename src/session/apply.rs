@@ -1,11 +1,12 @@
 use glam::Vec3;
 
 use super::crowd::Crowding;
-use super::drag::Way;
+use super::drag::DragKind;
 use super::{
-    Action, Constraint, Dialog, Drag, Edit, Effect, Glide, Grip, Journey, Session, ViewDrag, naming,
+    Action, Constraint, Dialog, Drag, Effect, Glide, Grip, Session, Transaction, TransportPath,
+    ViewDrag, naming,
 };
-use crate::document::{Arm, Camera, Display, Document, Goal, Ray, RigKind, SkeletonRig};
+use crate::document::{Arm, Camera, Cursor, Display, Document, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
 impl Session {
@@ -36,17 +37,17 @@ impl Session {
         match action {
             Action::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
             Action::SetRoot(root) => self.set_point("shoulder", root, |arm, root| arm.root = root),
-            Action::SetElbowSpin(spin) => self.set_elbow_spin(spin),
+            Action::SetTwist(spin) => self.set_twist(spin),
             Action::SetPin(pin) => {
-                self.set_point("hand", pin, |arm, pin| arm.goal = Goal::World(pin));
+                self.set_point("hand", pin, |arm, pin| arm.goal = Cursor::World(pin));
             }
             Action::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
-            Action::SetSwivel(swivel) => self.set_swivel(swivel),
+            Action::SetTwistReference(twist_reference) => self.set_twist_reference(twist_reference),
             Action::SetPole(pole) => self.set_pole(pole),
-            Action::SetSoftening(softening) => {
-                self.replace_arm(Arm { softening, ..*self.arm() });
+            Action::SetSoftReach(soft_reach) => {
+                self.replace_arm(Arm { soft_reach, ..*self.arm() });
             }
-            Action::SetWeight(weight) => self.set_weight(weight),
+            Action::SetInfluence(weight) => self.set_weight(weight),
             Action::SwitchTo(lead) => self.switch_to(lead),
             Action::SetShoulder(angles) => self.set_shoulder(angles),
             Action::SetBend(bend) => self.set_bend(bend),
@@ -57,7 +58,7 @@ impl Session {
                 self.message = None;
                 self.commit(self.shown.with_wrist_in(space));
             }
-            Action::StartJourney => self.journey = Journey::new(self.arm()),
+            Action::ResetTransport => self.transport_path = TransportPath::new(self.arm()),
             Action::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
             Action::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
             Action::ResetPose => match self.rig() {
@@ -100,7 +101,7 @@ impl Session {
                 self.change_joint(joint, |joint| joint.locked = locked);
             }
             Action::SetTranslation(to) => self.set_translation(to),
-            Action::SetSlither(slither) => self.set_slither(slither),
+            Action::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
 
             Action::AddTarget(joint) => self.add_target(joint),
             Action::RemoveTarget(joint) => self.remove_target(joint),
@@ -118,15 +119,15 @@ impl Session {
             Action::CancelRun => self.cancel_run(),
             Action::Step => self.step(),
             Action::ResetSolver => self.reset_solver(),
-            Action::Race(true) => self.start_race(),
-            Action::Race(false) => self.race = None,
+            Action::Comparison(true) => self.start_comparison(),
+            Action::Comparison(false) => self.comparison = None,
             Action::Play(playing) => self.play(playing),
             Action::SetTime(time) => self.set_time(time),
-            Action::SetLooping(looping) => self.clock.looping = looping,
+            Action::SetLooping(looping) => self.playback.looping = looping,
             Action::SetSpeed(speed) => {
                 let (slowest, fastest) = Self::SPEEDS;
                 if speed.is_finite() {
-                    self.clock.speed = speed.clamp(slowest, fastest);
+                    self.playback.speed = speed.clamp(slowest, fastest);
                 }
             }
 
@@ -339,7 +340,7 @@ impl Session {
     }
 
     fn drag_by(&mut self, change: impl FnOnce(&mut Drag)) {
-        let Some(Edit { shown, drag: Some(drag), name, .. }) = &mut self.edit else {
+        let Some(Transaction { shown, drag: Some(drag), name, .. }) = &mut self.edit else {
             return;
         };
         change(drag);
@@ -348,11 +349,11 @@ impl Session {
         let mut angles = fk.shoulder;
         *name = Some(naming::of_drag(grip));
         match (grip, &mut drag.way) {
-            (Grip::Ring(joint, axis), Way::Turn(turn)) => {
+            (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
                 let angle = turn.angle();
                 self.turn_joint(joint, axis, angle);
             }
-            (Grip::Hand(_), Way::Point(point)) => {
+            (Grip::Hand(_), DragKind::Point(point)) => {
                 let held = point.point();
                 if point.has_moved() {
                     self.set_point("hand", held, Arm::set_cursor);
@@ -360,27 +361,27 @@ impl Session {
                     self.replace_arm(Arm { goal, ..*self.arm() });
                 }
             }
-            (Grip::Shoulder(axis), Way::Turn(turn)) => {
+            (Grip::Shoulder(axis), DragKind::Turn(turn)) => {
                 angles[axis] = turn.angle();
                 self.set_shoulder(angles);
             }
-            (Grip::Bend, Way::Turn(turn)) => {
+            (Grip::Bend, DragKind::Turn(turn)) => {
                 let bend = turn.angle();
                 self.set_bend(bend);
             }
-            (Grip::Pole(_), Way::Point(point)) => {
+            (Grip::Pole(_), DragKind::Point(point)) => {
                 let held = point.point();
                 let pole = if point.has_moved() { held } else { pole };
                 self.set_pole(pole);
             }
-            (_, Way::Point(point)) => {
+            (_, DragKind::Point(point)) => {
                 let to = point.point();
                 let moved = point.moved();
                 if point.has_moved() {
                     self.drag_skeleton(grip, to, moved);
                 }
             }
-            (_, Way::Turn(_)) => {}
+            (_, DragKind::Turn(_)) => {}
         }
     }
 
@@ -395,7 +396,7 @@ impl Session {
             }
             self.set_camera(camera);
         }
-        if self.clock.last != Some(seconds) {
+        if self.playback.last != Some(seconds) {
             self.advance_clock(seconds);
             self.advance_solvers();
         }

@@ -1,10 +1,10 @@
 use glam::{Mat3, Vec3};
 
-use super::drag::Way;
-use super::{Drag, Grip, Handle, Lead, PointDrag, Ring, Session, TurnDrag};
-use crate::document::{Arm, Channel, Document, Ray, Swivel};
+use super::drag::DragKind;
+use super::{Drag, Grip, Handle, PointDrag, PoseMode, Ring, Session, TurnDrag};
+use crate::document::{Arm, Channel, Document, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
-use crate::kinematics::swivel::wrapped;
+use crate::kinematics::twist::wrapped;
 use crate::kinematics::two_bone::TwoBone;
 
 /// What actions do to the arm.
@@ -19,9 +19,9 @@ impl Session {
         }
     }
 
-    pub(super) fn set_elbow_spin(&mut self, spin: f32) {
+    pub(super) fn set_twist(&mut self, spin: f32) {
         if spin.is_finite() {
-            self.replace_arm(Arm { elbow_spin: wrapped(spin), ..*self.arm() });
+            self.replace_arm(Arm { twist: wrapped(spin), ..*self.arm() });
         } else {
             self.fail(format!("The elbow spin must be a finite number, not {spin}"));
         }
@@ -35,17 +35,17 @@ impl Session {
     }
 
     /// The elbow stays where it is, at the keys of its spin too.
-    pub(super) fn set_swivel(&mut self, swivel: Swivel) {
+    pub(super) fn set_twist_reference(&mut self, twist_reference: TwistReferenceKind) {
         const SAME: f32 = 1e-4;
-        let was_held = self.is_overridden(Channel::ElbowSpin);
+        let was_held = self.is_overridden(Channel::Twist);
         self.message = None;
-        self.commit(self.shown.measured_from(swivel));
+        self.commit(self.shown.measured_from(twist_reference));
         // At a key the keys, measured anew, say the same.
-        let spin = |document: &Document| Channel::ElbowSpin.value(document).unwrap_or_default().x;
-        let keyed = spin(&self.document.at(self.clock.time));
+        let spin = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
+        let keyed = spin(&self.document.at(self.playback.time));
         let apart = wrapped(keyed - spin(&self.shown) + SAME);
-        if !was_held && apart < 2.0 * SAME && self.document.keys.has(Channel::ElbowSpin) {
-            self.overrides.remove(&Channel::ElbowSpin);
+        if !was_held && apart < 2.0 * SAME && self.document.keys.has(Channel::Twist) {
+            self.overrides.remove(&Channel::Twist);
             self.message = None;
             self.refresh();
         }
@@ -53,7 +53,7 @@ impl Session {
 
     pub(super) fn set_weight(&mut self, weight: f32) {
         if (0.0..=1.0).contains(&weight) {
-            self.replace_arm(Arm { weight, ..*self.arm() });
+            self.replace_arm(Arm { influence: weight, ..*self.arm() });
         } else {
             self.fail(format!("The IK weight must be from 0 to 1, not {weight}"));
         }
@@ -78,12 +78,12 @@ impl Session {
     }
 
     /// The pose stays, unless a soft limit keeps the hand from where it is.
-    pub(super) fn switch_to(&mut self, lead: Lead) {
+    pub(super) fn switch_to(&mut self, lead: PoseMode) {
         const MOVED: f32 = 1e-3;
         let before = self.pose;
         match lead {
-            Lead::Hand => self.replace_arm(self.arm().led_by_hand()),
-            Lead::Angles => self.replace_arm(self.arm().led_by_angles()),
+            PoseMode::Hand => self.replace_arm(self.arm().led_by_hand()),
+            PoseMode::Angles => self.replace_arm(self.arm().led_by_angles()),
         }
         let moved =
             self.pose.elbow.distance(before.elbow).max(self.pose.hand.distance(before.hand));
@@ -107,19 +107,19 @@ impl Session {
             return;
         }
         let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
-        let is_led = handle == Handle::Free && arm.weight == 1.0;
+        let is_led = handle == Handle::Free && arm.influence == 1.0;
         let is_at_hand = is_led && aside(hand) < aside(arm.cursor());
         let start = if is_at_hand { hand } else { arm.cursor() };
         let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: Way::Point(drag) }));
+        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: DragKind::Point(drag) }));
     }
 
     pub(super) fn grab_pole(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
         let arm = *self.arm();
-        if arm.swivel == Swivel::Pole {
+        if arm.twist_reference == TwistReferenceKind::Pole {
             let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
             let drag = drag.with_step(self.snap());
-            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), way: Way::Point(drag) }));
+            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), way: DragKind::Point(drag) }));
         }
     }
 
@@ -130,7 +130,7 @@ impl Session {
             _ => fk.bend,
         };
         if let Some(ring) = self.arm_ring(grip) {
-            let way = Way::Turn(TurnDrag::new(ring, start, ray));
+            let way = DragKind::Turn(TurnDrag::new(ring, start, ray));
             self.begin_edit(Some(Drag { grip, way }));
         }
     }

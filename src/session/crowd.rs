@@ -62,8 +62,8 @@ impl Session {
 
     /// What passed while nothing went on is no time of the crowd.
     fn forget_pause(&mut self) {
-        if !self.clock.playing {
-            self.clock.last = None;
+        if !self.playback.playing {
+            self.playback.last = None;
         }
     }
 

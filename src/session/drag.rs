@@ -38,11 +38,11 @@ impl Grip {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
     pub(super) grip: Grip,
-    pub(super) way: Way,
+    pub(super) way: DragKind,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Way {
+pub(super) enum DragKind {
     Point(PointDrag),
     Turn(TurnDrag),
 }
@@ -55,44 +55,44 @@ impl Drag {
     /// The point that is held, unless it is a ring.
     pub fn point(&self) -> Option<&PointDrag> {
         match &self.way {
-            Way::Point(drag) => Some(drag),
-            Way::Turn(_) => None,
+            DragKind::Point(drag) => Some(drag),
+            DragKind::Turn(_) => None,
         }
     }
 
     /// The ring that is held, unless it is a point.
     pub fn turn(&self) -> Option<&TurnDrag> {
         match &self.way {
-            Way::Turn(drag) => Some(drag),
-            Way::Point(_) => None,
+            DragKind::Turn(drag) => Some(drag),
+            DragKind::Point(_) => None,
         }
     }
 
     /// What is typed while it is held.
     pub fn typed(&self) -> &str {
         match &self.way {
-            Way::Point(drag) => drag.typed(),
-            Way::Turn(drag) => drag.typed(),
+            DragKind::Point(drag) => drag.typed(),
+            DragKind::Turn(drag) => drag.typed(),
         }
     }
 
     pub(super) fn set_input(&mut self, input: DragInput) {
         match &mut self.way {
-            Way::Point(drag) => drag.set_input(input),
-            Way::Turn(drag) => drag.set_input(input),
+            DragKind::Point(drag) => drag.set_input(input),
+            DragKind::Turn(drag) => drag.set_input(input),
         }
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {
         match &mut self.way {
-            Way::Point(drag) => drag.set_typed(typed),
-            Way::Turn(drag) => drag.set_typed(typed),
+            DragKind::Point(drag) => drag.set_typed(typed),
+            DragKind::Turn(drag) => drag.set_typed(typed),
         }
     }
 
     /// Rings have nothing to be held to.
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
-        if let Way::Point(drag) = &mut self.way {
+        if let DragKind::Point(drag) = &mut self.way {
             drag.set_constraint(constraint);
         }
     }

@@ -50,18 +50,18 @@ impl Session {
     }
 
     pub(super) fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
-        let clock = super::Clock {
-            looping: self.clock.looping,
-            speed: self.clock.speed,
+        let playback = super::Playback {
+            looping: self.playback.looping,
+            speed: self.playback.speed,
             time: document.timeline.start,
-            ..super::Clock::default()
+            ..super::Playback::default()
         };
         let recent = std::mem::take(&mut self.recent);
         let newest_revision = self.newest_revision + 1;
         *self = Self {
             file: file.clone(),
             recent,
-            clock,
+            playback,
             export_folder: self.export_folder.take(),
             revision: newest_revision,
             newest_revision,
@@ -72,7 +72,7 @@ impl Session {
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();
-        self.pops = super::Pops::new(&self.shown.arm, self.pose, self.clock.time);
+        self.pops = super::Pops::new(&self.shown.arm, self.pose, self.playback.time);
         self.forget_trail();
         if let Some(file) = file {
             self.remember_file(file);

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{Effect, Session};
 use crate::document::{Channel, Document, Keys, RigKind, Timeline};
-use crate::kinematics::skeleton::Moved;
+use crate::kinematics::skeleton::JointRemap;
 
 /// A key: its channel and its time, in seconds.
 pub type Key = (Channel, f64);
@@ -84,7 +84,7 @@ impl Session {
 
     /// Keys channels as they are shown.
     pub(super) fn key(&mut self, channels: &[Channel]) {
-        let time = self.clock.time;
+        let time = self.playback.time;
         self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
         for channel in channels {
             self.overrides.remove(channel);
@@ -105,7 +105,11 @@ impl Session {
     }
 
     /// What is selected and copied follows its joints to new places.
-    pub(super) fn follow_keys(&mut self, moved: &Moved, (keys, channels): (Vec<Key>, Channels)) {
+    pub(super) fn follow_keys(
+        &mut self,
+        moved: &JointRemap,
+        (keys, channels): (Vec<Key>, Channels),
+    ) {
         let keys = keys.into_iter();
         self.selected_keys =
             keys.filter_map(|(channel, time)| Some((channel.moved(moved)?, time))).collect();
@@ -195,7 +199,9 @@ impl Session {
             .clipboard
             .iter()
             .filter(|(channel, ..)| channel.value(&self.shown).is_some())
-            .map(|(channel, time, value)| (*channel, self.moved_to(self.clock.time, *time), *value))
+            .map(|(channel, time, value)| {
+                (*channel, self.moved_to(self.playback.time, *time), *value)
+            })
             .collect();
         self.selected_keys = pasted.iter().map(|(channel, time, _)| (*channel, *time)).collect();
         self.edit_keys(|document| insert(&mut document.keys, &pasted));

@@ -4,31 +4,31 @@
 mod action;
 mod apply;
 mod arm;
-mod clock;
+mod comparison;
 mod crowd;
 mod dialog;
 mod drag;
-mod edit;
 mod export;
 mod files;
 mod history;
-mod journey;
 mod keys;
 mod message;
 mod naming;
+mod overlays;
+mod playback;
 mod point_drag;
+mod pop_fix;
 mod pops;
 mod pose_line;
 mod preferences;
-mod race;
-mod remedy;
 mod run;
 mod skeleton;
 mod skeleton_drag;
+mod solver_run;
 mod solver_status;
-mod solving;
-mod staging;
 mod trail;
+mod transaction;
+mod transport;
 mod turn_drag;
 mod view_drag;
 
@@ -38,33 +38,33 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-pub use action::{Action, Effect, Lead};
+pub use action::{Action, Effect, PoseMode};
+pub use comparison::{Comparison, Runner};
 pub use dialog::Dialog;
 pub use drag::{Drag, Grip};
 pub use export::{Export, Job};
-pub use journey::Journey;
 pub use keys::Key;
+pub use overlays::{Ghost, OnionSkin, Overlays};
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
+pub use pop_fix::PopFix;
 pub use pops::{Pops, Sample, Spike, What};
 pub use preferences::{Navigation, Preferences};
-pub use race::{Race, Runner};
-pub use remedy::Remedy;
+pub use solver_run::{History, SolverRun};
 pub use solver_status::{SolverState, SolverStatus};
-pub use solving::{History, Solving};
-pub use staging::{Ghost, OnionSkin, Staging};
+pub use transport::TransportPath;
 pub use turn_drag::{Ring, TurnDrag};
 pub use view_drag::{Motion, ViewDrag};
 
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::io;
-use crate::kinematics::skeleton::Pose as SkeletonPose;
-use crate::kinematics::two_bone::Pose;
-use clock::Clock;
+use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::two_bone::TwoBonePose;
 use crowd::Crowding;
-use edit::Edit;
 use history::{Overrides, State};
 use keys::Clipboard;
 use message::Message;
+use playback::Playback;
+use transaction::Transaction;
 use view_drag::Glide;
 
 /// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
@@ -80,14 +80,14 @@ pub struct Session {
     /// Where the document was opened from or saved to.
     file: Option<PathBuf>,
     recent: Vec<PathBuf>,
-    pose: Pose,
+    pose: TwoBonePose,
     skeleton_pose: SkeletonPose,
-    journey: Journey,
+    transport_path: TransportPath,
     pops: Pops,
     /// Walked when it is first shown.
     trail: OnceCell<Vec<Vec3>>,
     preferences: Preferences,
-    edit: Option<Edit>,
+    edit: Option<Transaction>,
     history: history::History,
     /// The same number, the same document.
     revision: u64,
@@ -103,12 +103,12 @@ pub struct Session {
     /// Joints; the last one is the one that is worked on.
     selection: Vec<usize>,
     pointed: Option<usize>,
-    clock: Clock,
+    playback: Playback,
     crowding: Crowding,
-    solving: Option<Solving>,
+    solver_run: Option<SolverRun>,
     /// How everything was before the solver that is running.
     run_before: Option<State>,
-    race: Option<Race>,
+    comparison: Option<Comparison>,
     view_drag: Option<ViewDrag>,
     glide: Option<Glide>,
     dialog: Option<Dialog>,
@@ -139,7 +139,7 @@ impl Session {
 
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
         Self {
-            journey: Journey::new(&document.arm),
+            transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, document.arm.pose(), 0.0),
             pose: document.arm.pose(),
             skeleton_pose: document.skeleton.at(0.0).pose(),
@@ -162,11 +162,11 @@ impl Session {
             clipboard: Clipboard::default(),
             selection: Vec::new(),
             pointed: None,
-            clock: Clock::default(),
+            playback: Playback::default(),
             crowding: Crowding::default(),
-            solving: None,
+            solver_run: None,
             run_before: None,
-            race: None,
+            comparison: None,
             view_drag: None,
             glide: None,
             dialog: None,
@@ -208,13 +208,13 @@ impl Session {
     }
 
     /// The document's arm, solved.
-    pub fn pose(&self) -> &Pose {
+    pub fn pose(&self) -> &TwoBonePose {
         &self.pose
     }
 
     /// What has been carried along with the Pointer.
-    pub fn journey(&self) -> &Journey {
-        &self.journey
+    pub fn transport_path(&self) -> &TransportPath {
+        &self.transport_path
     }
 
     /// The document's skeleton as it stands at this time, in the world.
@@ -272,26 +272,26 @@ impl Session {
     }
 
     /// What a solver has done since the last reset.
-    pub fn solving(&self) -> Option<&Solving> {
-        self.solving.as_ref()
+    pub fn solver_run(&self) -> Option<&SolverRun> {
+        self.solver_run.as_ref()
     }
 
     /// Whether a solver is at work.
     pub fn is_running(&self) -> bool {
-        self.solving.as_ref().is_some_and(Solving::is_running)
+        self.solver_run.as_ref().is_some_and(SolverRun::is_running)
     }
 
-    pub fn race(&self) -> Option<&Race> {
-        self.race.as_ref()
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.comparison.as_ref()
     }
 
     /// Whether the next picture is another one by itself.
     pub fn is_moving(&self) -> bool {
         self.is_gliding()
-            || self.clock.playing
+            || self.playback.playing
             || self.crowding.is_going_on()
             || self.is_running()
-            || self.race.as_ref().is_some_and(Race::is_running)
+            || self.comparison.as_ref().is_some_and(Comparison::is_running)
     }
 
     /// The view that shows what is worked on: the selected joints, else the rig as it stands.
@@ -304,7 +304,7 @@ impl Session {
             RigKind::Skeleton => self
                 .skeleton()
                 .bounds_of(&self.skeleton_pose, &self.selection)
-                .unwrap_or_else(|| self.skeleton().bounds(&self.skeleton_pose, self.clock.time)),
+                .unwrap_or_else(|| self.skeleton().bounds(&self.skeleton_pose, self.playback.time)),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -318,7 +318,7 @@ impl Session {
         }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
-            RigKind::Skeleton => self.skeleton().bounds(&self.skeleton_pose, self.clock.time),
+            RigKind::Skeleton => self.skeleton().bounds(&self.skeleton_pose, self.playback.time),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -326,19 +326,19 @@ impl Session {
     /// All that is shown follows the document and the time.
     fn refresh(&mut self) {
         self.shown.clone_from(&self.document);
-        self.shown.keys_to(self.clock.time);
+        self.shown.keys_to(self.playback.time);
         for (channel, value) in &self.overrides {
             channel.set(&mut self.shown, *value);
         }
         self.pose = self.shown.arm.pose();
-        self.journey.go_on(&self.shown.arm);
+        self.transport_path.go_on(&self.shown.arm);
         self.watch_elbow();
-        self.skeleton_pose = self.shown.skeleton.at(self.clock.time).pose();
+        self.skeleton_pose = self.shown.skeleton.at(self.playback.time).pose();
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);
         self.pointed = self.pointed.filter(|joint| *joint < count);
         let skeleton = &self.shown.skeleton.skeleton;
-        self.race.take_if(|race| !race.is_of(skeleton));
+        self.comparison.take_if(|comparison| !comparison.is_of(skeleton));
         self.retain_keys();
     }
 

@@ -1,20 +1,20 @@
-use super::{Action, Grip, Lead};
-use crate::document::{Channel, Layer, RigKind};
+use super::{Action, Grip, PoseMode};
+use crate::document::{Channel, Overlay, RigKind};
 
 /// What an action does to the document, as in "Undo move hand"; nothing if it leaves it alone.
 pub(super) fn of(action: &Action) -> Option<&'static str> {
     Some(match action {
         Action::SetHand(_) | Action::SetPin(_) => "move hand",
-        Action::SetElbowSpin(_) => "spin elbow",
+        Action::SetTwist(_) => "spin elbow",
         Action::SetRoot(_) => "move shoulder",
         Action::PinHand(true) => "pin hand",
         Action::PinHand(false) => "unpin hand",
-        Action::SetSwivel(_) => "change swivel",
+        Action::SetTwistReference(_) => "change swivel",
         Action::SetPole(_) => "move pole",
-        Action::SetSoftening(_) => "change softness",
-        Action::SetWeight(_) => "blend FK and IK",
-        Action::SwitchTo(Lead::Hand) => "switch to IK",
-        Action::SwitchTo(Lead::Angles) => "switch to FK",
+        Action::SetSoftReach(_) => "change softness",
+        Action::SetInfluence(_) => "blend FK and IK",
+        Action::SwitchTo(PoseMode::Hand) => "switch to IK",
+        Action::SwitchTo(PoseMode::Angles) => "switch to FK",
         Action::SetShoulder(_) => "turn shoulder",
         Action::SetBend(_) => "bend elbow",
         Action::SetWrist(_) | Action::SetWristSpace(_) => "turn hand",
@@ -35,7 +35,7 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::SetLimit { .. } => "change limit",
         Action::SetLocked { locked: true, .. } => "lock joint",
         Action::SetLocked { locked: false, .. } => "unlock joint",
-        Action::SetSlither(_) => "change slither",
+        Action::SetFollowPath(_) => "change slither",
         Action::SetTranslation(_) => "move skeleton",
         Action::AddTarget(_) => "add target",
         Action::RemoveTarget(_) => "remove target",
@@ -45,7 +45,7 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
         Action::ResetSolver => "reset solver",
         Action::Key(channels) => match channels[..] {
             [Channel::Hand] => "key hand",
-            [Channel::ElbowSpin] => "key elbow spin",
+            [Channel::Twist] => "key elbow spin",
             _ => "set keys",
         },
         Action::DeleteKeys(_) | Action::ClearChannels(_) => "delete keys",
@@ -57,24 +57,24 @@ pub(super) fn of(action: &Action) -> Option<&'static str> {
     })
 }
 
-fn of_layer(layer: Layer) -> &'static str {
+fn of_layer(layer: Overlay) -> &'static str {
     match layer {
-        Layer::Cursor => "toggle Cursor",
-        Layer::Pointer => "toggle Pointer",
-        Layer::InnerLimit => "toggle Inner Limit",
-        Layer::OuterLimit => "toggle Outer Limit",
-        Layer::GridXy => "toggle XY grid",
-        Layer::GridXz => "toggle XZ grid",
-        Layer::GridYz => "toggle YZ grid",
-        Layer::Ground => "toggle ground",
-        Layer::Axes => "toggle axes",
-        Layer::Labels => "toggle labels",
-        Layer::Shadow => "toggle shadow",
-        Layer::Trail => "toggle motion trail",
-        Layer::OnionSkins => "toggle onion skins",
-        Layer::Globe => "toggle singularity globe",
-        Layer::References => "toggle references",
-        Layer::Hand => "toggle hand",
+        Overlay::Cursor => "toggle Cursor",
+        Overlay::Pointer => "toggle Pointer",
+        Overlay::InnerLimit => "toggle Inner Limit",
+        Overlay::OuterLimit => "toggle Outer Limit",
+        Overlay::GridXy => "toggle XY grid",
+        Overlay::GridXz => "toggle XZ grid",
+        Overlay::GridYz => "toggle YZ grid",
+        Overlay::Ground => "toggle ground",
+        Overlay::Axes => "toggle axes",
+        Overlay::Labels => "toggle labels",
+        Overlay::Shadow => "toggle shadow",
+        Overlay::Trail => "toggle motion trail",
+        Overlay::OnionSkins => "toggle onion skins",
+        Overlay::Globe => "toggle singularity globe",
+        Overlay::References => "toggle references",
+        Overlay::Hand => "toggle hand",
     }
 }
 

@@ -4,7 +4,7 @@ use super::Session;
 use crate::document::Arm;
 use crate::kinematics::ik::Ik;
 use crate::kinematics::pop::{Change, Moment, Pop, Step};
-use crate::kinematics::two_bone::Pose;
+use crate::kinematics::two_bone::TwoBonePose;
 
 /// How fast the arm's elbow has been beside its cursor, in the last steps that were dragged or
 /// played: not saved, and not undone.
@@ -66,7 +66,7 @@ impl Pops {
     const MOST: usize = 600;
 
     /// None yet of an arm that stands so.
-    pub(super) fn new(arm: &Arm, pose: Pose, time: f64) -> Self {
+    pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
         let last = Last { moment: moment(arm, pose), way: Way::Set, time };
         Self { samples: VecDeque::new(), last, run: 0 }
     }
@@ -162,7 +162,7 @@ impl Spike {
     pub fn stands(self, arm: &Arm) -> bool {
         match self.pop {
             Pop::Singular { .. } => self.ik.reference == arm.reference(),
-            _ => self.ik.softening == arm.softening && self.ik.bones == arm.bones,
+            _ => self.ik.soft_reach == arm.soft_reach && self.ik.bones == arm.bones,
         }
     }
 }
@@ -177,21 +177,21 @@ impl Session {
     pub(super) fn watch_elbow(&mut self) {
         let way = match &self.edit {
             Some(edit) => Way::Dragged(edit.before.revision),
-            None if self.clock.playing => Way::Played,
+            None if self.playback.playing => Way::Played,
             None => Way::Set,
         };
-        self.pops.go_on(moment(&self.shown.arm, self.pose), way, self.clock.time);
+        self.pops.go_on(moment(&self.shown.arm, self.pose), way, self.playback.time);
     }
 }
 
-fn moment(arm: &Arm, pose: Pose) -> Moment {
+fn moment(arm: &Arm, pose: TwoBonePose) -> Moment {
     Moment {
         pose,
         cursor: arm.cursor(),
         ik: arm.ik(),
-        spin: arm.elbow_spin,
+        spin: arm.twist,
         pinned_root: arm.is_pinned().then_some(arm.root),
-        weight: arm.weight,
+        weight: arm.influence,
         fk: arm.fk,
     }
 }

@@ -1,17 +1,17 @@
 use serde_json::{Map, Value, json};
 
-use crate::document::{Arm, Swivel};
-use crate::kinematics::reach::Softening;
-use crate::kinematics::swivel::{angle_from_limb, respun, wrapped};
+use crate::document::{Arm, TwistReferenceKind};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::{angle_from_limb, respun, wrapped};
 use crate::kinematics::two_bone::Facing;
 
 /// A line that `ik-arm solve` reads, and that gives the arm as its hand would lead it to where it is.
 /// A hand at the shoulder itself has no direction in a line.
 pub(super) fn of(arm: &Arm) -> String {
-    let arm = if arm.weight < 1.0 { arm.led_by_hand() } else { *arm };
+    let arm = if arm.influence < 1.0 { arm.led_by_hand() } else { *arm };
     // A line of its own has no past to be carried along from.
-    let arm = match arm.swivel {
-        Swivel::Transport => arm.measured_from(Swivel::Stereographic),
+    let arm = match arm.twist_reference {
+        TwistReferenceKind::Transport => arm.measured_from(TwistReferenceKind::Stereographic),
         _ => arm,
     };
     let mut line = Map::new();
@@ -21,17 +21,19 @@ pub(super) fn of(arm: &Arm) -> String {
     say("lower", json!(arm.bones.lower()));
     say("root", json!(arm.root.to_array()));
     say("elbow_spin_deg", json!(spin_alone(&arm).to_degrees()));
-    match arm.swivel {
-        Swivel::Limb => None,
-        Swivel::Pole => say("swivel", json!({ "pole": arm.pole.to_array() })),
-        Swivel::Stereographic | Swivel::Transport => say("swivel", json!("stereographic")),
+    match arm.twist_reference {
+        TwistReferenceKind::Limb => None,
+        TwistReferenceKind::Pole => say("swivel", json!({ "pole": arm.pole.to_array() })),
+        TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
+            say("swivel", json!("stereographic"))
+        }
     };
-    let (softening, seed) = (arm.softening, Softening::default());
+    let (soft_reach, seed) = (arm.soft_reach, SoftReach::default());
     // Just below a half turn in radians may be one in degrees.
-    let min_elbow_deg = softening.min_elbow_angle().to_degrees().min(180.0_f32.next_down());
+    let min_elbow_deg = soft_reach.min_elbow_angle().to_degrees().min(180.0_f32.next_down());
     for (field, value, usual) in [
-        ("softness", softening.softness(), seed.softness()),
-        ("max_stretch", softening.max_stretch(), seed.max_stretch()),
+        ("softness", soft_reach.softness(), seed.softness()),
+        ("max_stretch", soft_reach.max_stretch(), seed.max_stretch()),
         ("min_elbow_deg", min_elbow_deg, seed.min_elbow_angle()),
     ] {
         if value != usual {
@@ -45,7 +47,7 @@ pub(super) fn of(arm: &Arm) -> String {
 fn spin_alone(arm: &Arm) -> f32 {
     const SAME: f32 = 1e-6;
     let (cursor, outward) = (arm.cursor(), arm.solve().pose.outward());
-    let spin = wrapped(arm.elbow_spin);
+    let spin = wrapped(arm.twist);
     let alone = arm.ik().solve(cursor, spin, Facing::default(), None).pose;
     if alone.outward().distance(outward) < SAME {
         return spin;

@@ -1,22 +1,22 @@
-use super::{Race, Session, Solving};
+use super::{Comparison, Session, SolverRun};
 
 /// Solvers at work.
 impl Session {
     /// The solver that is under way, or a new one at its start.
-    fn solving_or_new(&mut self) -> Option<Solving> {
-        if self.skeleton().slither.is_some() {
+    fn solving_or_new(&mut self) -> Option<SolverRun> {
+        if self.skeleton().follow_path.is_some() {
             self.fail("This skeleton follows its head; it has nothing to solve");
             return None;
         }
-        if self.skeleton().goals(self.clock.time).is_empty() {
+        if self.skeleton().goals(self.playback.time).is_empty() {
             self.say("There is no target to solve for; add one to a joint");
             return None;
         }
-        if let Some(solving) = self.solving.take() {
-            return Some(solving);
+        if let Some(solver_run) = self.solver_run.take() {
+            return Some(solver_run);
         }
-        match Solving::new(self.skeleton(), self.clock.time) {
-            Ok(solving) => Some(solving),
+        match SolverRun::new(self.skeleton(), self.playback.time) {
+            Ok(solver_run) => Some(solver_run),
             Err(error) => {
                 self.fail(error.to_string());
                 None
@@ -25,13 +25,13 @@ impl Session {
     }
 
     pub(super) fn run(&mut self, running: bool) {
-        self.race = None;
+        self.comparison = None;
         if !running {
             return self.stop_run();
         }
-        if let Some(mut solving) = self.solving_or_new() {
-            solving.running = true;
-            self.solving = Some(solving);
+        if let Some(mut solver_run) = self.solving_or_new() {
+            solver_run.running = true;
+            self.solver_run = Some(solver_run);
             self.begin_run();
         }
     }
@@ -51,16 +51,16 @@ impl Session {
     }
 
     pub(super) fn stop_run(&mut self) {
-        if let Some(solving) = &mut self.solving {
-            solving.running = false;
+        if let Some(solver_run) = &mut self.solver_run {
+            solver_run.running = false;
         }
         self.end_run();
     }
 
     /// Stops, and takes back what has been done since the solver was started.
     pub(super) fn cancel_run(&mut self) {
-        self.race = None;
-        self.solving = None;
+        self.comparison = None;
+        self.solver_run = None;
         if let Some(before) = self.run_before.take() {
             self.restore(&before);
         }
@@ -69,20 +69,20 @@ impl Session {
 
     /// One iteration, after which the solver waits.
     pub(super) fn step(&mut self) {
-        self.race = None;
+        self.comparison = None;
         self.stop_run();
-        if let Some(solving) = self.solving_or_new() {
-            self.solving = Some(solving);
+        if let Some(solver_run) = self.solving_or_new() {
+            self.solver_run = Some(solver_run);
             self.iterate(1);
         }
     }
 
     /// Back to where the skeleton was before the first iteration.
     pub(super) fn reset_solver(&mut self) {
-        self.race = None;
+        self.comparison = None;
         self.stop_run();
-        let Some(solving) = self.solving.take() else { return };
-        let start = solving.start().joints();
+        let Some(solver_run) = self.solver_run.take() else { return };
+        let start = solver_run.start().joints();
         self.edit_skeleton(|rig| {
             if start.len() != rig.skeleton.joints().len() {
                 return Ok(());
@@ -96,11 +96,11 @@ impl Session {
         self.say("The skeleton is as it was before the solver ran");
     }
 
-    pub(super) fn start_race(&mut self) {
+    pub(super) fn start_comparison(&mut self) {
         self.stop_run();
-        if let Some(solving) = self.solving_or_new() {
-            self.solving = Some(solving);
-            self.race = Some(Race::new(self.skeleton(), self.clock.time));
+        if let Some(solver_run) = self.solving_or_new() {
+            self.solver_run = Some(solver_run);
+            self.comparison = Some(Comparison::new(self.skeleton(), self.playback.time));
         }
     }
 
@@ -110,17 +110,17 @@ impl Session {
             self.iterate(self.skeleton().iterations_per_frame);
             self.rest();
         }
-        if let Some(race) = &mut self.race {
-            race.advance();
+        if let Some(comparison) = &mut self.comparison {
+            comparison.advance();
         }
     }
 
     fn iterate(&mut self, iterations: u32) {
-        let Some(mut solving) = self.solving.take() else { return };
+        let Some(mut solver_run) = self.solver_run.take() else { return };
         let mut after = self.shown.clone();
-        match solving.advance(&mut after.skeleton, self.clock.time, iterations) {
+        match solver_run.advance(&mut after.skeleton, self.playback.time, iterations) {
             Ok(()) => {
-                self.solving = Some(solving);
+                self.solver_run = Some(solver_run);
                 self.commit(after);
             }
             Err(error) => {
@@ -132,9 +132,9 @@ impl Session {
 
     /// A solver that is done waits, unless its targets move by themselves.
     fn rest(&mut self) {
-        let goes_on = self.clock.playing && self.has_motion();
+        let goes_on = self.playback.playing && self.has_motion();
         let is_held = self.drag().is_some();
-        let is_done = self.solving.as_ref().is_some_and(Solving::is_done);
+        let is_done = self.solver_run.as_ref().is_some_and(SolverRun::is_done);
         if is_done && !goes_on && !is_held {
             self.stop_run();
         }

@@ -2,9 +2,9 @@ use glam::Vec3;
 
 use super::Session;
 use super::view_drag::Glide;
-use crate::document::{Channel, Document, RigKind, SkeletonRig, Slither, Target};
-use crate::kinematics::skeleton::{Joint, Limit, Moved, Skeleton, SkeletonError};
-use crate::kinematics::solve::Options;
+use crate::document::{Channel, Document, FollowPath, RigKind, SkeletonRig, Target};
+use crate::kinematics::chain_ik::SolverOptions;
+use crate::kinematics::skeleton::{Joint, JointRemap, Limit, Skeleton, SkeletonError};
 
 /// What actions do to the skeleton.
 impl Session {
@@ -86,7 +86,7 @@ impl Session {
     pub(super) fn delete_joints(
         &mut self,
         joints: &[usize],
-        delete: fn(&mut Document, &[usize]) -> Result<Moved, SkeletonError>,
+        delete: fn(&mut Document, &[usize]) -> Result<JointRemap, SkeletonError>,
     ) {
         let skeleton = &self.skeleton().skeleton;
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
@@ -169,14 +169,14 @@ impl Session {
         }
     }
 
-    pub(super) fn set_slither(&mut self, slither: Option<Slither>) {
-        let is_possible = |it: &Slither| {
+    pub(super) fn set_follow_path(&mut self, follow_path: Option<FollowPath>) {
+        let is_possible = |it: &FollowPath| {
             let lengths = it.radius.is_finite() && it.amplitude.is_finite();
             lengths && it.period.is_finite() && it.period > 0.0
         };
-        if slither.as_ref().is_none_or(is_possible) {
+        if follow_path.as_ref().is_none_or(is_possible) {
             self.edit_skeleton(|rig| {
-                rig.slither = slither;
+                rig.follow_path = follow_path;
                 Ok(())
             });
         } else {
@@ -184,7 +184,7 @@ impl Session {
         }
     }
 
-    pub(super) fn set_solver(&mut self, solver: Options) {
+    pub(super) fn set_solver(&mut self, solver: SolverOptions) {
         let above_0 = |value: f32| value.is_finite() && value > 0.0;
         let is_possible = above_0(solver.damping)
             && above_0(solver.step)
@@ -213,7 +213,7 @@ impl Session {
     /// What is not seen waits.
     pub(super) fn show_rig(&mut self, rig: RigKind) {
         if rig == RigKind::Arm {
-            self.race = None;
+            self.comparison = None;
             self.stop_run();
         }
         self.view_drag = None;

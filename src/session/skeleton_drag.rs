@@ -1,10 +1,10 @@
 use glam::{Vec3, Vec3A};
 
-use super::drag::Way;
+use super::drag::DragKind;
 use super::{Drag, Grip, Handle, PointDrag, Ring, Session, TurnDrag};
 use crate::document::Ray;
+use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::Skeleton;
-use crate::kinematics::solve::{self, Method, Options, SolveError};
 
 /// Iterations while something is dragged, in every frame: enough for a short way.
 const ITERATIONS_OF_A_DRAG: u32 = 64;
@@ -13,13 +13,13 @@ const ITERATIONS_OF_A_DRAG: u32 = 64;
 impl Session {
     pub(super) fn grab_target(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
         if let Some(target) = self.skeleton().target(joint) {
-            let at = self.skeleton().targets[target].at(self.clock.time);
+            let at = self.skeleton().targets[target].at(self.playback.time);
             self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
         }
     }
 
     pub(super) fn grab_tip(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
-        if joint < self.skeleton_pose.len() && self.skeleton().slither.is_none() {
+        if joint < self.skeleton_pose.len() && self.skeleton().follow_path.is_none() {
             let tip = self.skeleton_pose.tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
@@ -27,14 +27,14 @@ impl Session {
 
     fn grab_point(&mut self, grip: Grip, handle: Handle, at: Vec3, ray: Ray, forward: Vec3) {
         let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip, way: Way::Point(drag) }));
+        self.begin_edit(Some(Drag { grip, way: DragKind::Point(drag) }));
     }
 
     pub(super) fn grab_ring(&mut self, joint: usize, axis: usize, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
         let start = self.skeleton().skeleton.joints()[joint].rotation[axis];
         let drag = TurnDrag::new(ring, start, ray);
-        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: Way::Turn(drag) }));
+        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: DragKind::Turn(drag) }));
     }
 
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
@@ -69,10 +69,10 @@ impl Session {
     fn drag_target(&mut self, joint: usize, to: Vec3) {
         let Some(index) = self.skeleton().target(joint) else { return };
         let mut target = self.skeleton().targets[index];
-        target.home = to - target.motion.offset(self.clock.time);
+        target.home = to - target.motion.offset(self.playback.time);
         self.set_target(target);
-        if self.preferences.follow && !self.is_running() && self.skeleton().slither.is_none() {
-            let goals = self.skeleton().goals(self.clock.time);
+        if self.preferences.follow && !self.is_running() && self.skeleton().follow_path.is_none() {
+            let goals = self.skeleton().goals(self.playback.time);
             let skeleton = self.skeleton().skeleton.clone();
             self.solve_drag(skeleton, &goals, self.skeleton().solver);
         }
@@ -89,9 +89,9 @@ impl Session {
             self.change_joint(joint, |joint| joint.offset = offset + moved);
             return;
         }
-        let mut goals = self.skeleton().goals(self.clock.time);
+        let mut goals = self.skeleton().goals(self.playback.time);
         goals.retain(|goal| goal.joint != joint);
-        goals.push(solve::Target { joint, point: to, weight: 1.0 });
+        goals.push(chain_ik::TipTarget { joint, point: to, weight: 1.0 });
         let mut solver = self.skeleton().solver;
         if solver.method == Method::TwoBone {
             solver.method = Method::Fabrik;
@@ -100,10 +100,15 @@ impl Session {
     }
 
     /// Brings a skeleton to goals, from a pose, and shows it.
-    fn solve_drag(&mut self, mut from: Skeleton, goals: &[solve::Target], solver: Options) {
-        let options = Options { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
+    fn solve_drag(
+        &mut self,
+        mut from: Skeleton,
+        goals: &[chain_ik::TipTarget],
+        solver: SolverOptions,
+    ) {
+        let options = SolverOptions { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
         self.edit_document(|document| {
-            solve::solve(&mut from, goals, &options)?;
+            chain_ik::solve(&mut from, goals, &options)?;
             document.skeleton.skeleton = from;
             Ok::<_, SolveError>(())
         });

@@ -1,5 +1,5 @@
-use super::{Session, Solving};
-use crate::kinematics::solve::{Report, SolveError};
+use super::{Session, SolverRun};
+use crate::kinematics::chain_ik::{Report, SolveError};
 
 /// How the pose that is shown stands to its targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,13 +40,14 @@ impl Session {
     /// State and residual of the pose that is shown; `None` without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         let rig = self.skeleton();
-        if rig.slither.is_some() || rig.goals(self.clock.time).is_empty() {
+        if rig.follow_path.is_some() || rig.goals(self.playback.time).is_empty() {
             return None;
         }
-        let run = self.solving.as_ref();
-        let current = run.filter(|run| run.led_to(rig, self.clock.time));
-        let fresh =
-            || -> Result<Report, SolveError> { Ok(Solving::new(rig, self.clock.time)?.report()) };
+        let run = self.solver_run.as_ref();
+        let current = run.filter(|run| run.led_to(rig, self.playback.time));
+        let fresh = || -> Result<Report, SolveError> {
+            Ok(SolverRun::new(rig, self.playback.time)?.report())
+        };
         let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
         let state = match current {
             _ if self.is_running() => SolverState::Running,

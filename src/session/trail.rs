@@ -2,8 +2,8 @@ use std::borrow::Cow;
 
 use glam::Vec3;
 
-use super::{OnionSkin, Session, Staging};
-use crate::document::{Document, Layer, RigKind};
+use super::{OnionSkin, Overlays, Session};
+use crate::document::{Document, Overlay, RigKind};
 
 impl Session {
     /// Where the hand, or the selected joint's tip, is at every frame.
@@ -21,19 +21,19 @@ impl Session {
     }
 }
 
-impl Staging {
+impl Overlays {
     /// What a picture of a document at a time shows beside it, as the document's display has it:
     /// nothing is selected.
     pub fn new(document: &Document, time: f64) -> Self {
         let shown = document.at(time);
         let has_trail = has_trail(document, &shown);
-        let mut staging = Self {
+        let mut overlays = Self {
             time,
             trail: if has_trail { walk(document, None) } else { Vec::new() },
             ..Self::default()
         };
-        write_onion_skins(document, &shown, time, &mut staging.onion_skins);
-        staging
+        write_onion_skins(document, &shown, time, &mut overlays.onion_skins);
+        overlays
     }
 
     /// The same at another time, at which the document is.
@@ -46,7 +46,7 @@ impl Staging {
 }
 
 fn has_trail(document: &Document, shown: &Document) -> bool {
-    document.is_posed_by_time() && shown.display.shows(Layer::Trail)
+    document.is_posed_by_time() && shown.display.shows(Overlay::Trail)
 }
 
 /// The rig some frames before and after, as far as the timeline goes, in the memory that `skins` have.
@@ -58,7 +58,7 @@ pub(super) fn write_onion_skins(
 ) {
     /// How many there are before and after, and how many frames lie between two.
     const SKINS: (isize, f64) = (3, 5.0);
-    if !shown.display.shows(Layer::OnionSkins) || !document.is_posed_by_time() {
+    if !shown.display.shows(Overlay::OnionSkins) || !document.is_posed_by_time() {
         return skins.clear();
     }
     let (count, frames) = SKINS;

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::point::Point;
 use super::slider::Slider;
-use super::{elbow, lead, limits, point, row, style, wrist};
-use crate::document::{Arm, Goal};
+use super::{elbow, fk_ik, limits, point, style, widgets, wrist};
+use crate::document::{Arm, Cursor};
 use crate::session::{Action, Session};
 
 /// Why what the hand leads cannot be set.
@@ -18,21 +18,21 @@ const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    lead::switch(ui, session, actions);
+    fk_ik::switch(ui, session, actions);
     ui.add_space(2.0);
-    if session.arm().weight < 1.0 {
-        row::section(ui, "Joint angles", |ui| lead::angles(ui, session, actions));
+    if session.arm().influence < 1.0 {
+        widgets::section(ui, "Joint angles", |ui| fk_ik::angles(ui, session, actions));
     }
     let mut aside = Vec::new();
     let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
-    row::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
+    widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
     let reference = |ui: &mut Ui| elbow::reference(ui, session, &mut aside);
-    row::section_with(ui, "Elbow", reference, |ui| elbow::ui(ui, session, actions));
+    widgets::section_with(ui, "Elbow", reference, |ui| elbow::ui(ui, session, actions));
     actions.append(&mut aside);
-    row::section(ui, "Root", |ui| root(ui, session, actions));
-    row::section(ui, "Lengths", |ui| lengths(ui, session, actions));
-    row::folded_section(ui, "Soft limits", |ui| limits::ui(ui, session, actions));
-    row::folded_section(ui, "Hand orientation", |ui| wrist::ui(ui, session, actions));
+    widgets::section(ui, "Root", |ui| root(ui, session, actions));
+    widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
+    widgets::folded_section(ui, "Soft limits", |ui| limits::ui(ui, session, actions));
+    widgets::folded_section(ui, "Hand orientation", |ui| wrist::ui(ui, session, actions));
 }
 
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -49,8 +49,8 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         disabled,
     };
     match arm.goal {
-        Goal::Root(_) => hand.show(ui, session, actions, Action::SetHand),
-        Goal::World(pin) => {
+        Cursor::Root(_) => hand.show(ui, session, actions, Action::SetHand),
+        Cursor::World(pin) => {
             let pinned = Point {
                 value: pin,
                 default: arm.root + seed,

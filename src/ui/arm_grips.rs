@@ -6,7 +6,7 @@ use super::handles::{Handles, bright};
 use super::ring::RingMark;
 use super::style;
 use super::viewport::Picture;
-use crate::document::Swivel;
+use crate::document::TwistReferenceKind;
 use crate::session::{Grip, Handle, Session};
 
 /// Where the arm's grips are in the picture; those that are behind the eye are not.
@@ -20,9 +20,9 @@ impl ArmGrips {
     pub fn new(picture: &Picture, session: &Session) -> Self {
         let (arm, pose) = (session.arm(), session.pose());
         // Between IK and FK the hand is nowhere near its cursor, and is not taken for it.
-        let hand = (arm.weight == 1.0).then(|| arm.root + pose.hand);
+        let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
         let is_led = arm.is_led_by_hand();
-        let has_pole = is_led && arm.swivel == Swivel::Pole;
+        let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
         let ring = |grip| RingMark::new(picture, grip, session.arm_ring(grip)?);
         Self {

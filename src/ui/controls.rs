@@ -4,8 +4,8 @@ use egui::{ScrollArea, Ui};
 use glam::Vec3;
 
 use super::point::Point;
-use super::{arm, joint, joints, motion, point, row, targets};
-use crate::document::{Layer, RigKind};
+use super::{arm, joint, motion, outliner, point, targets, widgets};
+use crate::document::{Overlay, RigKind};
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -17,10 +17,10 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton(ui, session, actions),
         }
-        row::section(ui, "Guides", |ui| layers(ui, session, 2, guides(session), actions));
-        let hand = (session.rig() == RigKind::Arm).then_some(Layer::Hand);
-        let surroundings: Vec<_> = Layer::SURROUNDINGS.into_iter().chain(hand).collect();
-        row::section(ui, "Display", |ui| layers(ui, session, 3, &surroundings, actions));
+        widgets::section(ui, "Guides", |ui| layers(ui, session, 2, guides(session), actions));
+        let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
+        let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
+        widgets::section(ui, "Display", |ui| layers(ui, session, 3, &surroundings, actions));
         resets(ui, session, actions);
         ui.add_space(8.0);
     });
@@ -48,23 +48,23 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 fn skeleton(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let rig = session.skeleton();
-    row::section(ui, "Joints", |ui| joints::ui(ui, session, actions));
+    widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
     if let Some(selected) = session.selected()
         && let Some(joint) = rig.skeleton.joint(selected)
     {
         let title = format!("Joint: {}", joint.name);
-        row::named_section(ui, "joint", &title, |ui| joint::ui(ui, session, selected, actions));
+        widgets::named_section(ui, "joint", &title, |ui| joint::ui(ui, session, selected, actions));
         if let Some(target) = rig.target(selected) {
             let title = format!("Target of {}", joint.name);
             let target = rig.targets[target];
-            row::named_section(ui, "target", &title, |ui| {
+            widgets::named_section(ui, "target", &title, |ui| {
                 targets::selected(ui, session, target, actions);
             });
         }
     }
-    row::section(ui, "Targets", |ui| targets::list(ui, session, actions));
-    row::section(ui, "Place", |ui| place(ui, session, actions));
-    row::section(ui, "Motion", |ui| motion::ui(ui, session, actions));
+    widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    widgets::section(ui, "Place", |ui| place(ui, session, actions));
+    widgets::section(ui, "Motion", |ui| motion::ui(ui, session, actions));
 }
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -82,13 +82,13 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     place.show(ui, session, actions, Action::SetTranslation);
 }
 
-fn guides(session: &Session) -> &'static [Layer] {
+fn guides(session: &Session) -> &'static [Overlay] {
     match session.rig() {
-        RigKind::Arm => &Layer::GUIDES,
-        RigKind::Skeleton if session.skeleton().slither.is_some() => {
-            &[Layer::Cursor, Layer::Pointer]
+        RigKind::Arm => &Overlay::GUIDES,
+        RigKind::Skeleton if session.skeleton().follow_path.is_some() => {
+            &[Overlay::Cursor, Overlay::Pointer]
         }
-        RigKind::Skeleton => &[Layer::Cursor],
+        RigKind::Skeleton => &[Overlay::Cursor],
     }
 }
 
@@ -97,7 +97,7 @@ fn layers(
     ui: &mut Ui,
     session: &Session,
     count: usize,
-    layers: &[Layer],
+    layers: &[Overlay],
     actions: &mut Vec<Action>,
 ) {
     ui.columns(count, |columns| {
@@ -113,53 +113,55 @@ fn layers(
 }
 
 /// What a layer is called, and what it is.
-pub(super) fn describe(rig: RigKind, layer: Layer) -> (&'static str, &'static str) {
+pub(super) fn describe(rig: RigKind, layer: Overlay) -> (&'static str, &'static str) {
     match (rig, layer) {
-        (RigKind::Skeleton, Layer::Cursor) => {
+        (RigKind::Skeleton, Overlay::Cursor) => {
             ("Targets", "Where tips are asked to be, with their ways and the gaps to them")
         }
-        (RigKind::Skeleton, Layer::Pointer) => ("Path", "The way that the head goes"),
-        (RigKind::Arm, Layer::Trail) => {
+        (RigKind::Skeleton, Overlay::Pointer) => ("Path", "The way that the head goes"),
+        (RigKind::Arm, Overlay::Trail) => {
             ("Trail", "The way of the hand, with a dot for every frame")
         }
-        (RigKind::Skeleton, Layer::Trail) => {
+        (RigKind::Skeleton, Overlay::Trail) => {
             ("Trail", "The way of the selected joint's tip, with a dot for every frame")
         }
-        (_, Layer::OnionSkins) => {
+        (_, Overlay::OnionSkins) => {
             ("Onion skins", "The rig as it stands 5, 10 and 15 frames before and after")
         }
-        (RigKind::Skeleton, Layer::Labels) => ("Labels", "Names of the selected joints"),
-        (RigKind::Arm, Layer::Cursor) => ("Cursor", "A small sphere where the hand is asked to be"),
-        (RigKind::Arm, Layer::Pointer) => (
+        (RigKind::Skeleton, Overlay::Labels) => ("Labels", "Names of the selected joints"),
+        (RigKind::Arm, Overlay::Cursor) => {
+            ("Cursor", "A small sphere where the hand is asked to be")
+        }
+        (RigKind::Arm, Overlay::Pointer) => (
             "Pointer",
             "The axis from the Root through the hand to the Cursor, as long as the whole arm",
         ),
-        (_, Layer::InnerLimit) => (
+        (_, Overlay::InnerLimit) => (
             "Inner limit",
             "The sphere that the hand cannot enter: its radius is the difference of the lengths",
         ),
-        (_, Layer::OuterLimit) => (
+        (_, Overlay::OuterLimit) => (
             "Outer limit",
             "The sphere that the hand cannot leave: its radius is the sum of the lengths",
         ),
-        (_, Layer::Hand) => {
+        (_, Overlay::Hand) => {
             ("Hand", "A hand at the wrist, and stripes that show the forearm's roll")
         }
-        (_, Layer::Globe) => (
+        (_, Overlay::Globe) => (
             "Singularity globe",
             "The outer limit, hot where a small move of the hand turns the elbow far",
         ),
-        (_, Layer::References) => (
+        (_, Overlay::References) => (
             "Four references",
             "The elbow as each reference would have it, with how far apart they are",
         ),
-        (_, Layer::GridXy) => ("XY grid", "The grid in which z is 0"),
-        (_, Layer::GridXz) => ("XZ grid", "The grid in which y is 0"),
-        (_, Layer::GridYz) => ("YZ grid", "The grid in which x is 0"),
-        (_, Layer::Ground) => ("Ground", "A floor at y = 0"),
-        (_, Layer::Axes) => ("Axes", "Arrows along the world's x, y and z"),
-        (RigKind::Arm, Layer::Labels) => ("Labels", "Names at root, elbow and hand"),
-        (_, Layer::Shadow) => ("Shadow", "Soft on the floor: the higher the rig, the softer"),
+        (_, Overlay::GridXy) => ("XY grid", "The grid in which z is 0"),
+        (_, Overlay::GridXz) => ("XZ grid", "The grid in which y is 0"),
+        (_, Overlay::GridYz) => ("YZ grid", "The grid in which x is 0"),
+        (_, Overlay::Ground) => ("Ground", "A floor at y = 0"),
+        (_, Overlay::Axes) => ("Axes", "Arrows along the world's x, y and z"),
+        (RigKind::Arm, Overlay::Labels) => ("Labels", "Names at root, elbow and hand"),
+        (_, Overlay::Shadow) => ("Shadow", "Soft on the floor: the higher the rig, the softer"),
     }
 }
 

@@ -6,8 +6,8 @@ use egui::{Rangef, Stroke, Ui, Vec2b};
 use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints};
 
 use super::{number, plot, style};
-use crate::kinematics::solve::Method;
-use crate::session::{History, Race, Session};
+use crate::kinematics::chain_ik::Method;
+use crate::session::{Comparison, History, Session};
 
 const HEIGHT: f32 = 132.0;
 /// What is shown of an error that is 0, in parts of the skeleton's reach.
@@ -61,7 +61,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
             }
         })
         .response;
-    let said = match session.solving().map(crate::session::Solving::report) {
+    let said = match session.solver_run().map(crate::session::SolverRun::report) {
         Some(report) => format!(
             "Convergence: error {} after {} iterations",
             number::short(report.error),
@@ -81,12 +81,13 @@ fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
         };
         history.points().map(point).collect::<Vec<_>>()
     };
-    if let Some(race) = session.race() {
-        let runners = Race::runners(race).iter().filter(|runner| runner.report().is_ok());
+    if let Some(comparison) = session.comparison() {
+        let runners =
+            Comparison::runners(comparison).iter().filter(|runner| runner.report().is_ok());
         return runners.map(|runner| (runner.method, points(&runner.history))).collect();
     }
-    let solving = session.solving();
-    solving.map(|it| (it.report().method, points(it.history()))).into_iter().collect()
+    let solver_run = session.solver_run();
+    solver_run.map(|it| (it.report().method, points(it.history()))).into_iter().collect()
 }
 
 /// The 1, 2 or 5 times a power of ten that is next below, and at least 1.

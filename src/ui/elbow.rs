@@ -7,25 +7,25 @@ use egui::{ComboBox, Label, RichText, Ui};
 use super::arm::ANGLES_LEAD;
 use super::point::Point;
 use super::slider::Slider;
-use crate::document::{Arm, Swivel};
+use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Action, Session};
 
 /// What a reference is.
-pub(super) fn describe(swivel: Swivel) -> &'static str {
-    match swivel {
-        Swivel::Limb => {
+pub(super) fn describe(twist_reference: TwistReferenceKind) -> &'static str {
+    match twist_reference {
+        TwistReferenceKind::Limb => {
             "Up, as far as the Pointer lets it, as in the paper. The elbow turns around where the \
              hand passes straight above or below the shoulder"
         }
-        Swivel::Pole => {
+        TwistReferenceKind::Pole => {
             "Towards a point, as most programs have it. The elbow turns around where the hand \
              passes between the shoulder and the pole, or behind"
         }
-        Swivel::Stereographic => {
+        TwistReferenceKind::Stereographic => {
             "As on a map of all directions that leaves out one, straight behind: smooth everywhere \
              else"
         }
-        Swivel::Transport => {
+        TwistReferenceKind::Transport => {
             "Carried along with the hand: never turns around, but a hand that goes in a circle and \
              comes back finds the elbow elsewhere. Made for posing; keys are measured from the map"
         }
@@ -39,7 +39,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         label: "Spin",
         tooltip: "How far the Socket is turned about the Pointer from the reference: it takes the \
                   elbow around and leaves the hand",
-        value: arm.elbow_spin.to_degrees(),
+        value: arm.twist.to_degrees(),
         range: (0.0, TAU.to_degrees()),
         default: 0.0,
         unit: "°",
@@ -48,23 +48,23 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ..Slider::default()
     };
     slider.show(ui, super::is_sliding(session), actions, |degrees| {
-        Action::SetElbowSpin((degrees % 360.0).to_radians())
+        Action::SetTwist((degrees % 360.0).to_radians())
     });
-    if arm.swivel == Swivel::Pole {
+    if arm.twist_reference == TwistReferenceKind::Pole {
         pole(ui, session, actions);
     }
 }
 
 /// What the spin is measured from, to choose.
 pub(super) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let chosen = session.arm().swivel;
+    let chosen = session.arm().twist_reference;
     let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
     let response = combo.show_ui(ui, |ui| {
-        for swivel in Swivel::ALL {
-            let item = ui.selectable_label(swivel == chosen, swivel.name());
-            let item = item.on_hover_text(describe(swivel));
-            if item.clicked() && swivel != chosen {
-                actions.push(Action::SetSwivel(swivel));
+        for twist_reference in TwistReferenceKind::ALL {
+            let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
+            let item = item.on_hover_text(describe(twist_reference));
+            if item.clicked() && twist_reference != chosen {
+                actions.push(Action::SetTwistReference(twist_reference));
             }
         }
     });

@@ -2,7 +2,7 @@
 
 use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
-use super::{pops, reach_curve, references, row, status, style, symbol, triangle};
+use super::{pops, reach_curve, references, status, style, symbol, triangle, widgets};
 use crate::document::Arm;
 use crate::session::{Action, Session};
 
@@ -20,16 +20,16 @@ struct Quantity {
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
-        row::section(ui, "Triangle", |ui| {
+        widgets::section(ui, "Triangle", |ui| {
             triangle::ui(ui, session.arm(), session.pose());
             sentence(ui, session);
         });
-        row::section(ui, "Reach", |ui| meter(ui, session));
-        row::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
-        row::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
-        row::section(ui, "Swivel references", |ui| references::ui(ui, session, actions));
-        row::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
-        row::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
+        widgets::section(ui, "Reach", |ui| meter(ui, session));
+        widgets::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
+        widgets::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
+        widgets::section(ui, "Swivel references", |ui| references::ui(ui, session, actions));
+        widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
+        widgets::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
     });
 }
 
@@ -69,7 +69,7 @@ fn pointer(session: &Session) -> [Quantity; 4] {
         },
         Quantity {
             symbol: "D",
-            formula: match arm.softening.is_hard() {
+            formula: match arm.soft_reach.is_hard() {
                 true => "|c| within limits",
                 false => "|c| softened",
             },

@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::{DragValue, Grid, Ui};
 
 use super::dialogs::{ask, browse, folder, unless_there};
-use super::row::Field;
+use super::widgets::Field;
 use crate::document::Timeline;
 use crate::export::Format;
 use crate::io::Frames;

@@ -146,7 +146,7 @@ fn bones(picture: &Picture, session: &Session) -> Vec<Bone> {
             base: picture.place(base).unwrap_or(nowhere),
             tip: picture.place(tip).unwrap_or(nowhere),
             depth: picture.depth(base.midpoint(tip)),
-            can_be_posed: rig.slither.is_none()
+            can_be_posed: rig.follow_path.is_none()
                 && (is_root_point || joints[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
         }
@@ -170,7 +170,8 @@ fn handles(picture: &Picture, session: &Session) -> Option<(usize, Handles)> {
 
 /// The rings of the selected joint, all as large on screen wherever they are.
 fn rings(picture: &Picture, session: &Session) -> Vec<RingMark> {
-    let Some(joint) = session.selected().filter(|_| session.skeleton().slither.is_none()) else {
+    let Some(joint) = session.selected().filter(|_| session.skeleton().follow_path.is_none())
+    else {
         return Vec::new();
     };
     let ring = |axis| RingMark::new(picture, Grip::Ring(joint, axis), session.ring(joint, axis)?);

@@ -6,9 +6,9 @@ use egui::{ComboBox, Ui};
 use glam::Vec3;
 
 use super::point::AXES;
-use super::row::{self, Field};
 use super::slider::{self, Slider};
 use super::style;
+use super::widgets::{self, Field};
 use crate::kinematics::skeleton::{Joint, Limit};
 use crate::session::{Action, Session};
 
@@ -40,7 +40,7 @@ fn rotation(
     actions: &mut Vec<Action>,
 ) {
     let colours = style::palette(ui).axes;
-    let shown = match session.skeleton().slither {
+    let shown = match session.skeleton().follow_path {
         Some(_) => session.skeleton().at(session.time()).joints()[index].rotation,
         None => joint.rotation,
     };
@@ -50,7 +50,7 @@ fn rotation(
         let range = limit
             .filter(|_| !is_stiff)
             .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
-        let slithers = session.skeleton().slither.map(|_| SLITHERS);
+        let slithers = session.skeleton().follow_path.map(|_| SLITHERS);
         let slider = Slider {
             name: &format!("Rotation {label}"),
             label: &format!("Turn {label}"),
@@ -120,7 +120,7 @@ fn angle(
 fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
     let step = session.shown().cell() * 0.1;
     let tooltip = "From the joint's base to its tip, in its own space";
-    row::pair(ui, "Bone", |ui| {
+    widgets::pair(ui, "Bone", |ui| {
         for axis in (0..3).rev() {
             let name = format!("Bone {}", AXES[axis]);
             let value = joint.axis[axis];
@@ -133,7 +133,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
         }
     });
     let length = joint.axis.length();
-    row::pair(ui, "Length", |ui| {
+    widgets::pair(ui, "Length", |ui| {
         let tooltip = "How long the bone is; its direction stays";
         Field {
             name: "Length",
@@ -156,7 +156,7 @@ fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
         Some(joint) => joint.name.clone(),
         None => "none".to_owned(),
     };
-    row::pair(ui, "Parent", |ui| {
+    widgets::pair(ui, "Parent", |ui| {
         let combo = ComboBox::from_id_salt("parent")
             .selected_text(name(joint.parent))
             .width(ui.available_width().min(150.0))

@@ -3,7 +3,7 @@
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 use glam::Vec2;
 
-use super::{joints, menu, timeline};
+use super::{menu, outliner, timeline};
 use crate::document::{AxisView, RigKind};
 use crate::session::{Action, Constraint, Dialog, PointDrag, Session};
 
@@ -66,8 +66,8 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             // It leaves the text, or closes the list.
         } else if session.is_running() {
             actions.push(Action::CancelRun);
-        } else if session.race().is_some() {
-            actions.push(Action::Race(false));
+        } else if session.comparison().is_some() {
+            actions.push(Action::Comparison(false));
         } else if !session.selection().is_empty() {
             actions.push(Action::Select(Vec::new()));
         } else if !session.selected_keys().is_empty() {
@@ -122,13 +122,13 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(Action::AddJoint { tip: None });
     }
     if pressed(Key::T) {
-        actions.extend(joints::toggle_target(session));
+        actions.extend(outliner::toggle_target(session));
     }
     if let Some(joint) = selected.filter(|_| pressed(Key::F2)) {
-        actions.push(joints::rename(session, joint));
+        actions.push(outliner::rename(session, joint));
     }
     if selected.is_some() && (pressed(Key::Delete) || pressed(Key::Backspace)) {
-        actions.push(joints::delete(session));
+        actions.push(outliner::delete(session));
     }
     if pressed(Key::R) {
         actions.push(Action::Run(!session.is_running()));

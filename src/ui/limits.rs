@@ -4,28 +4,28 @@ use core::f32::consts::PI;
 
 use egui::Ui;
 
-use super::lead;
+use super::fk_ik;
 use super::slider::Slider;
-use crate::kinematics::reach::Softening;
+use crate::kinematics::soft_reach::SoftReach;
 use crate::session::{Action, Session};
 
 const MOST_SOFT: f32 = 0.99;
 const MOST_STRETCHED: f32 = 3.0;
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let softening = session.arm().softening;
+    let soft_reach = session.arm().soft_reach;
     let [softness, stretch, angle] =
-        [softening.softness(), softening.max_stretch(), softening.min_elbow_angle()];
-    let seed = Softening::default();
+        [soft_reach.softness(), soft_reach.max_stretch(), soft_reach.min_elbow_angle()];
+    let seed = SoftReach::default();
     // What no softening can have is brought to the nearest that one can.
     let set = |softness: f32, stretch: f32, angle: f32| {
         let widest = PI - 1e-3;
-        let softening = Softening::new(
+        let soft_reach = SoftReach::new(
             softness.clamp(0.0, MOST_SOFT),
             stretch.max(1.0),
             angle.clamp(0.0, widest),
         );
-        Action::SetSoftening(softening.unwrap_or(seed))
+        Action::SetSoftReach(soft_reach.unwrap_or(seed))
     };
     let is_sliding = super::is_sliding(session);
     let slider = Slider {
@@ -55,7 +55,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let slider = Slider {
         label: "φ_min",
         range: (0.0, 179.0),
-        ..lead::angle("Smallest elbow angle", tooltip, angle)
+        ..fk_ik::angle("Smallest elbow angle", tooltip, angle)
     };
     slider.show(ui, is_sliding, actions, |degrees| set(softness, stretch, degrees.to_radians()));
 }

@@ -3,7 +3,7 @@
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::{Machine, status, timeline};
-use crate::document::{AxisView, Camera, Channel, Layer, RigKind, Theme};
+use crate::document::{AxisView, Camera, Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group};
 use crate::session::{Action, Dialog, Navigation, Session};
 
@@ -16,7 +16,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mu
         ui.menu_button("Help", |ui| help(ui, machine, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rig = match session.rig() {
-                RigKind::Arm => match session.arm().weight {
+                RigKind::Arm => match session.arm().influence {
                     1.0 => "Arm · IK".to_owned(),
                     0.0 => "Arm · FK".to_owned(),
                     weight => format!("Arm · {:.0} % IK", weight * 100.0),
@@ -140,7 +140,7 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     }
     ui.menu_button("What is shown", |ui| {
-        Layer::all().map(Channel::Layer).for_each(|channel| one(ui, channel, actions));
+        Overlay::all().map(Channel::Overlay).for_each(|channel| one(ui, channel, actions));
     });
 }
 
@@ -183,10 +183,10 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     }
     ui.separator();
-    let mut layers = vec![(Layer::Trail, "Motion trail"), (Layer::OnionSkins, "Onion skins")];
+    let mut layers = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
     if session.rig() == RigKind::Arm {
-        layers.push((Layer::Globe, "Singularity globe"));
-        layers.push((Layer::References, "Four swivel references"));
+        layers.push((Overlay::Globe, "Singularity globe"));
+        layers.push((Overlay::References, "Four swivel references"));
     }
     for (layer, name) in layers {
         let mut shown = session.shown().display.shows(layer);

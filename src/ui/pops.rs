@@ -6,12 +6,12 @@ use egui_plot::{
     Text, VLine,
 };
 
-use super::{plot, row, style};
-use crate::document::{Arm, Swivel};
+use super::{plot, style, widgets};
+use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::{Change, Pop};
-use crate::kinematics::reach::Softening;
-use crate::kinematics::swivel::Reference;
-use crate::session::{Action, Pops, Remedy, Sample, Session, Spike, What};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::TwistReference;
+use crate::session::{Action, PopFix, Pops, Sample, Session, Spike, What};
 
 const HEIGHT: f32 = 140.0;
 /// What is shown of ratios: beyond, they are at the edge.
@@ -29,7 +29,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             _ => "No pops: the elbow goes calmly with the cursor.",
         });
     }
-    let mut offered: Vec<Remedy> = Vec::new();
+    let mut offered: Vec<PopFix> = Vec::new();
     for spike in spikes.iter().rev().take(LISTED) {
         list(ui, session.arm(), spike, &mut offered, actions);
     }
@@ -49,7 +49,7 @@ fn list(
     ui: &mut Ui,
     arm: &Arm,
     spike: &Spike,
-    offered: &mut Vec<Remedy>,
+    offered: &mut Vec<PopFix>,
     actions: &mut Vec<Action>,
 ) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
@@ -58,12 +58,12 @@ fn list(
         return;
     }
     ui.label(RichText::new(text));
-    match Remedy::new(spike, arm) {
-        Some(remedy) if !offered.contains(&remedy) => {
-            offered.push(remedy);
-            let (label, tooltip) = wording(remedy, arm.softening);
-            if row::button(ui, label, &tooltip, None) {
-                actions.push(remedy.action());
+    match PopFix::new(spike, arm) {
+        Some(pop_fix) if !offered.contains(&pop_fix) => {
+            offered.push(pop_fix);
+            let (label, tooltip) = wording(pop_fix, arm.soft_reach);
+            if widgets::button(ui, label, &tooltip, None) {
+                actions.push(pop_fix.action());
             }
         }
         Some(_) => {}
@@ -87,9 +87,11 @@ fn describe(spike: &Spike) -> String {
     match spike.pop {
         Pop::Singular { nearest } => {
             let pole = match spike.ik.reference {
-                Reference::Limb => "the vertical",
-                Reference::Pole(_) => "the pole",
-                Reference::Stereographic(_) | Reference::Transport => "what the map leaves out, −x",
+                TwistReference::Limb => "the vertical",
+                TwistReference::Pole(_) => "the pole",
+                TwistReference::Stereographic(_) | TwistReference::Transport => {
+                    "what the map leaves out, −x"
+                }
             };
             let degrees = nearest.to_degrees();
             format!("the Pointer passed within {degrees:.1}° of {pole} ({times})")
@@ -101,27 +103,27 @@ fn describe(spike: &Spike) -> String {
 }
 
 /// A button's name and what it does.
-fn wording(remedy: Remedy, now: Softening) -> (&'static str, String) {
-    match remedy {
-        Remedy::Measure(Swivel::Transport) => (
+fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
+    match pop_fix {
+        PopFix::Measure(TwistReferenceKind::Transport) => (
             "Carry it along",
             "The elbow's side goes along with the Pointer by the least turn: no direction is \
              singular, but a closed way does not bring it back"
                 .to_owned(),
         ),
-        Remedy::Measure(_) => (
+        PopFix::Measure(_) => (
             "Measure from the map",
             "The elbow's spin is measured from a map of all directions that leaves out only the \
              one behind, −x; the elbow stays"
                 .to_owned(),
         ),
-        Remedy::Soften(softening) => (
+        PopFix::Soften(soft_reach) => (
             if now.softness() == 0.0 { "Soften the reach" } else { "Soften it more" },
-            format!("Softness {:.2}: the hand lags behind near the limits", softening.softness()),
+            format!("Softness {:.2}: the hand lags behind near the limits", soft_reach.softness()),
         ),
-        Remedy::KeepOpen(softening) => (
+        PopFix::KeepOpen(soft_reach) => (
             "Keep the elbow open",
-            format!("Smallest elbow angle {:.0}°", softening.min_elbow_angle().to_degrees()),
+            format!("Smallest elbow angle {:.0}°", soft_reach.min_elbow_angle().to_degrees()),
         ),
     }
 }
@@ -129,7 +131,7 @@ fn wording(remedy: Remedy, now: Softening) -> (&'static str, String) {
 fn why_none(pop: Pop, arm: &Arm) -> String {
     match pop {
         Pop::Shoulder => {
-            let least = arm.softening.least_distance(arm.bones);
+            let least = arm.soft_reach.least_distance(arm.bones);
             match least > 1e-3 * arm.bones.outer_limit() {
                 true => format!(
                     "No remedy: from one side to the other the hand must jump by twice the least \

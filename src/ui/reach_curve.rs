@@ -8,7 +8,7 @@ use egui_plot::{
 
 use super::{plot, status, style};
 use crate::document::Arm;
-use crate::kinematics::reach::{Extent, Softening};
+use crate::kinematics::soft_reach::{Extent, SoftReach};
 use crate::session::Session;
 
 const HEIGHT: f32 = 168.0;
@@ -32,8 +32,8 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
     }
     ui.horizontal_wrapped(|ui| curves.iter().for_each(|curve| legend(ui, curve)));
     ui.label(said);
-    ui.weak(note(arm.softening));
-    if arm.weight < 1.0 {
+    ui.weak(note(arm.soft_reach));
+    if arm.influence < 1.0 {
         ui.weak("As the hand alone would have it: the angles lead too");
     }
 }
@@ -41,7 +41,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
 /// The hand's distance over the cursor's, in parts of L.
 struct Curve {
     name: String,
-    softening: Softening,
+    soft_reach: SoftReach,
     is_own: bool,
     colour: Color32,
     style: LineStyle,
@@ -50,15 +50,15 @@ struct Curve {
 impl Curve {
     /// None, soft and stretched: with what the arm has of each, else an example.
     fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
-        let own = arm.softening;
+        let own = arm.soft_reach;
         let (softness, stretch, angle) = (own.softness(), own.max_stretch(), own.min_elbow_angle());
         let softer = if softness > 0.0 { softness } else { EXAMPLE_SOFTNESS };
         let longer = if stretch > 1.0 { stretch } else { EXAMPLE_STRETCH };
-        let with = |softness, stretch| Softening::new(softness, stretch, angle).unwrap_or(own);
+        let with = |softness, stretch| SoftReach::new(softness, stretch, angle).unwrap_or(own);
         let palette = style::palette(ui);
-        let curve = |name: String, softening: Softening, colour, style| {
-            let is_own = softening == own;
-            Self { name, softening, is_own, colour, style }
+        let curve = |name: String, soft_reach: SoftReach, colour, style| {
+            let is_own = soft_reach == own;
+            Self { name, soft_reach, is_own, colour, style }
         };
         [
             curve("none".to_owned(), with(0.0, 1.0), ui.visuals().text_color(), LineStyle::Solid),
@@ -89,8 +89,8 @@ fn outer(arm: &Arm) -> f64 {
 
 fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
     let outer = outer(arm);
-    let least = f64::from(arm.softening.least_distance(arm.bones)) / outer;
-    let longest = curves.iter().map(|curve| curve.softening.max_stretch()).fold(1.0, f32::max);
+    let least = f64::from(arm.soft_reach.least_distance(arm.bones)) / outer;
+    let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
     // No arm is stretched so far that its limits would be lost in a corner.
     let most = f64::from(longest.min(4.0)) + 0.2;
     let digits = status::decimals(arm.cell());
@@ -127,7 +127,7 @@ impl Curve {
         let outer = outer(arm);
         let point = |step| {
             let asked = most * f64::from(step) / f64::from(POINTS);
-            let actual = self.softening.extent(arm.bones, (asked * outer) as f32).distance;
+            let actual = self.soft_reach.extent(arm.bones, (asked * outer) as f32).distance;
             [asked, f64::from(actual) / outer]
         };
         let points: PlotPoints<'_> = (0..=POINTS).map(point).collect();
@@ -146,7 +146,7 @@ impl Dot {
     fn new(arm: &Arm, most: f64) -> Self {
         let asked = arm.cursor().length().min(f32::MAX);
         let part = f64::from(asked) / outer(arm);
-        let actual = f64::from(arm.softening.extent(arm.bones, asked).distance) / outer(arm);
+        let actual = f64::from(arm.soft_reach.extent(arm.bones, asked).distance) / outer(arm);
         let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };
         Self { at: [part.min(most - 0.04), actual.min(most - 0.14)], shape }
     }
@@ -180,12 +180,12 @@ fn legend(ui: &mut Ui, curve: &Curve) {
 /// How far the hand goes for a cursor at a distance from the shoulder.
 fn reading(arm: &Arm, asked: f32) -> String {
     let asked = asked.min(f32::MAX);
-    let Extent { distance, slope, .. } = arm.softening.extent(arm.bones, asked);
+    let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, asked);
     format!("Asked {asked:.1}, actual {distance:.1}, slope {slope:.2}")
 }
 
 /// Which of the curves is the arm's own, and which are only examples.
-fn note(own: Softening) -> &'static str {
+fn note(own: SoftReach) -> &'static str {
     match (own.softness() > 0.0, own.max_stretch() > 1.0) {
         (false, false) => "Hard arm: soft and stretch are examples",
         (true, false) => "Soft arm: stretch is an example",

@@ -5,9 +5,9 @@ use egui::{
     Align, Align2, FontId, Grid, Layout, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::{elbow, row, style};
-use crate::document::{Arm, Layer, Swivel};
-use crate::kinematics::swivel::Carried;
+use super::{elbow, style, widgets};
+use crate::document::{Arm, Overlay, TwistReferenceKind};
+use crate::kinematics::twist::TransportedFrame;
 use crate::scene::Palette;
 use crate::session::{Action, Session};
 
@@ -17,13 +17,13 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.weak("The joints' own angles lead: nothing is measured.");
         return;
     }
-    table(ui, arm, session.journey().carried());
+    table(ui, arm, session.transport_path().transported());
     ui.add_space(4.0);
-    journey(ui, session, actions);
+    transport_path(ui, session, actions);
     let display = session.shown().display;
     let shown = [
-        (Layer::References, "As ghosts", "The arm as the other references would have it"),
-        (Layer::Globe, "Globe of gains", "Where the hand would be when the elbow flips: hot"),
+        (Overlay::References, "As ghosts", "The arm as the other references would have it"),
+        (Overlay::Globe, "Globe of gains", "Where the hand would be when the elbow flips: hot"),
     ];
     ui.horizontal(|ui| {
         for (layer, name, tooltip) in shown {
@@ -33,7 +33,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         }
     });
-    if display.shows(Layer::Globe) {
+    if display.shows(Overlay::Globe) {
         legend(ui);
     }
 }
@@ -67,7 +67,7 @@ fn legend(ui: &mut Ui) {
     response.on_hover_text(summary);
 }
 
-fn table(ui: &mut Ui, arm: &Arm, carried: Carried) {
+fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
     let own = arm.solve().pose;
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
@@ -78,16 +78,16 @@ fn table(ui: &mut Ui, arm: &Arm, carried: Carried) {
             });
         }
         ui.end_row();
-        for swivel in Swivel::ALL {
-            let colour = match swivel == arm.swivel {
+        for twist_reference in TwistReferenceKind::ALL {
+            let colour = match twist_reference == arm.twist_reference {
                 true => ui.visuals().strong_text_color(),
-                false => style::colour(palette.swivel(swivel)),
+                false => style::colour(palette.twist_reference(twist_reference)),
             };
-            let name = RichText::new(swivel.name()).color(colour);
-            ui.label(name).on_hover_text(elbow::describe(swivel));
-            let pose = arm.pose_measured_from(swivel, Some(carried));
+            let name = RichText::new(twist_reference.name()).color(colour);
+            ui.label(name).on_hover_text(elbow::describe(twist_reference));
+            let pose = arm.pose_measured_from(twist_reference, Some(transported));
             let apart = turn_in_words(own.elbow_turn_to(&pose));
-            let gain = arm.reference_of(swivel).gain(own.facing);
+            let gain = arm.reference_of(twist_reference).gain(own.facing);
             for (value, tooltip) in [
                 (apart, "How far its elbow is turned from the arm's, with the same spin"),
                 (gain_in_words(gain), "How far the elbow turns for every degree of the Pointer"),
@@ -101,12 +101,12 @@ fn table(ui: &mut Ui, arm: &Arm, carried: Carried) {
     });
 }
 
-fn journey(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    row::pair(ui, "Holonomy", |ui| {
-        if row::button(ui, "Start here", "Carries along from here", None) {
-            actions.push(Action::StartJourney);
+fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    widgets::pair(ui, "Holonomy", |ui| {
+        if widgets::button(ui, "Start here", "Carries along from here", None) {
+            actions.push(Action::ResetTransport);
         }
-        let turned = turn_in_words(session.journey().holonomy());
+        let turned = turn_in_words(session.transport_path().holonomy());
         ui.label(RichText::new(turned).monospace()).on_hover_text(
             "What was carried along the hand's way is turned by so much against what goes straight: \
              the solid angle that the way goes around. A hand that comes back does not bring its \

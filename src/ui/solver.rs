@@ -2,26 +2,26 @@
 
 use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
 
-use super::row::{self, Field};
 use super::status::method_name;
-use super::{convergence, number, race};
-use crate::kinematics::solve::{Method, Options, Root};
+use super::widgets::{self, Field};
+use super::{comparison, convergence, number};
+use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
-        row::section(ui, "Solver", |ui| {
+        widgets::section(ui, "Solver", |ui| {
             method(ui, session, actions);
             settings(ui, session, actions);
             buttons(ui, session, actions);
             // A race has a table of its own.
-            if session.race().is_none() {
+            if session.comparison().is_none() {
                 report(ui, session);
             }
         });
-        row::section(ui, "Convergence", |ui| convergence::ui(ui, session));
-        row::section(ui, "Race", |ui| race::ui(ui, session, actions));
+        widgets::section(ui, "Convergence", |ui| convergence::ui(ui, session));
+        widgets::section(ui, "Race", |ui| comparison::ui(ui, session, actions));
     });
 }
 
@@ -65,7 +65,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for method in Method::ALL {
             let item = ui.selectable_label(method == options.method, method_name(method));
             if item.on_hover_text(describe(method)).clicked() {
-                actions.push(Action::SetSolver(Options { method, ..options }));
+                actions.push(Action::SetSolver(SolverOptions { method, ..options }));
             }
         }
     });
@@ -78,7 +78,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let rig = session.skeleton();
     let options = rig.solver;
     let set = |options| Action::SetSolver(options);
-    row::pair(ui, "Iterations per frame", |ui| {
+    widgets::pair(ui, "Iterations per frame", |ui| {
         let value = rig.iterations_per_frame as f32;
         let tooltip = "How many iterations a running solver makes between two pictures";
         Field { name: "Iterations per frame", value, unit: "", step: 1.0, digits: 0, tooltip }
@@ -86,7 +86,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
             });
     });
-    row::pair(ui, "Iterations at most", |ui| {
+    widgets::pair(ui, "Iterations at most", |ui| {
         let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
         let tooltip = "After so many a solver gives up";
         Field { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }.show(
@@ -95,26 +95,26 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             actions,
             |value| {
                 let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
-                set(Options { iterations, ..options })
+                set(SolverOptions { iterations, ..options })
             },
         );
     });
     tolerance(ui, session, actions);
     match options.method {
         Method::DampedLeastSquares => {
-            row::pair(ui, "Damping", |ui| {
+            widgets::pair(ui, "Damping", |ui| {
                 let tooltip = "λ, in chain lengths: more is calmer and slower";
                 let value = options.damping;
                 Field { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
                     ui,
                     session,
                     actions,
-                    |damping| set(Options { damping, ..options }),
+                    |damping| set(SolverOptions { damping, ..options }),
                 );
             });
         }
         Method::TransposeFixed => {
-            row::pair(ui, "Step", |ui| {
+            widgets::pair(ui, "Step", |ui| {
                 let tooltip = "The step's length, in parts of the one that is always stable";
                 Field {
                     name: "Step length",
@@ -124,7 +124,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                     digits: 2,
                     tooltip,
                 }
-                .show(ui, session, actions, |step| set(Options { step, ..options }));
+                .show(ui, session, actions, |step| set(SolverOptions { step, ..options }));
             });
         }
         Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
@@ -133,7 +133,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let tooltip = "Whether the roots may move, as a snake's head does";
     if ui.checkbox(&mut free, "Free root").on_hover_text(tooltip).changed() {
         let root = if free { Root::Free } else { Root::Fixed };
-        actions.push(set(Options { root, ..options }));
+        actions.push(set(SolverOptions { root, ..options }));
     }
     let mut follow = session.preferences().follow;
     let tooltip = "Solve at once while a target is dragged; switch it off to watch the solver run";
@@ -144,7 +144,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let options = session.skeleton().solver;
-    row::pair(ui, "Tolerance", |ui| {
+    widgets::pair(ui, "Tolerance", |ui| {
         let auto = 1e-4 * session.skeleton().reach();
         if let Some(tolerance) = options.tolerance {
             let tooltip = "How near every tip must come, in the world";
@@ -152,14 +152,14 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let short = |value: f64| number::short(value as f32);
             Field { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
                 .show_as(ui, session, actions, &short, |tolerance| {
-                    Action::SetSolver(Options { tolerance: Some(tolerance), ..options })
+                    Action::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
                 });
         }
         let mut is_auto = options.tolerance.is_none();
         let tooltip = "A ten-thousandth of the chain's length";
         if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
             let tolerance = (!is_auto).then_some(auto);
-            actions.push(Action::SetSolver(Options { tolerance, ..options }));
+            actions.push(Action::SetSolver(SolverOptions { tolerance, ..options }));
         }
     });
 }
@@ -180,7 +180,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         if wide(step, "Step", "One iteration (S)", disabled) {
             actions.push(Action::Step);
         }
-        let nothing = session.solving().is_none().then_some("The solver has not run yet");
+        let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
         if wide(reset, "Reset", "Back to the pose before the solver ran", nothing) {
             actions.push(Action::ResetSolver);
         }
@@ -189,13 +189,13 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
     let layout = Layout::top_down_justified(Align::Center);
-    ui.with_layout(layout, |ui| row::button(ui, name, tooltip, disabled)).inner
+    ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
 /// Why no solver can run.
 pub(super) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton();
-    if rig.slither.is_some() {
+    if rig.follow_path.is_some() {
         Some("The joints follow the head; there is nothing to solve")
     } else if rig.targets.is_empty() {
         Some("There is no target; add one to a joint")
@@ -211,16 +211,16 @@ fn report(ui: &mut Ui, session: &Session) {
     let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
-    row::pair(ui, "Iterations", |ui| {
+    widgets::pair(ui, "Iterations", |ui| {
         let made = status.map(|status| status.report.iterations);
         value(ui, made.filter(|made| *made > 0).map_or_else(none, |made| made.to_string()))
             .on_hover_text("Iterations of the run that led to this pose")
     });
-    row::pair(ui, "Error", |ui| {
+    widgets::pair(ui, "Error", |ui| {
         value(ui, status.map_or_else(none, |status| number::short(status.report.error)))
             .on_hover_text("The largest distance from a tip to its target, in the world")
     });
-    row::pair(ui, "State", |ui| {
+    widgets::pair(ui, "State", |ui| {
         ui.label(status.map_or("no target", |status| status.state.describe()))
     });
 }

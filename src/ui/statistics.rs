@@ -8,7 +8,7 @@ use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 use super::frame_times::{Frame, FrameTimes};
 use super::number::grouped;
 use super::{Machine, plot, style};
-use crate::kinematics::solve::Method;
+use crate::kinematics::chain_ik::Method;
 use crate::scene::Palette;
 
 pub(super) const WIDTH: f32 = 272.0;

@@ -6,8 +6,8 @@ use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 use super::Machine;
 use super::number::grouped;
 use crate::document::{Arm, RigKind};
-use crate::kinematics::solve::Method;
-use crate::kinematics::two_bone::{Pose, Reach};
+use crate::kinematics::chain_ik::Method;
+use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
 use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, SolverStatus, TurnDrag};
 
@@ -58,12 +58,12 @@ fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
 }
 
 /// One sentence on why the arm is as it is.
-pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
+pub(super) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
     let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
     if !arm.is_led_by_hand() {
         return "FK: the joints' own angles place the hand.".to_owned();
     }
-    if arm.weight < 1.0 {
+    if arm.influence < 1.0 {
         return format!("Between FK and IK: the hand is {gap} from the cursor.");
     }
     if pose.stretch > 1.0 {
@@ -72,10 +72,10 @@ pub(super) fn sentence(arm: &Arm, pose: &Pose) -> String {
     }
     match pose.reach {
         Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
-        Reach::TooFar if arm.softening.softness() > 0.0 => {
+        Reach::TooFar if arm.soft_reach.softness() > 0.0 => {
             format!("Soft: the hand lags {gap} behind the cursor, so that the elbow does not snap.")
         }
-        Reach::TooClose if !arm.softening.is_hard() => {
+        Reach::TooClose if !arm.soft_reach.is_hard() => {
             format!("Soft: the hand keeps away from the shoulder, {gap} from the cursor.")
         }
         Reach::TooFar => {
@@ -152,7 +152,7 @@ fn describe_pose(session: &Session) -> String {
     let (arm, pose) = (session.arm(), session.pose());
     let reach = match pose.reach {
         _ if !arm.is_led_by_hand() => "FK",
-        _ if arm.weight < 1.0 => "Between FK and IK",
+        _ if arm.influence < 1.0 => "Between FK and IK",
         Reach::Reached => "Reached",
         Reach::TooFar => "Too far",
         Reach::TooClose => "Too close",

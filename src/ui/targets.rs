@@ -3,13 +3,16 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::point::Point;
-use super::row::{self, Field};
+use super::widgets::{self, Field};
 use super::{number, point, slider};
-use crate::document::{Motion, Path, Target};
+use crate::document::{Target, TargetMotion, TargetPath};
 use crate::session::{Action, Session};
 
-const PATHS: [(Path, &str); 3] =
-    [(Path::Still, "Still"), (Path::Circle, "Circle"), (Path::FigureEight, "Figure eight")];
+const PATHS: [(TargetPath, &str); 3] = [
+    (TargetPath::Still, "Still"),
+    (TargetPath::Circle, "Circle"),
+    (TargetPath::FigureEight, "Figure eight"),
+];
 
 /// Every target in a row.
 pub(super) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -19,7 +22,7 @@ pub(super) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     for target in &rig.targets {
         let Some(joint) = rig.skeleton.joint(target.joint) else { continue };
-        row::pair(ui, "", |ui| {
+        widgets::pair(ui, "", |ui| {
             let residual = residual(session, target);
             ui.label(RichText::new(number::short(residual)).monospace())
                 .on_hover_text("From the tip to its target");
@@ -49,14 +52,14 @@ fn residual(session: &Session, target: &Target) -> f32 {
 pub(super) fn selected(ui: &mut Ui, session: &Session, target: Target, actions: &mut Vec<Action>) {
     let step = session.shown().cell() * 0.1;
     place(ui, session, target, step, actions);
-    row::pair(ui, "Weight", |ui| {
+    widgets::pair(ui, "Weight", |ui| {
         let tooltip = "How much it counts beside other targets";
         let field =
             Field { name: "Weight", value: target.weight, unit: "", step: 0.1, digits: 2, tooltip };
         field.show(ui, session, actions, |weight| Action::SetTarget(Target { weight, ..target }));
     });
     moves(ui, target, actions);
-    if target.motion.path != Path::Still {
+    if target.motion.path != TargetPath::Still {
         motion(ui, session, target, step, actions);
     }
 }
@@ -76,15 +79,15 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
 }
 
 fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
-    row::pair(ui, "Moves", |ui| {
+    widgets::pair(ui, "Moves", |ui| {
         let now = PATHS.iter().find(|(path, _)| *path == target.motion.path);
         let combo = ComboBox::from_id_salt("moves").selected_text(now.map_or("", |now| now.1));
         let response = combo.show_ui(ui, |ui| {
             for (path, name) in PATHS {
                 if ui.selectable_label(path == target.motion.path, name).clicked() {
-                    let motion = Motion { path, ..target.motion };
+                    let motion = TargetMotion { path, ..target.motion };
                     actions.push(Action::SetTarget(Target { motion, ..target }));
-                    actions.push(Action::Play(path != Path::Still));
+                    actions.push(Action::Play(path != TargetPath::Still));
                 }
             }
         });
@@ -96,18 +99,18 @@ fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
 
 fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
     let set = |motion| Action::SetTarget(Target { motion, ..target });
-    row::pair(ui, "Radius", |ui| {
+    widgets::pair(ui, "Radius", |ui| {
         let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
         Field { name: "Radius", value, unit: "", step, digits: slider::decimals(step), tooltip }
-            .show(ui, session, actions, |radius| set(Motion { radius, ..target.motion }));
+            .show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
     });
-    row::pair(ui, "Period", |ui| {
+    widgets::pair(ui, "Period", |ui| {
         let (value, tooltip) = (target.motion.period, "How long once around takes");
         Field { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
             ui,
             session,
             actions,
-            |period| set(Motion { period, ..target.motion }),
+            |period| set(TargetMotion { period, ..target.motion }),
         );
     });
 }

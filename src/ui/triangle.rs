@@ -8,13 +8,13 @@ use egui::{
 
 use super::{style, symbol};
 use crate::document::Arm;
-use crate::kinematics::two_bone::Pose;
+use crate::kinematics::two_bone::TwoBonePose;
 
 const HEIGHT: f32 = 170.0;
 const MARGIN: f32 = 26.0;
 const SIZE: f32 = 14.0;
 
-pub(super) fn ui(ui: &mut Ui, arm: &Arm, pose: &Pose) {
+pub(super) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| {
@@ -48,7 +48,7 @@ struct Figure {
 }
 
 impl Figure {
-    fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &Pose) -> Self {
+    fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink(MARGIN);
         // One scale for all poses of this arm, so that a growing D is seen to grow; smaller only

@@ -2,15 +2,15 @@
 
 use egui::{RichText, Ui};
 
-use super::{lead, row};
-use crate::document::Space;
+use super::{fk_ik, widgets};
+use crate::document::HandSpace;
 use crate::session::{Action, Session};
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let arm = session.arm();
     let spaces = [
-        (Space::Lower, "Follow forearm", "The hand turns with the lower limb"),
-        (Space::World, "Keep in world", "The hand keeps its orientation however the arm moves"),
+        (HandSpace::Lower, "Follow forearm", "The hand turns with the lower limb"),
+        (HandSpace::World, "Keep in world", "The hand keeps its orientation however the arm moves"),
     ];
     ui.horizontal(|ui| {
         for (space, name, tooltip) in spaces {
@@ -20,11 +20,11 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     });
     let tooltip = match arm.wrist.space {
-        Space::Lower => "How the hand is turned on the forearm",
-        Space::World => "How the hand is turned in the world",
+        HandSpace::Lower => "How the hand is turned on the forearm",
+        HandSpace::World => "How the hand is turned in the world",
     };
-    lead::euler(ui, session, "Hand turn", tooltip, arm.wrist.angles, actions, Action::SetWrist);
-    row::pair(ui, "Forearm roll τ", |ui| {
+    fk_ik::euler(ui, session, "Hand turn", tooltip, arm.wrist.angles, actions, Action::SetWrist);
+    widgets::pair(ui, "Forearm roll τ", |ui| {
         let roll = format!("{:.1}°", arm.roll(session.pose()).to_degrees());
         ui.label(RichText::new(roll).monospace()).on_hover_text(
             "How far the hand is turned about the forearm, whole turns included; spread along it, as \

@@ -3,7 +3,7 @@
 #![cfg(feature = "app")]
 
 mod reach;
-mod swivel;
+mod twist;
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -796,7 +796,7 @@ fn any_piece() -> impl Strategy<Value = &'static str> {
 fn any_valid_line() -> impl Strategy<Value = String> {
     let number = || any::<f32>().prop_filter("finite", |n| n.is_finite());
     let length = number().prop_map(|n| n.abs().max(f32::from_bits(1)));
-    let swivel = prop_oneof![
+    let twist_reference = prop_oneof![
         prop::sample::select(vec!["limb", "stereographic", "transport"])
             .prop_map(|name| format!("\"{name}\"")),
         prop::array::uniform3(number())
@@ -806,7 +806,7 @@ fn any_valid_line() -> impl Strategy<Value = String> {
     let fields = (
         optional("upper", length.prop_map(|n| format!("{n:e}"))),
         optional("elbow_spin_deg", number().prop_map(|n| n.to_string())),
-        optional("swivel", swivel),
+        optional("swivel", twist_reference),
         optional("softness", (0.0..1.0_f32).prop_map(|n| n.to_string())),
         optional("max_stretch", stretch.prop_map(|n| format!("{n:e}"))),
         optional("min_elbow_deg", (0.0..180.0_f32).prop_map(|n| n.to_string())),

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::ops::{Neg, Range};
 
 use glam::{DMat3, DVec3, Vec3};
-use ik_arm::kinematics::two_bone::{Pose, TwoBone};
+use ik_arm::kinematics::two_bone::{TwoBone, TwoBonePose};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseResult};
 
@@ -40,7 +40,7 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn solve(self) -> Pose {
+    pub fn solve(self) -> TwoBonePose {
         self.arm.solve(self.cursor, self.spin)
     }
 }

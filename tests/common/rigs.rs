@@ -7,8 +7,8 @@ use std::f32::consts::PI;
 use std::ops::Range;
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
+use ik_arm::kinematics::chain_ik::TipTarget;
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
-use ik_arm::kinematics::solve::Target;
 
 /// SplitMix64.
 pub struct Random(pub u64);
@@ -134,10 +134,10 @@ pub fn shake(random: &mut Random, skeleton: &mut Skeleton) {
 }
 
 /// Where the tips are in some pose: together in reach.
-pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[usize]) -> Vec<Target> {
+pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[usize]) -> Vec<TipTarget> {
     let mut posed = skeleton.clone();
     shake(random, &mut posed);
-    let target = |joint: &usize| Target { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
+    let target = |joint: &usize| TipTarget { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
     tips.iter().map(target).collect()
 }
 

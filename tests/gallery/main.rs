@@ -8,11 +8,11 @@ mod twin;
 use std::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use ik_arm::document::{Arm, Document, Goal, Swivel};
+use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
 use ik_arm::io::{self, Example, Group};
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::chain_ik;
 use ik_arm::kinematics::skeleton::Skeleton;
-use ik_arm::kinematics::solve;
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::{Reach, TwoBone};
 
 use twin::{check, within};
@@ -112,12 +112,12 @@ fn straight_up_and_down_the_limbs_elbow_jumps_and_the_stereographic_one_does_not
     let upright: Vec<f32> = arms.iter().filter(is_upright).map(|arm| arm.cursor().y).collect();
     assert_eq!(upright, [350.0, -350.0]);
     assert!(arms.iter().all(is_at_its_cursor));
-    assert_eq!((document.arm.swivel, jumps(&arms, 20.0)), (Swivel::Limb, 2));
+    assert_eq!((document.arm.twist_reference, jumps(&arms, 20.0)), (TwistReferenceKind::Limb, 2));
     let across = largest(&steps(&arms, |arm| arm.pose().elbow));
     let out = f64::from(arms[0].pose().out);
     assert!(across > 1.9 * out, "{across}, out {out}");
 
-    let smooth = document.measured_from(Swivel::Stereographic);
+    let smooth = document.measured_from(TwistReferenceKind::Stereographic);
     let arms = checked(&smooth);
     assert!(arms.iter().all(is_at_its_cursor));
     // By the formula (d₁ + o_e·g)/d = (200 + 171·1)/350.
@@ -129,14 +129,17 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
     let document = opened("along-the-pole");
     let arms = checked(&document);
     let is_along = |arm: &&Arm| arm.cursor().cross(arm.pole) == Vec3::ZERO;
-    assert_eq!((document.arm.swivel, arms.iter().filter(is_along).count()), (Swivel::Pole, 1));
+    assert_eq!(
+        (document.arm.twist_reference, arms.iter().filter(is_along).count()),
+        (TwistReferenceKind::Pole, 1)
+    );
     // To the side that the Limb decides for at that frame, and on to the other one.
     assert_eq!(jumps(&arms, 20.0), 2);
     let middle = arms.iter().position(|arm| is_along(&arm)).expect("along it");
     let [before, after] = [middle - 1, middle + 1].map(|frame| arms[frame].pose().outward());
     assert!(before.dot(after) < -0.99, "{before} {after}");
 
-    let smooth = document.measured_from(Swivel::Stereographic);
+    let smooth = document.measured_from(TwistReferenceKind::Stereographic);
     let arms = checked(&smooth);
     assert!(arms.iter().all(is_at_its_cursor));
     assert!(largest(&elbow_gains(&arms)) < 1.5, "{}", largest(&elbow_gains(&arms)));
@@ -146,7 +149,7 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
 fn exactly_straight_the_target_is_reached_and_spinning_leaves_the_elbow() {
     let document = opened("exactly-straight");
     let arms = checked(&document);
-    let mut spins = arms.iter().map(|arm| arm.elbow_spin).collect::<Vec<_>>();
+    let mut spins = arms.iter().map(|arm| arm.twist).collect::<Vec<_>>();
     spins.sort_by(f32::total_cmp);
     spins.dedup();
     assert!(spins.len() > 100 && spins[spins.len() - 1] > 6.0, "it plays once around");
@@ -174,8 +177,8 @@ fn just_past_straight_the_elbow_snaps_unless_it_is_softened() {
     let hard = largest(&elbow_gains(&arms));
     assert!(hard > 8.0, "{hard}");
 
-    let softening = Softening::new(0.1, 1.0, 0.0).expect("soft");
-    let soft = Document { arm: Arm { softening, ..document.arm }, ..document };
+    let soft_reach = SoftReach::new(0.1, 1.0, 0.0).expect("soft");
+    let soft = Document { arm: Arm { soft_reach, ..document.arm }, ..document };
     let arms = checked(&soft);
     assert!(largest(&elbow_gains(&arms)) < 2.0, "{}", largest(&elbow_gains(&arms)));
 }
@@ -243,7 +246,7 @@ fn moves_as_the_seeds_does(name: &str, length: f32) {
     for arm in arms {
         assert!(is_at_its_cursor(&arm));
         let cursor = (arm.cursor().as_dvec3() / scale).as_vec3();
-        let seed = Arm { goal: Goal::Root(cursor), ..Arm::default() }.pose();
+        let seed = Arm { goal: Cursor::Root(cursor), ..Arm::default() }.pose();
         let elbow = arm.pose().elbow.as_dvec3() / scale;
         within("the elbow", elbow.distance(seed.elbow.as_dvec3()), 1e-5 * 500.0);
     }
@@ -260,7 +263,7 @@ fn two_bones_in_a_mirror_follow_their_target() {
     let mut before: Option<[DVec3; 3]> = None;
     for time in times(&document) {
         let goals = document.skeleton.goals(time);
-        let report = solve::solve(&mut skeleton, &goals, &document.skeleton.solver);
+        let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton.solver);
         assert!(report.expect("it can be solved").converged, "at {time}");
         let at = points(&skeleton);
         within("the hand", at[2].distance(target.at(time).as_dvec3()), 2e-6 * length);

@@ -5,7 +5,7 @@ use ik_arm::document::{Document, Theme};
 use ik_arm::io::{Example, Group};
 use ik_arm::rig::Cone;
 use ik_arm::scene::Scene;
-use ik_arm::session::Staging;
+use ik_arm::session::Overlays;
 
 use crate::{opened, times};
 
@@ -15,8 +15,8 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
         let document = opened(example.name);
         for time in times(&document) {
             let shown = document.at(time);
-            let staging = Staging::new(&document, time);
-            let scene = Scene::new(&shown, &staging, Theme::Dark);
+            let overlays = Overlays::new(&document, time);
+            let scene = Scene::new(&shown, &overlays, Theme::Dark);
             let at = format!("{} at {time}", example.name);
             assert!(numbers(&scene).all(f32::is_finite), "{at}");
             let projection = scene.camera.projection(1.6);
@@ -37,7 +37,7 @@ fn grids_have_cells_as_small_beside_the_rig_as_the_seeds() {
     assert_eq!(Document::default().cell(), 100.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
-        let stage = Scene::new(&document, &Staging::default(), Theme::Dark).stage;
+        let stage = Scene::new(&document, &Overlays::default(), Theme::Dark).stage;
         let cells = stage.radius / stage.cell;
         assert!((3.0..35.0).contains(&cells), "{}: {cells}", example.name);
     }
@@ -75,7 +75,7 @@ fn every_hard_case_is_drawn() {
     let mut picture = ik_arm::render::Picture::new(&gpu, 240, 150, 1.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
-        let mut scene = Scene::new(&document, &Staging::default(), Theme::Dark);
+        let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
         let with = picture.draw(&scene).expect("drawn");
         scene.solids.clear();
         scene.balls.clear();

@@ -1,7 +1,7 @@
 //! An arm that is posed independently, by the textbook's law of cosines in f64.
 
 use glam::{DVec3, Vec3};
-use ik_arm::document::{Arm, Swivel};
+use ik_arm::document::{Arm, TwistReferenceKind};
 use ik_arm::rig::Part;
 
 use crate::EXACT;
@@ -18,14 +18,14 @@ fn twin(arm: &Arm) -> Twin {
     let (upper, lower) = (f64::from(arm.bones.upper()), f64::from(arm.bones.lower()));
     let (least, length) = ((upper - lower).abs(), upper + lower);
     let cursor = arm.cursor().as_dvec3();
-    let distance = soften(cursor.length(), least, length, f64::from(arm.softening.softness()));
+    let distance = soften(cursor.length(), least, length, f64::from(arm.soft_reach.softness()));
     let forward = cursor.try_normalize().unwrap_or(arm.facing.direction.as_dvec3());
     let along = match distance {
         0.0 => 0.0,
         _ => (distance * distance + upper * upper - lower * lower) / (2.0 * distance),
     };
     let out = (upper * upper - along * along).max(0.0).sqrt();
-    let (sin, cos) = f64::from(arm.elbow_spin).sin_cos();
+    let (sin, cos) = f64::from(arm.twist).sin_cos();
     let outward = outward(arm, forward);
     let side = outward * cos + forward.cross(outward) * sin;
     Twin { elbow: forward * along + side * out, hand: forward * distance, length }
@@ -50,14 +50,14 @@ fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     let heading = arm.facing.heading.as_dvec2();
     let (cos_yaw, sin_yaw) = if flat == 0.0 { heading.into() } else { (x / flat, z / flat) };
     let limb = DVec3::new(-sin_pitch * cos_yaw, flat, -sin_pitch * sin_yaw);
-    match arm.swivel {
-        Swivel::Limb => limb,
-        Swivel::Pole => {
+    match arm.twist_reference {
+        TwistReferenceKind::Limb => limb,
+        TwistReferenceKind::Pole => {
             let pole = arm.pole.as_dvec3();
             let aside = pole.reject_from_normalized(forward);
             if aside.length() > 1e-6 * pole.length() { aside.normalize() } else { limb }
         }
-        Swivel::Stereographic | Swivel::Transport => {
+        TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
             let k = (forward + DVec3::X).cross(DVec3::Y);
             k.cross(forward).normalize()
         }

@@ -1,10 +1,10 @@
 //! What is exported: every example, as it is and with keys.
 
 use glam::Vec3;
-use ik_arm::document::{Arm, Channel, Document, RigKind, Swivel, Timeline};
+use ik_arm::document::{Arm, Channel, Document, RigKind, Timeline, TwistReferenceKind};
 use ik_arm::io::{self, Example, Progress};
-use ik_arm::kinematics::reach::Softening;
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::soft_reach::SoftReach;
 
 use crate::rigs::{Random, transform};
 
@@ -47,7 +47,7 @@ pub fn keyed_arm(random: &mut Random) -> Document {
         key(Channel::Hand, random.vector(450.0));
         key(Channel::Root, random.vector(100.0));
         for (channel, low, high) in [
-            (Channel::ElbowSpin, -9.0, 9.0),
+            (Channel::Twist, -9.0, 9.0),
             (Channel::Upper, 50.0, 400.0),
             (Channel::Lower, 50.0, 400.0),
         ] {
@@ -59,14 +59,15 @@ pub fn keyed_arm(random: &mut Random) -> Document {
 
 /// An arm that stretches, goes softly, and is led by its hand and by its angles in turn.
 fn led_arm(random: &mut Random) -> Document {
-    let softening = Softening::new(0.3, 2.0, 0.5).expect("a softening");
-    let arm = Arm { swivel: Swivel::Stereographic, softening, ..Arm::default() };
+    let soft_reach = SoftReach::new(0.3, 2.0, 0.5).expect("a softening");
+    let arm =
+        Arm { twist_reference: TwistReferenceKind::Stereographic, soft_reach, ..Arm::default() };
     let mut document = Document { arm, timeline: short(), ..Document::default() };
     for time in times() {
         let mut key = |channel, value| document.keys.insert(channel, time, value);
         key(Channel::Hand, random.vector(700.0));
-        key(Channel::ElbowSpin, Vec3::X * random.within(-9.0..9.0));
-        key(Channel::Weight, Vec3::X * random.within(0.0..1.0));
+        key(Channel::Twist, Vec3::X * random.within(-9.0..9.0));
+        key(Channel::Influence, Vec3::X * random.within(0.0..1.0));
         key(Channel::Shoulder, random.vector(3.0));
         key(Channel::Bend, Vec3::X * random.within(-3.0..3.0));
     }

@@ -1,9 +1,9 @@
 //! What holds for every arm.
 
 use glam::{DQuat, Vec3};
-use ik_arm::document::{Channel, Space, Swivel};
-use ik_arm::kinematics::two_bone::Pose;
-use ik_arm::session::{Action, Lead, Session};
+use ik_arm::document::{Channel, HandSpace, TwistReferenceKind};
+use ik_arm::kinematics::two_bone::TwoBonePose;
+use ik_arm::session::{Action, PoseMode, Session};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -14,10 +14,10 @@ proptest! {
 
     #[test]
     fn a_pinned_hand_stays_where_it_is_to_the_last_bit_however_the_root_moves(
-        hand in points(300.0), roots in vec(points(400.0), 1..8), swivel in swivels()
+        hand in points(300.0), roots in vec(points(400.0), 1..8), twist_reference in swivels()
     ) {
         let mut session = session([
-            Action::SetSwivel(swivel), Action::SetHand(hand), Action::SetRoot(roots[0]),
+            Action::SetTwistReference(twist_reference), Action::SetHand(hand), Action::SetRoot(roots[0]),
         ]);
         let before = session.arm().cursor_world();
         session.apply(Action::PinHand(true));
@@ -44,11 +44,11 @@ proptest! {
         hand in points(300.0), spin in 0.0..6.0_f32, swivels in vec(swivels(), 1..6), pole in points(300.0)
     ) {
         let mut session =
-            session([Action::SetHand(hand), Action::SetElbowSpin(spin), Action::SetPole(pole)]);
+            session([Action::SetHand(hand), Action::SetTwist(spin), Action::SetPole(pole)]);
         let pose = *session.pose();
-        for swivel in swivels {
-            session.apply(Action::SetSwivel(swivel));
-            prop_assert_eq!(session.arm().swivel, swivel);
+        for twist_reference in swivels {
+            session.apply(Action::SetTwistReference(twist_reference));
+            prop_assert_eq!(session.arm().twist_reference, twist_reference);
             prop_assert!(apart(&pose, session.pose()) < 1e-5, "{:?}", apart(&pose, session.pose()));
         }
     }
@@ -61,16 +61,16 @@ proptest! {
         for (index, hand) in hands.iter().enumerate() {
             session.apply(Action::SetTime(index as f64));
             session.apply(Action::SetHand(*hand));
-            session.apply(Action::SetElbowSpin(spins[index]));
-            session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
+            session.apply(Action::SetTwist(spins[index]));
+            session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
         }
         let poses: Vec<_> =
             (0..hands.len()).map(|time| session.document().at(time as f64).arm.pose()).collect();
-        for swivel in to {
-            session.apply(Action::SetSwivel(swivel));
+        for twist_reference in to {
+            session.apply(Action::SetTwistReference(twist_reference));
             for (time, pose) in poses.iter().enumerate() {
                 let now = session.document().at(time as f64).arm.pose();
-                prop_assert!(apart(pose, &now) < 2e-5, "{} at {} with {:?}", apart(pose, &now), time, swivel);
+                prop_assert!(apart(pose, &now) < 2e-5, "{} at {} with {:?}", apart(pose, &now), time, twist_reference);
             }
         }
     }
@@ -79,7 +79,7 @@ proptest! {
     fn what_is_carried_along_does_not_pop_and_is_taken_back_with_the_drag(
         hands in vec(points(300.0), 2..40)
     ) {
-        let mut session = session([Action::SetSwivel(Swivel::Transport), Action::SetHand(hands[0])]);
+        let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport), Action::SetHand(hands[0])]);
         let before = session.document().clone();
         session.apply(Action::BeginEdit);
         for ends in hands.windows(2) {
@@ -89,7 +89,7 @@ proptest! {
                 let now = *session.pose();
                 let [from, to] = [was, now].map(|pose| pose.outward().as_dvec3());
                 let [w0, w1] = [was, now].map(|pose| pose.facing.direction.as_dvec3());
-                // Carried by the least turn, in f64.
+                // TransportedFrame by the least turn, in f64.
                 let turn = DQuat::from_rotation_arc(w0.normalize(), w1.normalize());
                 prop_assert!(w0.dot(w1) < -0.999 || (turn * from).distance(to) < 2e-5);
             }
@@ -100,7 +100,7 @@ proptest! {
 
     #[test]
     fn playing_never_transports(hands in vec(points(300.0), 2..5), times in vec(0.0..4.0_f64, 1..12)) {
-        let mut session = session([Action::SetSwivel(Swivel::Transport), Action::SetElbowSpin(0.7)]);
+        let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport), Action::SetTwist(0.7)]);
         for (time, hand) in hands.iter().enumerate() {
             session.apply(Action::SetTime(time as f64));
             session.apply(Action::SetHand(*hand));
@@ -118,11 +118,11 @@ proptest! {
 
     #[test]
     fn a_hand_dragged_against_its_keys_does_not_pop(to in points(300.0)) {
-        let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+        let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport)]);
         for (time, hand) in [(0.0, Vec3::new(200.0, 50.0, 10.0)), (2.0, Vec3::new(-20.0, 250.0, 90.0))] {
             session.apply(Action::SetTime(time));
             session.apply(Action::SetHand(hand));
-            session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
+            session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
         }
         session.apply(Action::SetTime(1.0));
         let from = session.arm().cursor();
@@ -138,19 +138,19 @@ proptest! {
 
     #[test]
     fn switching_between_hand_and_angles_keeps_the_pose_in_one_step(
-        hand in points(400.0), spin in 0.0..6.0_f32, swivel in swivels(), pinned in any::<bool>(),
+        hand in points(400.0), spin in 0.0..6.0_f32, twist_reference in swivels(), pinned in any::<bool>(),
         shoulder in points(3.0), bend in -3.0..3.0_f32
     ) {
         let mut session = session([
-            Action::SetHand(hand), Action::SetElbowSpin(spin), Action::SetSwivel(swivel), Action::PinHand(pinned),
+            Action::SetHand(hand), Action::SetTwist(spin), Action::SetTwistReference(twist_reference), Action::PinHand(pinned),
         ]);
         let before = (session.document().clone(), *session.pose());
-        let bound = |pose: &Pose| {
+        let bound = |pose: &TwoBonePose| {
             let angle = pose.elbow_angle().to_degrees();
             if (1.0..=179.0).contains(&angle) { 1e-5 } else { 5e-4 }
         };
-        session.apply(Action::SwitchTo(Lead::Angles));
-        prop_assert_eq!(session.arm().weight, 0.0);
+        session.apply(Action::SwitchTo(PoseMode::Angles));
+        prop_assert_eq!(session.arm().influence, 0.0);
         prop_assert!(apart(&before.1, session.pose()) <= bound(&before.1));
         session.apply(Action::Undo);
         prop_assert_eq!(session.document(), &before.0);
@@ -158,8 +158,8 @@ proptest! {
         session.apply(Action::SetShoulder(shoulder));
         session.apply(Action::SetBend(bend));
         let posed = *session.pose();
-        session.apply(Action::SwitchTo(Lead::Hand));
-        prop_assert_eq!((session.arm().weight, session.arm().is_pinned()), (1.0, pinned));
+        session.apply(Action::SwitchTo(PoseMode::Hand));
+        prop_assert_eq!((session.arm().influence, session.arm().is_pinned()), (1.0, pinned));
         prop_assert!(apart(&posed, session.pose()) <= bound(&posed), "{}", apart(&posed, session.pose()));
     }
 
@@ -168,23 +168,23 @@ proptest! {
         hand in points(400.0), shoulder in points(3.0), bend in -3.0..3.0_f32
     ) {
         let mut session = session([Action::SetHand(hand)]);
-        session.apply(Action::Key(vec![Channel::Weight]));
+        session.apply(Action::Key(vec![Channel::Influence]));
         session.apply(Action::SetTime(2.0));
-        session.apply(Action::SwitchTo(Lead::Angles));
+        session.apply(Action::SwitchTo(PoseMode::Angles));
         session.apply(Action::SetShoulder(shoulder));
         session.apply(Action::SetBend(bend));
-        session.apply(Action::Key(vec![Channel::Weight]));
+        session.apply(Action::Key(vec![Channel::Influence]));
         let bones = session.arm().bones;
         for frame in 0..=60 {
             let posed = session.document().at(f64::from(frame) / 30.0).arm;
             let pose = posed.pose();
-            prop_assert!((0.0..=1.0).contains(&posed.weight));
+            prop_assert!((0.0..=1.0).contains(&posed.influence));
             let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
             prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 1.5e-4);
             prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 2e-4);
         }
-        prop_assert_eq!(session.document().at(0.0).arm.weight, 1.0);
-        prop_assert_eq!(session.document().at(2.0).arm.weight, 0.0);
+        prop_assert_eq!(session.document().at(0.0).arm.influence, 1.0);
+        prop_assert_eq!(session.document().at(2.0).arm.influence, 0.0);
     }
 
     #[test]
@@ -193,7 +193,7 @@ proptest! {
     ) {
         let mut session = session([Action::SetWrist(angles)]);
         let before = session.arm().hand_rotation(session.pose());
-        session.apply(Action::SetWristSpace(Space::World));
+        session.apply(Action::SetWristSpace(HandSpace::World));
         let same = |a: glam::DMat3, b: glam::DMat3| (a.x_axis.distance(b.x_axis)).max(a.y_axis.distance(b.y_axis)) < 1e-5;
         prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         for hand in hands {
@@ -201,7 +201,7 @@ proptest! {
             prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         }
         let turned = session.arm().hand_rotation(session.pose());
-        session.apply(Action::SetWristSpace(Space::Lower));
+        session.apply(Action::SetWristSpace(HandSpace::Lower));
         prop_assert!(same(session.arm().hand_rotation(session.pose()), turned));
     }
 }

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3, Vec3};
-use ik_arm::document::{Arm, Document, Goal, Swivel};
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::session::{Action, DragInput, Grip, Handle, Lead, Session};
+use ik_arm::session::{Action, DragInput, Grip, Handle, PoseMode, Session};
 
 use crate::*;
 
@@ -17,7 +17,7 @@ fn a_root_is_where_the_hand_reaches_on_a_table_from() {
         session([Action::SetHand(Vec3::new(300.0, 0.0, 100.0)), Action::PinHand(true)]);
     session.apply(Action::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
     let (arm, pose) = (session.arm(), session.pose());
-    assert_eq!(arm.goal, Goal::World(Vec3::new(300.0, 0.0, 100.0)));
+    assert_eq!(arm.goal, Cursor::World(Vec3::new(300.0, 0.0, 100.0)));
     assert!((arm.root + pose.hand).distance(Vec3::new(300.0, 0.0, 100.0)) < 2e-4);
 }
 
@@ -25,9 +25,9 @@ fn a_root_is_where_the_hand_reaches_on_a_table_from() {
 fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
     // An octant of the sphere: a quarter turn.
     let mut session = session([
-        Action::SetSwivel(Swivel::Transport),
+        Action::SetTwistReference(TwistReferenceKind::Transport),
         Action::SetHand(Vec3::X * 300.0),
-        Action::StartJourney,
+        Action::ResetTransport,
     ]);
     let before = session.pose().outward();
     let corners = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::X];
@@ -38,7 +38,7 @@ fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
             session.apply(Action::SetHand(hand * 300.0));
         }
     }
-    let holonomy = f64::from(session.journey().holonomy());
+    let holonomy = f64::from(session.transport_path().holonomy());
     assert!((holonomy - PI / 2.0).abs() < 1e-4, "{holonomy}");
     let turned =
         before.cross(session.pose().outward()).x.atan2(before.dot(session.pose().outward()));
@@ -62,13 +62,13 @@ fn a_forearm_rolls_on_past_half_a_turn() {
 
 #[test]
 fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
-    let soft = Softening::new(0.3, 1.0, 0.0).expect("a softening");
+    let soft = SoftReach::new(0.3, 1.0, 0.0).expect("a softening");
     for hand in [Vec3::new(470.0, 100.0, 40.0), Vec3::new(90.0, 60.0, 10.0)] {
-        let mut session = session([Action::SetSoftening(soft), Action::SetHand(hand)]);
+        let mut session = session([Action::SetSoftReach(soft), Action::SetHand(hand)]);
         let before = *session.pose();
         assert!(before.hand.distance(hand) > 1.0, "it is softened");
-        session.apply(Action::SwitchTo(Lead::Angles));
-        session.apply(Action::SwitchTo(Lead::Hand));
+        session.apply(Action::SwitchTo(PoseMode::Angles));
+        session.apply(Action::SwitchTo(PoseMode::Hand));
         assert!(apart(&before, session.pose()) < 1e-4);
         assert!(session.message().is_none());
     }
@@ -76,19 +76,20 @@ fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
 
 #[test]
 fn a_stretched_arm_keeps_its_length_when_its_angles_lead() {
-    let stretch = Softening::new(0.0, 2.0, 0.0).expect("a softening");
-    let mut session = session([Action::SetSoftening(stretch), Action::SetHand(Vec3::X * 750.0)]);
+    let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
+    let mut session = session([Action::SetSoftReach(stretch), Action::SetHand(Vec3::X * 750.0)]);
     assert_eq!(session.pose().stretch, 1.5);
     let before = *session.pose();
-    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SwitchTo(PoseMode::Angles));
     assert!(apart(&before, session.pose()) < 1e-5);
-    session.apply(Action::SetWeight(0.5));
+    session.apply(Action::SetInfluence(0.5));
     assert!((session.pose().hand.length() - 750.0).abs() < 1e-2);
 }
 
 #[test]
 fn a_pole_is_dragged_and_the_elbow_follows() {
-    let mut session = session([Action::SetSwivel(Swivel::Pole), Action::SetElbowSpin(0.0)]);
+    let mut session =
+        session([Action::SetTwistReference(TwistReferenceKind::Pole), Action::SetTwist(0.0)]);
     let projection = session.camera().projection(1.0);
     let ray = projection.ray(projection.project(session.arm().pole).expect("seen"));
     let forward = projection.forward;
@@ -105,7 +106,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
 
 #[test]
 fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
-    let mut session = session([Action::SwitchTo(Lead::Angles)]);
+    let mut session = session([Action::SwitchTo(PoseMode::Angles)]);
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = session.arm_ring(grip).expect("a ring");
         let fk = session.arm().fk;
@@ -128,7 +129,7 @@ fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
         let upper = if grip == Grip::Bend { before } else { turn * before };
         assert!(upper.distance(limb(&session)) < 1e-3, "{grip:?}");
     }
-    session.apply(Action::SwitchTo(Lead::Hand));
+    session.apply(Action::SwitchTo(PoseMode::Hand));
     assert!(session.arm_ring(Grip::Bend).is_none());
 }
 
@@ -142,9 +143,10 @@ fn a_hand_pinned_beyond_all_numbers_is_within_them() {
 
 #[test]
 fn a_hand_that_is_pressed_and_let_go_leaves_the_document() {
-    for swivel in Swivel::ALL {
+    for twist_reference in TwistReferenceKind::ALL {
         for hand in [Vec3::new(250.0, 120.0, 60.0), Vec3::new(-90.0, 210.0, 33.3)] {
-            let mut session = session([Action::SetSwivel(swivel), Action::SetHand(hand)]);
+            let mut session =
+                session([Action::SetTwistReference(twist_reference), Action::SetHand(hand)]);
             let (before, undo) = (session.document().clone(), session.undo_name());
             let projection = session.camera().projection(1.0);
             let ray = projection.ray(projection.project(hand).expect("seen"));
@@ -161,7 +163,7 @@ fn a_hand_that_is_pressed_and_let_go_leaves_the_document() {
 #[test]
 fn an_arm_of_any_size_has_its_own_limits_when_it_is_led() {
     let bones = TwoBone::new(0.001, 0.002).expect("lengths");
-    let arm = Arm { bones, goal: Goal::Root(Vec3::Y * 0.0025), ..Arm::default() };
+    let arm = Arm { bones, goal: Cursor::Root(Vec3::Y * 0.0025), ..Arm::default() };
     let document = Document { arm: arm.settled().led_by_angles(), ..Document::default() };
     let pose = document.arm.pose();
     assert!(

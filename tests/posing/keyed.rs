@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Space, Swivel};
-use ik_arm::kinematics::reach::Softening;
-use ik_arm::session::{Action, Lead, Session};
+use ik_arm::document::{Channel, HandSpace, TwistReferenceKind};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::session::{Action, PoseMode, Session};
 
 use crate::*;
 
@@ -28,26 +28,26 @@ fn hand_keys_rest_while_the_hand_is_pinned() {
 
 #[test]
 fn k_keeps_what_is_shown_only_until_the_time_changes() {
-    let mut session = session([Action::SetWeight(0.0), Action::Key(vec![Channel::Weight])]);
+    let mut session = session([Action::SetInfluence(0.0), Action::Key(vec![Channel::Influence])]);
     session.apply(Action::SetTime(1.0));
-    session.apply(Action::SetWeight(1.0));
+    session.apply(Action::SetInfluence(1.0));
     assert!(session.message().is_some_and(|message| message.contains("press K")));
     session.apply(Action::Key(session.channels_to_key()));
     session.apply(Action::SetTime(0.0));
     session.apply(Action::SetTime(1.0));
-    assert_eq!(session.arm().weight, 1.0);
+    assert_eq!(session.arm().influence, 1.0);
 }
 
 #[test]
 fn a_keyed_switch_keeps_how_far_its_limbs_are_stretched() {
-    let stretch = Softening::new(0.0, 2.0, 0.0).expect("a softening");
-    let mut session = session([Action::SetSoftening(stretch), Action::SetAutoKey(true)]);
+    let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
+    let mut session = session([Action::SetSoftReach(stretch), Action::SetAutoKey(true)]);
     session.apply(Action::SetHand(Vec3::X * 750.0));
-    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SwitchTo(PoseMode::Angles));
     session.apply(Action::SetTime(1.0));
-    session.apply(Action::SwitchTo(Lead::Hand));
+    session.apply(Action::SwitchTo(PoseMode::Hand));
     session.apply(Action::SetHand(Vec3::new(300.0, 50.0, 0.0)));
-    session.apply(Action::SwitchTo(Lead::Angles));
+    session.apply(Action::SwitchTo(PoseMode::Angles));
     session.apply(Action::SetTime(0.0));
     assert!(session.pose().hand.distance(Vec3::X * 750.0) < 1e-2, "{}", session.pose().hand);
 }
@@ -69,7 +69,7 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
         arm.hand_rotation(&arm.pose())
     };
     let before = [0.0, 2.0].map(|time| turned(&session, time));
-    session.apply(Action::SetWristSpace(Space::World));
+    session.apply(Action::SetWristSpace(HandSpace::World));
     for (before, time) in before.into_iter().zip([0.0, 2.0]) {
         let now = turned(&session, time);
         assert!(
@@ -80,7 +80,7 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
 
 /// A hand with keys, whose elbow has none and is carried along, between two of them.
 fn carried_between_keys() -> Session {
-    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+    let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
         session.apply(Action::SetTime(time));
         session.apply(Action::SetHand(hand));
@@ -101,45 +101,47 @@ fn look_off(mut session: Session) -> Session {
 #[test]
 fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
     let mut session = look_off(carried_between_keys());
-    session.apply(Action::SetElbowSpin(2.0));
-    assert_eq!(session.arm().elbow_spin, 2.0);
+    session.apply(Action::SetTwist(2.0));
+    assert_eq!(session.arm().twist, 2.0);
     session.apply(Action::SetUpper(210.0));
     session.apply(Action::SetTime(0.5));
-    assert_eq!(session.arm().elbow_spin, 2.0, "it has no keys to come back to");
+    assert_eq!(session.arm().twist, 2.0, "it has no keys to come back to");
 }
 
 #[test]
 fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere() {
-    for swivel in [Swivel::Limb, Swivel::Pole, Swivel::Stereographic] {
+    for twist_reference in
+        [TwistReferenceKind::Limb, TwistReferenceKind::Pole, TwistReferenceKind::Stereographic]
+    {
         let mut session = look_off(carried_between_keys());
         let before = *session.pose();
-        session.apply(Action::SetSwivel(swivel));
-        assert!(apart(&before, session.pose()) < 1e-5, "{swivel:?}");
+        session.apply(Action::SetTwistReference(twist_reference));
+        assert!(apart(&before, session.pose()) < 1e-5, "{twist_reference:?}");
     }
 }
 
 #[test]
 fn another_edit_leaves_a_keyed_carried_spin_as_its_keys_have_it() {
-    let mut session = session([Action::SetSwivel(Swivel::Transport)]);
+    let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 90.0))] {
         session.apply(Action::SetTime(time));
         session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
+        session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
     }
     session.apply(Action::SetTime(0.7));
     session.apply(Action::SetUpper(210.0));
-    assert!(!session.is_overridden(Channel::ElbowSpin) && session.message().is_none());
+    assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
 }
 
 #[test]
 fn what_is_beneath_the_keys_is_measured_anew_too() {
-    let mut session = session([Action::SetElbowSpin(1.0)]);
+    let mut session = session([Action::SetTwist(1.0)]);
     let pose = *session.pose();
-    session.apply(Action::Key(vec![Channel::ElbowSpin, Channel::Wrist]));
-    session.apply(Action::SetSwivel(Swivel::Stereographic));
-    session.apply(Action::SetWristSpace(Space::World));
+    session.apply(Action::Key(vec![Channel::Twist, Channel::Wrist]));
+    session.apply(Action::SetTwistReference(TwistReferenceKind::Stereographic));
+    session.apply(Action::SetWristSpace(HandSpace::World));
     let hand = session.arm().hand_rotation(session.pose());
-    session.apply(Action::ClearChannels(vec![Channel::ElbowSpin, Channel::Wrist]));
+    session.apply(Action::ClearChannels(vec![Channel::Twist, Channel::Wrist]));
     assert!(apart(&pose, session.pose()) < 1e-5);
     let now = session.arm().hand_rotation(session.pose());
     assert!(now.x_axis.distance(hand.x_axis) < 1e-5 && now.y_axis.distance(hand.y_axis) < 1e-5);
@@ -175,8 +177,8 @@ fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
 
 #[test]
 fn changing_the_reference_at_a_key_shows_nothing_against_the_keys() {
-    let mut session = session([Action::SetElbowSpin(1.0)]);
-    session.apply(Action::Key(vec![Channel::Hand, Channel::ElbowSpin]));
-    session.apply(Action::SetSwivel(Swivel::Pole));
-    assert!(!session.is_overridden(Channel::ElbowSpin) && session.message().is_none());
+    let mut session = session([Action::SetTwist(1.0)]);
+    session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
+    session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
+    assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
 }

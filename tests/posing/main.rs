@@ -6,8 +6,8 @@ mod cases;
 mod keyed;
 
 use glam::Vec3;
-use ik_arm::document::Swivel;
-use ik_arm::kinematics::two_bone::Pose;
+use ik_arm::document::TwistReferenceKind;
+use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{Action, Session};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -25,8 +25,8 @@ pub fn points(size: f32) -> impl Strategy<Value = Vec3> {
     [-size..size, -size..size, -size..size].prop_map(Vec3::from_array)
 }
 
-pub fn swivels() -> impl Strategy<Value = Swivel> {
-    (0..Swivel::ALL.len()).prop_map(|index| Swivel::ALL[index])
+pub fn swivels() -> impl Strategy<Value = TwistReferenceKind> {
+    (0..TwistReferenceKind::ALL.len()).prop_map(|index| TwistReferenceKind::ALL[index])
 }
 
 pub fn session(actions: impl IntoIterator<Item = Action>) -> Session {
@@ -48,6 +48,6 @@ pub fn angle(a: Vec3, b: Vec3) -> f64 {
 }
 
 /// How far elbow and hand of two poses are apart, in parts of the seed's arm.
-pub fn apart(a: &Pose, b: &Pose) -> f32 {
+pub fn apart(a: &TwoBonePose, b: &TwoBonePose) -> f32 {
     a.elbow.distance(b.elbow).max(a.hand.distance(b.hand)) / 500.0
 }

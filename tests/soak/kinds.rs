@@ -1,8 +1,8 @@
 //! Every kind of action there is: a new one does not compile until it has its line here.
 
-use ik_arm::document::{RigKind, Space, Swivel, Theme};
+use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::SolvedBy;
-use ik_arm::session::{Action, Lead, Navigation};
+use ik_arm::session::{Action, Navigation, PoseMode};
 
 use crate::values::Values;
 
@@ -65,20 +65,20 @@ macro_rules! kinds {
 
 kinds! {
     SetHand: Arm 10, |v| Action::SetHand(v.cursor());
-    SetElbowSpin: Arm 4, |v| Action::SetElbowSpin(v.angle());
+    SetTwist: Arm 4, |v| Action::SetTwist(v.angle());
     SetRoot: Arm 4, |v| { let size = v.size(); Action::SetRoot(v.point(size)) };
     SetPin: Arm 3, |v| Action::SetPin(v.cursor());
     PinHand: Arm 3, |v| Action::PinHand(v.coin());
-    SetSwivel: Arm 5, |v| Action::SetSwivel(v.one_of(&Swivel::ALL));
+    SetTwistReference: Arm 5, |v| Action::SetTwistReference(v.one_of(&TwistReferenceKind::ALL));
     SetPole: Arm 3, |v| { let size = v.size(); Action::SetPole(v.point(size)) };
-    SetSoftening: Arm 3, |v| Action::SetSoftening(v.softening());
-    SetWeight: Arm 4, |v| Action::SetWeight(v.part());
-    SwitchTo: Arm 4, |v| Action::SwitchTo(v.one_of(&[Lead::Hand, Lead::Angles]));
+    SetSoftReach: Arm 3, |v| Action::SetSoftReach(v.soft_reach());
+    SetInfluence: Arm 4, |v| Action::SetInfluence(v.part());
+    SwitchTo: Arm 4, |v| Action::SwitchTo(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
     SetShoulder: Arm 3, |v| Action::SetShoulder(v.angles());
     SetBend: Arm 3, |v| Action::SetBend(v.angle());
     SetWrist: Arm 3, |v| Action::SetWrist(v.angles());
-    SetWristSpace: Arm 3, |v| Action::SetWristSpace(v.one_of(&[Space::Lower, Space::World]));
-    StartJourney: Look 1, |_| Action::StartJourney;
+    SetWristSpace: Arm 3, |v| Action::SetWristSpace(v.one_of(&[HandSpace::Lower, HandSpace::World]));
+    ResetTransport: Look 1, |_| Action::ResetTransport;
     SetUpper: Arm 2, |v| Action::SetUpper(v.length());
     SetLower: Arm 2, |v| Action::SetLower(v.length());
     ResetPose: Arm 1, |_| Action::ResetPose;
@@ -107,7 +107,7 @@ kinds! {
     SetAxis: Build 3, |v| Action::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
     SetLimit: Build 3, |v| Action::SetLimit { joint: v.joint(), axis: v.axis(), limit: v.limit() };
     SetLocked: Build 2, |v| Action::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
-    SetSlither: Solve 1, |v| Action::SetSlither(v.slither());
+    SetFollowPath: Solve 1, |v| Action::SetFollowPath(v.follow_path());
     SetTranslation: Build 2, |v| Action::SetTranslation(v.small_point());
 
     AddTarget: Solve 5, |v| Action::AddTarget(v.joint());
@@ -120,7 +120,7 @@ kinds! {
     CancelRun: Solve 1, |_| Action::CancelRun;
     Step: Solve 4, |_| Action::Step;
     ResetSolver: Solve 1, |_| Action::ResetSolver;
-    Race: Solve 1, |v| Action::Race(v.coin());
+    Comparison: Solve 1, |v| Action::Comparison(v.coin());
     Play: Time 4, |v| Action::Play(v.chance(0.7));
     SetTime: Time 8, |v| Action::SetTime(v.time());
     SetLooping: Time 1, |v| Action::SetLooping(v.coin());

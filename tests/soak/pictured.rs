@@ -8,7 +8,7 @@ use ik_arm::session::Session;
 use crate::{Broken, hold};
 
 pub fn all(session: &Session) -> Result<(), Broken> {
-    let scene = Scene::new(session.shown(), &session.staging(), Theme::Dark);
+    let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
     let stage = scene.stage;
     let is_stage = stage.centre.is_finite() && stage.radius.is_finite() && stage.cell.is_finite();
     hold!(is_stage, "the stage is finite: {stage:?}");

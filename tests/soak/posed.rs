@@ -2,8 +2,8 @@
 
 use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
-use ik_arm::kinematics::skeleton::{Pose as SkeletonPose, Skeleton};
-use ik_arm::kinematics::two_bone::{Pose, Reach};
+use ik_arm::kinematics::skeleton::{Skeleton, SkeletonPose};
+use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
 use ik_arm::session::{Drag, Grip, PointDrag, Session, TurnDrag};
 
 use crate::{Broken, hold};
@@ -18,7 +18,7 @@ pub fn all(session: &Session) -> Result<(), Broken> {
     places(session)
 }
 
-fn arm(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
+fn arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let numbers = [pose.distance, pose.along, pose.out, pose.spin, pose.stretch];
     let are_finite = numbers.into_iter().all(f32::is_finite);
     hold!(
@@ -32,7 +32,7 @@ fn arm(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
 }
 
 /// |elbow| = σ d₁ and |hand − elbow| = σ d₂ to 3e-7·L, as far as there are such numbers.
-fn lengths(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
+fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     const EXACT: f64 = 3e-7;
     let bones = arm.bones.stretched(pose.stretch);
     let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
@@ -48,7 +48,7 @@ fn lengths(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
 }
 
 /// What is said of the reach is true: ε = 1e-6·L.
-fn reach(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
+fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
     let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
     let cursor = arm.cursor().as_dvec3();
@@ -59,7 +59,7 @@ fn reach(arm: &Arm, pose: &Pose) -> Result<(), Broken> {
         !is_reached || missed <= near + rounding,
         "reached is there: {missed:e} {arm:?} {pose:?}"
     );
-    let is_exact = arm.weight == 1.0 && arm.softening.is_hard();
+    let is_exact = arm.influence == 1.0 && arm.soft_reach.is_hard();
     let is_there = !is_reached || pose.hand == arm.cursor();
     hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {arm:?} {pose:?}");
     let (inner, outer) = ((upper - lower).abs(), upper + lower);
@@ -123,9 +123,10 @@ fn places(session: &Session) -> Result<(), Broken> {
     if let Some(Grip::Ring(_, axis) | Grip::Shoulder(axis)) = session.drag().map(Drag::grip) {
         hold!(axis < 3, "a ring is about x, y or z");
     }
-    if let Some(solving) = session.solving() {
-        let errors = solving.history().points().all(|(_, error)| error.is_finite() && error >= 0.0);
-        hold!(errors && solving.report().error.is_finite(), "a solver knows how far it is off");
+    if let Some(solver_run) = session.solver_run() {
+        let errors =
+            solver_run.history().points().all(|(_, error)| error.is_finite() && error >= 0.0);
+        hold!(errors && solver_run.report().error.is_finite(), "a solver knows how far it is off");
     }
     Ok(())
 }

@@ -5,10 +5,10 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Document, Quantity, SkeletonRig, Slither, Target, Wrist,
+    Arm, Camera, Channel, Document, FollowPath, Quantity, SkeletonRig, Target, Wrist,
 };
+use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::skeleton::{Joint, Limit};
-use ik_arm::kinematics::solve::Options;
 use ik_arm::session::Session;
 
 use crate::{Broken, hold};
@@ -43,21 +43,31 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
     const UNIT: f32 = 1e-5;
     let is_unit = |length: f32| (length - 1.0).abs() < UNIT;
     let Arm {
-        elbow_spin, root, bones, facing, pole, carried, softening: _, weight, fk, wrist, ..
+        twist,
+        root,
+        bones,
+        facing,
+        pole,
+        transported,
+        soft_reach: _,
+        influence,
+        fk,
+        wrist,
+        ..
     } = arm;
     hold!(arm.cursor().is_finite() && arm.cursor_world().is_finite(), "the cursor is finite");
-    hold!(elbow_spin.is_finite(), "the elbow's spin is finite: {elbow_spin}");
+    hold!(twist.is_finite(), "the elbow's spin is finite: {twist}");
     hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
     hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
     hold!(is_unit(facing.direction.length()), "the arm faces somewhere: {facing:?}");
     hold!(is_unit(facing.heading.length()), "the arm heads somewhere: {facing:?}");
-    if let Some(it) = carried {
+    if let Some(it) = transported {
         let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
         hold!(are_units, "what is carried are unit vectors: {it:?}");
         let across = it.direction.dot(it.outward);
         hold!(across.abs() < UNIT, "what is carried is across the Pointer: {it:?}");
     }
-    hold!((0.0..=1.0).contains(weight), "the weight is from 0 to 1: {weight}");
+    hold!((0.0..=1.0).contains(influence), "the influence is from 0 to 1: {influence}");
     hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
     hold!(is_above_0(fk.stretch), "limbs are stretched by a factor: {fk:?}");
     let Wrist { angles, roll, .. } = wrist;
@@ -66,7 +76,7 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
 }
 
 fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
-    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, slither } = rig;
+    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, follow_path } = rig;
     let joints = skeleton.joints();
     hold!(skeleton.transform().is_finite(), "the skeleton is somewhere");
     let mut names = HashSet::new();
@@ -79,15 +89,15 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         self::target(target, joints.len())?;
         hold!(aimed.insert(target.joint), "joint {} has one target", target.joint);
     }
-    let Options { iterations, tolerance, damping, step, .. } = *solver;
+    let SolverOptions { iterations, tolerance, damping, step, .. } = *solver;
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
     hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");
     hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
     let per_frame = 1..=SkeletonRig::MOST_ITERATIONS_PER_FRAME;
     hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
-    if let Some(Slither { radius, amplitude, period, .. }) = slither {
+    if let Some(FollowPath { radius, amplitude, period, .. }) = follow_path {
         let is_way = radius.is_finite() && amplitude.is_finite() && is_above_0(*period);
-        hold!(is_way, "the snake has a way: {slither:?}");
+        hold!(is_way, "the snake has a way: {follow_path:?}");
     }
     Ok(())
 }
@@ -132,7 +142,7 @@ fn keys(document: &Document) -> Result<(), Broken> {
         hold!(are_finite, "keys of {channel:?} are finite: {knots:?}");
         let is_right = |value: Vec3| match channel.quantity() {
             Quantity::Length => value.x > 0.0,
-            Quantity::Part => (0.0..=1.0).contains(&value.x),
+            Quantity::Fraction => (0.0..=1.0).contains(&value.x),
             Quantity::Switch => value.x == 0.0 || value.x == 1.0,
             Quantity::Point | Quantity::Angle | Quantity::Angles => true,
         };

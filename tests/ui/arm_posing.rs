@@ -4,16 +4,16 @@ use egui::accesskit::Role;
 use egui::{PointerButton, Pos2, vec2};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
-use ik_arm::document::{Channel, Layer, Space, Swivel, Theme};
-use ik_arm::kinematics::two_bone::Pose;
-use ik_arm::session::{Action, Grip, Lead};
+use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
+use ik_arm::kinematics::two_bone::TwoBonePose;
+use ik_arm::session::{Action, Grip, PoseMode};
 
 use crate::bench::{Bench, LARGE, bits};
 use crate::looks::has_tooltip;
 
 const LEFT: PointerButton = PointerButton::Primary;
 
-fn apart(a: &Pose, b: &Pose) -> f32 {
+fn apart(a: &TwoBonePose, b: &TwoBonePose) -> f32 {
     a.elbow.distance(b.elbow).max(a.hand.distance(b.hand))
 }
 
@@ -48,7 +48,7 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     let pose = *bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
     bench.click(Role::Button, "FK");
-    assert_eq!(bench.session().arm().weight, 0.0);
+    assert_eq!(bench.session().arm().influence, 0.0);
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
     assert!(bench.says("Arm · FK") && bench.says("FK: the joints' own angles place the hand."));
     bench.enter("Elbow bend", "60");
@@ -67,7 +67,7 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
 
 #[test]
 fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
-    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles)]);
+    let mut bench = Bench::after([Action::SwitchTo(PoseMode::Angles)]);
     let before = bench.hand();
     let rail = bench.rect(Role::Slider, "Hand x");
     bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
@@ -79,7 +79,7 @@ fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
 
 #[test]
 fn between_fk_and_ik_the_arm_is_between_its_poses() {
-    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles), Action::SetBend(0.5)]);
+    let mut bench = Bench::after([Action::SwitchTo(PoseMode::Angles), Action::SetBend(0.5)]);
     let angles = bench.session().pose().elbow_angle();
     bench.enter("IK weight", "1");
     let hand = bench.session().pose().elbow_angle();
@@ -89,12 +89,13 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
     assert!(bench.says("Arm · 50 % IK") && bench.says("Between FK and IK"));
     bench.enter("IK weight", "3");
     assert!(bench.says("The IK weight must be from 0 to 1, not 3"));
-    assert_eq!(bench.session().arm().weight, 0.5);
+    assert_eq!(bench.session().arm().influence, 0.5);
 }
 
 #[test]
 fn rings_turn_the_shoulder_and_bend_the_elbow() {
-    let mut bench = Bench::after([Action::SwitchTo(Lead::Angles), Action::SetShoulder(Vec3::ZERO)]);
+    let mut bench =
+        Bench::after([Action::SwitchTo(PoseMode::Angles), Action::SetShoulder(Vec3::ZERO)]);
     bench.apply([Action::SetBend(0.8)]);
     for grip in [Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = bench.session().arm_ring(grip).expect("a ring");
@@ -160,25 +161,28 @@ fn a_pinned_hand_stays_when_the_root_moves() {
 
 #[test]
 fn the_elbow_is_measured_from_elsewhere_and_stays() {
-    let mut bench = Bench::after([Action::SetElbowSpin(0.4)]);
+    let mut bench = Bench::after([Action::SetTwist(0.4)]);
     let pose = *bench.session().pose();
-    for (name, swivel) in [
-        ("Pole", Swivel::Pole),
-        ("Stereographic", Swivel::Stereographic),
-        ("Transport", Swivel::Transport),
-        ("Limb", Swivel::Limb),
+    for (name, twist_reference) in [
+        ("Pole", TwistReferenceKind::Pole),
+        ("Stereographic", TwistReferenceKind::Stereographic),
+        ("Transport", TwistReferenceKind::Transport),
+        ("Limb", TwistReferenceKind::Limb),
     ] {
         pick(&mut bench, "Measured from", name);
-        assert_eq!(bench.session().arm().swivel, swivel);
+        assert_eq!(bench.session().arm().twist_reference, twist_reference);
         assert!(apart(&pose, bench.session().pose()) < 5e-3, "{name}");
-        assert_eq!(bench.shows(Role::Slider, "Pole x"), swivel == Swivel::Pole);
+        assert_eq!(
+            bench.shows(Role::Slider, "Pole x"),
+            twist_reference == TwistReferenceKind::Pole
+        );
         assert_eq!(bench.session().undo_name(), Some("change swivel"));
     }
 }
 
 #[test]
 fn the_pole_is_dragged_in_the_view_and_taken_back() {
-    let mut bench = Bench::after([Action::SetSwivel(Swivel::Pole)]);
+    let mut bench = Bench::after([Action::SetTwistReference(TwistReferenceKind::Pole)]);
     let (before, elbow) = (bench.session().arm().pole, bench.session().pose().elbow);
     let at = pole_place(&bench);
     bench.drag(LEFT, at, at + vec2(60.0, 90.0));
@@ -203,12 +207,12 @@ fn the_four_references_stand_beside_each_other() {
         assert!(bench.says(name), "{name}");
     }
     assert!(bench.says("300.00"), "the gain of the limb's, straight above");
-    for (name, layer) in [("As ghosts", Layer::References), ("Globe of gains", Layer::Globe)] {
+    for (name, layer) in [("As ghosts", Overlay::References), ("Globe of gains", Overlay::Globe)] {
         reveal(&mut bench, Role::CheckBox, name);
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
     }
-    bench.apply([Action::SetHand(Vec3::X * 300.0), Action::StartJourney]);
+    bench.apply([Action::SetHand(Vec3::X * 300.0), Action::ResetTransport]);
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
         bench.apply([Action::SetHand(hand * 300.0)]);
     }
@@ -226,11 +230,11 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     bench.enter("Softness", "0.25");
     bench.enter("Stretch", "1.5");
     bench.enter("Smallest elbow angle", "20");
-    let softening = bench.session().arm().softening;
-    assert_eq!((softening.softness(), softening.max_stretch()), (0.25, 1.5));
-    assert!((softening.min_elbow_angle().to_degrees() - 20.0).abs() < 1e-4);
+    let soft_reach = bench.session().arm().soft_reach;
+    assert_eq!((soft_reach.softness(), soft_reach.max_stretch()), (0.25, 1.5));
+    assert!((soft_reach.min_elbow_angle().to_degrees() - 20.0).abs() < 1e-4);
     bench.enter("Softness", "7");
-    assert!(bench.session().arm().softening.softness() < 1.0, "it is brought within");
+    assert!(bench.session().arm().soft_reach.softness() < 1.0, "it is brought within");
     bench.click(Role::DisclosureTriangle, "Soft limits");
     bench.click(Role::DisclosureTriangle, "Hand orientation");
     for degrees in ["100", "200", "270"] {
@@ -238,12 +242,12 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     }
     assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
     bench.click(Role::RadioButton, "Keep in world");
-    assert_eq!(bench.session().arm().wrist.space, Space::World);
+    assert_eq!(bench.session().arm().wrist.space, HandSpace::World);
 }
 
 #[test]
 fn every_control_of_the_posing_has_a_tooltip() {
-    let mut bench = Bench::after([Action::SetSwivel(Swivel::Pole)]);
+    let mut bench = Bench::after([Action::SetTwistReference(TwistReferenceKind::Pole)]);
     for (role, name) in [
         (Role::Button, "IK"),
         (Role::Button, "FK"),
@@ -264,23 +268,26 @@ fn k_keys_what_leads() {
     let keyed = |bench: &Bench| -> Vec<Channel> {
         bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
     };
-    assert_eq!(keyed(&bench), [Channel::ElbowSpin, Channel::Pin]);
-    bench.apply([Action::Undo, Action::SwitchTo(Lead::Angles)]);
+    assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin]);
+    bench.apply([Action::Undo, Action::SwitchTo(PoseMode::Angles)]);
     bench.key(egui::Key::K);
-    assert_eq!(keyed(&bench), [Channel::Weight, Channel::Shoulder, Channel::Bend]);
+    assert_eq!(keyed(&bench), [Channel::Influence, Channel::Shoulder, Channel::Bend]);
 }
 
 #[test]
 fn the_panels_of_a_measured_and_of_a_led_arm_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-        let mut bench = Bench::after([Action::SetTheme(theme), Action::SetSwivel(Swivel::Pole)]);
+        let mut bench = Bench::after([
+            Action::SetTheme(theme),
+            Action::SetTwistReference(TwistReferenceKind::Pole),
+        ]);
         let options = SnapshotOptions::new()
             .threshold(2.0)
             .max_failed_pixels(600)
             .output_path("tests/ui/snapshots");
         results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
-        bench.apply([Action::SwitchTo(Lead::Angles)]);
+        bench.apply([Action::SwitchTo(PoseMode::Angles)]);
         results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));
     }
 }

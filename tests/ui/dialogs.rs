@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::Swivel;
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::document::TwistReferenceKind;
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::session::{Action, Dialog, Effect};
 use serde_json::json;
@@ -126,7 +126,7 @@ fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
             Action::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
             Action::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
             Action::SetUpper(123.5),
-            Action::SetElbowSpin(1.0),
+            Action::SetTwist(1.0),
         ]);
         if by_key {
             bench.frame([Event::Copy]);
@@ -162,18 +162,18 @@ fn copied(actions: impl IntoIterator<Item = Action>) -> serde_json::Value {
 
 #[test]
 fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
-    let softening = Softening::new(0.25, 1.5, 0.5).expect("a softening");
+    let soft_reach = SoftReach::new(0.25, 1.5, 0.5).expect("a softening");
     let line = copied([
-        Action::SetSwivel(Swivel::Pole),
+        Action::SetTwistReference(TwistReferenceKind::Pole),
         Action::SetPole(Vec3::new(1.0, 2.0, 3.0)),
-        Action::SetSoftening(softening),
+        Action::SetSoftReach(soft_reach),
     ]);
     assert_eq!(line["swivel"], json!({ "pole": [1.0, 2.0, 3.0] }));
     assert_eq!(line["softness"], json!(0.25_f32));
     assert_eq!(line["max_stretch"], json!(1.5_f32));
     assert_eq!(line["min_elbow_deg"], json!(0.5_f32.to_degrees()));
-    let carried = copied([Action::SetSwivel(Swivel::Transport)]);
-    assert_eq!(carried["swivel"], json!("stereographic"), "a line has no past");
+    let transported = copied([Action::SetTwistReference(TwistReferenceKind::Transport)]);
+    assert_eq!(transported["swivel"], json!("stereographic"), "a line has no past");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn a_document_with_keys_is_saved_opened_again_and_the_same() {
     let path = folder.path().join("saved.json");
     let mut bench = Bench::after([
         Action::SetHand(Vec3::new(100.0, 200.0, 50.0)),
-        Action::Key(vec![Channel::Hand, Channel::ElbowSpin]),
+        Action::Key(vec![Channel::Hand, Channel::Twist]),
         Action::SetTime(1.5),
         Action::SetHand(Vec3::new(-100.0, 200.0, 50.0)),
         Action::Key(vec![Channel::Hand]),

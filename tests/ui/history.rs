@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Document, Goal};
+use ik_arm::document::{Cursor, Document};
 use ik_arm::io::Example;
-use ik_arm::kinematics::solve::{Method, Options};
+use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{Action, Dialog, Effect};
 
 use crate::bench::Bench;
@@ -15,7 +15,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 
 fn moved() -> Bench {
-    Bench::after([Action::SetHand(Vec3::X * 300.0), Action::SetElbowSpin(1.0)])
+    Bench::after([Action::SetHand(Vec3::X * 300.0), Action::SetTwist(1.0)])
 }
 
 fn menu(bench: &mut Bench, menu: &str) {
@@ -29,7 +29,7 @@ fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
         let mut bench = moved();
         let last = bench.session().document().clone();
         bench.key_with(CTRL, Key::Z);
-        assert_eq!((bench.hand(), bench.session().arm().elbow_spin), (Vec3::X * 300.0, 0.0));
+        assert_eq!((bench.hand(), bench.session().arm().twist), (Vec3::X * 300.0, 0.0));
         bench.key_with(CTRL, Key::Z);
         assert_eq!(bench.session().document(), &ik_arm::io::new_document());
         assert!(bench.says("Undone: move hand"));
@@ -51,7 +51,7 @@ fn the_edit_menu_names_what_it_would_undo_and_redo() {
     assert!(bench.shows(Role::Button, "Undo move hand Ctrl+Z"));
     bench.click(Role::Button, "Redo spin elbow Ctrl+Shift+Z");
     bench.settle();
-    assert_eq!(bench.session().arm().elbow_spin, 1.0);
+    assert_eq!(bench.session().arm().twist, 1.0);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
     let mut bench =
         Bench::after([Action::OpenExample(Example::find("ten-joints").expect("there"))]);
     let method = Method::TransposeFixed;
-    bench.apply([Action::SetSolver(Options { method, ..Options::default() })]);
+    bench.apply([Action::SetSolver(SolverOptions { method, ..SolverOptions::default() })]);
     let first = bench.session().document().clone();
     bench.apply_moving([Action::Run(true)]);
     bench.wait(0.05);
@@ -238,7 +238,7 @@ fn files_that_were_open_are_offered_again() {
 #[test]
 fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     let mut document = Document::default();
-    document.arm.goal = Goal::Root(Vec3::Y * 123.0);
+    document.arm.goal = Cursor::Root(Vec3::Y * 123.0);
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([Action::OpenDialog(dialog.clone())]);

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Key, Order, PointerButton, vec2};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
-use ik_arm::document::{Layer, Theme};
+use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{Action, Navigation};
 
@@ -135,7 +135,7 @@ fn the_panels_look_as_they_did() {
     let skeleton = [Action::OpenExample(human), Action::Select(vec![8]), Action::Step];
     for theme in THEMES {
         let rigs = [
-            ("panels", vec![Action::Show(Layer::InnerLimit, true)]),
+            ("panels", vec![Action::Show(Overlay::InnerLimit, true)]),
             ("skeleton", skeleton.to_vec()),
         ];
         for (name, actions) in rigs {

@@ -104,7 +104,7 @@ fn the_elbow_spin_wraps() {
         bench.enter("Elbow spin", typed);
         let spin = value(bench.session().arm(), "Elbow spin");
         assert!((spin - shown).abs() < 1e-3, "{typed} gives {spin}");
-        assert!((0.0..TAU).contains(&bench.session().arm().elbow_spin));
+        assert!((0.0..TAU).contains(&bench.session().arm().twist));
     }
     bench.focus(Role::Slider, "Elbow spin");
     bench.key(Key::ArrowLeft);

@@ -3,7 +3,7 @@
 use egui::Key;
 use egui::accesskit::Role;
 use glam::Vec3;
-use ik_arm::document::{Arm, Camera, Display, Layer, Theme};
+use ik_arm::document::{Arm, Camera, Display, Overlay, Theme};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{Action, Dialog, Effect, Navigation};
 
@@ -21,19 +21,19 @@ pub const SLIDERS: [&str; 9] = [
     "Lower length",
 ];
 
-pub const CHECKBOXES: [(&str, Layer); 12] = [
-    ("Cursor", Layer::Cursor),
-    ("Pointer", Layer::Pointer),
-    ("Inner limit", Layer::InnerLimit),
-    ("Outer limit", Layer::OuterLimit),
-    ("XY grid", Layer::GridXy),
-    ("XZ grid", Layer::GridXz),
-    ("YZ grid", Layer::GridYz),
-    ("Ground", Layer::Ground),
-    ("Axes", Layer::Axes),
-    ("Labels", Layer::Labels),
-    ("Shadow", Layer::Shadow),
-    ("Hand", Layer::Hand),
+pub const CHECKBOXES: [(&str, Overlay); 12] = [
+    ("Cursor", Overlay::Cursor),
+    ("Pointer", Overlay::Pointer),
+    ("Inner limit", Overlay::InnerLimit),
+    ("Outer limit", Overlay::OuterLimit),
+    ("XY grid", Overlay::GridXy),
+    ("XZ grid", Overlay::GridXz),
+    ("YZ grid", Overlay::GridYz),
+    ("Ground", Overlay::Ground),
+    ("Axes", Overlay::Axes),
+    ("Labels", Overlay::Labels),
+    ("Shadow", Overlay::Shadow),
+    ("Hand", Overlay::Hand),
 ];
 
 pub const MENUS: [(&str, &[&str]); 4] = [
@@ -120,7 +120,7 @@ fn a_checkbox_answers_to_the_keyboard() {
     let mut bench = Bench::new();
     bench.focus(Role::CheckBox, "Outer limit");
     bench.key(Key::Space);
-    assert!(bench.session().document().display.shows(Layer::OuterLimit));
+    assert!(bench.session().document().display.shows(Overlay::OuterLimit));
 }
 
 #[test]
@@ -129,15 +129,15 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
     let actions = [
         Action::SetHand(Vec3::new(1.0, 2.0, 3.0)),
         Action::SetRoot(Vec3::splat(9.0)),
-        Action::SetElbowSpin(2.0),
+        Action::SetTwist(2.0),
         Action::SetUpper(77.0),
-        Action::Show(Layer::OuterLimit, true),
+        Action::Show(Overlay::OuterLimit, true),
         Action::SetCamera(camera),
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset pose");
     assert_eq!(bench.session().arm(), &Arm::default());
-    assert!(bench.session().document().display.shows(Layer::OuterLimit));
+    assert!(bench.session().document().display.shows(Overlay::OuterLimit));
     assert_eq!(bench.session().camera(), &camera);
 }
 
@@ -145,7 +145,7 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
 fn reset_all_resets_everything_but_what_the_user_likes() {
     let actions = [
         Action::SetLower(77.0),
-        Action::Show(Layer::Axes, false),
+        Action::Show(Overlay::Axes, false),
         Action::SetCamera(Camera { yaw: 1.0, ..Camera::default() }),
         Action::SetTheme(Theme::Light),
     ];

@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui::{PointerButton, Vec2, vec2};
 use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options};
 use glam::Vec3;
-use ik_arm::document::{AxisView, Document, Swivel, Theme};
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{Action, Preferences};
 use image::{RgbaImage, imageops};
 
@@ -47,8 +47,8 @@ fn out_straight(bench: &mut Bench) {
     drag(bench, Vec3::new(420.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0), 26);
 }
 
-fn softened(softness: f32) -> Softening {
-    Softening::new(softness, 1.0, 0.0).expect("soft")
+fn softened(softness: f32) -> SoftReach {
+    SoftReach::new(softness, 1.0, 0.0).expect("soft")
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
     assert!(bench.says("Pole: the Pointer passed within 3."));
     let (elbow, hand) = (bench.session().pose().elbow, bench.hand());
     bench.click(Role::Button, "Measure from the map");
-    assert_eq!(bench.session().arm().swivel, Swivel::Stereographic);
+    assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Stereographic);
     assert!(bench.session().pose().elbow.distance(elbow) < 0.01 && bench.hand() == hand);
     assert!(bench.says("since then changed"));
     assert!(!bench.shows(Role::Button, "Measure from the map"), "it is done");
@@ -85,14 +85,14 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
 #[test]
 fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
     let mut bench = from_the_front();
-    bench.apply([Action::SetSwivel(Swivel::Stereographic)]);
+    bench.apply([Action::SetTwistReference(TwistReferenceKind::Stereographic)]);
     let behind = |bench: &mut Bench| {
         drag(bench, Vec3::new(-300.0, 90.0, 12.0), Vec3::new(-300.0, -90.0, 12.0), 40);
     };
     behind(&mut bench);
     assert!(bench.says("of what the map leaves out"));
     bench.click(Role::Button, "Carry it along");
-    assert_eq!(bench.session().arm().swivel, Swivel::Transport);
+    assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Transport);
     behind(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
 }
@@ -103,11 +103,11 @@ fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
     out_straight(&mut bench);
     assert!(bench.says("Straight: the arm reached its outer limit"));
     bench.click(Role::Button, "Soften the reach");
-    assert_eq!(bench.session().arm().softening, softened(0.25));
+    assert_eq!(bench.session().arm().soft_reach, softened(0.25));
     out_straight(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Straight"), "no other one");
     bench.apply([Action::Undo, Action::Undo, Action::Undo]);
-    assert_eq!(bench.session().arm().softening, softened(0.0), "it is a step to undo");
+    assert_eq!(bench.session().arm().soft_reach, softened(0.0), "it is a step to undo");
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn one_remedy_is_offered_once() {
 #[test]
 fn other_changes_are_told_apart_from_pops() {
     let mut bench = from_the_front();
-    bench.apply([Action::SetElbowSpin(2.0), Action::SetLower(240.0)]);
+    bench.apply([Action::SetTwist(2.0), Action::SetLower(240.0)]);
     assert!(bench.says("Dotted: lengths, spin changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
@@ -175,7 +175,10 @@ fn pops_and_the_reach_curve_look_as_they_did() {
         let preferences = Preferences { timeline: false, theme, ..Preferences::default() };
         let mut bench = Bench::liking(HIGH, preferences);
         slide(&mut bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0));
-        bench.apply([Action::SetSwivel(Swivel::Stereographic), Action::SetElbowSpin(0.4)]);
+        bench.apply([
+            Action::SetTwistReference(TwistReferenceKind::Stereographic),
+            Action::SetTwist(0.4),
+        ]);
         slide(&mut bench, Vec3::new(400.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0));
         slide(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0));
         bench.apply([Action::SetHand(Vec3::new(480.0, 20.0, 60.0))]);

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Rect, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{Action, Preferences};
 
 use crate::bench::Bench;
@@ -12,8 +12,8 @@ use crate::bench::Bench;
 fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
     let preferences = Preferences { timeline: false, ..Preferences::default() };
     let mut bench = Bench::liking(vec2(1280.0, 1500.0), preferences);
-    let softening = Softening::new(softness, stretch, 0.0).expect("a softening");
-    bench.apply([Action::SetSoftening(softening), Action::SetHand(Vec3::X * asked)]);
+    let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("a softening");
+    bench.apply([Action::SetSoftReach(soft_reach), Action::SetHand(Vec3::X * asked)]);
     bench
 }
 
@@ -64,7 +64,7 @@ fn its_lines_are_named_and_examples_are_called_that() {
 fn it_says_when_the_hand_does_not_lead_alone() {
     let mut bench = bench(0.0, 1.0, 300.0);
     assert!(!bench.says("As the hand alone would have it"));
-    bench.apply([Action::SetWeight(0.5)]);
+    bench.apply([Action::SetInfluence(0.5)]);
     assert!(bench.says("As the hand alone would have it"));
 }
 

@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Camera, Layer, RigKind, Theme};
+use ik_arm::document::{Camera, Overlay, RigKind, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{Action, Dialog, DragInput, Effect, Grip, Job, SolverState};
 
@@ -175,8 +175,8 @@ fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
 fn what_is_only_looked_at_is_no_unsaved_change() {
     for look in [
         Action::SetTheme(Theme::Light),
-        Action::Show(Layer::Globe, true),
-        Action::Show(Layer::Labels, false),
+        Action::Show(Overlay::Globe, true),
+        Action::Show(Overlay::Labels, false),
         Action::ShowCrowd(true),
         Action::ShowRig(RigKind::Skeleton),
         Action::ShowExplain(false),
@@ -192,8 +192,8 @@ fn what_is_only_looked_at_is_no_unsaved_change() {
 
 #[test]
 fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
-    let mut bench = Bench::after([Action::Show(Layer::Globe, true)]);
-    bench.apply([Action::SetElbowSpin(0.5), Action::Show(Layer::Globe, false)]);
+    let mut bench = Bench::after([Action::Show(Overlay::Globe, true)]);
+    bench.apply([Action::SetTwist(0.5), Action::Show(Overlay::Globe, false)]);
     assert!(bench.session().is_unsaved());
     bench.apply([Action::Undo]);
     assert!(bench.session().is_unsaved(), "only the globe is back");
@@ -202,7 +202,7 @@ fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
     bench.apply([Action::Redo, Action::Redo]);
     assert!(bench.session().is_unsaved());
     assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
-    bench.apply([Action::Show(Layer::Globe, true)]);
+    bench.apply([Action::Show(Overlay::Globe, true)]);
     assert!(!bench.session().is_unsaved());
     assert_eq!(bench.tell(Action::Quit), Some(Effect::Quit));
 }
@@ -406,7 +406,7 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     bench.key(Key::Escape);
     bench.settle();
     assert!(bench.shows(Role::Alert, &format!("Not opened: {why}")), "in the status line");
-    bench.apply([Action::SetElbowSpin(0.3)]);
+    bench.apply([Action::SetTwist(0.3)]);
     assert!(!bench.says("Not opened"), "until the next change");
 }
 

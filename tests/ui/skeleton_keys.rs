@@ -7,8 +7,8 @@ use egui::accesskit::Role;
 use egui::{DroppedFile, Event, Key, Modifiers};
 use glam::Vec3;
 use ik_arm::io::Example;
+use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::skeleton::Limit;
-use ik_arm::kinematics::solve::{Method, Options};
 use ik_arm::session::{Action, Effect};
 
 use crate::bench::{Bench, SMALL};
@@ -52,14 +52,14 @@ fn escape_in_a_number_leaves_it_and_the_selection_alone() {
 fn escape_in_a_number_lets_a_running_solver_run() {
     let mut bench = tree();
     let solver = bench.session().skeleton().solver;
-    bench.apply([Action::SetSolver(Options { method: Method::TransposeFixed, ..solver })]);
+    bench.apply([Action::SetSolver(SolverOptions { method: Method::TransposeFixed, ..solver })]);
     bench.apply_moving([Action::Run(true)]);
     bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
     bench.frame([]);
     bench.frame([]);
     assert!(bench.session().is_running());
     bench.key(Key::Escape);
-    assert!(bench.session().solving().is_some(), "the key was the number's");
+    assert!(bench.session().solver_run().is_some(), "the key was the number's");
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
         Action::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
         Action::SetLimit { joint, axis: 0, limit: Some(Limit { min: -1.234_567, max: 0.7654 }) },
         Action::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
-        Action::SetSolver(Options {
+        Action::SetSolver(SolverOptions {
             method: Method::DampedLeastSquares,
             tolerance: Some(1.234e-8),
             damping: 0.012_345_678,
@@ -187,7 +187,7 @@ fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     bench.key_with(CTRL, Key::A);
     bench.key(Key::Escape);
     bench.click(Role::Button, "Bind pose");
-    bench.apply([Action::Race(true)]);
+    bench.apply([Action::Comparison(true)]);
     assert!(bench.session().skeleton().skeleton.joints().is_empty());
     assert_eq!(bench.session().dialog(), None);
 }
@@ -247,7 +247,7 @@ fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
     bench.node(Role::CheckBox, "Slither").scroll_to_me();
     bench.settle();
     bench.click(Role::CheckBox, "Slither");
-    assert_eq!(bench.session().skeleton().slither, None);
+    assert_eq!(bench.session().skeleton().follow_path, None);
     bench.apply([Action::Select(vec![1])]);
     bench.enter("Rotation x", "10");
     let angle = bench.session().skeleton().skeleton.joints()[1].rotation.x;
@@ -275,7 +275,7 @@ fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
 #[test]
 fn a_race_says_of_every_solver_how_it_ended() {
     let mut bench = tree();
-    bench.apply_moving([Action::Race(true)]);
+    bench.apply_moving([Action::Comparison(true)]);
     bench.wait(4.0);
     assert!(bench.shows(Role::Image, "FABRIK: Reached"));
     assert!(bench.shows(Role::Image, "Two-bone: At rest, out of reach"));

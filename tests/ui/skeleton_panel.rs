@@ -6,9 +6,9 @@ use egui::accesskit::Role;
 use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers};
 use glam::Vec3;
-use ik_arm::document::{Path, RigKind};
+use ik_arm::document::{RigKind, TargetPath};
 use ik_arm::io::{Example, Group};
-use ik_arm::kinematics::solve::{Method, Root};
+use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{Action, Dialog, Effect};
 
 use crate::bench::{Bench, SMALL};
@@ -209,16 +209,16 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         bench.click_at(bench.rect(Role::Button, "Run").center());
         assert!(bench.session().is_running());
         bench.wait(4.0);
-        let solving = bench.session().solving().expect("it ran");
-        assert!(!solving.is_running(), "it stops by itself");
-        let report = solving.report();
+        let solver_run = bench.session().solver_run().expect("it ran");
+        assert!(!solver_run.is_running(), "it stops by itself");
+        let report = solver_run.report();
         assert!(report.converged, "{name}: {report:?}");
         assert!(bench.says("reached"));
         let (rig, pose) = (bench.session().skeleton(), bench.session().skeleton_pose());
         for target in &rig.targets {
             assert!(pose.tip(target.joint).distance(target.home) < 1e-3);
         }
-        let points: Vec<_> = solving.history().points().collect();
+        let points: Vec<_> = solver_run.history().points().collect();
         assert_eq!(points.len(), report.iterations as usize + 1);
         assert_eq!(points.last().map(|point| point.1), Some(report.error));
     }
@@ -230,13 +230,13 @@ fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
     let before = bench.session().skeleton().skeleton.clone();
     for iterations in 1..=3 {
         bench.click(Role::Button, "Step");
-        let report = bench.session().solving().expect("it stepped").report();
+        let report = bench.session().solver_run().expect("it stepped").report();
         assert_eq!(report.iterations, iterations);
     }
     assert_ne!(bench.session().skeleton().skeleton, before);
     bench.click(Role::Button, "Reset");
     assert_eq!(bench.session().skeleton().skeleton, before);
-    assert!(bench.session().solving().is_none());
+    assert!(bench.session().solver_run().is_none());
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn escape_takes_back_what_a_running_solver_has_done() {
     let mut bench = example("ten-joints");
     bench.apply([Action::SetSolver({
         let solver = bench.session().skeleton().solver;
-        ik_arm::kinematics::solve::Options { method: Method::TransposeFixed, ..solver }
+        ik_arm::kinematics::chain_ik::SolverOptions { method: Method::TransposeFixed, ..solver }
     })]);
     let before = bench.session().skeleton().skeleton.clone();
     bench.click_at(bench.rect(Role::Button, "Run").center());
@@ -272,20 +272,20 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     let before = bench.session().skeleton().clone();
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(4.0);
-    let race = bench.session().race().expect("it goes on");
-    assert!(!race.is_running(), "it ends");
-    assert_eq!(race.runners().len(), Method::ALL.len());
-    for runner in race.runners() {
+    let comparison = bench.session().comparison().expect("it goes on");
+    assert!(!comparison.is_running(), "it ends");
+    assert_eq!(comparison.runners().len(), Method::ALL.len());
+    for runner in comparison.runners() {
         let report = runner.report().expect("all can run here");
         assert!(report.iterations > 0 && runner.time.as_nanos() > 0);
         let converges = !matches!(runner.method, Method::TwoBone | Method::TransposeFixed);
         assert!(report.converged || !converges, "{:?}: {report:?}", runner.method);
     }
-    assert_eq!(bench.session().staging().ghosts.len(), Method::ALL.len());
+    assert_eq!(bench.session().overlays().ghosts.len(), Method::ALL.len());
     assert_eq!(bench.session().skeleton(), &before);
     assert!(bench.says("CCD") && bench.says("FABRIK"));
     bench.click(Role::Button, "End race");
-    assert!(bench.session().race().is_none());
+    assert!(bench.session().comparison().is_none());
 }
 
 #[test]
@@ -295,8 +295,8 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
     bench.click(Role::Button, "Add target");
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(1.0);
-    let race = bench.session().race().expect("it goes on");
-    let two_bone = race.runners().iter().find(|runner| runner.method == Method::TwoBone);
+    let comparison = bench.session().comparison().expect("it goes on");
+    let two_bone = comparison.runners().iter().find(|runner| runner.method == Method::TwoBone);
     let error = two_bone.expect("it is there").report().expect_err("its parent is locked");
     assert!(error.to_string().contains("locked"), "{error}");
 }
@@ -311,7 +311,7 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     bench.click_at(at);
     bench.wait(0.1);
     let target = bench.session().skeleton().targets[0];
-    assert_eq!(target.motion.path, Path::Circle);
+    assert_eq!(target.motion.path, TargetPath::Circle);
     assert!(bench.session().is_playing(), "it goes at once");
     bench.apply_moving([Action::Run(true)]);
     bench.wait(1.0);
@@ -382,7 +382,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.key(Key::T);
     assert_eq!(bench.session().skeleton().targets.len(), 1);
     bench.key(Key::S);
-    assert!(bench.session().solving().is_some());
+    assert!(bench.session().solver_run().is_some());
     bench.key(Key::T);
     assert!(bench.session().skeleton().targets.is_empty());
     bench.key(Key::F2);
@@ -428,7 +428,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(4.0);
-    let report = bench.session().solving().expect("it ran").report();
+    let report = bench.session().solver_run().expect("it ran").report();
     assert!(report.converged, "{report:?}");
     assert!(bench.session().skeleton().skeleton.joints()[0].offset.x > 15.0);
 }

@@ -4,7 +4,7 @@ use core::f32::consts::PI;
 
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
-use ik_arm::document::{Document, Motion, Path, RigKind, SkeletonRig};
+use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::session::{Action, Drag, Grip};
 
@@ -267,7 +267,7 @@ fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
     bench.apply([Action::Run(true)]);
     bench.wait(2.0);
     assert!(!bench.session().is_running(), "it rests when it is there");
-    let report = bench.session().solving().expect("it ran").report();
+    let report = bench.session().solver_run().expect("it ran").report();
     assert!(report.converged && report.iterations > 0, "{report:?}");
     bench.settle();
 }
@@ -294,7 +294,7 @@ fn a_moving_target_is_dragged_along_its_way() {
     let c = joint(&bench, "c");
     bench.apply([Action::AddTarget(c)]);
     let mut target = bench.session().skeleton().targets[0];
-    target.motion = Motion { path: Path::Circle, ..target.motion };
+    target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
     bench.apply([Action::SetTarget(target), Action::SetTime(1.0)]);
     let start = bench.place(target.at(1.0));
     bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));

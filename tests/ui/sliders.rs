@@ -22,7 +22,7 @@ pub fn value(arm: &Arm, slider: &str) -> f32 {
         "Hand x" => arm.cursor().x,
         "Hand y" => arm.cursor().y,
         "Hand z" => arm.cursor().z,
-        "Elbow spin" => arm.elbow_spin.to_degrees(),
+        "Elbow spin" => arm.twist.to_degrees(),
         "Root x" => arm.root.x,
         "Root y" => arm.root.y,
         "Root z" => arm.root.z,
@@ -44,7 +44,7 @@ pub fn odd() -> [Action; 5] {
     [
         Action::SetHand(Vec3::new(123.456_79, -987.654_3, 0.1)),
         Action::SetRoot(Vec3::new(-1_234.567_9, 0.333_333_34, 1e-7)),
-        Action::SetElbowSpin(1.234_567_9),
+        Action::SetTwist(1.234_567_9),
         Action::SetUpper(1_234.567_9),
         Action::SetLower(3.333_333_3),
     ]
@@ -78,7 +78,7 @@ fn each_slider_changes_its_own_number_and_no_other_bit() {
         let mut bench = Bench::after([
             Action::SetHand(Vec3::new(123.456_79, -87.654_32, 0.1)),
             Action::SetRoot(Vec3::new(-12.345_679, 0.333_333_34, 1e-7)),
-            Action::SetElbowSpin(1.234_567_9),
+            Action::SetTwist(1.234_567_9),
         ]);
         let before = *bench.session().arm();
         let (from, to) = (on_rail(&bench, slider, 0.5), on_rail(&bench, slider, 0.8));
@@ -182,7 +182,7 @@ fn a_double_click_on_rail_or_label_resets() {
 #[test]
 fn arrows_step_by_one_with_shift_by_a_tenth_and_page_keys_by_ten() {
     for slider in SLIDERS {
-        let mut bench = Bench::after([Action::SetElbowSpin(TAU / 4.0)]);
+        let mut bench = Bench::after([Action::SetTwist(TAU / 4.0)]);
         bench.focus(Role::Slider, slider);
         for (modifiers, key, step) in [
             (Modifiers::NONE, Key::ArrowRight, 1.0),

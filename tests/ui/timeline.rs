@@ -28,7 +28,7 @@ pub fn keyed() -> Bench {
         bench.apply([Action::SetTime(time), Action::SetHand(hand), key]);
     }
     for time in [1.0, 4.0] {
-        bench.apply([Action::SetTime(time), Action::Key(vec![Channel::ElbowSpin])]);
+        bench.apply([Action::SetTime(time), Action::Key(vec![Channel::Twist])]);
     }
     bench.apply([Action::SetTime(0.0)]);
     bench
@@ -55,7 +55,7 @@ fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
     bench.apply([Action::SetTime(1.5)]);
     bench.click(Role::Button, "Key");
     assert_eq!(times(&bench, Channel::Hand), [1.5]);
-    assert_eq!(times(&bench, Channel::ElbowSpin), [1.5]);
+    assert_eq!(times(&bench, Channel::Twist), [1.5]);
     assert!(times(&bench, Channel::Upper).is_empty());
     assert!(bench.shows(Role::Button, "Key of Hand at 1.50 s"));
     assert!(bench.shows(Role::Button, "Channel Elbow spin"));
@@ -111,7 +111,7 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     let moved = times(&bench, Channel::Hand)[1];
     assert!(moved > 2.5, "{moved}");
     assert_eq!(moved, Timeline::default().snapped(moved), "on a frame");
-    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0], "others stay");
+    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0], "others stay");
     bench.release(PointerButton::Primary);
     bench.settle();
     assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
@@ -171,11 +171,11 @@ fn the_diamonds_on_top_select_and_move_all_keys_at_their_time() {
     let mut bench = keyed();
     let at = bench.rect(Role::Button, "Keys at 1.00 s").center();
     bench.click_at(at);
-    let both = [(Channel::Hand, 1.0), (Channel::ElbowSpin, 1.0)];
+    let both = [(Channel::Hand, 1.0), (Channel::Twist, 1.0)];
     assert_eq!(bench.session().selected_keys(), both);
     bench.drag_and_drop(PointerButton::Primary, at, at - vec2(70.0, 0.0));
     bench.settle();
-    let (hand, spin) = (times(&bench, Channel::Hand), times(&bench, Channel::ElbowSpin));
+    let (hand, spin) = (times(&bench, Channel::Hand), times(&bench, Channel::Twist));
     assert!(hand[0] < 0.8 && hand[0] == spin[0], "{hand:?} {spin:?}");
     assert_eq!((hand[1], spin[1]), (2.0, 4.0));
 }
@@ -186,7 +186,7 @@ fn a_box_selects_what_is_in_it() {
     let (first, last) = (key_of_hand(&bench, 1.0), key_of_hand(&bench, 2.0));
     let (from, to) = (first - vec2(20.0, 8.0), last + vec2(20.0, 30.0));
     bench.drag_and_drop(PointerButton::Primary, from, to);
-    let inside = [(Channel::Hand, 1.0), (Channel::Hand, 2.0), (Channel::ElbowSpin, 1.0)];
+    let inside = [(Channel::Hand, 1.0), (Channel::Hand, 2.0), (Channel::Twist, 1.0)];
     assert_eq!(bench.session().selected_keys(), inside);
     bench.hold(Modifiers::SHIFT);
     let at = key_of_hand(&bench, 5.0);
@@ -393,12 +393,12 @@ fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
     bench.hold(Modifiers::SHIFT);
     bench.click(Role::Button, "Channel Elbow spin");
     bench.hold(Modifiers::NONE);
-    assert_eq!(selected(&bench), [Channel::Hand, Channel::ElbowSpin]);
+    assert_eq!(selected(&bench), [Channel::Hand, Channel::Twist]);
     bench.click(Role::Button, "Channel Elbow spin");
-    assert_eq!(selected(&bench), [Channel::ElbowSpin]);
+    assert_eq!(selected(&bench), [Channel::Twist]);
     bench.apply([Action::SetTime(7.0)]);
     bench.click(Role::Button, "Key");
-    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0, 7.0]);
+    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0, 7.0]);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
 }
 
@@ -427,7 +427,7 @@ fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
     right_click(&mut bench, name);
     bench.click(Role::Button, "Delete channel's keys");
     assert!(times(&bench, Channel::Hand).is_empty());
-    assert_eq!(times(&bench, Channel::ElbowSpin), [1.0, 4.0]);
+    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0]);
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn is_keyed(bench: &Bench, channel: Channel) -> bool {
 fn k_keys_what_is_worked_on_and_shift_k_all() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.key(Key::K);
-    assert!(is_keyed(&bench, Channel::Hand) && is_keyed(&bench, Channel::ElbowSpin));
+    assert!(is_keyed(&bench, Channel::Hand) && is_keyed(&bench, Channel::Twist));
     assert!(!is_keyed(&bench, Channel::Root));
     bench.key_with(Modifiers::SHIFT, Key::K);
     let arm = *bench.session().arm();

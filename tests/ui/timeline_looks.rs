@@ -17,8 +17,8 @@ pub fn animated() -> Vec<Action> {
         [
             Action::SetTime(time),
             Action::SetHand(hand),
-            Action::SetElbowSpin(spin.to_radians()),
-            Action::Key(vec![Channel::Hand, Channel::ElbowSpin]),
+            Action::SetTwist(spin.to_radians()),
+            Action::Key(vec![Channel::Hand, Channel::Twist]),
         ]
     };
     let mut actions = Vec::new();
@@ -32,7 +32,7 @@ pub fn animated() -> Vec<Action> {
         Action::SetTime(5.0),
         Action::SetUpper(180.0),
         Action::Key(vec![Channel::Upper]),
-        Action::SelectKeys(vec![(Channel::Hand, 3.5), (Channel::ElbowSpin, 3.5)]),
+        Action::SelectKeys(vec![(Channel::Hand, 3.5), (Channel::Twist, 3.5)]),
         Action::SelectChannels(vec![Channel::Hand]),
         Action::SetTime(4.5),
         Action::SetHand(Vec3::new(100.0, 100.0, 100.0)),

@@ -2,8 +2,8 @@ use glam::{Mat4, Vec3};
 use serde::Serialize;
 
 use crate::document::SkeletonRig;
+use crate::kinematics::chain_ik::Report;
 use crate::kinematics::skeleton::is_within_numbers;
-use crate::kinematics::solve::Report;
 
 /// What is printed.
 #[derive(Serialize)]

@@ -13,7 +13,7 @@ use super::argument::Time;
 use super::open;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
-use crate::kinematics::solve::{self, Method, Options, Report, SolveError};
+use crate::kinematics::chain_ik::{self, Method, Report, SolveError, SolverOptions};
 use line::Line;
 
 #[derive(clap::Args)]
@@ -120,14 +120,14 @@ fn solved(
     order: &[usize],
     file: &str,
 ) -> Result<Report, Failure> {
-    let options = Options {
+    let options = SolverOptions {
         method,
         iterations: args.iterations.or(rig.solver.iterations),
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
     let targets = rig.goals(args.time.0);
-    solve::solve(&mut rig.skeleton, &targets, &options).map_err(|error| {
+    chain_ik::solve(&mut rig.skeleton, &targets, &options).map_err(|error| {
         let file = file.to_owned();
         Failure::Solve { file, error: numbered_as_in_file(error, order) }
     })

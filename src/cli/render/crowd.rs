@@ -9,7 +9,7 @@ use crate::kinematics::two_bone::TwoBone;
 use crate::render::{self, Gpu, Picture};
 use crate::rig::{Crowd, SolvedBy};
 use crate::scene::Scene;
-use crate::session::Staging;
+use crate::session::Overlays;
 
 /// From one frame that is timed to the next, in seconds of the crowd.
 const STEP: f32 = 1.0 / 60.0;
@@ -66,8 +66,8 @@ pub fn render(args: &Args, arms: u32) -> Result<(), RenderError> {
 }
 
 fn scene(document: &Document, crowd: Crowd, theme: Theme) -> Scene {
-    let staging = Staging { crowd: Some(crowd), ..Staging::default() };
-    Scene::new(document, &staging, theme)
+    let overlays = Overlays { crowd: Some(crowd), ..Overlays::default() };
+    Scene::new(document, &overlays, theme)
 }
 
 /// Looks at all arms, from where it is said.

@@ -14,13 +14,13 @@ use thiserror::Error;
 
 use super::argument::{Guides, Length, Number, Point, Size, ThemeName, Time};
 use super::open;
-use crate::document::{Arm, AxisView, Camera, Display, Document, Goal, Layer, RigKind};
+use crate::document::{Arm, AxisView, Camera, Cursor, Display, Document, Overlay, RigKind};
 use crate::io::OpenError;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, DrawError, Gpu, GpuError, Picture, ReadError, SaveError, Timings};
 use crate::rig::Crowd;
 use crate::scene::Scene;
-use crate::session::Staging;
+use crate::session::Overlays;
 
 #[derive(clap::Args)]
 #[command(after_help = "Without FILE the arm is drawn as --hand and the like have it:
@@ -53,7 +53,7 @@ pub struct Args {
     hand: Option<Point>,
     /// Turn of the elbow about the Pointer, in degrees
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, default_value = "0")]
-    elbow_spin: Number,
+    twist: Number,
     /// Where the shoulder is in the world
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, default_value = "0,0,0")]
     root: Point,
@@ -160,10 +160,10 @@ fn render(args: &Args) -> Result<(), RenderError> {
     }
     let document = args.document()?;
     let theme = args.theme.into();
-    let staging = Staging::new(&document, args.time.0);
+    let overlays = Overlays::new(&document, args.time.0);
     let gpu = Gpu::headless()?;
     let mut picture = Picture::of_size(&gpu, args.size.width, args.size.height)?;
-    let scene = || Scene::new(&document, &staging, theme);
+    let scene = || Scene::new(&document, &overlays, theme);
     let image = args.output.is_some().then(|| picture.draw(&scene())).transpose()?;
     if let (Some(image), Some(path)) = (image, &args.output) {
         render::save(&image, path)?;
@@ -218,8 +218,8 @@ impl Args {
     fn arm(&self) -> Result<Arm, LengthError> {
         let mut arm = Arm::default();
         arm.bones = TwoBone::new(self.upper.0, self.lower.0)?;
-        arm.goal = Goal::Root(self.hand.map_or(arm.cursor(), |hand| hand.0));
-        arm.elbow_spin = (self.elbow_spin.0 % 360.0).to_radians();
+        arm.goal = Cursor::Root(self.hand.map_or(arm.cursor(), |hand| hand.0));
+        arm.twist = (self.twist.0 % 360.0).to_radians();
         arm.root = self.root.0;
         Ok(arm)
     }
@@ -239,9 +239,9 @@ fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
 /// A sphere around the arm, its Cursor, its Outer Limit.
 fn framed(arm: &Arm, display: Display) -> (Vec3, f32) {
     let (centre, radius) = arm.bounds(&arm.pose());
-    if display.shows(Layer::OuterLimit) {
+    if display.shows(Overlay::OuterLimit) {
         (arm.root, arm.bones.outer_limit().max(arm.root.distance(centre) + radius))
-    } else if display.shows(Layer::Cursor) {
+    } else if display.shows(Overlay::Cursor) {
         let cursor = arm.cursor_world();
         let far = centre.distance(cursor);
         let beyond = (far - radius).max(0.0);

@@ -6,13 +6,13 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::check::above_0;
-use crate::document::{self, Goal};
-use crate::io::field::Field;
+use crate::document::{self, Cursor};
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::io::value::{Number, Numbers, Object, Point};
 use crate::kinematics::fk;
-use crate::kinematics::reach;
-use crate::kinematics::swivel;
+use crate::kinematics::soft_reach;
+use crate::kinematics::twist;
 use crate::kinematics::two_bone::{self, TwoBone};
 
 /// How far a unit vector's length may be from 1, and two of them from perpendicular.
@@ -98,22 +98,22 @@ enum Space {
 impl Arm {
     pub fn new(arm: &document::Arm) -> Self {
         let (cursor, pin) = match arm.goal {
-            Goal::Root(cursor) => (Some(Point(cursor)), None),
-            Goal::World(pin) => (None, Some(Point(pin))),
+            Cursor::Root(cursor) => (Some(Point(cursor)), None),
+            Cursor::World(pin) => (None, Some(Point(pin))),
         };
         let two_bone::Facing { direction, heading } = arm.facing;
         let facing = Facing { direction: Point(direction), heading: Numbers(heading.to_array()) };
         Self {
             cursor,
             pin,
-            elbow_spin: Some(Number(arm.elbow_spin)),
+            elbow_spin: Some(Number(arm.twist)),
             root: Some(Point(arm.root)),
             upper: Some(Number(arm.bones.upper())),
             lower: Some(Number(arm.bones.lower())),
             facing: Some(Object(facing)),
             swivel: Some(Object(Swivel::new(arm))),
-            softening: Some(Object(Softening::new(arm.softening))),
-            weight: Some(Number(arm.weight)),
+            softening: Some(Object(Softening::new(arm.soft_reach))),
+            weight: Some(Number(arm.influence)),
             fk: Some(Object(Fk::new(arm.fk))),
             wrist: Some(Object(Wrist::new(arm.wrist))),
         }
@@ -122,24 +122,24 @@ impl Arm {
 
 impl Swivel {
     fn new(arm: &document::Arm) -> Self {
-        let carried = |swivel::Carried { direction, outward }| {
+        let carried = |twist::TransportedFrame { direction, outward }| {
             Object(Carried { direction: Point(direction), outward: Point(outward) })
         };
         Self {
-            reference: Some(match arm.swivel {
-                document::Swivel::Limb => Reference::Limb,
-                document::Swivel::Pole => Reference::Pole,
-                document::Swivel::Stereographic => Reference::Stereographic,
-                document::Swivel::Transport => Reference::Transport,
+            reference: Some(match arm.twist_reference {
+                document::TwistReferenceKind::Limb => Reference::Limb,
+                document::TwistReferenceKind::Pole => Reference::Pole,
+                document::TwistReferenceKind::Stereographic => Reference::Stereographic,
+                document::TwistReferenceKind::Transport => Reference::Transport,
             }),
             pole: Some(Point(arm.pole)),
-            carried: arm.carried.map(carried),
+            carried: arm.transported.map(carried),
         }
     }
 }
 
 impl Softening {
-    fn new(softening: reach::Softening) -> Self {
+    fn new(softening: soft_reach::SoftReach) -> Self {
         Self {
             softness: Some(Number(softening.softness())),
             max_stretch: Some(Number(softening.max_stretch())),
@@ -162,8 +162,8 @@ impl Wrist {
     fn new(wrist: document::Wrist) -> Self {
         Self {
             space: Some(match wrist.space {
-                document::Space::Lower => Space::Lower,
-                document::Space::World => Space::World,
+                document::HandSpace::Lower => Space::Lower,
+                document::HandSpace::World => Space::World,
             }),
             angles: Some(Point(wrist.angles)),
             roll: Some(Number(wrist.roll)),
@@ -171,21 +171,21 @@ impl Wrist {
     }
 }
 
-pub fn arm(at: &Field, file: &Arm) -> Result<document::Arm, Wrong> {
+pub fn arm(at: &JsonPath, file: &Arm) -> Result<document::Arm, Wrong> {
     let seed = document::Arm::default();
     let bones = bones(at, file, seed.bones)?;
     let goal = match (&file.pin, &file.cursor) {
-        (Some(Point(pin)), _) => Goal::World(*pin),
-        (None, Some(Point(cursor))) => Goal::Root(*cursor),
+        (Some(Point(pin)), _) => Cursor::World(*pin),
+        (None, Some(Point(cursor))) => Cursor::Root(*cursor),
         (None, None) => seed.goal,
     };
     let arm = document::Arm {
         goal,
-        elbow_spin: number(file.elbow_spin, seed.elbow_spin),
+        twist: number(file.elbow_spin, seed.twist),
         root: file.root.map_or(seed.root, |Point(root)| root),
         bones,
-        weight: part(at.clone().key("weight"), number(file.weight, seed.weight))?,
-        softening: softening(&at.clone().key("softening"), file.softening.as_ref())?,
+        influence: part(at.clone().key("weight"), number(file.weight, seed.influence))?,
+        soft_reach: softening(&at.clone().key("softening"), file.softening.as_ref())?,
         fk: fk(&at.clone().key("fk"), file.fk.as_ref())?,
         wrist: wrist(file.wrist.as_ref()),
         ..seed
@@ -198,14 +198,14 @@ pub fn arm(at: &Field, file: &Arm) -> Result<document::Arm, Wrong> {
     Ok(document::Arm { facing, ..arm })
 }
 
-fn bones(at: &Field, file: &Arm, seed: TwoBone) -> Result<TwoBone, Wrong> {
+fn bones(at: &JsonPath, file: &Arm, seed: TwoBone) -> Result<TwoBone, Wrong> {
     let [upper, lower] = [(file.upper, seed.upper()), (file.lower, seed.lower())]
         .map(|(length, seed)| number(length, seed));
     TwoBone::new(upper, lower)
         .map_err(|error| Wrong::new(at.clone().key(error.bone), error.to_string()))
 }
 
-fn facing(at: &Field, file: &Facing) -> Result<two_bone::Facing, Wrong> {
+fn facing(at: &JsonPath, file: &Facing) -> Result<two_bone::Facing, Wrong> {
     let (direction, heading) = (file.direction.0, Vec2::from_array(file.heading.0));
     unit(at.clone().key("direction"), direction.length())?;
     unit(at.clone().key("heading"), heading.length())?;
@@ -220,7 +220,7 @@ fn facing(at: &Field, file: &Facing) -> Result<two_bone::Facing, Wrong> {
 
 fn with_swivel(
     arm: document::Arm,
-    at: &Field,
+    at: &JsonPath,
     file: Option<&Object<Swivel>>,
 ) -> Result<document::Arm, Wrong> {
     let Some(Object(file)) = file else {
@@ -229,19 +229,19 @@ fn with_swivel(
     let at_carried = at.clone().key("carried");
     let carried = file.carried.as_ref().map(|Object(file)| carried(&at_carried, file));
     Ok(document::Arm {
-        swivel: match file.reference {
-            None | Some(Reference::Limb) => document::Swivel::Limb,
-            Some(Reference::Pole) => document::Swivel::Pole,
-            Some(Reference::Stereographic) => document::Swivel::Stereographic,
-            Some(Reference::Transport) => document::Swivel::Transport,
+        twist_reference: match file.reference {
+            None | Some(Reference::Limb) => document::TwistReferenceKind::Limb,
+            Some(Reference::Pole) => document::TwistReferenceKind::Pole,
+            Some(Reference::Stereographic) => document::TwistReferenceKind::Stereographic,
+            Some(Reference::Transport) => document::TwistReferenceKind::Transport,
         },
         pole: file.pole.map_or(arm.pole, |Point(pole)| pole),
-        carried: carried.transpose()?,
+        transported: carried.transpose()?,
         ..arm
     })
 }
 
-fn carried(at: &Field, file: &Carried) -> Result<swivel::Carried, Wrong> {
+fn carried(at: &JsonPath, file: &Carried) -> Result<twist::TransportedFrame, Wrong> {
     let (direction, outward) = (file.direction.0, file.outward.0);
     unit(at.clone().key("direction"), direction.length())?;
     unit(at.clone().key("outward"), outward.length())?;
@@ -249,15 +249,18 @@ fn carried(at: &Field, file: &Carried) -> Result<swivel::Carried, Wrong> {
         let reason = "must be perpendicular to `direction`";
         return Err(Wrong::new(at.clone().key("outward"), reason));
     }
-    Ok(swivel::Carried { direction: exactly(direction), outward: exactly(outward) })
+    Ok(twist::TransportedFrame { direction: exactly(direction), outward: exactly(outward) })
 }
 
-fn softening(at: &Field, file: Option<&Object<Softening>>) -> Result<reach::Softening, Wrong> {
-    let seed = reach::Softening::default();
+fn softening(
+    at: &JsonPath,
+    file: Option<&Object<Softening>>,
+) -> Result<soft_reach::SoftReach, Wrong> {
+    let seed = soft_reach::SoftReach::default();
     let Some(Object(file)) = file else {
         return Ok(seed);
     };
-    let softening = reach::Softening::new(
+    let softening = soft_reach::SoftReach::new(
         number(file.softness, seed.softness()),
         number(file.max_stretch, seed.max_stretch()),
         number(file.min_elbow_angle, seed.min_elbow_angle()),
@@ -272,7 +275,7 @@ fn softening(at: &Field, file: Option<&Object<Softening>>) -> Result<reach::Soft
     })
 }
 
-fn fk(at: &Field, file: Option<&Object<Fk>>) -> Result<fk::Fk, Wrong> {
+fn fk(at: &JsonPath, file: Option<&Object<Fk>>) -> Result<fk::Fk, Wrong> {
     let seed = fk::Fk::default();
     let Some(Object(file)) = file else {
         return Ok(seed);
@@ -292,8 +295,8 @@ fn wrist(file: Option<&Object<Wrist>>) -> document::Wrist {
     };
     document::Wrist {
         space: match file.space {
-            Some(Space::World) => document::Space::World,
-            Some(Space::Lower) | None => document::Space::Lower,
+            Some(Space::World) => document::HandSpace::World,
+            Some(Space::Lower) | None => document::HandSpace::Lower,
         },
         angles: file.angles.map_or(Vec3::ZERO, |Point(angles)| angles),
         roll: number(file.roll, seed.roll),
@@ -304,7 +307,7 @@ fn number(number: Option<Number>, seed: f32) -> f32 {
     number.map_or(seed, |Number(number)| number)
 }
 
-fn unit(at: Field, length: f32) -> Result<(), Wrong> {
+fn unit(at: JsonPath, length: f32) -> Result<(), Wrong> {
     match (length - 1.0).abs() <= UNIT {
         true => Ok(()),
         false => Err(Wrong::new(at, format!("its length is {length}, not 1"))),
@@ -316,7 +319,7 @@ fn exactly(v: Vec3) -> Vec3 {
     if (v.length() - 1.0).abs() <= EXACT { v } else { v.normalize() }
 }
 
-fn part(at: Field, value: f32) -> Result<f32, Wrong> {
+fn part(at: JsonPath, value: f32) -> Result<f32, Wrong> {
     match (0.0..=1.0).contains(&value) {
         true => Ok(value),
         false => Err(Wrong::new(at, format!("is {value}; it must be from 0 to 1"))),

@@ -9,16 +9,16 @@ use super::arm::arm;
 use super::file::{self, File, Rig, Root};
 use super::keys::{keys, timeline};
 use crate::document::{
-    Arm, Camera, Document, Keys, Motion, Path, RigKind, SkeletonRig, Slither, Target,
+    Arm, Camera, Document, FollowPath, Keys, RigKind, SkeletonRig, Target, TargetMotion, TargetPath,
 };
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::{Odd, Wrong};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::kinematics::chain_ik::{self, Method, SolverOptions};
 use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
-use crate::kinematics::solve::{self, Method, Options};
 
 pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
-    let at = |key| Field::root().key(key);
+    let at = |key| JsonPath::root().key(key);
     let rig = match file.rig {
         Rig::Arm => RigKind::Arm,
         Rig::Skeleton => RigKind::Skeleton,
@@ -68,7 +68,7 @@ fn skeleton_rig(
     let circle = rig.circle();
     let mut aimed = HashSet::new();
     for (index, Object(file)) in targets.into_iter().enumerate() {
-        let at = Field::root().key("targets").index(index);
+        let at = JsonPath::root().key("targets").index(index);
         let target = target(&at, &file, rig.skeleton.joints().len(), circle)?;
         if !aimed.insert(target.joint) {
             let reason = format!("joint {} has a target already", target.joint);
@@ -76,19 +76,19 @@ fn skeleton_rig(
         }
         rig.targets.push(target);
     }
-    let at = Field::root().key("solver");
+    let at = JsonPath::root().key("solver");
     rig.solver = options(&at, &solver)?;
     rig.iterations_per_frame = match solver.iterations_per_frame {
         Some(Whole(count)) => iterations_per_frame(at.key("iterations_per_frame"), count)?,
         None => rig.iterations_per_frame,
     };
-    rig.slither =
-        slither.map(|file| self::slither(&Field::root().key("slither"), &file)).transpose()?;
+    rig.follow_path =
+        slither.map(|file| self::slither(&JsonPath::root().key("slither"), &file)).transpose()?;
     Ok(rig)
 }
 
 fn skeleton(file: file::Skeleton, odd: &mut Odd) -> Result<Skeleton, Wrong> {
-    let at = Field::root().key("skeleton");
+    let at = JsonPath::root().key("skeleton");
     let at_joint = |index| at.clone().key("joints").index(index);
     let mut joints: Vec<Joint> = Vec::new();
     for (index, Object(file)) in file.joints.unwrap_or_default().into_iter().enumerate() {
@@ -147,7 +147,7 @@ fn joint(file: file::Joint, before: &[Joint]) -> Joint {
     }
 }
 
-fn target(at: &Field, file: &file::Target, joints: usize, circle: f32) -> Result<Target, Wrong> {
+fn target(at: &JsonPath, file: &file::Target, joints: usize, circle: f32) -> Result<Target, Wrong> {
     let joint = file.joint.0 as usize;
     if joint >= joints {
         let reason = format!("there is no joint {joint}; {}", counted(joints));
@@ -172,20 +172,24 @@ pub(super) fn counted(joints: usize) -> String {
     }
 }
 
-fn motion(at: &Field, file: &file::Motion, seed: Motion) -> Result<Motion, Wrong> {
+fn motion(at: &JsonPath, file: &file::Motion, seed: TargetMotion) -> Result<TargetMotion, Wrong> {
     let period = file
         .period
         .map_or(Ok(seed.period), |Number(period)| above_0(at.clone().key("period"), period))?;
     let path = match file.path {
-        file::Path::Still => Path::Still,
-        file::Path::Circle => Path::Circle,
-        file::Path::FigureEight => Path::FigureEight,
+        file::Path::Still => TargetPath::Still,
+        file::Path::Circle => TargetPath::Circle,
+        file::Path::FigureEight => TargetPath::FigureEight,
     };
-    Ok(Motion { path, radius: file.radius.map_or(seed.radius, |Number(radius)| radius), period })
+    Ok(TargetMotion {
+        path,
+        radius: file.radius.map_or(seed.radius, |Number(radius)| radius),
+        period,
+    })
 }
 
-fn options(at: &Field, file: &file::Solver) -> Result<Options, Wrong> {
-    let seed = Options::default();
+fn options(at: &JsonPath, file: &file::Solver) -> Result<SolverOptions, Wrong> {
+    let seed = SolverOptions::default();
     let above = |key, value: Option<Number>| {
         value.map(|Number(value)| above_0(at.clone().key(key), value)).transpose()
     };
@@ -194,7 +198,7 @@ fn options(at: &Field, file: &file::Solver) -> Result<Options, Wrong> {
         let reason = "is 0; it must be 1 or more, or null for the method's own";
         return Err(Wrong::new(at.clone().key("iterations"), reason));
     }
-    Ok(Options {
+    Ok(SolverOptions {
         method: match &file.method {
             Some(name) => method(at, name)?,
             None => seed.method,
@@ -204,13 +208,13 @@ fn options(at: &Field, file: &file::Solver) -> Result<Options, Wrong> {
         damping: above("damping", file.damping)?.unwrap_or(seed.damping),
         step: above("step", file.step)?.unwrap_or(seed.step),
         root: match file.root {
-            Some(Root::Free) => solve::Root::Free,
-            Some(Root::Fixed) | None => solve::Root::Fixed,
+            Some(Root::Free) => chain_ik::Root::Free,
+            Some(Root::Fixed) | None => chain_ik::Root::Fixed,
         },
     })
 }
 
-fn method(at: &Field, name: &str) -> Result<Method, Wrong> {
+fn method(at: &JsonPath, name: &str) -> Result<Method, Wrong> {
     Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
         let names = Method::ALL.map(Method::name).join(", ");
         let reason = format!("{name:?} is not a method; they are {names}");
@@ -218,7 +222,7 @@ fn method(at: &Field, name: &str) -> Result<Method, Wrong> {
     })
 }
 
-fn iterations_per_frame(at: Field, count: u32) -> Result<u32, Wrong> {
+fn iterations_per_frame(at: JsonPath, count: u32) -> Result<u32, Wrong> {
     const MOST: u32 = SkeletonRig::MOST_ITERATIONS_PER_FRAME;
     if (1..=MOST).contains(&count) {
         return Ok(count);
@@ -226,8 +230,8 @@ fn iterations_per_frame(at: Field, count: u32) -> Result<u32, Wrong> {
     Err(Wrong::new(at, format!("is {count}; it must be from 1 to {MOST}")))
 }
 
-fn slither(at: &Field, file: &file::Slither) -> Result<Slither, Wrong> {
-    Ok(Slither {
+fn slither(at: &JsonPath, file: &file::Slither) -> Result<FollowPath, Wrong> {
+    Ok(FollowPath {
         radius: file.radius.0,
         amplitude: file.amplitude.0,
         waves: file.waves.0,
@@ -235,7 +239,7 @@ fn slither(at: &Field, file: &file::Slither) -> Result<Slither, Wrong> {
     })
 }
 
-fn camera(at: &Field, file: &file::View) -> Result<Camera, Wrong> {
+fn camera(at: &JsonPath, file: &file::View) -> Result<Camera, Wrong> {
     let seed = Camera::default();
     let pitch = file.pitch.map_or(seed.pitch, |Number(pitch)| pitch);
     if pitch.abs() > FRAC_PI_2 {
@@ -262,7 +266,7 @@ fn first_view(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     }
 }
 
-pub(super) fn above_0(at: Field, value: f32) -> Result<f32, Wrong> {
+pub(super) fn above_0(at: JsonPath, value: f32) -> Result<f32, Wrong> {
     if value > 0.0 {
         return Ok(value);
     }

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use super::arm::Arm;
 use super::keys::{self, Timeline, Track};
 use super::{NAME, VERSION};
-use crate::document::{self, Camera, Document, Layer, RigKind, SkeletonRig};
+use crate::document::{self, Camera, Document, Overlay, RigKind, SkeletonRig};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::kinematics::chain_ik;
 use crate::kinematics::skeleton::{self, Limit};
-use crate::kinematics::solve;
 
 #[derive(Serialize, Deserialize)]
 pub struct File {
@@ -29,7 +29,7 @@ pub struct File {
     pub camera: Option<Object<View>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_camera: Option<Object<View>>,
-    pub display: Option<Vec<Layer>>,
+    pub display: Option<Vec<Overlay>>,
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -133,7 +133,7 @@ pub struct View {
 impl File {
     pub fn new(document: &Document) -> Self {
         let Document { rig, arm, skeleton: rig_of_joints, camera, display, .. } = document;
-        let SkeletonRig { skeleton, targets, slither, .. } = rig_of_joints;
+        let SkeletonRig { skeleton, targets, follow_path: slither, .. } = rig_of_joints;
         Self {
             format: NAME.to_owned(),
             version: Whole(VERSION),
@@ -188,11 +188,11 @@ impl Joint {
 
 impl Target {
     fn new(target: &document::Target) -> Self {
-        let document::Motion { path, radius, period } = target.motion;
+        let document::TargetMotion { path, radius, period } = target.motion;
         let path = match path {
-            document::Path::Still => Path::Still,
-            document::Path::Circle => Path::Circle,
-            document::Path::FigureEight => Path::FigureEight,
+            document::TargetPath::Still => Path::Still,
+            document::TargetPath::Circle => Path::Circle,
+            document::TargetPath::FigureEight => Path::FigureEight,
         };
         let motion = Motion { path, radius: Some(Number(radius)), period: Some(Number(period)) };
         Self {
@@ -215,8 +215,8 @@ impl Solver {
             damping: Some(Number(solver.damping)),
             step: Some(Number(solver.step)),
             root: Some(match solver.root {
-                solve::Root::Fixed => Root::Fixed,
-                solve::Root::Free => Root::Free,
+                chain_ik::Root::Fixed => Root::Fixed,
+                chain_ik::Root::Free => Root::Free,
             }),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
         }
@@ -224,7 +224,7 @@ impl Solver {
 }
 
 impl Slither {
-    fn new(slither: &document::Slither) -> Self {
+    fn new(slither: &document::FollowPath) -> Self {
         Self {
             radius: Number(slither.radius),
             amplitude: Number(slither.amplitude),

@@ -4,8 +4,8 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::check::counted;
-use crate::document::{self, Channel, Document, Keys, Layer, Quantity};
-use crate::io::field::Field;
+use crate::document::{self, Channel, Document, Keys, Overlay, Quantity};
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::io::value::{Knot, Number, Object, Seconds, Whole};
 use crate::kinematics::spline::Spline;
@@ -16,7 +16,7 @@ pub struct Track {
     #[serde(skip_serializing_if = "Option::is_none")]
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    layer: Option<Layer>,
+    layer: Option<Overlay>,
     knots: Vec<Knot>,
 }
 
@@ -58,13 +58,13 @@ impl Track {
     fn new(channel: Channel, track: &Spline<Vec3>) -> Self {
         let (name, layer) = match channel {
             Channel::Hand => (Name::Hand, None),
-            Channel::ElbowSpin => (Name::ElbowSpin, None),
+            Channel::Twist => (Name::ElbowSpin, None),
             Channel::Root => (Name::Root, None),
             Channel::Upper => (Name::Upper, None),
             Channel::Lower => (Name::Lower, None),
             Channel::Pin => (Name::Pin, None),
             Channel::Pole => (Name::Pole, None),
-            Channel::Weight => (Name::Weight, None),
+            Channel::Influence => (Name::Weight, None),
             Channel::Shoulder => (Name::Shoulder, None),
             Channel::Bend => (Name::Bend, None),
             Channel::Stretch => (Name::Stretch, None),
@@ -74,7 +74,7 @@ impl Track {
             Channel::Offset(_) => (Name::Offset, None),
             Channel::Target(_) => (Name::Target, None),
             Channel::Enabled(_) => (Name::Enabled, None),
-            Channel::Layer(layer) => (Name::Layer, Some(layer)),
+            Channel::Overlay(layer) => (Name::Layer, Some(layer)),
         };
         let width = channel.quantity().width();
         let knot = |time, value: Vec3| Knot {
@@ -90,7 +90,7 @@ impl Track {
         }
     }
 
-    fn channel(&self, at: &Field, document: &Document) -> Result<Channel, Wrong> {
+    fn channel(&self, at: &JsonPath, document: &Document) -> Result<Channel, Wrong> {
         let joint = || {
             let missing =
                 || Wrong::new(at.clone(), "this channel is a joint's: `joint` is missing");
@@ -111,13 +111,13 @@ impl Track {
         };
         Ok(match self.channel {
             Name::Hand => Channel::Hand,
-            Name::ElbowSpin => Channel::ElbowSpin,
+            Name::ElbowSpin => Channel::Twist,
             Name::Root => Channel::Root,
             Name::Upper => Channel::Upper,
             Name::Lower => Channel::Lower,
             Name::Pin => Channel::Pin,
             Name::Pole => Channel::Pole,
-            Name::Weight => Channel::Weight,
+            Name::Weight => Channel::Influence,
             Name::Shoulder => Channel::Shoulder,
             Name::Bend => Channel::Bend,
             Name::Stretch => Channel::Stretch,
@@ -127,7 +127,7 @@ impl Track {
             Name::Offset => Channel::Offset(joint()?),
             Name::Target => Channel::Target(target()?),
             Name::Enabled => Channel::Enabled(target()?),
-            Name::Layer => Channel::Layer(self.layer.ok_or_else(|| {
+            Name::Layer => Channel::Overlay(self.layer.ok_or_else(|| {
                 Wrong::new(at.clone(), "this channel is a layer's: `layer` is missing")
             })?),
         })
@@ -148,7 +148,7 @@ impl Timeline {
 pub fn keys(tracks: Vec<Object<Track>>, document: &Document) -> Result<Keys, Wrong> {
     let mut keys = Keys::default();
     for (index, Object(track)) in tracks.into_iter().enumerate() {
-        let at = Field::root().key("keys").index(index);
+        let at = JsonPath::root().key("keys").index(index);
         let channel = track.channel(&at, document)?;
         if keys.has(channel) {
             return Err(Wrong::new(at, "another entry has keys of the same channel"));
@@ -176,7 +176,7 @@ fn value(quantity: Quantity, knot: &Knot) -> Result<Vec3, String> {
     let x = value[0];
     match quantity {
         Quantity::Switch if x != 0.0 && x != 1.0 => Err(format!("{x} is no switch; it is 0 or 1")),
-        Quantity::Part if !(0.0..=1.0).contains(&x) => {
+        Quantity::Fraction if !(0.0..=1.0).contains(&x) => {
             Err(format!("{x} is no part; it is from 0 to 1"))
         }
         Quantity::Length if x <= 0.0 => Err(format!("length {x} must be above 0")),
@@ -184,7 +184,7 @@ fn value(quantity: Quantity, knot: &Knot) -> Result<Vec3, String> {
     }
 }
 
-pub fn timeline(at: Field, file: &Timeline) -> Result<document::Timeline, Wrong> {
+pub fn timeline(at: JsonPath, file: &Timeline) -> Result<document::Timeline, Wrong> {
     let seed = document::Timeline::default();
     let start = file.start.map_or(seed.start, |Seconds(start)| start);
     let timeline = document::Timeline {

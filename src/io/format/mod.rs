@@ -62,8 +62,8 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::error::{OpenError, SaveError};
-use super::field::Field;
-use super::layout::laid_out;
+use super::json_path::JsonPath;
+use super::json_style::laid_out;
 use super::open::Opened;
 use super::source::{Odd, Source, Wrong};
 use super::value::{Object, Whole};
@@ -102,7 +102,7 @@ pub fn read(source: &Source) -> Result<Opened, OpenError> {
 fn check_header(Header { format, version }: &Header) -> Result<(), Wrong> {
     if format != NAME {
         let reason = format!("{format:?} is not a format that is known; it must be {NAME:?}");
-        return Err(Wrong::new(Field::root().key("format"), reason));
+        return Err(Wrong::new(JsonPath::root().key("format"), reason));
     }
     let version = version.0;
     if version != VERSION {
@@ -111,7 +111,7 @@ fn check_header(Header { format, version }: &Header) -> Result<(), Wrong> {
         } else {
             format!("there is no version {version}; it must be {VERSION}")
         };
-        return Err(Wrong::new(Field::root().key("version"), reason));
+        return Err(Wrong::new(JsonPath::root().key("version"), reason));
     }
     Ok(())
 }

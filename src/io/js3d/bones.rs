@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use super::file::{Bone, Skeleton as File};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::io::value::{Number, Object, Point};
 use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
@@ -12,7 +12,7 @@ pub struct Bones {
     pub order: Vec<usize>,
 }
 
-pub fn read(at: &Field, file: &File) -> Result<Bones, Wrong> {
+pub fn read(at: &JsonPath, file: &File) -> Result<Bones, Wrong> {
     let at_bone = |bone| at.clone().key("bones").index(bone);
     if file.bones.len() > Skeleton::MOST_JOINTS {
         return Err(Wrong::new(at.clone().key("bones"), SkeletonError::TooMany.to_string()));

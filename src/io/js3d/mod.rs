@@ -20,7 +20,7 @@ mod place;
 use glam::DAffine3;
 
 use super::error::OpenError;
-use super::field::Field;
+use super::json_path::JsonPath;
 use super::open::Opened;
 use super::source::{Odd, Source, Wrong};
 use super::value::Object;
@@ -59,7 +59,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
 }
 
 fn no_skeleton() -> Wrong {
-    let field = Field::root().key("scene").key("skinned_meshes");
+    let field = JsonPath::root().key("scene").key("skinned_meshes");
     Wrong::new(field, "there is no skeleton; one is under the name of a mesh, as its `skeleton`")
 }
 
@@ -69,11 +69,11 @@ fn rig(
     file: &Skeleton,
     odd: &mut Odd,
 ) -> Result<(SkeletonRig, Vec<usize>), Wrong> {
-    let at = Field::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
+    let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
     let place = place::of(scene, name, odd)?;
     let Bones { mut skeleton, order } = bones::read(&at, file)?;
     skeleton.set_transform(place.as_affine3a()).map_err(|error| {
-        Wrong::new(Field::root().key("scene").key("transforms"), error.to_string())
+        Wrong::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
     let mut rig = SkeletonRig::new(skeleton);
     rig.targets = targets(&at, file, place, &order, rig.circle(), odd)?;
@@ -82,7 +82,7 @@ fn rig(
 
 /// Of several handles on a bone the first that is enabled counts, or the first.
 fn targets(
-    at: &Field,
+    at: &JsonPath,
     file: &Skeleton,
     place: DAffine3,
     order: &[usize],
@@ -112,7 +112,7 @@ fn targets(
 }
 
 fn target(
-    at: &Field,
+    at: &JsonPath,
     handle: &Handle,
     place: DAffine3,
     order: &[usize],

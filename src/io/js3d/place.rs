@@ -3,7 +3,7 @@ use std::collections::{HashMap, HashSet};
 use glam::{DAffine3, DQuat, DVec3, DVec4};
 
 use super::file::{Scene, Transform};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::{Odd, Wrong};
 use crate::io::value::{Numbers, Point};
 
@@ -11,7 +11,7 @@ use crate::io::value::{Numbers, Point};
 /// origin.
 pub fn of(scene: &Scene, mesh: &str, odd: &mut Odd) -> Result<DAffine3, Wrong> {
     let instances = &scene.instances.0.skinned_meshes.0;
-    let at = Field::root().key("scene").key("instances").key("skinned_meshes");
+    let at = JsonPath::root().key("scene").key("instances").key("skinned_meshes");
     let mut of_mesh =
         instances.iter().filter(|(_, instance)| instance.mesh.as_deref() == Some(mesh));
     let Some((name, instance)) = of_mesh.next() else {
@@ -28,7 +28,7 @@ pub fn of(scene: &Scene, mesh: &str, odd: &mut Odd) -> Result<DAffine3, Wrong> {
 }
 
 /// The product of a transform and all those above it. `field` is where its name stands.
-fn world(scene: &Scene, name: &str, field: Field) -> Result<DAffine3, Wrong> {
+fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, Wrong> {
     let mut place = DAffine3::IDENTITY;
     let (mut next, mut field) = (Some(name), field);
     let transforms: HashMap<_, _> =
@@ -41,7 +41,7 @@ fn world(scene: &Scene, name: &str, field: Field) -> Result<DAffine3, Wrong> {
         let Some(transform) = transforms.get(name) else {
             return Err(Wrong::new(field, format!("there is no transform called {name:?}")));
         };
-        let at = Field::root().key("scene").key("transforms").key(name);
+        let at = JsonPath::root().key("scene").key("transforms").key(name);
         place = local(&at, transform)? * place;
         if !place.as_affine3a().is_finite() {
             return Err(Wrong::new(at, "leads beyond 3.4028235e38 in the world"));
@@ -52,7 +52,7 @@ fn world(scene: &Scene, name: &str, field: Field) -> Result<DAffine3, Wrong> {
     Ok(place)
 }
 
-fn local(at: &Field, transform: &Transform) -> Result<DAffine3, Wrong> {
+fn local(at: &JsonPath, transform: &Transform) -> Result<DAffine3, Wrong> {
     let Transform { translation, rotation, scale, .. } = transform;
     let or = |point: &Option<Point>, usual: DVec3| point.map_or(usual, |Point(p)| p.as_dvec3());
     let rotation = match rotation {

@@ -25,7 +25,7 @@ pub enum LineError {
     #[error("{}: length is {}; it must be a finite number above 0", .0.bone, .0.value)]
     Length(#[from] LengthError),
     #[error("{field}: is {value}; it must be {range}")]
-    Softening { field: &'static str, value: f32, range: &'static str },
+    SoftReach { field: &'static str, value: f32, range: &'static str },
     #[error("root: {:?} puts the {joint} beyond 3.4028235e38; bring it nearer to 0", .root.to_array())]
     OutOfWorld { joint: &'static str, root: Vec3 },
 }

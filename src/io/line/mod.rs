@@ -1,7 +1,7 @@
 //! One line of `ik-arm solve`: what it asks for, and the pose that it gets.
 
 mod error;
-mod swivel;
+mod twist;
 
 use std::fmt;
 use std::str;
@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::value::{Number, Point};
 use crate::kinematics::ik::{Ik, Solved};
-use crate::kinematics::reach::{Softening, SofteningError};
-use crate::kinematics::swivel::{Carried, Reference};
+use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
+use crate::kinematics::twist::{TransportedFrame, TwistReference};
 use crate::kinematics::two_bone::{Facing, Reach, TwoBone};
 pub use error::LineError;
-use swivel::Swivel;
+use twist::Swivel;
 
 /// The longest line, in bytes and without its end: what a line may ask of the memory.
 pub const LONGEST_LINE: usize = 64 * 1024;
@@ -35,7 +35,7 @@ pub fn solve_line(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineEr
     let request = Request::parse(line)?;
     let ik = request.ik()?;
     // Only what is transported has a past: any other line is solved on its own.
-    let is_carried = ik.reference == Reference::Transport;
+    let is_carried = ik.reference == TwistReference::Transport;
     let solved = request.solve(ik, past.filter(|_| is_carried));
     let answer = Answer::new(request.root.0, ik.reference, &solved)?;
     *past = is_carried.then(|| Past::new(&solved));
@@ -47,12 +47,12 @@ pub fn solve_line(line: &[u8], past: &mut Option<Past>) -> Result<Answer, LineEr
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past {
     facing: Facing,
-    carried: Carried,
+    carried: TransportedFrame,
 }
 
 impl Past {
     fn new(solved: &Solved) -> Self {
-        Self { facing: solved.pose.facing, carried: solved.carried }
+        Self { facing: solved.pose.facing, carried: solved.transported }
     }
 }
 
@@ -105,19 +105,19 @@ impl Request {
         Ok(Ik {
             bones: TwoBone::new(self.upper.0, self.lower.0)?,
             reference: self.swivel.0,
-            softening: self.softening()?,
+            soft_reach: self.softening()?,
         })
     }
 
-    fn softening(&self) -> Result<Softening, LineError> {
+    fn softening(&self) -> Result<SoftReach, LineError> {
         let degrees = self.min_elbow_deg.0;
-        Softening::new(self.softness.0, self.max_stretch.0, degrees.to_radians()).map_err(|error| {
-            let SofteningError { field, value, range } = error;
+        SoftReach::new(self.softness.0, self.max_stretch.0, degrees.to_radians()).map_err(|error| {
+            let SoftReachError { field, value, range } = error;
             match field {
                 "min_elbow_angle" => {
-                    LineError::Softening { field: "min_elbow_deg", value: degrees, range }
+                    LineError::SoftReach { field: "min_elbow_deg", value: degrees, range }
                 }
-                _ => LineError::Softening { field, value, range },
+                _ => LineError::SoftReach { field, value, range },
             }
         })
     }
@@ -148,7 +148,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    fn new(root: Vec3, reference: Reference, solved: &Solved) -> Result<Self, LineError> {
+    fn new(root: Vec3, reference: TwistReference, solved: &Solved) -> Result<Self, LineError> {
         let pose = &solved.pose;
         Ok(Self {
             reach: match pose.reach {

@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
-use super::{Softening, TwoBoneJob};
+use super::{SoftReach, TwoBoneJob};
 
 /// A job that cannot be done.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -58,7 +58,7 @@ pub enum JobError {
 
 impl TwoBoneJob {
     /// Refuses numbers that are not finite or out of their range.
-    pub(super) fn checked(&self) -> Result<Softening, JobError> {
+    pub(super) fn checked(&self) -> Result<SoftReach, JobError> {
         let are_finite = [
             ("start", self.start.is_finite()),
             ("middle", self.middle.is_finite()),
@@ -76,7 +76,7 @@ impl TwoBoneJob {
         if !(0.0..=1.0).contains(&self.weight) {
             return Err(out_of_range("weight", self.weight, "from 0 to 1"));
         }
-        Softening::new(self.softness, 1.0, 0.0)
+        SoftReach::new(self.softness, 1.0, 0.0)
             .map_err(|error| out_of_range(error.field, error.value, error.range))
     }
 }

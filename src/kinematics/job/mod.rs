@@ -53,7 +53,7 @@
 //! Named for the stages, in start joint space (`_ss`). d₁, d₂, L, δ, D, hₑ and oₑ are those of
 //! [`two_bone`](super::two_bone); u runs from start to middle, l from middle to end.
 //!
-//! 1. *Soften.* D from the target's distance, as in [`reach`](super::reach).
+//! 1. *Soften.* D from the target's distance, as in [`reach`](super::soft_reach).
 //! 2. *Middle joint.* The inner angle becomes tan(φ/2) = √((D−δ)(D+δ) / ((L−D)(L+D))), by a turn
 //!    about k, the normal of the plane of the two bones: k = ±(−u) × l, on the hinge's side.
 //! 3. *Start joint.* x̂ is then the hand's direction and k × x̂ the elbow's: that frame is brought to
@@ -130,7 +130,7 @@
 //!
 //! G. Blanc, ozz-animation, `IKTwoBoneJob`, 2017 (inputs, outputs and stages; there a hinge axis is
 //! used as it is, which is exact only where it is perpendicular to the bones); the closed form and
-//! its sources in [`two_bone`](super::two_bone), the curve in [`reach`](super::reach).
+//! its sources in [`two_bone`](super::two_bone), the curve in [`reach`](super::soft_reach).
 
 mod chain;
 mod error;
@@ -138,7 +138,7 @@ mod stages;
 
 use glam::{Affine3A, DQuat, Quat, Vec3};
 
-use super::reach::Softening;
+use super::soft_reach::SoftReach;
 use super::two_bone::Reach;
 use chain::Chain;
 pub use error::JobError;
@@ -166,7 +166,7 @@ pub struct TwoBoneJob {
     /// Where that is mirrored in the model, it is left-handed there.
     pub twist: f32,
     /// s, how early the hand begins to fall behind near its limits: from 0 to less than 1. See
-    /// [`Softening`]; nothing stretches.
+    /// [`SoftReach`]; nothing stretches.
     pub softness: f32,
     /// How much of the correction is made: from 0 (none, exactly) to 1 (all).
     pub weight: f32,
@@ -225,21 +225,21 @@ impl TwoBoneJob {
     /// thousand (scale 0 of either is accepted), a softness outside [0, 1) and a weight outside
     /// [0, 1], and says which it is.
     pub fn run(&self) -> Result<Correction, JobError> {
-        let softening = self.checked()?;
+        let soft_reach = self.checked()?;
         let chain = Chain::new(self)?;
-        let full = self.solve(&chain, softening).unwrap_or_default();
+        let full = self.solve(&chain, soft_reach).unwrap_or_default();
         let part = |turn| stages::weight(turn, self.weight.into()).as_quat();
         Ok(self.measured(&chain, part(full.start), part(full.middle), full.left))
     }
 
     /// Nothing where there is nothing to turn.
-    fn solve(&self, chain: &Chain, softening: Softening) -> Option<Full> {
+    fn solve(&self, chain: &Chain, soft_reach: SoftReach) -> Option<Full> {
         let limb = chain.limb()?;
         let target_ss = chain.point_ss(self.target.as_dvec3()) / limb.unit;
         let pole_ss = chain.vector_ss(self.pole.as_dvec3()).try_normalize();
         let hinge_ss = self.hinge.as_dvec3().try_normalize().map(|axis| chain.middle_turn * axis);
 
-        let distance = stages::soften(&limb, target_ss.length(), softening);
+        let distance = stages::soften(&limb, target_ss.length(), soft_reach);
         let bend = stages::middle_joint(&limb, distance, hinge_ss, pole_ss);
         let towards_ss = target_ss.try_normalize().or(limb.hand_ss().try_normalize());
         Some(Full {

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::Limb;
-use crate::kinematics::reach::Softening;
+use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::TwoBone;
 
 /// The limb as it is after the middle joint is turned.
@@ -17,10 +17,10 @@ pub(super) struct Bend {
 }
 
 /// D, for a target at a distance.
-pub(super) fn soften(limb: &Limb, target: f64, softening: Softening) -> f64 {
+pub(super) fn soften(limb: &Limb, target: f64, soft_reach: SoftReach) -> f64 {
     let (upper, lower) = limb.lengths();
     let hard = target.clamp((upper - lower).abs(), upper + lower);
-    if softening.is_hard() {
+    if soft_reach.is_hard() {
         return hard;
     }
     // A bone that f32 cannot tell from none leaves no room to be soft in.
@@ -28,7 +28,7 @@ pub(super) fn soften(limb: &Limb, target: f64, softening: Softening) -> f64 {
         return hard;
     };
     let asked = target.min(f64::from(f32::MAX)) as f32;
-    let softened = softening.extent(bones, asked).distance;
+    let softened = soft_reach.extent(bones, asked).distance;
     if softened == asked {
         return hard;
     }

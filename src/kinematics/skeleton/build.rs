@@ -4,9 +4,9 @@ use super::{Joint, Skeleton, SkeletonError};
 
 /// Where the joints of a skeleton have gone: for each, its new place in the list, if it has one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Moved(Vec<Option<usize>>);
+pub struct JointRemap(Vec<Option<usize>>);
 
-impl Moved {
+impl JointRemap {
     /// The new place of what was at `joint`.
     pub fn get(&self, joint: usize) -> Option<usize> {
         self.0.get(joint).copied().flatten()
@@ -57,7 +57,7 @@ impl Skeleton {
     }
 
     /// Removes joints with all that hangs from them.
-    pub fn remove(&mut self, joints: &[usize]) -> Moved {
+    pub fn remove(&mut self, joints: &[usize]) -> JointRemap {
         let mut moved = Vec::with_capacity(self.joints.len());
         let mut kept = Vec::with_capacity(self.joints.len());
         for (index, mut joint) in std::mem::take(&mut self.joints).into_iter().enumerate() {
@@ -71,7 +71,7 @@ impl Skeleton {
             kept.push(joint);
         }
         self.joints = kept;
-        Moved(moved)
+        JointRemap(moved)
     }
 
     /// Removes joints and attaches their children to the next ancestor that stays, or makes them
@@ -80,7 +80,7 @@ impl Skeleton {
     /// # Errors
     ///
     /// If a child's place below its new parent would not be finite; the skeleton is unchanged then.
-    pub fn dissolve(&mut self, joints: &[usize]) -> Result<Moved, SkeletonError> {
+    pub fn dissolve(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
         let before = self.clone();
         for child in 0..self.joints.len() {
             let above = self.joints[child].parent;
@@ -121,7 +121,7 @@ impl Skeleton {
         &mut self,
         joint: usize,
         parent: Option<usize>,
-    ) -> Result<Moved, SkeletonError> {
+    ) -> Result<JointRemap, SkeletonError> {
         for index in [Some(joint), parent].into_iter().flatten() {
             self.known(index)?;
         }
@@ -217,7 +217,7 @@ impl Skeleton {
     }
 
     /// Brings parents before their children again, otherwise in the order that there is.
-    fn sort(&mut self) -> Moved {
+    fn sort(&mut self) -> JointRemap {
         let mut order = Vec::with_capacity(self.joints.len());
         let mut moved = vec![None; self.joints.len()];
         while order.len() < self.joints.len() {
@@ -235,7 +235,7 @@ impl Skeleton {
             joint.parent = joint.parent.and_then(|parent| moved[parent]);
         }
         self.joints = joints;
-        Moved(moved)
+        JointRemap(moved)
     }
 }
 

@@ -30,10 +30,10 @@ mod pose;
 
 use glam::{Affine3A, Mat3A, Vec3};
 
-pub use build::Moved;
+pub use build::JointRemap;
 pub use error::SkeletonError;
 pub use joint::{Joint, Limit};
-pub use pose::{Pose, is_within_numbers};
+pub use pose::{SkeletonPose, is_within_numbers};
 
 pub(crate) use euler::{EulerAngles, angle_triples, nearest_angles};
 pub(crate) use joint::within;
@@ -183,27 +183,27 @@ impl Skeleton {
     }
 
     /// Every joint as it is turned now, in the world.
-    pub fn pose(&self) -> Pose {
-        Pose::new(&self.joints, self.transform, Joint::local_rotation)
+    pub fn pose(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, self.transform, Joint::local_rotation)
     }
 
     /// [`Skeleton::pose`] in the memory that another pose has: for as many joints none is taken.
-    pub fn write_pose(&self, pose: &mut Pose) {
+    pub fn write_pose(&self, pose: &mut SkeletonPose) {
         pose.refill(&self.joints, self.transform, Joint::local_rotation);
     }
 
     /// Every joint as it is without rotations, in the world.
-    pub fn bind_pose(&self) -> Pose {
-        Pose::new(&self.joints, self.transform, |_| Mat3A::IDENTITY)
+    pub fn bind_pose(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, self.transform, |_| Mat3A::IDENTITY)
     }
 
     /// Every joint as it is turned now, in the skeleton's own space.
-    pub fn pose_in_skeleton(&self) -> Pose {
-        Pose::new(&self.joints, Affine3A::IDENTITY, Joint::local_rotation)
+    pub fn pose_in_skeleton(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, Joint::local_rotation)
     }
 
     /// Every joint without rotations, in the skeleton's own space.
-    pub fn bind_pose_in_skeleton(&self) -> Pose {
-        Pose::new(&self.joints, Affine3A::IDENTITY, |_| Mat3A::IDENTITY)
+    pub fn bind_pose_in_skeleton(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_| Mat3A::IDENTITY)
     }
 }

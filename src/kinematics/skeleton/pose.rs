@@ -4,7 +4,7 @@ use super::Joint;
 
 /// Where every joint of a skeleton is; what is beyond numbers is at their end.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
+pub struct SkeletonPose {
     joints: Vec<Posed>,
 }
 
@@ -14,7 +14,7 @@ struct Posed {
     tip: Vec3,
 }
 
-impl Pose {
+impl SkeletonPose {
     pub(super) fn new(
         joints: &[Joint],
         transform: Affine3A,
@@ -25,7 +25,7 @@ impl Pose {
         pose
     }
 
-    /// Becomes what [`Pose::new`] would make, in the memory that it has.
+    /// Becomes what [`SkeletonPose::new`] would make, in the memory that it has.
     pub(super) fn refill(
         &mut self,
         joints: &[Joint],

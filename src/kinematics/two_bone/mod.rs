@@ -46,15 +46,15 @@
 //! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles
 //! of a Needle-like Triangle*, 2014 (why the products must stay factored).
 
-mod placing;
+mod closed_form;
 
 use core::f32::consts::PI;
 
 use glam::{Mat3, Vec2, Vec3};
 use thiserror::Error;
 
-use placing::Sight;
-pub(super) use placing::{Placed, Scaled};
+use closed_form::Sight;
+pub(super) use closed_form::{Placed, Scaled};
 
 /// Two bones joined at an elbow, with the shoulder at the origin.
 ///
@@ -110,7 +110,7 @@ pub struct Facing {
 
 /// A solved arm, in Root space. The same D feeds every field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct TwoBonePose {
     /// Where the two bones meet.
     pub elbow: Vec3,
     /// Where the lower bone ends: the cursor when it is [`Reach::Reached`], else on a limit sphere.
@@ -173,7 +173,7 @@ impl TwoBone {
         (self.upper - self.lower).abs()
     }
 
-    /// Poses the hand at `cursor` (Root space) with the elbow turned by `elbow_spin` (ψ, radians,
+    /// Poses the hand at `cursor` (Root space) with the elbow turned by `twist` (ψ, radians,
     /// right-handed about the Pointer) from the Limb frame's +y.
     ///
     /// A cursor without a direction takes [`Facing::default`]; see [`Self::solve_from`].
@@ -182,18 +182,18 @@ impl TwoBone {
     ///
     /// In debug builds, if an argument is not finite; in release builds the pose is then
     /// meaningless. Callers check numbers where they enter the program.
-    pub fn solve(self, cursor: Vec3, elbow_spin: f32) -> Pose {
-        self.solve_from(cursor, elbow_spin, Facing::default())
+    pub fn solve(self, cursor: Vec3, twist: f32) -> TwoBonePose {
+        self.solve_from(cursor, twist, Facing::default())
     }
 
     /// As [`Self::solve`], for callers that keep the arm's last [`Facing`]: it is used where the
     /// cursor is at the shoulder (direction) or straight above or below it (yaw).
-    pub fn solve_from(self, cursor: Vec3, elbow_spin: f32, last: Facing) -> Pose {
+    pub fn solve_from(self, cursor: Vec3, twist: f32, last: Facing) -> TwoBonePose {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
-        debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
-        let (sin, cos) = elbow_spin.sin_cos();
+        debug_assert!(twist.is_finite(), "twist is {twist}");
+        let (sin, cos) = twist.sin_cos();
         let placed = Placed::new::<true>(self, cursor, cos, sin, last);
-        Pose { hand: placed.hand_of(cursor), ..placed.pose(elbow_spin) }
+        TwoBonePose { hand: placed.hand_of(cursor), ..placed.pose(twist) }
     }
 
     /// The pose with the hand at a distance from the shoulder, brought between the limits, in the
@@ -202,17 +202,17 @@ impl TwoBone {
     /// # Panics
     ///
     /// As [`Self::solve`].
-    pub fn solve_at(self, facing: Facing, distance: f32, elbow_spin: f32) -> Pose {
+    pub fn solve_at(self, facing: Facing, distance: f32, twist: f32) -> TwoBonePose {
         debug_assert!(distance.is_finite(), "distance is {distance}");
-        debug_assert!(elbow_spin.is_finite(), "elbow spin is {elbow_spin}");
-        let (sin, cos) = elbow_spin.sin_cos();
+        debug_assert!(twist.is_finite(), "twist is {twist}");
+        let (sin, cos) = twist.sin_cos();
         let scaled = Scaled::new(self);
         let placed = Placed::at::<true>(scaled, facing, distance * scaled.scale, cos, sin);
-        Pose { reach: Reach::Reached, ..placed.pose(elbow_spin) }
+        TwoBonePose { reach: Reach::Reached, ..placed.pose(twist) }
     }
 }
 
-impl Pose {
+impl TwoBonePose {
     /// θ_z, the Pointer's angle about −y from +x: `atan2(z, x)`, in [−π, π].
     pub fn yaw(&self) -> f32 {
         self.facing.heading.y.atan2(self.facing.heading.x)

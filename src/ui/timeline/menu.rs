@@ -7,7 +7,7 @@ use super::rows::Lane;
 use super::{held, names};
 use crate::document::Channel;
 use crate::session::{Action, Session};
-use crate::ui::row;
+use crate::ui::widgets;
 
 /// Where the right button went down.
 #[derive(Clone, Copy)]
@@ -31,14 +31,14 @@ pub(super) fn of_lanes(ui: &Ui, lanes: &Lanes<'_>, body: &Response, actions: &mu
     };
     body.context_menu(|ui| {
         if let Some(lane) = lane
-            && row::button(ui, "Add key here", "Key it as it is shown at that time", None)
+            && widgets::button(ui, "Add key here", "Key it as it is shown at that time", None)
         {
             actions.extend([Action::SetTime(time), Action::Key(lane.channels(session))]);
             ui.close();
         }
         of_keys(ui, session, actions);
         let nothing = (!session.can_paste()).then_some("No keys have been copied");
-        if row::button(ui, "Paste here", "The copied keys, from here on", nothing) {
+        if widgets::button(ui, "Paste here", "The copied keys, from here on", nothing) {
             actions.extend([Action::SetTime(time), Action::PasteKeys]);
             ui.close();
         }
@@ -56,7 +56,7 @@ pub(super) fn of_channel(
     actions: &mut Vec<Action>,
 ) {
     response.context_menu(|ui| {
-        if row::button(ui, "Key it now", "Where the time is", None) {
+        if widgets::button(ui, "Key it now", "Where the time is", None) {
             actions.push(Action::Key(vec![channel]));
             ui.close();
         }
@@ -67,11 +67,11 @@ pub(super) fn of_channel(
 fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let keys = session.selected_keys();
     let none = keys.is_empty().then_some("Select keys first: click them, or draw a box");
-    if row::button(ui, "Copy keys", "Ctrl+C", none) {
+    if widgets::button(ui, "Copy keys", "Ctrl+C", none) {
         actions.push(Action::CopyKeys);
         ui.close();
     }
-    if row::button(ui, "Delete keys", "Delete", none) {
+    if widgets::button(ui, "Delete keys", "Delete", none) {
         actions.push(Action::DeleteKeys(keys.to_vec()));
         ui.close();
     }
@@ -80,7 +80,7 @@ fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Vec<Action>) {
     let name = names::channel(session, channel);
     let tooltip = format!("{name} no longer changes in time");
-    if row::button(ui, "Delete channel's keys", &tooltip, None) {
+    if widgets::button(ui, "Delete channel's keys", &tooltip, None) {
         actions.push(Action::ClearChannels(vec![channel]));
         ui.close();
     }

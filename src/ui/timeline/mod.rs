@@ -1,10 +1,10 @@
 //! The panel below the viewport: playing, and the keys in lanes or as curves.
 
-mod curves;
+mod dope_sheet;
+mod graph_editor;
 mod held;
 mod icon;
 mod keys;
-mod lanes;
 mod menu;
 mod names;
 mod pointer;
@@ -39,9 +39,9 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ruler::grid(ui, scale, timeline, areas.lanes);
     let ruler = ruler::ui(ui, session, scale, areas.ruler, actions);
     if session.preferences().curves {
-        curves::ui(ui, session, scale, &areas, &ruler, actions);
+        graph_editor::ui(ui, session, scale, &areas, &ruler, actions);
     } else {
-        lanes::ui(ui, session, scale, &areas, &ruler, actions);
+        dope_sheet::ui(ui, session, scale, &areas, &ruler, actions);
     }
     ruler::playhead(ui, session, scale, areas.ruler, areas.lanes.bottom());
     keys::focused(ui, session, actions);

@@ -12,10 +12,10 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     };
     match channel {
         Channel::Hand => "Hand".to_owned(),
-        Channel::ElbowSpin => "Elbow spin".to_owned(),
+        Channel::Twist => "Elbow spin".to_owned(),
         Channel::Pin => "Hand, pinned".to_owned(),
         Channel::Pole => "Pole".to_owned(),
-        Channel::Weight => "IK weight".to_owned(),
+        Channel::Influence => "IK weight".to_owned(),
         Channel::Shoulder => "Shoulder angles".to_owned(),
         Channel::Bend => "Elbow bend".to_owned(),
         Channel::Stretch => "Stretch of the angles' limbs".to_owned(),
@@ -28,7 +28,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Offset(joint) => of_joint(joint, "offset"),
         Channel::Target(joint) => of_joint(joint, "target"),
         Channel::Enabled(joint) => of_joint(joint, "target on"),
-        Channel::Layer(layer) => {
+        Channel::Overlay(layer) => {
             format!("{} shown", controls::describe(session.rig(), layer).0)
         }
     }

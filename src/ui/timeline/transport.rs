@@ -7,7 +7,7 @@ use super::keys;
 use crate::document::Timeline;
 use crate::session::{Action, Session};
 use crate::ui::number::Number;
-use crate::ui::{row, slider, style};
+use crate::ui::{slider, style, widgets};
 
 /// In a narrower window numbers stand without their names.
 const ROOMY: f32 = 1180.0;
@@ -158,11 +158,11 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let why = channels.is_empty().then_some(nothing);
     let tooltip = "Key the selected channels or joints as they are shown; of an arm hand and elbow \
                    spin (K)";
-    if row::button(ui, "Key", tooltip, why) {
+    if widgets::button(ui, "Key", tooltip, why) {
         actions.push(Action::Key(channels));
     }
     let tooltip = "Key all that shapes the rig, and all that has keys (Shift+K)";
-    if row::button(ui, "Key all", tooltip, None) {
+    if widgets::button(ui, "Key all", tooltip, None) {
         actions.push(Action::Key(session.all_channels()));
     }
     let on = session.is_auto_key();

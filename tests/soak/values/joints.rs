@@ -1,8 +1,8 @@
 //! Joints, targets, and how solvers and snakes go.
 
-use ik_arm::document::{Motion, Path, Slither, Target};
+use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath};
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::Limit;
-use ik_arm::kinematics::solve::{Method, Options, Root};
 
 use super::Values;
 
@@ -83,14 +83,20 @@ impl Values<'_> {
     pub fn target(&mut self) -> Target {
         let joint = self.aimed();
         let size = self.session.skeleton().reach();
-        let path = self.one_of(&[Path::Still, Path::Still, Path::Circle, Path::FigureEight]);
-        let motion = Motion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
+        let path = self.one_of(&[
+            TargetPath::Still,
+            TargetPath::Still,
+            TargetPath::Circle,
+            TargetPath::FigureEight,
+        ]);
+        let motion =
+            TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
         Target { joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
     }
 
-    pub fn slither(&mut self) -> Option<Slither> {
-        self.chance(0.4).then(|| Slither {
+    pub fn follow_path(&mut self) -> Option<FollowPath> {
+        self.chance(0.4).then(|| FollowPath {
             radius: self.number(3.0),
             amplitude: self.number(0.5),
             waves: self.one_of(&[0, 1, 3, 6, 40]),
@@ -98,10 +104,10 @@ impl Values<'_> {
         })
     }
 
-    pub fn options(&mut self) -> Options {
+    pub fn options(&mut self) -> SolverOptions {
         let iterations = self.one_of(&[0, 1, 3, 20, 100, 1000]);
         let tolerance = self.above_0(0.1);
-        Options {
+        SolverOptions {
             method: self.one_of(&Method::ALL),
             iterations: self.chance(0.3).then_some(iterations),
             tolerance: self.chance(0.3).then_some(tolerance),

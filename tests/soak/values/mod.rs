@@ -9,7 +9,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec3;
 use ik_arm::document::RigKind;
-use ik_arm::kinematics::reach::Softening;
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::Session;
 
 use crate::rigs::Random;
@@ -148,11 +148,11 @@ impl Values<'_> {
         }
     }
 
-    pub fn softening(&mut self) -> Softening {
+    pub fn soft_reach(&mut self) -> SoftReach {
         let softness = self.one_of(&[0.0, 0.0, 0.1, 0.25, 0.5, 0.99, 1.0_f32.next_down()]);
         let stretch = self.one_of(&[1.0, 1.0, 1.0, 1.2, 2.0, 100.0, f32::MAX]);
         let stretch = if stretch == f32::MAX && !self.is_wild() { 1.5 } else { stretch };
         let angle = self.one_of(&[0.0, 0.0, 0.3, 1.5, 3.0, PI.next_down()]);
-        Softening::new(softness, stretch, angle).expect("a softening")
+        SoftReach::new(softness, stretch, angle).expect("a softening")
     }
 }

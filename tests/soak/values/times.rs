@@ -43,7 +43,7 @@ impl Values<'_> {
             1 => Channel::Offset(joint),
             2 | 3 => Channel::Target(self.aimed()),
             4 => Channel::Enabled(self.aimed()),
-            5 => Channel::Layer(self.layer()),
+            5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
             _ => self.one_of(&Channel::OF_ARM),
         }

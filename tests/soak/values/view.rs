@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{AxisView, Camera, Layer, Ray};
+use ik_arm::document::{AxisView, Camera, Overlay, Ray};
 use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion, PointDrag};
 
 use super::Values;
@@ -51,8 +51,8 @@ impl Values<'_> {
         self.one_of(&[Motion::Orbit, Motion::Pan, Motion::Zoom])
     }
 
-    pub fn layer(&mut self) -> Layer {
-        let all: Vec<Layer> = Layer::all().collect();
+    pub fn layer(&mut self) -> Overlay {
+        let all: Vec<Overlay> = Overlay::all().collect();
         self.one_of(&all)
     }
 

@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 
 use super::base64;
 use super::file::{Buffer, File};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::{Source, Wrong};
 
 /// The bytes that a file tells of: those that are needed.
@@ -18,7 +18,7 @@ impl<'a> Buffers<'a> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
         let mut left = Source::LONGEST;
         for &index in needed {
-            let at = Field::root().key("buffers").index(index);
+            let at = JsonPath::root().key("buffers").index(index);
             let (Some(buffer), Some(place)) = (file.buffers.0.get(index), buffers.0.get_mut(index))
             else {
                 return Err(Wrong::new(at, "there is no such buffer"));
@@ -44,7 +44,7 @@ fn bytes<'a>(
     source: &'a Source,
     index: usize,
     buffer: &Buffer,
-    at: &Field,
+    at: &JsonPath,
 ) -> Result<Cow<'a, [u8]>, Wrong> {
     let length = buffer.length.0 as usize;
     let at_uri = at.clone().key("uri");

@@ -1,7 +1,7 @@
 use super::sampler::tolerance;
 use super::tracks::Tracks;
 use crate::document::Timeline;
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 
 /// Frames in a second that motions usually have, the fewest first.
@@ -11,7 +11,7 @@ const OTHERWISE: u32 = 60;
 
 /// From when to when a motion goes: from its first key to its last, in as few frames in a second as
 /// there is one at every key. None if that takes no time. `at` is where its animation stands.
-pub fn timeline(tracks: &Tracks<'_>, at: &Field) -> Result<Option<Timeline>, Wrong> {
+pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, Wrong> {
     let Some((start, last)) = ends(tracks) else { return Ok(None) };
     let frames_at = |rate: u32| {
         tracks.times().all(|time| {

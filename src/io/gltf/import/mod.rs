@@ -14,7 +14,7 @@ mod tracks;
 
 use crate::document::Timeline;
 use crate::io::error::OpenError;
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::open::Opened;
 use crate::io::source::{Odd, Source, Wrong};
 use crate::io::value::Object;
@@ -60,11 +60,11 @@ fn check(file: &File) -> Result<(), Wrong> {
     let Object(asset) = &file.asset;
     if asset.version.split('.').next() != Some("2") {
         let reason = format!("is {:?}; only glTF 2 is known", asset.version);
-        return Err(Wrong::new(Field::root().key("asset").key("version"), reason));
+        return Err(Wrong::new(JsonPath::root().key("asset").key("version"), reason));
     }
     if file.skins.0.is_empty() {
         let reason = "there is none; joints are those of a skin";
-        return Err(Wrong::new(Field::root().key("skins"), reason));
+        return Err(Wrong::new(JsonPath::root().key("skins"), reason));
     }
     Ok(())
 }
@@ -81,7 +81,7 @@ fn opened(
     let mut stage = Stage::new(&nodes, &joints);
     let rest = stage.rest()?;
     let mut list = rig::joints(file, &joints, &rest);
-    let at = Field::root().key("animations");
+    let at = JsonPath::root().key("animations");
     if file.animations.0.len() > 1 {
         let reason = "the first animation is read, the others are not";
         odd.push(at.clone().index(1), reason);
@@ -102,7 +102,7 @@ fn animate(
     source: &Source,
     file: &File,
     nodes: &Nodes,
-    (animation, at): (&Animation, &Field),
+    (animation, at): (&Animation, &JsonPath),
     stage: &mut Stage<'_>,
     joints: &mut [Joint],
     rest: &[Placed],

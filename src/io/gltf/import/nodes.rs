@@ -1,7 +1,7 @@
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
 use super::file::{File, Node};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::io::value::Numbers;
 
@@ -41,8 +41,8 @@ impl Local {
     }
 }
 
-pub fn at_node(index: usize) -> Field {
-    Field::root().key("nodes").index(index)
+pub fn at_node(index: usize) -> JsonPath {
+    JsonPath::root().key("nodes").index(index)
 }
 
 impl Nodes {

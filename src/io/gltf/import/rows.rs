@@ -1,6 +1,6 @@
 use super::buffers::Buffers;
 use super::file::{Accessor, File, View};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 
 /// The numbers of an accessor, row by row, as they stand in a buffer: each was checked to be in it.
@@ -46,12 +46,12 @@ impl Component {
     }
 }
 
-pub fn at_accessor(index: usize) -> Field {
-    Field::root().key("accessors").index(index)
+pub fn at_accessor(index: usize) -> JsonPath {
+    JsonPath::root().key("accessors").index(index)
 }
 
-fn at_view(index: usize) -> Field {
-    Field::root().key("bufferViews").index(index)
+fn at_view(index: usize) -> JsonPath {
+    JsonPath::root().key("bufferViews").index(index)
 }
 
 /// An accessor and its buffer view.

@@ -2,8 +2,8 @@ use std::collections::HashSet;
 
 use super::file::{File, Skin};
 use super::nodes::Nodes;
-use crate::io::field::Field;
 use crate::io::gltf::names::Names;
+use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
@@ -35,8 +35,8 @@ pub fn names(file: &File) -> Vec<String> {
     file.skins.0.iter().zip(users).enumerate().map(name).collect()
 }
 
-pub fn at_skin(skin: usize) -> Field {
-    Field::root().key("skins").index(skin)
+pub fn at_skin(skin: usize) -> JsonPath {
+    JsonPath::root().key("skins").index(skin)
 }
 
 impl Joints {

@@ -4,7 +4,7 @@ use super::buffers::Buffers;
 use super::file::{Animation, Channel, File};
 use super::nodes::{Local, Nodes, Parts, at_node};
 use super::sampler::{Interpolation, Sampler};
-use crate::io::field::Field;
+use crate::io::json_path::JsonPath;
 use crate::io::source::{Source, Wrong};
 use crate::io::value::Object;
 
@@ -31,13 +31,13 @@ pub struct Chosen<'a> {
     interpolation: Interpolation,
     input: usize,
     output: usize,
-    at: &'a Field,
+    at: &'a JsonPath,
 }
 
 /// The channels of an animation that move one of the nodes that are needed.
 pub fn chosen<'a>(
     animation: &Animation,
-    at: &'a Field,
+    at: &'a JsonPath,
     nodes: &Nodes,
     is_needed: &[bool],
 ) -> Result<Vec<Chosen<'a>>, Wrong> {

@@ -1,0 +1,79 @@
+//! How long a solve takes by each method, from bind poses to targets that can be reached, and what
+//! one iteration takes.
+
+#[path = "../tests/common/rigs.rs"]
+mod rigs;
+
+use core::hint::black_box;
+
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget, solve};
+use ik_arm::kinematics::skeleton::Skeleton;
+use rigs::{Random, chain, reachable};
+
+const METHODS: [Method; 5] = [
+    Method::TransposeFixed,
+    Method::Transpose,
+    Method::DampedLeastSquares,
+    Method::Ccd,
+    Method::Fabrik,
+];
+
+/// Chains in their bind pose, each with a target from a random one.
+fn cases(joints: usize) -> Vec<(Skeleton, [TipTarget; 1])> {
+    let mut random = Random(7);
+    let case = |_| {
+        let skeleton = chain(&mut random, joints, 1.0);
+        let target = reachable(&mut random, &skeleton, &[joints])[0];
+        (skeleton, [target])
+    };
+    (0..64).map(case).collect()
+}
+
+/// From the skeleton to the skeleton, setting up included; to 1e-4 of the chain's length.
+fn whole(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("solve");
+    for joints in [2, 10, 30, 100] {
+        let cases = cases(joints);
+        for method in METHODS {
+            let options = SolverOptions { method, ..SolverOptions::default() };
+            let mut next = cases.iter().cycle();
+            group.bench_function(BenchmarkId::new(method.name(), joints), |bencher| {
+                bencher.iter_batched_ref(
+                    || next.next().cloned(),
+                    |case| {
+                        let Some((skeleton, targets)) = case else { return };
+                        let _ = black_box(solve(skeleton, black_box(&targets[..]), &options));
+                    },
+                    BatchSize::SmallInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+/// The first iteration, setting up left out.
+fn iteration(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("iteration");
+    for joints in [10, 20, 40, 80] {
+        let (skeleton, [mut target]) = cases(joints).swap_remove(0);
+        target.point *= 0.5;
+        for method in METHODS {
+            let options =
+                SolverOptions { method, tolerance: Some(0.0), ..SolverOptions::default() };
+            let Ok(solve) = ChainSolver::new(&skeleton, &[target], &options) else { continue };
+            group.bench_function(BenchmarkId::new(method.name(), joints), |bencher| {
+                bencher.iter_batched_ref(
+                    || solve.clone(),
+                    |solve| black_box(solve.step()),
+                    BatchSize::SmallInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, whole, iteration);
+criterion_main!(benches);

@@ -1,0 +1,100 @@
+use core::f64::consts::TAU;
+
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::{follow, rotation_between};
+
+/// The way of a snake: its head goes around in waves, and its body follows.
+///
+/// In the skeleton's own space, on the plane y = the head's own height: the path is a ring of
+/// `radius` around the skeleton's origin, on which `waves` waves of height `amplitude` stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FollowPath {
+    pub radius: f32,
+    pub amplitude: f32,
+    pub waves: u32,
+    /// How long the head takes once around, in seconds.
+    pub period: f32,
+}
+
+impl FollowPath {
+    /// The head's way, by turns around the ring.
+    pub fn path(&self, turns: f64) -> Vec3 {
+        let turn = turns.rem_euclid(1.0) * TAU;
+        let wave = f64::from(self.amplitude) * (turn * f64::from(self.waves)).sin();
+        let radius = f64::from(self.radius) + wave;
+        Vec3::new((radius * turn.cos()) as f32, 0.0, (-radius * turn.sin()) as f32)
+    }
+
+    /// How far around the head is, in turns.
+    pub fn head(&self, time: f64) -> f64 {
+        time / f64::from(self.period)
+    }
+
+    /// The skeleton with its first root at the head's place at a time, and the chain of first
+    /// children below it along the way that the head has gone.
+    pub fn pose(&self, skeleton: &Skeleton, time: f64) -> Skeleton {
+        let mut posed = Skeleton::default();
+        self.write_pose(skeleton, time, &mut posed);
+        posed
+    }
+
+    /// [`FollowPath::pose`] in the memory that another skeleton has.
+    pub fn write_pose(&self, skeleton: &Skeleton, time: f64, posed: &mut Skeleton) {
+        const STRIDES_PER_WAVE: f64 = 64.0;
+        posed.clone_from(skeleton);
+        let Some(root) = chain(skeleton).next() else {
+            return;
+        };
+        let height = skeleton.joints()[root].offset.y;
+        let lengths = chain(skeleton).map(|joint| skeleton.joints()[joint].axis.length());
+        let stride = 1.0 / (STRIDES_PER_WAVE * f64::from(self.waves.max(1)));
+        let head = self.head(time);
+        let tips = follow::behind(|s| self.path(s), head, stride, lengths);
+
+        let mut base = self.path(head);
+        let mut above = Mat3A::IDENTITY;
+        for (joint, tip) in chain(skeleton).zip(tips) {
+            let before = &skeleton.joints()[joint];
+            let turn =
+                rotation_between(before.axis.into(), above.transpose() * Vec3A::from(tip - base));
+            let rotation = before.clamped(before.angles_of(Mat3A::from_quat(turn)));
+            let offset = if joint == root { base + Vec3::Y * height } else { before.offset };
+            // Where a bone is too long for numbers it stays as it is.
+            if rotation.is_finite() && offset.is_finite() {
+                posed.turn(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+            }
+            above *= posed.joints()[joint].local_rotation();
+            base = tip;
+        }
+    }
+
+    /// Points of the world that are around all of the path.
+    pub fn corners(&self, skeleton: &Skeleton) -> [Vec3; 4] {
+        let far = self.radius.abs() + self.amplitude.abs();
+        [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z]
+            .map(|side| skeleton.transform().transform_point3(side * far))
+    }
+
+    /// Where the path is, in the world, from `from` to `to` turns.
+    pub fn trail(
+        &self,
+        transform: Affine3A,
+        height: f32,
+        from: f64,
+        to: f64,
+    ) -> impl Iterator<Item = Vec3> {
+        const POINTS: usize = 256;
+        let at = move |part: f64| from + (to - from) * part;
+        (0..=POINTS)
+            .map(move |index| self.path(at(index as f64 / POINTS as f64)) + Vec3::Y * height)
+            .map(move |point| transform.transform_point3(point))
+    }
+}
+
+/// The first root, its first child, and so on.
+fn chain(skeleton: &Skeleton) -> impl Iterator<Item = usize> {
+    let root = skeleton.joints().iter().position(|joint| joint.parent.is_none());
+    std::iter::successors(root, |joint| skeleton.children(*joint).next())
+}

@@ -1,0 +1,94 @@
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::WriteError;
+use super::write::{failed, folder_of};
+
+/// Several files in one folder that are written all or none: into a new folder beside them first.
+///
+/// Files that are there are replaced only at the end, and are brought back if one of them cannot be.
+#[derive(Debug)]
+pub struct FileBatch {
+    folder: PathBuf,
+    /// Holds what is not in its place yet, and what was there before under [`BEFORE`]; it goes with
+    /// the batch.
+    temporary: TempDir,
+    names: Vec<OsString>,
+}
+
+const BEFORE: &str = "before";
+
+impl FileBatch {
+    /// A batch without files, in the folder of a file.
+    ///
+    /// # Errors
+    ///
+    /// If nothing can be written there.
+    pub fn beside(path: &Path) -> Result<Self, WriteError> {
+        let folder = folder_of(path)?;
+        let temporary = tempfile::Builder::new()
+            .prefix(".ik-arm-")
+            .tempdir_in(&folder)
+            .map_err(|source| failed(path, source))?;
+        fs::create_dir(temporary.path().join(BEFORE)).map_err(|source| failed(path, source))?;
+        Ok(Self { folder, temporary, names: Vec::new() })
+    }
+
+    /// Adds a file, which must not be called as another one of them.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written.
+    pub fn add(&mut self, name: &OsStr, bytes: &[u8]) -> Result<(), WriteError> {
+        let path = self.new_path(name);
+        fs::write(path, bytes).map_err(|source| failed(&self.folder.join(name), source))?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Brings all files to their places.
+    ///
+    /// # Errors
+    ///
+    /// If one cannot be; the folder is then as it was, as far as it lets itself be.
+    pub fn finish(self) -> Result<(), WriteError> {
+        for (index, name) in self.names.iter().enumerate() {
+            if let Err(source) = self.place(name) {
+                self.names[..index].iter().rev().for_each(|name| self.take_back(name));
+                return Err(failed(&self.folder.join(name), source));
+            }
+        }
+        Ok(())
+    }
+
+    fn place(&self, name: &OsStr) -> io::Result<()> {
+        let (path, before) = (self.folder.join(name), self.before_path(name));
+        match fs::symlink_metadata(&path) {
+            Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(_) => fs::rename(&path, &before)?,
+            Err(_) => {}
+        }
+        fs::rename(self.new_path(name), &path).inspect_err(|_| {
+            let _ = fs::rename(&before, &path);
+        })
+    }
+
+    fn take_back(&self, name: &OsStr) {
+        let path = self.folder.join(name);
+        // What cannot be taken back has no one else to be told.
+        let _ = fs::remove_file(&path);
+        let _ = fs::rename(self.before_path(name), &path);
+    }
+
+    fn new_path(&self, name: &OsStr) -> PathBuf {
+        self.temporary.path().join(name)
+    }
+
+    fn before_path(&self, name: &OsStr) -> PathBuf {
+        self.temporary.path().join(BEFORE).join(name)
+    }
+}

@@ -1,0 +1,216 @@
+//! Where in a text a field is.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+
+/// The way from the whole file to one of its values.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct JsonPath(Vec<Segment>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Segment {
+    Key(String),
+    Index(usize),
+}
+
+impl JsonPath {
+    /// The whole file.
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    #[must_use]
+    pub fn key(mut self, key: &str) -> Self {
+        self.0.push(Segment::Key(key.to_owned()));
+        self
+    }
+
+    #[must_use]
+    pub fn index(mut self, index: usize) -> Self {
+        self.0.push(Segment::Index(index));
+        self
+    }
+
+    /// The byte at which the value begins, or the nearest value around it that is there.
+    pub fn find(&self, text: &str) -> usize {
+        let inside = (1..=self.0.len()).rev();
+        let found = inside.map(|depth| &self.0[..depth]).find_map(|path| find(text, path));
+        found.unwrap_or_else(|| skip_space(text, 0))
+    }
+}
+
+/// As `skeleton.joints[3].parent`.
+impl fmt::Display for JsonPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let is_plain = |c: char| c.is_alphanumeric() || "_-".contains(c);
+        for (index, segment) in self.0.iter().enumerate() {
+            match segment {
+                Segment::Index(index) => write!(f, "[{index}]")?,
+                Segment::Key(key) if key.is_empty() || !key.chars().all(is_plain) => {
+                    write!(f, "[{key:?}]")?;
+                }
+                Segment::Key(key) if index == 0 => f.write_str(key)?,
+                Segment::Key(key) => write!(f, ".{key}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl From<&serde_path_to_error::Path> for JsonPath {
+    fn from(path: &serde_path_to_error::Path) -> Self {
+        use serde_path_to_error::Segment as Step;
+        let segment = |step: &Step| match step {
+            Step::Seq { index } => Some(Segment::Index(*index)),
+            Step::Map { key } => Some(Segment::Key(key.clone())),
+            Step::Enum { .. } | Step::Unknown => None,
+        };
+        Self(path.iter().filter_map(segment).collect())
+    }
+}
+
+impl From<&serde_ignored::Path<'_>> for JsonPath {
+    fn from(path: &serde_ignored::Path<'_>) -> Self {
+        use serde_ignored::Path;
+        match path {
+            Path::Root => Self::root(),
+            Path::Seq { parent, index } => Self::from(*parent).index(*index),
+            Path::Map { parent, key } => Self::from(*parent).key(key),
+            Path::Some { parent }
+            | Path::NewtypeStruct { parent }
+            | Path::NewtypeVariant { parent } => Self::from(*parent),
+        }
+    }
+}
+
+/// Line and column (in characters) of a byte, each from 1.
+pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
+    let before = text.get(..byte).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |end| end + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+}
+
+/// The byte that a parser was at when it told a line and a column in bytes, each from 1.
+pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
+    let start = start_of_line(text, line);
+    let mut byte = (start + column.saturating_sub(1)).min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    byte
+}
+
+fn start_of_line(text: &str, line: usize) -> usize {
+    text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum()
+}
+
+fn find(text: &str, path: &[Segment]) -> Option<usize> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let mut found = false;
+    let error = Walk { path, found: &mut found }.deserialize(&mut json).err()?;
+    // The parser stands before the value, at most some spaces away.
+    found.then(|| skip_space(text, start_of_line(text, error.line()) + error.column()))
+}
+
+fn skip_space(text: &str, from: usize) -> usize {
+    let rest = text.get(from..).unwrap_or_default();
+    text.len() - rest.trim_start().len()
+}
+
+/// Goes to a value and stops there, so that the parser tells where it is.
+struct Walk<'a> {
+    path: &'a [Segment],
+    found: &'a mut bool,
+}
+
+impl<'de> DeserializeSeed<'de> for Walk<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        if self.path.is_empty() {
+            *self.found = true;
+            return Err(D::Error::custom("here"));
+        }
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Walk<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object or an array")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let Some((Segment::Key(wanted), path)) = self.path.split_first() else {
+            return Err(A::Error::custom("no object is wanted"));
+        };
+        while let Some(key) = map.next_key::<Cow<'_, str>>()? {
+            if key == wanted.as_str() {
+                return map.next_value_seed(Walk { path, found: self.found });
+            }
+            map.next_value::<IgnoredAny>()?;
+        }
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<(), A::Error> {
+        let Some((Segment::Index(wanted), path)) = self.path.split_first() else {
+            return Err(A::Error::custom("no array is wanted"));
+        };
+        for _ in 0..*wanted {
+            if sequence.next_element::<IgnoredAny>()?.is_none() {
+                return Ok(());
+            }
+        }
+        sequence.next_element_seed(Walk { path, found: self.found })?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "{\n  \"é\": 1, \"b\":[ 1,\n\t{\"c\" :\n  \"d\"},[\n[]]],\n \"e\":null}";
+
+    fn place(field: &JsonPath) -> (usize, usize) {
+        line_and_column(TEXT, field.find(TEXT))
+    }
+
+    #[test]
+    fn a_value_is_found_where_it_begins() {
+        let root = JsonPath::root;
+        let b = || root().key("b");
+        for (field, expected) in [
+            (root(), (1, 1)),
+            (root().key("é"), (2, 8)),
+            (b(), (2, 15)),
+            (b().index(0), (2, 17)),
+            (b().index(1), (3, 2)),
+            (b().index(1).key("c"), (4, 3)),
+            (b().index(2).index(0), (5, 1)),
+            (root().key("e"), (6, 6)),
+        ] {
+            assert_eq!(place(&field), expected, "{field}");
+        }
+    }
+
+    #[test]
+    fn of_a_value_that_is_not_there_the_one_around_it_is_found() {
+        assert_eq!(place(&JsonPath::root().key("b").index(1).key("none")), (3, 2));
+        assert_eq!(place(&JsonPath::root().key("b").index(9)), (2, 15));
+        assert_eq!(place(&JsonPath::root().key("e").key("x").index(1)), (6, 6));
+        assert_eq!(place(&JsonPath::root().index(1)), (1, 1));
+    }
+
+    #[test]
+    fn a_path_reads_as_one_would_write_it() {
+        let field = JsonPath::root().key("scene").key("my mesh").key("bones").index(3).key("roll");
+        assert_eq!(field.to_string(), r#"scene["my mesh"].bones[3].roll"#);
+    }
+}

@@ -1,0 +1,56 @@
+//! Directions of vectors however short or long they are: squared, f32 ends at 1e-19 and at 1e19.
+
+use glam::Vec3A;
+
+/// The unit vector along another one, if it has a direction.
+pub(crate) fn normalize(v: Vec3A) -> Option<Vec3A> {
+    if is_usual(v) { v.try_normalize() } else { near_1(v)?.try_normalize() }
+}
+
+/// Whether it can be squared, and the square multiplied by another such one.
+pub(super) fn is_usual(v: Vec3A) -> bool {
+    (1e-15..=1e15).contains(&v.length_squared())
+}
+
+/// The vector times the power of two that brings its largest coordinate to 1 … 2 (of the tiniest, as
+/// near to that as it can), if it has a direction.
+pub(super) fn near_1(v: Vec3A) -> Option<Vec3A> {
+    let largest = v.abs().max_element();
+    (largest > 0.0 && v.is_finite()).then(|| v * power_of_two_near(largest).1)
+}
+
+/// The power of two at or below `value` ≥ 0, kept where its reciprocal is a number too; and that
+/// reciprocal. To scale by them is exact.
+#[inline(always)]
+pub(super) fn power_of_two_near(value: f32) -> (f32, f32) {
+    const EXPONENT: u32 = 0xff << 23;
+    const LEAST: u32 = 1 << 23;
+    const MOST: u32 = 253 << 23;
+    let power = (value.to_bits() & EXPONENT).clamp(LEAST, MOST);
+    (f32::from_bits(power), f32::from_bits(LEAST + MOST - power))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_of_every_length_have_their_direction() {
+        let expected = Vec3A::new(2.0, -3.0, 6.0) / 7.0;
+        for exponent in -125..=125 {
+            let v = Vec3A::new(2.0, -3.0, 6.0) * 2_f32.powi(exponent);
+            let found = normalize(v).expect("a direction");
+            assert!(found.distance(expected) < 1e-6, "{found} for {v}");
+        }
+        let least = f32::from_bits(1);
+        assert_eq!(normalize(Vec3A::Y * least), Some(Vec3A::Y));
+        assert_eq!(normalize(Vec3A::NEG_Z * f32::MAX), Some(Vec3A::NEG_Z));
+    }
+
+    #[test]
+    fn what_has_no_direction_has_none() {
+        for v in [Vec3A::ZERO, Vec3A::NAN, Vec3A::INFINITY, Vec3A::new(f32::NAN, 1.0, 0.0)] {
+            assert_eq!(normalize(v), None, "{v}");
+        }
+    }
+}

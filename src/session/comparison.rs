@@ -1,0 +1,96 @@
+use std::time::{Duration, Instant};
+
+use super::solver_run::History;
+use crate::document::SkeletonRig;
+use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SolverOptions};
+use crate::kinematics::skeleton::Skeleton;
+
+/// Every solver from the same start to the same targets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    runners: Vec<Runner>,
+}
+
+/// One solver in a race.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Runner {
+    pub method: Method,
+    /// The skeleton as this solver has it by now.
+    pub skeleton: Skeleton,
+    pub history: History,
+    /// What the iterations took.
+    pub time: Duration,
+    solve: Result<ChainSolver, SolveError>,
+}
+
+impl Comparison {
+    pub(super) fn new(rig: &SkeletonRig, time: f64) -> Self {
+        let goals = rig.goals(time);
+        let runners = Method::ALL.into_iter().map(|method| {
+            let options = SolverOptions { method, iterations: None, ..rig.solver };
+            let solve = ChainSolver::new(&rig.skeleton, &goals, &options);
+            let mut history = History::default();
+            if let Ok(solve) = &solve {
+                history.push(solve.report().error);
+            }
+            Runner { method, skeleton: rig.skeleton.clone(), history, time: Duration::ZERO, solve }
+        });
+        Self { runners: runners.collect() }
+    }
+
+    pub fn runners(&self) -> &[Runner] {
+        &self.runners
+    }
+
+    /// Whether any solver still runs.
+    pub fn is_running(&self) -> bool {
+        self.runners.iter().any(Runner::is_running)
+    }
+
+    /// Whether the joints are still those that it began with, turned or not.
+    pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
+        let is_like = |runner: &Runner| {
+            let parents = |skeleton: &Skeleton| -> Vec<_> {
+                skeleton.joints().iter().map(|joint| joint.parent).collect()
+            };
+            parents(&runner.skeleton) == parents(skeleton)
+        };
+        self.runners.first().is_none_or(is_like)
+    }
+
+    /// Lets every solver run on: ever faster, so that the start can be watched and the end comes.
+    pub(super) fn advance(&mut self) {
+        self.runners.iter_mut().for_each(Runner::advance);
+    }
+}
+
+impl Runner {
+    /// A running solver makes this part of the iterations that it has made, and at least one.
+    const PACE: u32 = 8;
+
+    /// How it stands, or why it does not run.
+    pub fn report(&self) -> Result<Report, &SolveError> {
+        self.solve.as_ref().map(ChainSolver::report)
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.solve.as_ref().is_ok_and(|solve| !solve.is_over())
+    }
+
+    fn advance(&mut self) {
+        let done = self.report().map_or(0, |report| report.iterations);
+        let started = Instant::now();
+        for _ in 0..(done / Self::PACE).max(1) {
+            if !self.is_running() {
+                break;
+            }
+            if let Ok(solve) = &mut self.solve {
+                self.history.push(solve.step().error);
+            }
+        }
+        self.time += started.elapsed();
+        if let Ok(solve) = &self.solve {
+            solve.write(&mut self.skeleton);
+        }
+    }
+}

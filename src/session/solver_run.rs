@@ -1,0 +1,147 @@
+use std::mem;
+
+use crate::document::SkeletonRig;
+use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
+use crate::kinematics::skeleton::Skeleton;
+
+/// A solver at work on the document's skeleton, one or some iterations at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverRun {
+    /// The skeleton before the first iteration.
+    start: Skeleton,
+    solve: ChainSolver,
+    options: SolverOptions,
+    goals: Vec<TipTarget>,
+    /// The skeleton as the last iteration left it.
+    written: Skeleton,
+    /// Iterations before the targets moved last, or somebody else turned a joint.
+    before: u32,
+    history: History,
+    pub(super) running: bool,
+}
+
+/// The error after every iteration, the first ones forgotten when there are too many.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct History {
+    forgotten: usize,
+    errors: Vec<f32>,
+}
+
+impl History {
+    const MOST: usize = 4096;
+
+    pub(super) fn push(&mut self, error: f32) {
+        if self.errors.len() >= Self::MOST {
+            let half = Self::MOST / 2;
+            self.errors.drain(..half);
+            self.forgotten += half;
+        }
+        self.errors.push(error);
+    }
+
+    /// Iteration and error.
+    pub fn points(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        self.errors.iter().enumerate().map(|(index, error)| (self.forgotten + index, *error))
+    }
+}
+
+impl SolverRun {
+    pub(super) fn new(rig: &SkeletonRig, time: f64) -> Result<Self, SolveError> {
+        let goals = rig.goals(time);
+        let solve = ChainSolver::new(&rig.skeleton, &goals, &rig.solver)?;
+        let mut history = History::default();
+        history.push(solve.report().error);
+        Ok(Self {
+            start: rig.skeleton.clone(),
+            written: rig.skeleton.clone(),
+            solve,
+            options: rig.solver,
+            goals,
+            before: 0,
+            history,
+            running: false,
+        })
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
+    pub fn report(&self) -> Report {
+        let report = self.solve.report();
+        Report { iterations: self.before + report.iterations, ..report }
+    }
+
+    /// Whether it has made all the iterations that it may make, and is not there.
+    pub fn is_spent(&self) -> bool {
+        let report = self.solve.report();
+        self.solve.is_over() && !report.converged && !report.resting
+    }
+
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// The skeleton before the first iteration.
+    pub fn start(&self) -> &Skeleton {
+        &self.start
+    }
+
+    /// Makes up to `iterations`, and none when there is nothing left to do.
+    pub(super) fn advance(
+        &mut self,
+        rig: &mut SkeletonRig,
+        time: f64,
+        iterations: u32,
+    ) -> Result<(), SolveError> {
+        self.keep_up(rig, time)?;
+        for _ in 0..iterations {
+            if self.solve.is_over() {
+                break;
+            }
+            let report = self.solve.step();
+            self.history.push(report.error);
+        }
+        self.solve.write(&mut rig.skeleton);
+        self.written.clone_from(&rig.skeleton);
+        Ok(())
+    }
+
+    /// Whether another iteration would be in vain.
+    pub(super) fn is_done(&self) -> bool {
+        self.solve.is_over()
+    }
+
+    /// Whether its last iteration led to this pose, with the targets and options that it has now.
+    pub(super) fn led_to(&self, rig: &SkeletonRig, time: f64) -> bool {
+        rig.skeleton == self.written && rig.solver == self.options && rig.goals(time) == self.goals
+    }
+
+    /// Follows what has changed since the last iteration.
+    fn keep_up(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
+        let goals = rig.goals(time);
+        let is_same = rig.solver == self.options && rig.skeleton == self.written;
+        if !is_same || !only_points_differ(&goals, &self.goals) {
+            let before = self.report().iterations;
+            let anew = Self::new(rig, time)?;
+            let old = mem::replace(self, anew);
+            self.start = old.start;
+            self.history = old.history;
+            self.before = before;
+            self.running = old.running;
+        } else if goals != self.goals {
+            self.before = self.report().iterations;
+            self.solve.retarget(&goals)?;
+            self.goals = goals;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a solve for some goals can be aimed at others.
+fn only_points_differ(goals: &[TipTarget], others: &[TipTarget]) -> bool {
+    let same = |(goal, other): (&TipTarget, &TipTarget)| {
+        goal.joint == other.joint && goal.weight.to_bits() == other.weight.to_bits()
+    };
+    goals.len() == others.len() && goals.iter().zip(others).all(same)
+}

@@ -1,0 +1,226 @@
+//! The keyed values over the time.
+
+use egui::{
+    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
+};
+use egui::{Rangef, Vec2b, pos2, vec2};
+use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
+
+use super::scale::Scale;
+use super::{Areas, ROW, dope_sheet, held, names, rows, ruler};
+use crate::document::{Channel, Quantity};
+use crate::kinematics::chain_ik::Method;
+use crate::session::{Action, Session};
+use crate::ui::{plot, slider, style};
+
+/// More than these cannot be told apart.
+const MOST: usize = 24;
+/// Between two points of a curve, in points of the screen.
+const GRAIN: f32 = 2.0;
+/// Beside the plot.
+const VALUES: f32 = 42.0;
+
+/// Between two values that are written, at least.
+const BETWEEN_VALUES: f32 = 15.0;
+
+/// The line of one number of a channel.
+struct Curve {
+    name: String,
+    colour: Color32,
+    style: LineStyle,
+    line: Vec<[f64; 2]>,
+    knots: Vec<[f64; 2]>,
+}
+
+pub(super) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    scale: Scale,
+    areas: &Areas,
+    ruler: &Response,
+    actions: &mut Vec<Action>,
+) {
+    let channels = shown(session);
+    if channels.is_empty() {
+        dope_sheet::say(ui, areas, "No curves: key the rig (K), or select a channel that has keys");
+        return;
+    }
+    let curves: Vec<Curve> = channels
+        .iter()
+        .enumerate()
+        .flat_map(|(index, channel)| curves(ui, session, scale, *channel, index))
+        .collect();
+    legend(ui, session, areas, &channels);
+    plot(ui, scale, areas, &curves);
+
+    let area = ui.interact(areas.lanes, Id::unique("timeline curves"), Sense::click_and_drag());
+    let names: Vec<String> = channels.iter().map(|it| names::channel(session, *it)).collect();
+    let said = format!("Curves of {}", names.join(", "));
+    area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+    super::take_keyboard(ui, &area, ruler);
+    if ruler::is_pressed(ui, &area) {
+        held::grab_playhead(ui, session, actions);
+        held::follow_playhead(ui, session, scale, actions);
+    }
+    if area.contains_pointer() && ui.input(|input| input.pointer.button_pressed(MIDDLE)) {
+        held::set(ui, held::Held::Pan);
+    }
+    if matches!(held::get(ui), Some(held::Held::Pan)) && held::is_released(ui) {
+        held::clear(ui);
+    }
+}
+
+const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
+
+/// The selected channels that have keys, else those of the rig that is shown.
+fn shown(session: &Session) -> Vec<Channel> {
+    let all = rows::channels(session);
+    let selected = session.selected_channels();
+    let is_of_rig = |channel: &Channel| channel.rig() == Some(session.rig());
+    let chosen: Vec<_> = match selected.is_empty() {
+        true => all.into_iter().filter(is_of_rig).collect(),
+        false => all.into_iter().filter(|channel| selected.contains(channel)).collect(),
+    };
+    chosen.into_iter().take(MOST).collect()
+}
+
+/// A point's coordinates have the axes' colours, a number one of its own; channels after the first
+/// are broken differently.
+fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
+    let palette = style::palette(ui);
+    let style = match index % 4 {
+        0 => LineStyle::Solid,
+        1 => LineStyle::dashed_loose(),
+        2 => LineStyle::dashed_dense(),
+        _ => LineStyle::dotted_dense(),
+    };
+    let colours = match channel {
+        Channel::Upper => vec![palette.upper],
+        Channel::Lower => vec![palette.lower],
+        _ if channel.quantity().width() == 3 => palette.axes.to_vec(),
+        _ => vec![palette.method(Method::ALL[index % Method::ALL.len()])],
+    };
+    (colours.into_iter().map(style::colour).collect(), style)
+}
+
+fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usize) -> Vec<Curve> {
+    let keys = &session.document().keys;
+    let Some(track) = keys.track(channel) else {
+        return Vec::new();
+    };
+    let unit = match channel.quantity() {
+        Quantity::Angle | Quantity::Angles => 180.0 / core::f64::consts::PI,
+        Quantity::Point | Quantity::Length | Quantity::Fraction | Quantity::Switch => 1.0,
+    };
+    let name = names::channel(session, channel);
+    let (colours, style) = look(ui, channel, index);
+    let times = times(scale);
+    let values: Vec<_> =
+        times.iter().filter_map(|time| Some((*time, keys.value(channel, *time)?))).collect();
+    let curve = |(axis, colour): (usize, Color32)| Curve {
+        name: format!("{name} {axis}"),
+        colour,
+        style,
+        line: values.iter().map(|(time, value)| [*time, unit * f64::from(value[axis])]).collect(),
+        knots: track
+            .knots()
+            .iter()
+            .map(|knot| [knot.time, unit * f64::from(knot.value[axis])])
+            .collect(),
+    };
+    colours.into_iter().enumerate().map(curve).collect()
+}
+
+/// Close enough to each other for a smooth curve.
+fn times(scale: Scale) -> Vec<f64> {
+    let (from, to) = scale.range();
+    let step = f64::from(GRAIN) / scale.points_per_second();
+    let count = ((to - from) / step).ceil().clamp(2.0, 10_000.0) as usize;
+    (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
+}
+
+fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
+    let (from, to) = scale.range();
+    let values = curves.iter().flat_map(|curve| &curve.line).map(|point| point[1]);
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let room = (0.12 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
+    // What stands still lies in the middle.
+    let room = if high - low < room { 0.5 * room + 0.5 } else { room };
+    let bounds = PlotBounds::from_min_max([from, low - room], [to, high + room]);
+    let left = areas.lanes.left() - VALUES;
+    let rect = Rect::from_min_max(pos2(left, areas.lanes.top()), areas.lanes.max);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+    plot::still("timeline curves", rect.height())
+        .width(rect.width())
+        .show_grid(Vec2b::new(false, true))
+        .show_axes(Vec2b::new(false, true))
+        .y_grid_spacer(egui_plot::uniform_grid_spacer(move |grid| {
+            let lines = f64::from((rect.height() / BETWEEN_VALUES).max(1.0));
+            let step = round_step((grid.bounds.1 - grid.bounds.0) / lines);
+            [step, 5.0 * step, 10.0 * step]
+        }))
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .formatter(|mark, _| value(mark.value, mark.step_size))
+                .label_spacing(Rangef::new(13.0, 15.0))
+                .min_thickness(VALUES),
+        ])
+        .show(&mut inside, |plot| {
+            plot.set_auto_bounds(Vec2b::FALSE);
+            plot.set_plot_bounds(bounds);
+            for curve in curves {
+                let line = Line::new(&curve.name, PlotPoints::from(curve.line.clone()));
+                plot.line(line.color(curve.colour).width(1.75).style(curve.style));
+                let knots = Points::new(&curve.name, PlotPoints::from(curve.knots.clone()));
+                plot.points(knots.color(curve.colour).radius(3.0));
+            }
+        });
+}
+
+/// With as many digits as tell it from the next one.
+fn value(value: f64, step: f64) -> String {
+    let digits = -step.max(1e-6).log10().floor();
+    slider::format(value, digits.max(0.0) as usize)
+}
+
+/// The 1, 2 or 5 times a power of ten that is next above.
+fn round_step(step: f64) -> f64 {
+    let power = 10_f64.powf(step.max(1e-30).log10().floor());
+    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
+    steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
+}
+
+/// Which line is which.
+fn legend(ui: &mut Ui, session: &Session, areas: &Areas, channels: &[Channel]) {
+    let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
+    let rect = Rect::from_min_max(areas.names.min, right);
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        ScrollArea::vertical().id_salt("legend").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for (index, channel) in channels.iter().enumerate() {
+                entry(ui, session, *channel, index);
+            }
+        });
+    });
+}
+
+fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
+    const SWATCH: f32 = 6.0;
+    let size = vec2(ui.available_width(), ROW);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let name = names::channel(session, channel);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Curve of {name}")));
+    let (colours, _) = look(ui, channel, index);
+    let width = SWATCH * colours.len() as f32;
+    for (place, colour) in colours.iter().enumerate() {
+        let x = rect.left() + 10.0 + SWATCH * place as f32;
+        let at = pos2(x, rect.center().y);
+        ui.painter().hline(x..=x + SWATCH - 1.5, at.y, Stroke::new(3.0, *colour));
+    }
+    let beside = Rect::from_min_max(pos2(rect.left() + width + 3.0, rect.top()), rect.max);
+    dope_sheet::text(ui, beside, &name, ui.visuals().text_color());
+    let axes = if colours.len() == 3 { ": x, y and z in the colours of the axes" } else { "" };
+    response.on_hover_text(format!("{name}{axes}"));
+}

@@ -1,0 +1,783 @@
+//! Every method against random rigs: reach, limits, rest, roots, edges.
+
+#[path = "common/rigs.rs"]
+mod rigs;
+
+use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3A, Vec3};
+use ik_arm::kinematics::chain_ik::{
+    ChainSolver, Method, Report, Root, SolveError, SolverOptions, TipTarget, jacobian, solve,
+};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use rigs::{Random, chain, forest, length, reachable, shake, transform, tree};
+
+const CASES: usize = 1_000;
+
+/// All but the closed form, which only two joints have.
+const ITERATIVE: [Method; 5] = [
+    Method::TransposeFixed,
+    Method::Transpose,
+    Method::DampedLeastSquares,
+    Method::Ccd,
+    Method::Fabrik,
+];
+
+fn by(method: Method) -> SolverOptions {
+    SolverOptions { method, ..SolverOptions::default() }
+}
+
+fn target(joint: usize, point: Vec3) -> TipTarget {
+    TipTarget { joint, point, weight: 1.0 }
+}
+
+/// Up from a locked root, bones of length 1.
+fn straight(joints: usize) -> Skeleton {
+    let mut skeleton = Skeleton::with_root("root");
+    for index in 0..joints {
+        let offset = if index == 0 { Vec3::ZERO } else { Vec3::Y };
+        let joint = Joint::new(&format!("j{index}"), Some(index), Vec3::Y);
+        skeleton.add(Joint { offset, ..joint }).expect("joint");
+    }
+    skeleton
+}
+
+/// The largest distance from a tip to its target, from the skeleton alone.
+fn error(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
+    targets.iter().map(|t| skeleton.tip(t.joint).distance(t.point)).fold(0.0, f32::max)
+}
+
+/// Of cases that end within a share of the chain's length; by the method's budget.
+fn reached(
+    method: Method,
+    share: f32,
+    mut case: impl FnMut(&mut Random) -> (Skeleton, Vec<usize>),
+) -> usize {
+    let mut random = Random(20);
+    let count = (0..CASES).filter(|index| {
+        let (mut skeleton, tips) = case(&mut random);
+        let targets = reachable(&mut random, &skeleton, &tips);
+        if index % 2 == 1 {
+            shake(&mut random, &mut skeleton);
+        }
+        let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+        let length = length(&skeleton, &tips);
+        let seen = error(&skeleton, &targets);
+        assert!((seen - report.error).abs() <= 1e-5 * length, "{report:?} but {seen}");
+        assert!(report.iterations <= method.budget());
+        seen <= share * length
+    });
+    count.count()
+}
+
+fn chains_reached(method: Method, joints: usize, share: f32) -> usize {
+    let mut nth = 0;
+    reached(method, share, |random| {
+        nth += 1;
+        (chain(random, joints, [1.0, 500.0][nth % 2]), vec![joints])
+    })
+}
+
+fn trees_reached(method: Method, targets: usize) -> usize {
+    let mut nth = 0;
+    reached(method, 1e-3, |random| {
+        nth += 1;
+        tree(random, targets, [1.0, 500.0][nth % 2])
+    })
+}
+
+#[test]
+fn chains_of_2_and_3_reach_every_reachable_target() {
+    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
+        for joints in [2, 3] {
+            assert_eq!(chains_reached(method, joints, 1e-3), CASES, "{method:?}, {joints} joints");
+        }
+    }
+}
+
+#[test]
+fn chains_of_10_reach_every_reachable_target() {
+    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
+        assert_eq!(chains_reached(method, 10, 1e-3), CASES, "{method:?}");
+    }
+}
+
+#[test]
+fn chains_of_30_reach_every_reachable_target() {
+    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
+        assert_eq!(chains_reached(method, 30, 1e-3), CASES, "{method:?}");
+    }
+}
+
+#[test]
+fn the_transpose_comes_within_a_hundredth_of_nearly_every_target() {
+    for joints in [2, 3, 10, 30] {
+        let count = chains_reached(Method::Transpose, joints, 1e-2);
+        assert!(count * 100 >= CASES * 99, "{count} of {CASES} with {joints} joints");
+    }
+}
+
+#[test]
+fn the_closed_form_reaches_every_reachable_target() {
+    assert_eq!(chains_reached(Method::TwoBone, 2, 1e-5), CASES);
+}
+
+#[test]
+fn trees_bring_several_tips_to_their_targets_by_fabrik() {
+    for targets in 2..=5 {
+        let count = trees_reached(Method::Fabrik, targets);
+        assert!(count * 100 >= CASES * 99, "{count} of {CASES} with {targets} targets");
+    }
+}
+
+#[test]
+fn trees_bring_several_tips_to_their_targets_by_damped_least_squares() {
+    for targets in 2..=5 {
+        let count = trees_reached(Method::DampedLeastSquares, targets);
+        assert!(count * 100 >= CASES * 99, "{count} of {CASES} with {targets} targets");
+    }
+}
+
+/// X of a joint's own space in f64, from the formula, in skeleton space.
+fn twin(skeleton: &Skeleton, joint: usize, angles: &[DVec3]) -> DMat4 {
+    let Joint { parent, offset, frame, .. } = &skeleton.joints()[joint];
+    let above = parent.map_or(DMat4::IDENTITY, |parent| twin(skeleton, parent, angles));
+    let DVec3 { x, y, z } = angles[joint];
+    let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+    let frame = frame.as_dmat3();
+    let rotation = frame * turned * frame.transpose();
+    above * DMat4::from_translation(offset.as_dvec3()) * DMat4::from_mat3(rotation)
+}
+
+#[test]
+fn the_jacobian_is_the_derivative_of_the_tip() {
+    const STEP: f64 = 1e-6;
+    let mut random = Random(3);
+    for _ in 0..300 {
+        let skeleton = forest(&mut random, 12);
+        let joint = random.below(12);
+        let axis = skeleton.joints()[joint].axis.as_dvec3();
+        let mut angles: Vec<_> =
+            skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
+        let columns = jacobian(&skeleton, joint);
+        assert_eq!(columns.len(), 12);
+        for (turning, column) in columns.iter().enumerate() {
+            for angle in 0..3 {
+                let mut tip = |by: f64| {
+                    let before = angles[turning][angle];
+                    angles[turning][angle] += by;
+                    let tip = twin(&skeleton, joint, &angles).transform_point3(axis);
+                    angles[turning][angle] = before;
+                    tip
+                };
+                let expected = (tip(STEP) - tip(-STEP)) / (2.0 * STEP);
+                let off = column[angle].as_dvec3().distance(expected);
+                assert!(off <= 1e-4 * expected.length().max(1e-2), "{off} of {expected}");
+                if !skeleton.hangs_from(joint, turning) {
+                    assert_eq!(column[angle], Vec3::ZERO);
+                }
+            }
+        }
+    }
+}
+
+/// Random forests with random targets, likely out of reach.
+fn anything(random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
+    let joints = 2 + random.below(10);
+    let mut skeleton = forest(random, joints);
+    skeleton.set_transform(transform(random)).expect("transform");
+    let mut targets = Vec::new();
+    for joint in 0..joints {
+        if random.chance(0.3) {
+            let weight = random.within(0.1..3.0);
+            targets.push(TipTarget { joint, point: random.vector(5.0), weight });
+        }
+    }
+    (skeleton, targets)
+}
+
+fn is_within_limits(skeleton: &Skeleton) -> bool {
+    skeleton.joints().iter().all(|joint| joint.clamped(joint.rotation) == joint.rotation)
+}
+
+#[test]
+fn every_step_keeps_limits_locked_joints_joints_off_the_path_and_roots() {
+    for method in ITERATIVE {
+        let mut random = Random(11);
+        for _ in 0..200 {
+            let (mut skeleton, targets) = anything(&mut random);
+            let before = skeleton.clone();
+            let is_moved = |index: usize| targets.iter().any(|t| before.hangs_from(t.joint, index));
+            let mut solve = ChainSolver::new(&skeleton, &targets, &by(method)).expect("solve");
+            for _ in 0..15 {
+                solve.step();
+                solve.write(&mut skeleton);
+                assert!(is_within_limits(&skeleton), "{method:?}");
+                let joints = skeleton.joints().iter().zip(before.joints()).enumerate();
+                for (index, (after, before)) in joints {
+                    assert!(after.rotation.is_finite());
+                    assert_eq!(after.offset, before.offset);
+                    if before.locked || !is_moved(index) {
+                        assert_eq!(after, before, "{method:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn limits_let_targets_be_reached_that_are_within_them() {
+    // Random limits, and a target from a pose within them; from the bind pose or a random one.
+    for (method, least) in
+        [(Method::DampedLeastSquares, 90), (Method::Ccd, 90), (Method::Fabrik, 90)]
+    {
+        let mut random = Random(5);
+        let mut count = 0;
+        for _ in 0..300 {
+            let mut skeleton = chain(&mut random, 5, 1.0);
+            for joint in 1..=5 {
+                let limits = [(); 3].map(|()| Some(random.limit()));
+                skeleton.change(joint, |joint| joint.limits = limits).expect("limits");
+            }
+            let targets = reachable(&mut random, &skeleton, &[5]);
+            solve(&mut skeleton, &targets, &by(method)).expect("solve");
+            assert!(is_within_limits(&skeleton));
+            count += usize::from(error(&skeleton, &targets) <= 1e-3 * length(&skeleton, &[5]));
+        }
+        println!("{method:?}: {count} of 300");
+        assert!(count * 100 >= 300 * least, "{method:?}: {count} of 300");
+    }
+}
+
+#[test]
+fn reports_tell_the_error_in_the_world_however_it_is_mirrored_and_scaled() {
+    for method in ITERATIVE {
+        let mut random = Random(17);
+        for _ in 0..200 {
+            let (mut skeleton, targets) = anything(&mut random);
+            let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+            let seen = error(&skeleton, &targets);
+            assert!((report.error - seen).abs() <= 1e-4 + 1e-4 * seen, "{report:?} but {seen}");
+        }
+    }
+}
+
+#[test]
+fn mirrored_and_scaled_skeletons_reach_their_targets() {
+    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares, Method::TwoBone] {
+        let mut random = Random(23);
+        for _ in 0..200 {
+            let joints = if method == Method::TwoBone { 2 } else { 6 };
+            let mut skeleton = chain(&mut random, joints, 1.0);
+            skeleton.set_transform(transform(&mut random)).expect("transform");
+            let targets = reachable(&mut random, &skeleton, &[joints]);
+            let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+            let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
+            let length = scale * length(&skeleton, &[joints]);
+            assert!(error(&skeleton, &targets) <= 1e-3 * length, "{report:?}, length {length}");
+        }
+    }
+}
+
+/// Positions of all joints, and how far the farthest moved.
+fn farthest_move(before: &Skeleton, after: &Skeleton) -> f32 {
+    let (before, after) = (before.pose(), after.pose());
+    before.points().zip(after.points()).map(|(a, b)| a.distance(b)).fold(0.0, f32::max)
+}
+
+#[test]
+fn out_of_reach_the_chain_stretches_towards_the_target_and_rests() {
+    for method in Method::ALL {
+        let mut random = Random(29);
+        for case in 0..60 {
+            // At its gimbal a single joint has no slope towards some targets.
+            let joints = match (method, case % 4) {
+                (Method::TwoBone, _) | (Method::Transpose, 0) => 2,
+                (_, nth) => [1, 2, 3, 10][nth],
+            };
+            let mut skeleton = chain(&mut random, joints, 1.0);
+            // A step that suits the bind pose may not suit others.
+            if method == Method::TransposeFixed {
+                skeleton = straight(joints);
+            } else if case % 3 > 0 {
+                shake(&mut random, &mut skeleton);
+            }
+            let length = length(&skeleton, &[joints]);
+            let distance = length * [1.02, 1.5, 3.0, 1e6][case % 4 / 2 * 2 + case / 4 % 2];
+            let targets = [target(joints, random.direction() * distance)];
+            // Half a step: at the gimbal a whole one goes back and forth.
+            let mut options = SolverOptions { step: 0.4, ..by(method) };
+            if ![Method::Fabrik, Method::Ccd, Method::TwoBone].contains(&method) {
+                options.iterations = Some(20_000);
+            }
+            let report = solve(&mut skeleton, &targets, &options).expect("solve");
+            let missing = report.error - (distance - length);
+            let what = format!("{report:?}: {joints} joints, {distance} of {length}");
+            assert!(missing.abs() <= 1e-3 * length + 1e-6 * distance, "{what}");
+            assert!(report.resting && !report.converged, "{what}");
+
+            let rested = skeleton.clone();
+            solve(&mut skeleton, &targets, &options).expect("solve");
+            let moved = farthest_move(&rested, &skeleton);
+            assert!(moved <= 1e-4 * length, "{what} moved by {moved} again");
+        }
+    }
+}
+
+#[test]
+fn trees_out_of_reach_rest_and_stay() {
+    for method in ITERATIVE {
+        let mut random = Random(31);
+        for _ in 0..40 {
+            let (mut skeleton, tips) = tree(&mut random, 3, 1.0);
+            let length = length(&skeleton, &tips);
+            let mut point = || random.direction() * 3.0 * length;
+            let targets: Vec<_> = tips.iter().map(|tip| target(*tip, point())).collect();
+            let options = SolverOptions { iterations: Some(20_000), step: 0.2, ..by(method) };
+            let report = solve(&mut skeleton, &targets, &options).expect("solve");
+            assert!(report.resting && !report.converged, "{report:?}");
+            let rested = skeleton.clone();
+            solve(&mut skeleton, &targets, &options).expect("solve");
+            let moved = farthest_move(&rested, &skeleton);
+            assert!(moved <= 1e-4 * length, "{report:?} moved by {moved}");
+        }
+    }
+}
+
+#[test]
+fn a_straight_chain_leaves_the_line_of_its_target() {
+    for method in Method::ALL {
+        for joints in [2, 3, 10] {
+            if method == Method::TwoBone && joints > 2 {
+                continue;
+            }
+            let skeleton = straight(joints);
+            let length = joints as f32;
+            for along in [0.9, 0.5, 0.1, 0.0, -0.1, -0.5, -0.9, -1.0, -2.0] {
+                let targets = [target(joints, Vec3::Y * along * length)];
+                let mut bent = skeleton.clone();
+                let mut options = by(method);
+                options.iterations = options.iterations.max(Some(20 * method.budget()));
+                let report = solve(&mut bent, &targets, &options).expect("solve");
+                let least = (along.abs() - 1.0).max(0.0) * length;
+                // At full stretch every method that steps comes nearer ever more slowly.
+                assert!(report.error <= least + 1e-2 * length, "{report:?} at {along}, {joints}");
+                assert!(bent.joints().iter().all(|joint| joint.rotation.is_finite()));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_knee_that_bends_one_way_only_leaves_the_line_that_way() {
+    for method in Method::ALL {
+        for range in [0.0..2.5, -2.5..0.0_f32] {
+            let mut skeleton = Skeleton::default();
+            skeleton.add(Joint::new("thigh", None, -Vec3::Y)).expect("thigh");
+            let mut shin = Joint::new("shin", Some(0), -Vec3::Y);
+            shin.offset = -Vec3::Y;
+            let still = Some(Limit { min: 0.0, max: 0.0 });
+            shin.limits = [Some(Limit { min: range.start, max: range.end }), still, still];
+            skeleton.add(shin).expect("shin");
+            let targets = [target(1, Vec3::Y * -1.4)];
+            let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+            assert!(is_within_limits(&skeleton));
+            assert!(report.error <= 2e-3, "{report:?} {range:?}");
+        }
+    }
+}
+
+#[test]
+fn free_roots_go_wherever_their_targets_are() {
+    for method in ITERATIVE {
+        let mut random = Random(37);
+        for case in 0..60 {
+            let (mut skeleton, tips) = if case % 2 == 0 {
+                (chain(&mut random, 5, 1.0), vec![5])
+            } else {
+                tree(&mut random, 2, 1.0)
+            };
+            skeleton.set_transform(transform(&mut random)).expect("transform");
+            let far = random.vector(100.0);
+            let mut targets = reachable(&mut random, &skeleton, &tips);
+            targets.iter_mut().for_each(|target| target.point += far);
+            let options = SolverOptions { root: Root::Free, ..by(method) };
+            let report = solve(&mut skeleton, &targets, &options).expect("solve");
+            let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
+            let length = scale * length(&skeleton, &tips);
+            let seen = error(&skeleton, &targets);
+            let share = match method {
+                Method::TransposeFixed | Method::Transpose if tips.len() > 1 => 0.2,
+                Method::TransposeFixed | Method::Transpose => 0.05,
+                _ => 1e-3,
+            };
+            assert!(seen <= share * length + 1e-4, "{report:?} but {seen} of {length}");
+            assert!((seen - report.error).abs() <= 1e-4 * length + 1e-4, "{report:?} but {seen}");
+        }
+    }
+}
+
+#[test]
+fn the_heavier_of_two_targets_that_conflict_is_nearer() {
+    for method in ITERATIVE {
+        let mut skeleton = Skeleton::with_root("root");
+        skeleton.add(Joint::new("trunk", Some(0), Vec3::Y * 2.0)).expect("trunk");
+        for (name, side) in [("left", -Vec3::X), ("right", Vec3::X)] {
+            let joint = Joint { offset: Vec3::Y * 2.0, ..Joint::new(name, Some(1), side) };
+            skeleton.add(joint).expect("arm");
+        }
+        for (left, right) in [(5.0, 1.0), (1.0, 5.0), (500.0, 100.0)] {
+            let mut solved = skeleton.clone();
+            let mut targets =
+                [target(2, Vec3::new(-3.0, 1.5, 0.2)), target(3, Vec3::new(3.0, 1.5, 0.2))];
+            targets[0].weight = left;
+            targets[1].weight = right;
+            let report = solve(&mut solved, &targets, &by(method)).expect("solve");
+            let off = targets.map(|t| solved.tip(t.joint).distance(t.point));
+            assert_eq!(off[0] < off[1], left > right, "{report:?}: {off:?}");
+            assert!((off[0] - off[1]).abs() > 0.1, "{report:?}: {off:?}");
+        }
+    }
+}
+
+#[test]
+fn steps_make_what_a_run_makes_bit_for_bit_every_time() {
+    for method in ITERATIVE {
+        let mut random = Random(41);
+        for _ in 0..30 {
+            let (skeleton, targets) = anything(&mut random);
+            let new = || ChainSolver::new(&skeleton, &targets, &by(method)).expect("solve");
+            let (mut run, mut again, mut stepped) = (new(), new(), new());
+            run.run();
+            again.run();
+            assert_eq!(run, again);
+            for _ in 0..method.budget() {
+                let report = stepped.step();
+                assert_eq!(report, stepped.report());
+            }
+            assert_eq!(run, stepped);
+        }
+    }
+}
+
+#[test]
+fn a_solve_follows_its_targets() {
+    for method in ITERATIVE {
+        let mut skeleton = straight(6);
+        let length = 6.0;
+        let at = |turn: f32| {
+            let point = Vec3::new(turn.cos(), turn.sin(), (2.0 * turn).sin()) * 0.5 * length;
+            [target(6, point)]
+        };
+        let mut solve = ChainSolver::new(&skeleton, &at(0.0), &by(method)).expect("solve");
+        for step in 0..100 {
+            let targets = at(step as f32 * 0.05);
+            solve.retarget(&targets).expect("the same joints");
+            solve.run();
+            solve.write(&mut skeleton);
+            assert!(error(&skeleton, &targets) <= 1e-2 * length, "{:?}", solve.report());
+        }
+        // Out of reach and back.
+        solve.retarget(&[target(6, Vec3::X * 10.0 * length)]).expect("the same joint");
+        assert!(!solve.report().resting);
+        assert!(!solve.run().converged);
+        solve.retarget(&at(1.0)).expect("the same joint");
+        assert!(solve.run().error <= 1e-2 * length, "{:?}", solve.report());
+        assert_eq!(solve.retarget(&[]), Err(SolveError::NoJoint(6)));
+        assert_eq!(solve.retarget(&[target(5, Vec3::X)]), Err(SolveError::NoJoint(5)));
+    }
+}
+
+#[test]
+fn a_solve_that_comes_back_to_where_it_began_writes_that() {
+    for method in [Method::Ccd, Method::Fabrik] {
+        let mut skeleton = straight(1);
+        let mut solve =
+            ChainSolver::new(&skeleton, &[target(1, Vec3::X)], &by(method)).expect("solve");
+        solve.run();
+        solve.write(&mut skeleton);
+        assert!(skeleton.tip(1).distance(Vec3::X) < 1e-6);
+        solve.retarget(&[target(1, Vec3::Y)]).expect("the same joint");
+        solve.run();
+        solve.write(&mut skeleton);
+        assert!(skeleton.tip(1).distance(Vec3::Y) < 1e-6, "{method:?}: {:?}", solve.report());
+    }
+}
+
+#[test]
+fn a_target_that_is_next_to_nothing_from_a_joint_does_not_stretch_its_bone() {
+    for method in ITERATIVE {
+        let mut skeleton = straight(1);
+        let targets = [target(1, Vec3::new(3e-23, 2e-23, 1e-23))];
+        let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+        let seen = error(&skeleton, &targets);
+        assert!((seen - report.error).abs() <= 1e-5, "{report:?} but {seen}");
+    }
+}
+
+#[test]
+fn a_bone_that_is_nothing_beside_its_chain_is_left_by_the_closed_form() {
+    let mut skeleton = Skeleton::default();
+    let far = skeleton.add(Joint::new("far", None, Vec3::X * 1e13)).expect("joint");
+    let upper = Joint { offset: Vec3::X * 1e13, ..Joint::new("upper", Some(far), Vec3::Y) };
+    let upper = skeleton.add(upper).expect("joint");
+    let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y * 1e8) };
+    let lower = skeleton.add(lower).expect("joint");
+    solve(&mut skeleton, &[target(lower, Vec3::Y)], &by(Method::TwoBone)).expect("solve");
+    assert!(skeleton.joints().iter().all(|joint| joint.rotation.is_finite()));
+}
+
+#[test]
+fn a_step_beyond_numbers_leaves_angles_that_are_numbers() {
+    for root in [Root::Fixed, Root::Free] {
+        let mut skeleton = straight(3);
+        let options = SolverOptions { step: f32::MAX, root, ..by(Method::TransposeFixed) };
+        let targets = [target(3, Vec3::new(1.0, 0.5, 0.0))];
+        solve(&mut skeleton, &targets, &options).expect("solve");
+        let is_whole = |joint: &Joint| joint.rotation.is_finite() && joint.offset.is_finite();
+        assert!(skeleton.joints().iter().all(is_whole), "{root:?}");
+    }
+}
+
+#[test]
+fn a_free_root_goes_no_farther_than_numbers_and_says_so() {
+    let mut skeleton = straight(2);
+    skeleton.set_transform(Affine3A::from_scale(Vec3::splat(1e-30))).expect("transform");
+    let targets = [target(2, Vec3::X * 1e38)];
+    let options = SolverOptions { root: Root::Free, ..by(Method::Fabrik) };
+    let report = solve(&mut skeleton, &targets, &options).expect("solve");
+    let seen = skeleton.tip(2).as_dvec3().distance(targets[0].point.as_dvec3());
+    assert!((f64::from(report.error) / seen - 1.0).abs() < 1e-3, "{report:?} but {seen}");
+}
+
+#[test]
+fn without_targets_there_is_nothing_to_do() {
+    for method in Method::ALL {
+        let mut skeleton = Skeleton::with_root("root");
+        let report = solve(&mut skeleton, &[], &by(method)).expect("solve");
+        let expected =
+            Report { method, iterations: 0, error: 0.0, converged: true, resting: false };
+        assert_eq!(report, expected);
+    }
+}
+
+#[test]
+fn numbers_stay_numbers_at_every_edge() {
+    let scales = [1e-30, 1e-20, 1e-3, 1.0, 1e3, 1e20, 1e30];
+    for method in ITERATIVE {
+        for root in [Root::Fixed, Root::Free] {
+            let mut random = Random(47);
+            for case in 0..scales.len() * 12 {
+                let scale = scales[case % scales.len()];
+                let (mut skeleton, tips) = match case / scales.len() {
+                    0..4 => (chain(&mut random, 4, scale), vec![4]),
+                    4..6 => (chain(&mut random, 1, scale), vec![1]),
+                    6..8 => tree(&mut random, 3, scale),
+                    8 => (chain(&mut random, 3, 0.0), vec![3, 1]),
+                    _ => (Skeleton::with_root("root"), vec![0]),
+                };
+                if case % 5 == 0 && skeleton.joints().len() > 2 {
+                    skeleton.set_axis(1, Vec3::ZERO).expect("axis");
+                }
+                let distances = [0.0, 0.5 * scale, 1e8 * scale.min(1.0), f32::MAX / 4.0];
+                let far = distances[case / scales.len() % 4];
+                let point = random.direction() * far;
+                let targets: Vec<_> = tips.iter().map(|tip| target(*tip, point)).collect();
+                let options = SolverOptions { root, iterations: Some(60), ..by(method) };
+                let report = solve(&mut skeleton, &targets, &options).expect("solve");
+                assert!(report.error.is_finite(), "{report:?} at {scale}, {far}");
+                for joint in skeleton.joints() {
+                    assert!(joint.rotation.is_finite() && joint.offset.is_finite(), "{report:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn huge_and_tiny_skeletons_solve_as_others_do() {
+    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares, Method::TwoBone] {
+        for scale in [1e-30, 1e30] {
+            let mut random = Random(53);
+            for _ in 0..20 {
+                let mut skeleton = chain(&mut random, 2, scale);
+                let targets = reachable(&mut random, &skeleton, &[2]);
+                let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
+                assert!(report.error <= 1e-3 * length(&skeleton, &[2]), "{report:?} at {scale}");
+            }
+        }
+    }
+}
+
+#[test]
+fn two_bones_keep_the_elbow_on_its_side() {
+    let mut skeleton = Skeleton::default();
+    skeleton.add(Joint::new("upper", None, Vec3::X)).expect("upper");
+    let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(0), Vec3::X) };
+    skeleton.add(lower).expect("lower");
+    for side in [1.0, -1.0] {
+        skeleton.set_rotation(0, Vec3::Z * side).expect("rotation");
+        skeleton.set_rotation(1, Vec3::Z * -2.0 * side).expect("rotation");
+        for along in [0.1, 0.5, 1.0, 1.5, 1.99] {
+            let mut solved = skeleton.clone();
+            let targets = [target(1, Vec3::X * along)];
+            let report = solve(&mut solved, &targets, &by(Method::TwoBone)).expect("solve");
+            assert!(report.converged, "{report:?}");
+            let elbow = solved.base(1);
+            assert!(elbow.y * side > 0.0 && elbow.z.abs() < 1e-5, "{elbow}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_solved_is_refused() {
+    let mut random = Random(59);
+    let skeleton = chain(&mut random, 3, 1.0);
+    let options = SolverOptions::default();
+    let refused = |targets: &[TipTarget], options: &SolverOptions| {
+        ChainSolver::new(&skeleton, targets, options).map(|_| ()).expect_err("refused")
+    };
+    let at = |joint| target(joint, Vec3::ONE);
+    assert_eq!(refused(&[at(4)], &options), SolveError::NoJoint(4));
+    assert_eq!(refused(&[at(3), at(3)], &options), SolveError::TwoTargets(3));
+    let nowhere = target(3, Vec3::new(0.0, f32::INFINITY, 0.0));
+    assert_eq!(refused(&[nowhere], &options), SolveError::Point { joint: 3, point: nowhere.point });
+    for weight in [0.0, -1.0, f32::INFINITY] {
+        let light = TipTarget { weight, ..at(3) };
+        assert_eq!(refused(&[light], &options), SolveError::Weight { joint: 3, weight });
+    }
+    let field = |options: SolverOptions| match refused(&[at(3)], &options) {
+        SolveError::Option { field, .. } => field,
+        other => panic!("{other}"),
+    };
+    assert_eq!(field(SolverOptions { damping: 0.0, ..options }), "damping");
+    assert_eq!(field(SolverOptions { step: f32::NAN, ..options }), "step");
+    assert_eq!(field(SolverOptions { tolerance: Some(-1.0), ..options }), "tolerance");
+}
+
+#[test]
+fn a_transform_that_flattens_is_refused() {
+    let mut random = Random(61);
+    let mut skeleton = chain(&mut random, 2, 1.0);
+    for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)] {
+        let flat = Mat3A::from_diagonal(scale);
+        for matrix3 in
+            [flat, Mat3A::from(random.rotation()) * flat, flat * Mat3A::from(random.rotation())]
+        {
+            let transform = Affine3A { matrix3, ..Affine3A::IDENTITY };
+            skeleton.set_transform(transform).expect("finite");
+            let refused =
+                ChainSolver::new(&skeleton, &[target(2, Vec3::ONE)], &SolverOptions::default());
+            assert_eq!(refused, Err(SolveError::Flat));
+        }
+    }
+}
+
+#[test]
+fn two_bones_are_refused_where_there_are_not_two() {
+    let mut random = Random(67);
+    let skeleton = chain(&mut random, 4, 1.0);
+    let refused = |skeleton: &Skeleton, joints: &[usize]| {
+        let targets: Vec<_> = joints.iter().map(|joint| target(*joint, Vec3::ONE)).collect();
+        match ChainSolver::new(skeleton, &targets, &by(Method::TwoBone)) {
+            Err(SolveError::TwoBone { joint, reason }) => (joint, reason),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(refused(&skeleton, &[0]), (0, "it has no parent"));
+    assert_eq!(refused(&skeleton, &[1]), (1, "its parent is locked"));
+    assert_eq!(refused(&skeleton, &[3, 4]), (4, "another target moves the same joint"));
+    let mut locked = skeleton.clone();
+    locked.change(3, |joint| joint.locked = true).expect("lock");
+    assert_eq!(refused(&locked, &[3]), (3, "it is locked"));
+    let mut short = skeleton.clone();
+    short.set_axis(3, Vec3::ZERO).expect("axis");
+    assert_eq!(refused(&short, &[3]), (3, "one of the two bones has no length"));
+    // One arm may hang from another.
+    let targets = reachable(&mut random, &skeleton, &[4, 2]);
+    let report = solve(&mut skeleton.clone(), &targets, &by(Method::TwoBone)).expect("two arms");
+    assert!(report.converged, "{report:?}");
+}
+
+#[test]
+fn nothing_to_do_leaves_every_angle_as_it_is() {
+    let mut random = Random(71);
+    for method in Method::ALL {
+        let mut skeleton = chain(&mut random, 2, 1.0);
+        shake(&mut random, &mut skeleton);
+        let before = skeleton.clone();
+        let targets = [target(2, skeleton.tip(2))];
+        assert!(solve(&mut skeleton, &targets, &by(method)).expect("solve").converged);
+        assert_eq!(skeleton, before);
+    }
+}
+
+#[test]
+fn world_errors_use_the_inverse_of_the_transform_in_f64() {
+    // A skeleton far from the world's origin and a thousandth as large still meets its tolerance.
+    let mut random = Random(73);
+    let mut skeleton = chain(&mut random, 4, 1.0);
+    let small = DAffine3::from_scale(DVec3::splat(1e-3)).as_affine3a();
+    skeleton.set_transform(small).expect("transform");
+    let targets = reachable(&mut random, &skeleton, &[4]);
+    let options = SolverOptions { tolerance: Some(1e-6), ..SolverOptions::default() };
+    let report = solve(&mut skeleton, &targets, &options).expect("solve");
+    assert!(report.converged && report.error <= 1e-6, "{report:?}");
+}
+
+#[test]
+fn a_target_out_of_reach_does_not_keep_another_chain_from_its_own() {
+    for (method, near_enough) in [
+        (Method::Transpose, 2e-2),
+        (Method::DampedLeastSquares, 1e-3),
+        (Method::Ccd, 1e-3),
+        (Method::Fabrik, 1e-3),
+    ] {
+        let mut skeleton = Skeleton::default();
+        let mut tips = Vec::new();
+        for chain in 0..2_usize {
+            let mut parent = None;
+            for bone in 0..4_usize {
+                let offset = match parent {
+                    None => Vec3::X * (3.0 * chain as f32),
+                    Some(_) => Vec3::Y * 0.5,
+                };
+                let name = format!("bone {bone} of chain {chain}");
+                let rotation = Vec3::new(0.0, 0.0, 0.2);
+                let joint = Joint { offset, rotation, ..Joint::new(&name, parent, Vec3::Y * 0.5) };
+                parent = Some(skeleton.add(joint).expect("a joint"));
+            }
+            tips.extend(parent);
+        }
+        let near = TipTarget { joint: tips[0], point: Vec3::new(0.9, 1.0, 0.4), weight: 1.0 };
+        let far = TipTarget { joint: tips[1], point: Vec3::new(9.0, 1.0, 0.0), weight: 1.0 };
+        let options = SolverOptions { method, ..SolverOptions::default() };
+        let report = solve(&mut skeleton, &[near, far], &options).expect("it can be solved");
+        assert!(!report.converged);
+        let missed = skeleton.tip(tips[0]).distance(near.point);
+        assert!(missed < near_enough, "{method:?} misses by {missed} after {report:?}");
+    }
+}
+
+#[test]
+fn bones_whose_squares_are_no_numbers_are_turned_by_numbers_or_not_at_all() {
+    let mut random = Random(19);
+    for unit in [3e18, 1e19, 1e30, 1e38] {
+        let roots = [Root::Fixed, Root::Free];
+        for (method, root) in Method::ALL.into_iter().flat_map(|it| roots.map(|root| (it, root))) {
+            for _ in 0..20 {
+                let mut skeleton = chain(&mut random, 3, 1.0);
+                let long = random.direction() * unit;
+                skeleton.set_axis(3, long).expect("finite");
+                let point = random.direction() * unit;
+                let options = SolverOptions { method, root, ..SolverOptions::default() };
+                if let Ok(report) = solve(&mut skeleton, &[target(3, point)], &options) {
+                    assert!(report.error.is_finite(), "{report:?}");
+                }
+                for joint in skeleton.joints() {
+                    let are_numbers = joint.rotation.is_finite() && joint.offset.is_finite();
+                    assert!(are_numbers, "{method:?} {root:?} of {unit}: {joint:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Which way the elbow points.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use ik_arm::kinematics::twist::{
+    Stereographic, TransportedFrame, TwistReference, angle_from_limb, respun,
+};
+use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn config() -> ProptestConfig {
+    ProptestConfig {
+        cases: 2000,
+        rng_seed: RngSeed::Fixed(0x0051_1e1e),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+fn directions() -> impl Strategy<Value = DVec3> + Clone {
+    (-1.0..1.0_f64, -PI..PI).prop_map(|(y, turn)| {
+        let flat = (1.0 - y * y).sqrt();
+        DVec3::new(flat * turn.cos(), y, flat * turn.sin())
+    })
+}
+
+fn facing(w: DVec3) -> Facing {
+    Facing::towards(w.as_vec3(), Facing::default())
+}
+
+const POLE: Vec3 = Vec3::new(30.0, -250.0, 120.0);
+
+fn stateless() -> [TwistReference; 3] {
+    [
+        TwistReference::Limb,
+        TwistReference::Pole(POLE),
+        TwistReference::Stereographic(Stereographic::default()),
+    ]
+}
+
+/// e₀ as the formulas have it, in f64.
+fn twin(reference: TwistReference, w: DVec3) -> DVec3 {
+    match reference {
+        // Up, as far as the Pointer lets it.
+        TwistReference::Limb => (DVec3::Y - w * w.y).normalize(),
+        TwistReference::Pole(pole) => {
+            let pole = pole.as_dvec3();
+            (pole - w * pole.dot(w)).normalize()
+        }
+        TwistReference::Stereographic(map) => {
+            let k = (w - map.singular().as_dvec3()).cross(map.up().as_dvec3());
+            k.cross(w).normalize()
+        }
+        TwistReference::Transport => unreachable!("it has no formula of its own"),
+    }
+}
+
+/// How far `to` is turned from `from` about `w`.
+fn turn(from: DVec3, to: DVec3, w: DVec3) -> f64 {
+    w.dot(from.cross(to)).atan2(from.dot(to))
+}
+
+/// Parallel transport in f64: the least turn, by Rodrigues' formula.
+fn transported(e: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+    let axis = from.cross(to);
+    let (sin, cos) = (axis.length(), from.dot(to));
+    if sin == 0.0 {
+        return e;
+    }
+    let axis = axis / sin;
+    e * cos + axis.cross(e) * sin + axis * axis.dot(e) * (1.0 - cos)
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn every_reference_is_a_unit_vector_at_right_angles_to_the_pointer(w in directions()) {
+        let facing = facing(w);
+        let last = TransportedFrame::new(facing);
+        for reference in stateless().into_iter().chain([TwistReference::Transport]) {
+            let outward = reference.outward(facing, Some(last));
+            prop_assert!((outward.length() - 1.0).abs() < 1e-6, "{reference:?}");
+            prop_assert!(outward.dot(facing.direction).abs() < 1e-6, "{reference:?}");
+        }
+    }
+
+    #[test]
+    fn every_reference_is_what_its_formula_says(w in directions()) {
+        let facing = facing(w);
+        for reference in stateless() {
+            if reference.gain(facing) < 1e3 {
+                let expected = twin(reference, facing.direction.as_dvec3());
+                let found = reference.outward(facing, None).as_dvec3();
+                prop_assert!(found.distance(expected) < 1e-3, "{reference:?}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_gain_is_the_worst_turn_against_transport_for_a_turn_of_the_pointer(w in directions()) {
+        const STEP: f64 = 1e-5;
+        for reference in stateless() {
+            let gain = f64::from(reference.gain(facing(w)));
+            if gain > 100.0 {
+                continue;
+            }
+            let (u, v) = w.any_orthonormal_pair();
+            let worst = (0..360).map(|step| {
+                let (sin, cos) = (f64::from(step) * PI / 180.0).sin_cos();
+                let aside = u * cos + v * sin;
+                let to = w * STEP.cos() + aside * STEP.sin();
+                let moved = transported(twin(reference, w), w, to);
+                turn(moved, twin(reference, to), to).abs() / STEP
+            });
+            let worst = worst.fold(0.0, f64::max);
+            let off = (gain - worst).abs();
+            prop_assert!(off < 1e-3 * (1.0 + gain * gain), "{reference:?}: {gain}, not {worst}");
+        }
+    }
+
+    #[test]
+    fn transport_is_the_least_turn(w in directions(), to in directions()) {
+        let from = TransportedFrame::new(facing(w));
+        let transported = from.to(to.as_vec3());
+        if w.dot(to) > -0.999 {
+            let expected = self::transported(from.outward.as_dvec3(), w, to);
+            prop_assert!(transported.outward.as_dvec3().distance(expected) < 1e-3);
+        }
+        prop_assert!((transported.outward.length() - 1.0).abs() < 1e-6);
+        prop_assert!(transported.outward.dot(to.as_vec3()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_closed_loop_turns_what_is_carried_by_its_solid_angle(
+        a in directions(), b in directions(), c in directions()
+    ) {
+        // Not near half turns, where the least turn is not defined.
+        prop_assume!(a.dot(b) > -0.9 && b.dot(c) > -0.9 && c.dot(a) > -0.9);
+        let start = TransportedFrame::new(facing(a));
+        let end = start.to(b.as_vec3()).to(c.as_vec3()).to(a.as_vec3());
+        let turned = turn(start.outward.as_dvec3(), end.outward.as_dvec3(), a);
+        // Van Oosterom and Strackee.
+        let solid = 2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+        let off = (turned - solid + PI).rem_euclid(2.0 * PI) - PI;
+        prop_assert!(off.abs() < 2e-5, "{turned}, not {solid}");
+    }
+
+    #[test]
+    fn another_reference_leaves_the_elbow_where_it_is(
+        w in directions(), spin in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
+    ) {
+        let (arm, facing) = (TwoBone::new(200.0, 300.0).expect("lengths"), facing(w));
+        let cursor = (w * length).as_vec3();
+        let last = Some(TransportedFrame::new(facing));
+        let all = stateless().into_iter().chain([TwistReference::Transport]);
+        let angles: Vec<f32> = all.map(|reference| reference.angle(facing, last)).collect();
+        let elbow = arm.solve(cursor, spin + angles[0]).elbow;
+        for from in &angles {
+            let spin = respun(spin, angles[0], *from);
+            for to in &angles {
+                let respun = respun(spin, *from, *to);
+                prop_assert!((0.0..std::f32::consts::TAU).contains(&respun));
+                let moved = arm.solve(cursor, respun + to).elbow.distance(elbow);
+                prop_assert!(moved < 5e-3, "moved by {moved}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stereographic_elbow_is_up_when_the_hand_is_in_front() {
+    let map = TwistReference::Stereographic(Stereographic::default());
+    assert_eq!(map.outward(Facing::default(), None), Vec3::Y);
+    assert_eq!(map.gain(Facing::default()), 0.0);
+}
+
+#[test]
+fn singular_directions_have_an_infinite_gain_and_take_what_is_carried() {
+    let transported = TransportedFrame { direction: Vec3::X, outward: Vec3::Z };
+    for (reference, w) in [
+        (TwistReference::Pole(POLE), POLE),
+        (TwistReference::Pole(POLE), -POLE),
+        (TwistReference::Pole(Vec3::ZERO), Vec3::X),
+        (TwistReference::Stereographic(Stereographic::default()), Vec3::NEG_X),
+    ] {
+        let facing = Facing::towards(w, Facing::default());
+        assert_eq!(reference.gain(facing), f32::INFINITY, "{reference:?} at {w}");
+        let expected = transported.to(facing.direction).outward;
+        assert_eq!(reference.outward(facing, Some(transported)), expected, "{reference:?} at {w}");
+        assert_eq!(reference.outward(facing, None), facing.limb_frame().y_axis);
+    }
+    for w in [Vec3::Y, Vec3::NEG_Y] {
+        let facing = Facing::towards(w, Facing::default());
+        assert_eq!(TwistReference::Limb.gain(facing), f32::INFINITY);
+        assert!(TwistReference::Limb.outward(facing, None).is_finite());
+    }
+}
+
+#[test]
+fn between_opposite_pointers_what_is_carried_stays() {
+    let transported = TransportedFrame { direction: Vec3::X, outward: Vec3::Z };
+    assert_eq!(transported.to(Vec3::NEG_X).outward, Vec3::Z);
+    assert_eq!(transported.to(Vec3::X).outward, Vec3::Z);
+}
+
+#[test]
+fn what_is_carried_nowhere_stays_bit_for_bit() {
+    for cursor in [Vec3::new(0.3, 0.9, -0.4), Vec3::new(-250.0, 1.0, 3.0), Vec3::Y] {
+        let transported = TransportedFrame::new(Facing::towards(cursor, Facing::default()));
+        assert_eq!(transported.to(transported.direction), transported);
+    }
+}
+
+#[test]
+fn beside_its_singular_direction_the_map_is_as_exact_as_elsewhere() {
+    for aside in [1e-2, 1e-3, 1e-4_f32] {
+        // Two directions that are the same but for the rounding of their lengths.
+        let w = Vec3::new(-1.0, aside, 0.7 * aside).normalize();
+        let longer =
+            Facing { direction: w * (1.0 + f32::EPSILON), heading: facing(w.as_dvec3()).heading };
+        let map = TwistReference::Stereographic(Stereographic::default());
+        let same = Facing { direction: w, ..longer };
+        let apart = map.outward(longer, None).distance(map.outward(same, None));
+        assert!(f64::from(apart) < 1e-6 / f64::from(aside), "{apart} at {aside}");
+    }
+}
+
+#[test]
+fn a_map_needs_two_directions() {
+    assert_eq!(Stereographic::new(Vec3::ZERO, Vec3::Y), None);
+    assert_eq!(Stereographic::new(Vec3::Y, Vec3::NEG_Y * 3.0), None);
+    let map = Stereographic::new(Vec3::new(0.0, 0.0, -2.0), Vec3::new(0.0, 1.0, 5.0));
+    let map = map.expect("two directions");
+    assert_eq!((map.singular(), map.up()), (Vec3::NEG_Z, Vec3::Y));
+}
+
+#[test]
+fn the_limbs_reference_is_the_seeds() {
+    let facing = Facing::towards(Vec3::new(1.0, 2.0, -0.5), Facing::default());
+    assert_eq!(TwistReference::Limb.angle(facing, None), 0.0);
+    let limb = facing.limb_frame();
+    assert_eq!(angle_from_limb(facing, limb.y_axis), 0.0);
+    assert!((angle_from_limb(facing, limb.z_axis) - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+}
