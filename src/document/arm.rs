@@ -1,4 +1,5 @@
 use glam::{DMat3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::Wrist;
 use crate::kinematics::fk::{Fk, blended};
@@ -44,7 +45,8 @@ pub enum Cursor {
 }
 
 /// What the elbow's spin is measured from: see [`TwistReference`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TwistReferenceKind {
     #[default]
     Limb,

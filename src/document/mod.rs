@@ -25,6 +25,8 @@ pub use skeleton::{SkeletonRig, Target, TargetMotion, TargetPath};
 pub use timeline::Timeline;
 pub use wrist::{HandSpace, Wrist};
 
+use serde::{Deserialize, Serialize};
+
 use crate::kinematics::skeleton::{JointRemap, SkeletonError};
 
 /// Everything that a file holds.
@@ -46,7 +48,8 @@ pub struct Document {
     pub metres: Option<f32>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RigKind {
     #[default]
     Arm,

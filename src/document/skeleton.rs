@@ -1,6 +1,7 @@
 use core::f32::consts::TAU;
 
 use glam::{Vec3, Vec3A};
+use serde::{Deserialize, Serialize};
 
 use super::{Camera, FollowPath};
 use crate::kinematics::chain_ik::{self, SolverOptions};
@@ -40,7 +41,8 @@ pub struct TargetMotion {
     pub period: f32,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TargetPath {
     #[default]
     Still,

@@ -1,4 +1,5 @@
 use glam::{DMat3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::kinematics::euler;
 use crate::kinematics::fk::limb_rotations;
@@ -16,7 +17,8 @@ pub struct Wrist {
 }
 
 /// What the hand's angles are measured in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum HandSpace {
     /// The lower limb: the hand follows it.
     #[default]

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::check::above_0;
-use crate::document::{self, Cursor};
+use crate::document::{self, Cursor, HandSpace, TwistReferenceKind};
 use crate::io::json_path::JsonPath;
 use crate::io::source::Wrong;
 use crate::io::value::{Number, Numbers, Object, Point};
@@ -46,19 +46,10 @@ struct Facing {
 
 #[derive(Serialize, Deserialize)]
 struct Swivel {
-    reference: Option<Reference>,
+    reference: Option<TwistReferenceKind>,
     pole: Option<Point>,
     #[serde(skip_serializing_if = "Option::is_none")]
     carried: Option<Object<Carried>>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Reference {
-    Limb,
-    Pole,
-    Stereographic,
-    Transport,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -83,16 +74,9 @@ struct Fk {
 
 #[derive(Serialize, Deserialize)]
 struct Wrist {
-    space: Option<Space>,
+    space: Option<HandSpace>,
     angles: Option<Point>,
     roll: Option<Number>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Space {
-    Lower,
-    World,
 }
 
 impl Arm {
@@ -126,12 +110,7 @@ impl Swivel {
             Object(Carried { direction: Point(direction), outward: Point(outward) })
         };
         Self {
-            reference: Some(match arm.twist_reference {
-                document::TwistReferenceKind::Limb => Reference::Limb,
-                document::TwistReferenceKind::Pole => Reference::Pole,
-                document::TwistReferenceKind::Stereographic => Reference::Stereographic,
-                document::TwistReferenceKind::Transport => Reference::Transport,
-            }),
+            reference: Some(arm.twist_reference),
             pole: Some(Point(arm.pole)),
             carried: arm.transported.map(carried),
         }
@@ -161,10 +140,7 @@ impl Fk {
 impl Wrist {
     fn new(wrist: document::Wrist) -> Self {
         Self {
-            space: Some(match wrist.space {
-                document::HandSpace::Lower => Space::Lower,
-                document::HandSpace::World => Space::World,
-            }),
+            space: Some(wrist.space),
             angles: Some(Point(wrist.angles)),
             roll: Some(Number(wrist.roll)),
         }
@@ -229,12 +205,7 @@ fn with_swivel(
     let at_carried = at.clone().key("carried");
     let carried = file.carried.as_ref().map(|Object(file)| carried(&at_carried, file));
     Ok(document::Arm {
-        twist_reference: match file.reference {
-            None | Some(Reference::Limb) => document::TwistReferenceKind::Limb,
-            Some(Reference::Pole) => document::TwistReferenceKind::Pole,
-            Some(Reference::Stereographic) => document::TwistReferenceKind::Stereographic,
-            Some(Reference::Transport) => document::TwistReferenceKind::Transport,
-        },
+        twist_reference: file.reference.unwrap_or(arm.twist_reference),
         pole: file.pole.map_or(arm.pole, |Point(pole)| pole),
         transported: carried.transpose()?,
         ..arm
@@ -294,10 +265,7 @@ fn wrist(file: Option<&Object<Wrist>>) -> document::Wrist {
         return seed;
     };
     document::Wrist {
-        space: match file.space {
-            Some(Space::World) => document::HandSpace::World,
-            Some(Space::Lower) | None => document::HandSpace::Lower,
-        },
+        space: file.space.unwrap_or(seed.space),
         angles: file.angles.map_or(Vec3::ZERO, |Point(angles)| angles),
         roll: number(file.roll, seed.roll),
     }

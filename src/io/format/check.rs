@@ -6,10 +6,10 @@ use std::collections::HashSet;
 use glam::{Affine3A, Mat3, Vec3};
 
 use super::arm::arm;
-use super::file::{self, File, Rig, Root};
+use super::file::{self, File, Root};
 use super::keys::{keys, timeline};
 use crate::document::{
-    Arm, Camera, Document, FollowPath, Keys, RigKind, SkeletonRig, Target, TargetMotion, TargetPath,
+    Arm, Camera, Document, FollowPath, Keys, RigKind, SkeletonRig, Target, TargetMotion,
 };
 use crate::io::json_path::JsonPath;
 use crate::io::source::{Odd, Wrong};
@@ -19,10 +19,7 @@ use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
 
 pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     let at = |key| JsonPath::root().key(key);
-    let rig = match file.rig {
-        Rig::Arm => RigKind::Arm,
-        Rig::Skeleton => RigKind::Skeleton,
-    };
+    let rig = file.rig;
     let arm = file.arm.map_or_else(|| Ok(Arm::default()), |Object(file)| arm(&at("arm"), &file))?;
     let skeleton = skeleton_rig(
         file.skeleton.map(|Object(skeleton)| skeleton),
@@ -176,13 +173,8 @@ fn motion(at: &JsonPath, file: &file::Motion, seed: TargetMotion) -> Result<Targ
     let period = file
         .period
         .map_or(Ok(seed.period), |Number(period)| above_0(at.clone().key("period"), period))?;
-    let path = match file.path {
-        file::Path::Still => TargetPath::Still,
-        file::Path::Circle => TargetPath::Circle,
-        file::Path::FigureEight => TargetPath::FigureEight,
-    };
     Ok(TargetMotion {
-        path,
+        path: file.path,
         radius: file.radius.map_or(seed.radius, |Number(radius)| radius),
         period,
     })

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::arm::Arm;
 use super::keys::{self, Timeline, Track};
 use super::{NAME, VERSION};
-use crate::document::{self, Camera, Document, Overlay, RigKind, SkeletonRig};
+use crate::document::{self, Camera, Document, Overlay, RigKind, SkeletonRig, TargetPath};
 use crate::io::value::{Number, Numbers, Object, Point, Whole};
 use crate::kinematics::chain_ik;
 use crate::kinematics::skeleton::{self, Limit};
@@ -15,7 +15,7 @@ use crate::kinematics::skeleton::{self, Limit};
 pub struct File {
     format: String,
     version: Whole,
-    pub rig: Rig,
+    pub rig: RigKind,
     pub arm: Option<Object<Arm>>,
     pub skeleton: Option<Object<Skeleton>>,
     pub targets: Option<Vec<Object<Target>>>,
@@ -30,13 +30,6 @@ pub struct File {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_camera: Option<Object<View>>,
     pub display: Option<Vec<Overlay>>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Rig {
-    Arm,
-    Skeleton,
 }
 
 #[derive(Default, Serialize, Deserialize)]
@@ -82,17 +75,9 @@ pub struct Target {
 
 #[derive(Serialize, Deserialize)]
 pub struct Motion {
-    pub path: Path,
+    pub path: TargetPath,
     pub radius: Option<Number>,
     pub period: Option<Number>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Path {
-    Still,
-    Circle,
-    FigureEight,
 }
 
 #[derive(Default, Serialize, Deserialize)]
@@ -137,10 +122,7 @@ impl File {
         Self {
             format: NAME.to_owned(),
             version: Whole(VERSION),
-            rig: match rig {
-                RigKind::Arm => Rig::Arm,
-                RigKind::Skeleton => Rig::Skeleton,
-            },
+            rig: *rig,
             arm: Some(Object(Arm::new(arm))),
             skeleton: Some(Object(Skeleton::new(skeleton))),
             targets: Some(targets.iter().map(Target::new).map(Object).collect()),
@@ -189,11 +171,6 @@ impl Joint {
 impl Target {
     fn new(target: &document::Target) -> Self {
         let document::TargetMotion { path, radius, period } = target.motion;
-        let path = match path {
-            document::TargetPath::Still => Path::Still,
-            document::TargetPath::Circle => Path::Circle,
-            document::TargetPath::FigureEight => Path::FigureEight,
-        };
         let motion = Motion { path, radius: Some(Number(radius)), period: Some(Number(period)) };
         Self {
             joint: Whole(u32::try_from(target.joint).unwrap_or(u32::MAX)),
