@@ -102,16 +102,16 @@ pub fn apply(ctx: &Context, theme: Theme) {
 }
 
 /// The scene's palette for the theme that the panels are in.
-pub(super) fn palette(ui: &egui::Ui) -> Palette {
+pub(in crate::ui) fn palette(ui: &egui::Ui) -> Palette {
     Palette::new(if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light })
 }
 
 /// The one colour that is not grey and means no axis and no limb.
-pub(super) fn accent(ui: &egui::Ui) -> Color32 {
+pub(in crate::ui) fn accent(ui: &egui::Ui) -> Color32 {
     colour(palette(ui).accent)
 }
 
-pub(super) fn colour(colour: Colour) -> Color32 {
+pub(in crate::ui) fn colour(colour: Colour) -> Color32 {
     let [r, g, b, a] = colour.0;
     Color32::from_rgba_unmultiplied(r, g, b, a)
 }

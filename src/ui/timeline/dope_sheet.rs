@@ -2,24 +2,25 @@
 
 use egui::containers::scroll_area::{DragScroll, ScrollSource};
 use egui::{
-    Color32, FontId, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, UiBuilder,
-    WidgetInfo, accesskit, pos2, vec2,
+    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
+    accesskit, pos2, vec2,
 };
 
-use super::icon::diamond;
-use super::pointer::Lanes;
-use super::rows::{Lane, Picked, channels};
-use super::scale::Scale;
-use super::{Areas, ROW, menu, names, pointer};
+use super::areas::{Areas, ROW};
+use super::lane::{Lane, Picked, channels};
+use super::mouse::{self, Lanes};
+use super::time_scale::Scale;
+use super::{context_menu, text};
 use crate::document::Channel;
 use crate::session::{Action, Session};
-use crate::ui::style;
+use crate::ui::widgets::diamond;
+use crate::ui::{labels, style};
 
 const SIZE: f32 = 5.0;
 /// Nearer to each other, in points, keys cannot be told apart by their names.
 const NEAR: f32 = 5.0;
 
-pub(super) fn ui(
+pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
     scale: Scale,
@@ -30,7 +31,7 @@ pub(super) fn ui(
     let channels = channels(session);
     if channels.is_empty() {
         let sentence = "No keys yet: pose the rig and press K to key it where the time is";
-        say(ui, areas, sentence);
+        text::hint(ui, areas, sentence);
         return;
     }
     let body = ui.interact(areas.lanes, Id::unique("timeline lanes"), Sense::click_and_drag());
@@ -43,24 +44,10 @@ pub(super) fn ui(
     let offset = shown.scrolled(ui, &channels, rest, actions);
 
     let lanes = Lanes { session, scale, channels: &channels, area: areas.lanes, offset };
-    pointer::press(ui, &lanes, &body, ruler, actions);
-    pointer::follow(ui, &lanes, actions);
-    menu::of_lanes(ui, &lanes, &body, actions);
-    pointer::paint_box(ui, &lanes);
-}
-
-/// A quiet sentence where nothing else is.
-pub(super) fn say(ui: &mut Ui, areas: &Areas, sentence: &str) {
-    let rect = Rect::from_center_size(
-        areas.lanes.center(),
-        vec2(areas.lanes.width(), ROW).min(areas.lanes.size()),
-    );
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        ui.centered_and_justified(|ui| {
-            let text = egui::RichText::new(sentence).weak();
-            ui.add(egui::Label::new(text).truncate().selectable(false));
-        });
-    });
+    mouse::press(ui, &lanes, &body, ruler, actions);
+    mouse::follow(ui, &lanes, actions);
+    context_menu::of_lanes(ui, &lanes, &body, actions);
+    mouse::paint_box(ui, &lanes);
 }
 
 struct Shown<'a> {
@@ -109,7 +96,7 @@ impl Shown<'_> {
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
         match lane {
             Lane::All => {
-                text(ui, name, "All", ui.visuals().strong_text_color());
+                text::line(ui, name, "All", ui.visuals().strong_text_color());
             }
             Lane::Channel(channel) => self.name(ui, channel, name, actions),
         }
@@ -125,7 +112,7 @@ impl Shown<'_> {
     fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Vec<Action>) {
         let session = self.session;
         let selected = session.selected_channels().contains(&channel);
-        let shown = names::channel(session, channel);
+        let shown = labels::channel(session, channel);
         let id = Id::unique(("timeline channel", channel));
         let response = ui.interact(rect, id, Sense::click());
         response.widget_info(|| {
@@ -148,7 +135,7 @@ impl Shown<'_> {
             (false, true) => visuals.text_color(),
             (false, false) => visuals.weak_text_color(),
         };
-        text(ui, rect, &shown, colour);
+        text::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();
             let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
@@ -165,7 +152,7 @@ impl Shown<'_> {
             }
             actions.push(Action::SelectChannels(channels.into_iter().collect()));
         }
-        menu::of_channel(&response, session, channel, actions);
+        context_menu::of_channel(&response, session, channel, actions);
         response.on_hover_text(shown);
     }
 
@@ -213,7 +200,7 @@ impl Shown<'_> {
             }
             Lane::Channel(channel) => (
                 Id::unique(("timeline key", channel, time.to_bits())),
-                format!("Key of {} at {time:.2} s", names::channel(self.session, channel)),
+                format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),
         };
         // Presses are the lanes'.
@@ -240,7 +227,7 @@ impl Shown<'_> {
             true => "K",
             false => "Shift+K",
         };
-        let name = names::channel(self.session, channel);
+        let name = labels::channel(self.session, channel);
         let said = format!("{name} is changed here, not keyed: press {key} to keep it");
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         let rim = Stroke::new(2.0, style::accent(ui));
@@ -248,14 +235,4 @@ impl Shown<'_> {
         painter.add(diamond(at, SIZE + 2.0, Color32::TRANSPARENT, rim));
         response.on_hover_text(said);
     }
-}
-
-/// In one line, cut where the column ends.
-pub(super) fn text(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
-    let font: FontId = TextStyle::Body.resolve(ui.style());
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
-    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.width() - 14.0).max(8.0));
-    let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
-    let at = pos2(rect.left() + 10.0, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley(at, galley, colour);
 }

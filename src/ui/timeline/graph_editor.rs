@@ -6,12 +6,15 @@ use egui::{
 use egui::{Rangef, Vec2b, pos2, vec2};
 use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
-use super::scale::Scale;
-use super::{Areas, ROW, dope_sheet, held, names, rows, ruler};
+use super::areas::{Areas, ROW, take_keyboard};
+use super::drag::{self, Held};
+use super::time_scale::Scale;
+use super::{lane, ruler, text};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::chain_ik::Method;
 use crate::session::{Action, Session};
-use crate::ui::{plot, slider, style};
+use crate::ui::widgets::{format, plot};
+use crate::ui::{labels, style};
 
 /// More than these cannot be told apart.
 const MOST: usize = 24;
@@ -32,7 +35,7 @@ struct Curve {
     knots: Vec<[f64; 2]>,
 }
 
-pub(super) fn ui(
+pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
     scale: Scale,
@@ -42,7 +45,7 @@ pub(super) fn ui(
 ) {
     let channels = shown(session);
     if channels.is_empty() {
-        dope_sheet::say(ui, areas, "No curves: key the rig (K), or select a channel that has keys");
+        text::hint(ui, areas, "No curves: key the rig (K), or select a channel that has keys");
         return;
     }
     let curves: Vec<Curve> = channels
@@ -54,19 +57,19 @@ pub(super) fn ui(
     plot(ui, scale, areas, &curves);
 
     let area = ui.interact(areas.lanes, Id::unique("timeline curves"), Sense::click_and_drag());
-    let names: Vec<String> = channels.iter().map(|it| names::channel(session, *it)).collect();
+    let names: Vec<String> = channels.iter().map(|it| labels::channel(session, *it)).collect();
     let said = format!("Curves of {}", names.join(", "));
     area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-    super::take_keyboard(ui, &area, ruler);
+    take_keyboard(ui, &area, ruler);
     if ruler::is_pressed(ui, &area) {
-        held::grab_playhead(ui, session, actions);
-        held::follow_playhead(ui, session, scale, actions);
+        drag::grab_playhead(ui, session, actions);
+        drag::follow_playhead(ui, session, scale, actions);
     }
     if area.contains_pointer() && ui.input(|input| input.pointer.button_pressed(MIDDLE)) {
-        held::set(ui, held::Held::Pan);
+        drag::set(ui, Held::Pan);
     }
-    if matches!(held::get(ui), Some(held::Held::Pan)) && held::is_released(ui) {
-        held::clear(ui);
+    if matches!(drag::get(ui), Some(Held::Pan)) && drag::is_released(ui) {
+        drag::clear(ui);
     }
 }
 
@@ -74,7 +77,7 @@ const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
 /// The selected channels that have keys, else those of the rig that is shown.
 fn shown(session: &Session) -> Vec<Channel> {
-    let all = rows::channels(session);
+    let all = lane::channels(session);
     let selected = session.selected_channels();
     let is_of_rig = |channel: &Channel| channel.rig() == Some(session.rig());
     let chosen: Vec<_> = match selected.is_empty() {
@@ -112,7 +115,7 @@ fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usi
         Quantity::Angle | Quantity::Angles => 180.0 / core::f64::consts::PI,
         Quantity::Point | Quantity::Length | Quantity::Fraction | Quantity::Switch => 1.0,
     };
-    let name = names::channel(session, channel);
+    let name = labels::channel(session, channel);
     let (colours, style) = look(ui, channel, index);
     let times = times(scale);
     let values: Vec<_> =
@@ -182,7 +185,7 @@ fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
 /// With as many digits as tell it from the next one.
 fn value(value: f64, step: f64) -> String {
     let digits = -step.max(1e-6).log10().floor();
-    slider::format(value, digits.max(0.0) as usize)
+    format::fixed(value, digits.max(0.0) as usize)
 }
 
 /// The 1, 2 or 5 times a power of ten that is next above.
@@ -210,7 +213,7 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
     const SWATCH: f32 = 6.0;
     let size = vec2(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let name = names::channel(session, channel);
+    let name = labels::channel(session, channel);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Curve of {name}")));
     let (colours, _) = look(ui, channel, index);
     let width = SWATCH * colours.len() as f32;
@@ -220,7 +223,7 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
         ui.painter().hline(x..=x + SWATCH - 1.5, at.y, Stroke::new(3.0, *colour));
     }
     let beside = Rect::from_min_max(pos2(rect.left() + width + 3.0, rect.top()), rect.max);
-    dope_sheet::text(ui, beside, &name, ui.visuals().text_color());
+    text::line(ui, beside, &name, ui.visuals().text_color());
     let axes = if colours.len() == 3 { ": x, y and z in the colours of the axes" } else { "" };
     response.on_hover_text(format!("{name}{axes}"));
 }

@@ -5,8 +5,8 @@ use egui::{
     TextStyle, Ui, WidgetInfo, accesskit, pos2,
 };
 
-use super::held;
-use super::scale::Scale;
+use super::drag;
+use super::time_scale::Scale;
 use crate::document::Timeline;
 use crate::session::{Action, Session};
 use crate::ui::style;
@@ -17,12 +17,12 @@ const LABEL: f64 = 64.0;
 const LINE: f64 = 7.0;
 
 /// The ruler has the keyboard for the whole timeline.
-pub(super) fn id() -> Id {
+pub(in crate::ui) fn id() -> Id {
     Id::unique("timeline ruler")
 }
 
 /// Shows it, and lets the time follow the pointer on it.
-pub(super) fn ui(
+pub(in crate::ui) fn ui(
     ui: &Ui,
     session: &Session,
     scale: Scale,
@@ -51,9 +51,9 @@ pub(super) fn ui(
         ui.request_repaint();
     } else if is_pressed(ui, &response) {
         response.request_focus();
-        held::grab_playhead(ui, session, actions);
+        drag::grab_playhead(ui, session, actions);
     }
-    held::follow_playhead(ui, session, scale, actions);
+    drag::follow_playhead(ui, session, scale, actions);
     asked(ui, session, actions);
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     response.on_hover_text(
@@ -63,7 +63,7 @@ pub(super) fn ui(
 }
 
 /// Whether the left button goes down on it.
-pub(super) fn is_pressed(ui: &Ui, response: &Response) -> bool {
+pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     let is_press = |event: &Event| {
         matches!(event, Event::PointerButton { button: PointerButton::Primary, pressed: true, .. })
     };
@@ -114,7 +114,7 @@ fn paint(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
 }
 
 /// Where the ruler's times that are written go on downwards.
-pub(super) fn grid(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
+pub(in crate::ui) fn grid(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let ticks = Ticks::new(scale, timeline);
@@ -124,14 +124,14 @@ pub(super) fn grid(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
 }
 
 /// What lies between start and end stands out from what does not.
-pub(super) fn ground(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
+pub(in crate::ui) fn ground(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
     let x = |time| scale.x(time).clamp(rect.left(), rect.right());
     let played = Rect::from_x_y_ranges(x(timeline.start)..=x(timeline.end), rect.y_range());
     ui.painter().rect_filled(played, 0.0, ui.visuals().extreme_bg_color);
 }
 
 /// Where the time is: a line through all lanes with a handle in the ruler.
-pub(super) fn playhead(ui: &Ui, session: &Session, scale: Scale, ruler: Rect, bottom: f32) {
+pub(in crate::ui) fn playhead(ui: &Ui, session: &Session, scale: Scale, ruler: Rect, bottom: f32) {
     let whole = Rect::from_min_max(ruler.min, pos2(ruler.right(), bottom));
     let painter = ui.painter().with_clip_rect(whole);
     let (x, accent) = (scale.x(session.time()), style::accent(ui));

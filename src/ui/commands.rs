@@ -1,0 +1,69 @@
+//! Actions that menus, keys and buttons have in common.
+
+use crate::document::{AxisView, Camera};
+use crate::session::{Action, Dialog, Session};
+
+pub(in crate::ui) fn open() -> Action {
+    Action::Ask(Dialog::open())
+}
+
+pub(in crate::ui) fn save_as() -> Action {
+    Action::Ask(Dialog::save_as())
+}
+
+pub(in crate::ui) fn save_picture() -> Action {
+    Action::Ask(Dialog::save_picture())
+}
+
+pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [
+    (AxisView::Front, "Front", "1"),
+    (AxisView::Right, "Right", "3"),
+    (AxisView::Top, "Top", "7"),
+    (AxisView::Back, "Back", "Ctrl+1"),
+    (AxisView::Left, "Left", "Ctrl+3"),
+    (AxisView::Bottom, "Bottom", "Ctrl+7"),
+];
+
+pub(in crate::ui) fn with_other_projection(camera: Camera) -> Camera {
+    Camera { orthographic: !camera.orthographic, ..camera }
+}
+
+pub(in crate::ui) fn frame_selection(session: &Session) -> Action {
+    Action::GlideTo(session.framing_selection())
+}
+
+pub(in crate::ui) fn frame_all(session: &Session) -> Action {
+    Action::GlideTo(session.framing_all())
+}
+
+/// Deletes the selected joints; asks first what becomes of children that are not selected too.
+pub(in crate::ui) fn delete(session: &Session) -> Action {
+    let joints = session.selection().to_vec();
+    let is_left = |parent: Option<usize>| parent.is_some_and(|parent| joints.contains(&parent));
+    let skeleton = &session.skeleton().skeleton;
+    let leaves_children = skeleton
+        .joints()
+        .iter()
+        .enumerate()
+        .any(|(child, joint)| is_left(joint.parent) && !joints.contains(&child));
+    if leaves_children {
+        Action::OpenDialog(Dialog::DeleteJoints { joints })
+    } else {
+        Action::Delete(joints)
+    }
+}
+
+/// Asks for a joint's name.
+pub(in crate::ui) fn rename(session: &Session, joint: usize) -> Action {
+    let name = session.skeleton().skeleton.joint(joint).map(|joint| joint.name.clone());
+    Action::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
+}
+
+/// Gives the selected joint a target, or takes it away.
+pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Action> {
+    let joint = session.selected()?;
+    Some(match session.skeleton().target(joint) {
+        Some(_) => Action::RemoveTarget(joint),
+        None => Action::AddTarget(joint),
+    })
+}

@@ -1,0 +1,171 @@
+//! The window that asks what to export, and how.
+
+use std::path::Path;
+
+use egui::{DragValue, Grid, Ui};
+
+use super::path::{browse, folder, unless_there};
+use super::prompt::prompt;
+use crate::document::Timeline;
+use crate::export::Format;
+use crate::io::Frames;
+use crate::session::{Action, Dialog, Export, Session};
+use crate::ui::widgets::Field;
+
+/// A format, what it is called and for, and the ending of its files.
+struct Choice {
+    format: Format,
+    name: &'static str,
+    ending: &'static str,
+    tooltip: &'static str,
+}
+
+const CHOICES: [Choice; 6] = [
+    Choice {
+        format: Format::Glb,
+        name: "GLB",
+        ending: ".glb",
+        tooltip: "glTF: a skinned, animated model for Blender, Unity, Unreal, three.js",
+    },
+    Choice {
+        format: Format::Bvh,
+        name: "BVH",
+        ending: ".bvh",
+        tooltip: "Joints and their motion, as motion capture has it",
+    },
+    Choice {
+        format: Format::Csv,
+        name: "CSV",
+        ending: ".csv",
+        tooltip: "The joints' positions at every frame, as a table",
+    },
+    Choice {
+        format: Format::Apng,
+        name: "Animated PNG",
+        ending: ".apng",
+        tooltip: "The motion as a picture that moves",
+    },
+    Choice {
+        format: Format::PngSequence,
+        name: "PNG sequence",
+        ending: "_####.png",
+        tooltip: "A picture of every frame; # stand for its number",
+    },
+    Choice {
+        format: Format::Png,
+        name: "PNG",
+        ending: ".png",
+        tooltip: "A picture of this moment",
+    },
+];
+
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    export: &Export,
+    is_new: bool,
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(460.0);
+    let path = export.path.to_string_lossy();
+    let change = |export: Export| Action::OpenDialog(Dialog::Export(export));
+    let chosen = Format::of(&export.path).ok();
+    ui.horizontal_wrapped(|ui| {
+        for Choice { format, name, ending, tooltip } in CHOICES {
+            let is_chosen = chosen == Some(format);
+            let button = egui::Button::selectable(is_chosen, name).frame_when_inactive(true);
+            if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
+                let path = format!("{}{ending}", stem(&path)).into();
+                actions.push(change(Export { path, ..export.clone() }));
+            }
+        }
+    });
+    let described = CHOICES.iter().find(|choice| chosen == Some(choice.format));
+    ui.weak(described.map_or("The ending of the path says the format", |choice| choice.tooltip));
+    ui.add_space(4.0);
+    Grid::new("export").num_columns(2).show(ui, |ui| {
+        let mut changed = export.clone();
+        let name = ui.label("Frames a second");
+        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::HIGHEST_FRAME_RATE))
+            .labelled_by(name.id);
+        ui.end_row();
+        if chosen.is_some_and(Format::is_picture) {
+            let name = ui.label("Size in pixels");
+            ui.horizontal(|ui| {
+                ui.add(DragValue::new(&mut changed.size.0).range(16..=8192)).labelled_by(name.id);
+                ui.label("×");
+                ui.add(DragValue::new(&mut changed.size.1).range(16..=8192)).labelled_by(name.id);
+            });
+            ui.end_row();
+        }
+        if matches!(chosen, Some(Format::Glb | Format::Bvh)) {
+            ui.label("Metres in a unit");
+            let tooltip = "How long a unit of the scene is for other programs";
+            let value = session.document().metres_per_unit();
+            Field { name: "Metres in a unit", value, unit: "", step: 0.001, digits: 4, tooltip }
+                .show(ui, session, actions, |metres| Action::SetMetres(Some(metres)));
+            ui.end_row();
+        }
+        ui.label("Length");
+        let timeline = session.document().timeline;
+        let document = session.document();
+        let rate = Some(export.frame_rate);
+        let frames = match chosen {
+            Some(format) if format.is_picture() => Frames::of_picture(document, rate),
+            _ => Frames::of_pose(document, rate),
+        };
+        ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
+            true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
+            false => "One frame: nothing moves".to_owned(),
+        });
+        ui.end_row();
+        if changed != *export {
+            actions.push(change(changed));
+        }
+    });
+    ui.add_space(4.0);
+    let (typed, entered) = prompt(ui, "To", &path, is_new);
+    if typed != path {
+        actions.push(change(Export { path: typed.clone().into(), ..export.clone() }));
+    }
+    folder(ui, session, &Dialog::Export(Export { path: typed.clone().into(), ..export.clone() }));
+    ui.add_space(4.0);
+    buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
+}
+
+fn buttons(
+    ui: &mut Ui,
+    session: &Session,
+    export: &Export,
+    entered: bool,
+    actions: &mut Vec<Action>,
+) {
+    let why_not = if session.job().is_some() {
+        Some("Another export is under way")
+    } else if Format::of(&export.path).is_err() {
+        Some("The path's ending must be one of the formats'")
+    } else {
+        None
+    };
+    ui.horizontal(|ui| {
+        let accept = ui.add_enabled(why_not.is_none(), egui::Button::new("Export"));
+        let accept = accept.on_disabled_hover_text(why_not.unwrap_or_default());
+        if (accept.clicked() || entered) && why_not.is_none() {
+            let back = Dialog::Export(export.clone());
+            let path = session.full_path(&back, &export.path);
+            let action = Action::Export(Export { path: path.clone(), ..export.clone() });
+            actions.push(unless_there(session, path, action, back));
+        }
+        browse(ui, actions);
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+/// A path without its ending, and without the places for a frame's number.
+fn stem(path: &str) -> String {
+    let without = Path::new(path).with_extension("");
+    let without = without.to_string_lossy();
+    without.trim_end_matches('#').trim_end_matches('_').to_owned()
+}

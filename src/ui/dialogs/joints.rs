@@ -1,0 +1,95 @@
+//! Dialogs about joints and skeletons.
+
+use std::path::Path;
+
+use egui::{Button, ScrollArea, Ui};
+
+use super::first_button::first_button;
+use super::prompt::prompt;
+use crate::session::{Action, Dialog, Session};
+use crate::ui::widgets;
+
+pub(super) fn choose_skeleton(
+    ui: &mut Ui,
+    path: &Path,
+    names: &[String],
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(360.0);
+    ui.label("The file has several skeletons. The first one is open; another can be chosen:");
+    ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+        for name in names {
+            if ui.add(Button::new(name).truncate()).clicked() {
+                let (path, skeleton) = (path.to_owned(), Some(name.clone()));
+                actions.push(Action::Open { path, skeleton });
+            }
+        }
+    });
+    if first_button(ui, "Keep the first") {
+        actions.push(Action::CloseDialog);
+    }
+}
+
+pub(super) fn rename(
+    ui: &mut Ui,
+    session: &Session,
+    joint: usize,
+    name: &str,
+    is_new: bool,
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(300.0);
+    let (typed, entered) = prompt(ui, "The joint's name", name, is_new);
+    if typed != name {
+        actions.push(Action::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
+    }
+    let other = session.skeleton().skeleton.find(typed.trim()).filter(|other| *other != joint);
+    let why_not = match other {
+        _ if typed.trim().is_empty() => Some("A joint needs a name"),
+        Some(_) => Some("Another joint has this name"),
+        None => None,
+    };
+    if let Some(why_not) = why_not {
+        widgets::error_label(ui, why_not);
+    }
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let accept = ui
+            .add_enabled(why_not.is_none(), Button::new("Rename"))
+            .on_disabled_hover_text(why_not.unwrap_or_default());
+        if (accept.clicked() || entered) && why_not.is_none() {
+            actions.push(Action::Rename { joint, name: typed.trim().to_owned() });
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+pub(super) fn delete_joints(
+    ui: &mut Ui,
+    session: &Session,
+    joints: &[usize],
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(360.0);
+    let skeleton = &session.skeleton().skeleton;
+    let what = match joints {
+        [joint] => skeleton.joint(*joint).map_or("The joint", |joint| joint.name.as_str()),
+        _ => "The selected joints",
+    };
+    let verb = if joints.len() == 1 { "has" } else { "have" };
+    ui.label(format!("{what} {verb} children. Kept, they stay where they are."));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if first_button(ui, "Keep children") {
+            actions.push(Action::Dissolve(joints.to_vec()));
+        }
+        if ui.button("Delete children too").clicked() {
+            actions.push(Action::Delete(joints.to_vec()));
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}

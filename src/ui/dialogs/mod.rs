@@ -1,0 +1,159 @@
+//! Windows over the others: about, and those that ask for a path, a name or a decision.
+
+mod export;
+mod first_button;
+mod joints;
+mod path;
+mod prompt;
+mod shortcuts;
+mod unsaved;
+
+use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
+
+use crate::session::{Action, Dialog, Session};
+use crate::ui::machine::Machine;
+use crate::ui::panels::statistics;
+use first_button::first_button;
+
+pub(in crate::ui) fn ui(
+    ui: &Ui,
+    session: &Session,
+    machine: &Machine,
+    viewport: Rect,
+    actions: &mut Vec<Action>,
+) {
+    let is_new = is_new(ui, session.dialog());
+    let Some(dialog) = session.dialog() else { return };
+    if is_new && dialog.is_modal() {
+        // What had the keyboard until now would have the first key, too.
+        ui.memory_mut(egui::Memory::stop_text_input);
+    }
+    let title = match dialog {
+        Dialog::About => "About ik-arm",
+        Dialog::Shortcuts => "Shortcuts",
+        Dialog::Statistics => "Statistics",
+        Dialog::Recover { .. } => "Not saved last time",
+        Dialog::Unsaved { .. } => "Save changes?",
+        Dialog::Exporting => "Quit during the export?",
+        Dialog::Replace { .. } => "Replace the file?",
+        Dialog::SavePicture { .. } => "Save picture",
+        Dialog::Export(_) => "Export",
+        Dialog::Open { .. } => "Open",
+        Dialog::SaveAs { .. } => "Save as",
+        Dialog::ChooseSkeleton { .. } => "Choose a skeleton",
+        Dialog::Rename { .. } => "Rename",
+        Dialog::DeleteJoints { .. } => "Delete joints",
+    };
+    if !dialog.is_modal() {
+        return beside(ui, title, viewport, actions, |ui| statistics::ui(ui, machine));
+    }
+    modal(ui, title, |ui| match dialog {
+        Dialog::About => about(ui, machine, actions),
+        Dialog::Shortcuts => shortcuts(ui, session, actions),
+        Dialog::Recover { document, file } => {
+            unsaved::recover(ui, document, file.as_deref(), actions)
+        }
+        Dialog::Unsaved { then } => unsaved::unsaved(ui, session, then, actions),
+        Dialog::Exporting => unsaved::quit_during_export(ui, session, actions),
+        Dialog::Replace { path, then, .. } => unsaved::replace(ui, path, then, actions),
+        Dialog::SavePicture { path } => {
+            path::ask_path(ui, session, &path::SAVE_PICTURE, (path, None), is_new, actions);
+        }
+        Dialog::Export(export) => export::ui(ui, session, export, is_new, actions),
+        Dialog::Open { path, problem } => {
+            path::ask_path(ui, session, &path::OPEN, (path, problem.as_deref()), is_new, actions);
+        }
+        Dialog::SaveAs { path, problem } => {
+            path::ask_path(
+                ui,
+                session,
+                &path::SAVE_AS,
+                (path, problem.as_deref()),
+                is_new,
+                actions,
+            );
+        }
+        Dialog::ChooseSkeleton { path, names } => joints::choose_skeleton(ui, path, names, actions),
+        Dialog::Rename { joint, name } => {
+            joints::rename(ui, session, *joint, name, is_new, actions)
+        }
+        Dialog::DeleteJoints { joints } => joints::delete_joints(ui, session, joints, actions),
+        Dialog::Statistics => {}
+    });
+}
+
+/// Whether another dialog was open in the last pass, or none.
+fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
+    let now = dialog.map(std::mem::discriminant);
+    let id = Id::unique("open dialog");
+    let before = ui.data_mut(|data| *data.get_temp_mut_or_default::<Option<_>>(id));
+    ui.data_mut(|data| data.insert_temp(id, now));
+    now != before
+}
+
+/// A window that dims and stops all behind it.
+fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    let style = ui.global_style();
+    let frame = Frame::window(&style).inner_margin(16.0);
+    let id = Id::unique(("dialog", title.to_owned()));
+    let area = Modal::default_area(id).fade_in(false);
+    let modal = Modal::new(id).area(area).frame(frame);
+    modal.show(ui.ctx(), |ui| {
+        ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
+        ui.heading(title);
+        ui.add_space(6.0);
+        contents(ui);
+    });
+}
+
+/// One that is looked at while the rest goes on: at the right, where it hides the least of the
+/// viewport, until it is moved.
+fn beside(
+    ui: &Ui,
+    title: &str,
+    viewport: Rect,
+    actions: &mut Vec<Action>,
+    contents: impl FnOnce(&mut Ui),
+) {
+    let mut open = true;
+    let right = ui.ctx().content_rect().right();
+    Window::new(title)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(statistics::WIDTH)
+        .pivot(Align2::RIGHT_TOP)
+        .default_pos(pos2(right - 8.0, viewport.top() + 8.0))
+        .open(&mut open)
+        .show(ui.ctx(), contents);
+    if !open {
+        actions.push(Action::CloseDialog);
+    }
+}
+
+fn about(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
+    ui.set_width(360.0);
+    ui.heading(concat!("ik-arm ", env!("CARGO_PKG_VERSION")));
+    ui.label("A 3D inverse-kinematics arm to pose, look into and understand.");
+    ui.add_space(8.0);
+    Grid::new("about").num_columns(2).show(ui, |ui| {
+        ui.weak("Graphics");
+        ui.label(&machine.adapter);
+        ui.end_row();
+        ui.weak("Licence");
+        ui.label("MIT or Apache-2.0");
+        ui.end_row();
+    });
+    close(ui, actions);
+}
+
+fn shortcuts(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    shortcuts::ui(ui, session);
+    close(ui, actions);
+}
+
+fn close(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.add_space(8.0);
+    if first_button(ui, "Close") {
+        actions.push(Action::CloseDialog);
+    }
+}

@@ -1,0 +1,112 @@
+//! The text box for a path, and the question before a file is replaced.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Button, Label, RichText, Ui};
+
+use super::prompt::prompt;
+use crate::export::existing;
+use crate::session::{Action, Dialog, Session};
+use crate::ui::widgets;
+
+/// What a path box asks for.
+pub(super) struct Question {
+    prompt: &'static str,
+    accept: &'static str,
+    dialog: fn(String) -> Dialog,
+    action: fn(PathBuf) -> Action,
+}
+
+pub(super) const SAVE_PICTURE: Question = Question {
+    prompt: "Save the viewport as PNG to",
+    accept: "Save",
+    dialog: |path| Dialog::SavePicture { path },
+    action: |path| Action::SavePicture(path.display().to_string()),
+};
+
+pub(super) const OPEN: Question = Question {
+    prompt: "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf",
+    accept: "Open",
+    dialog: |path| Dialog::Open { path, problem: None },
+    action: |path| Action::Open { path, skeleton: None },
+};
+
+pub(super) const SAVE_AS: Question = Question {
+    prompt: "Save the document to",
+    accept: "Save",
+    dialog: |path| Dialog::SaveAs { path, problem: None },
+    action: Action::SaveAs,
+};
+
+/// A path box that works on every system, with the system's own dialog behind a button.
+pub(super) fn ask_path(
+    ui: &mut Ui,
+    session: &Session,
+    question: &Question,
+    (path, problem): (&str, Option<&str>),
+    is_new: bool,
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(440.0);
+    let (typed, entered) = prompt(ui, question.prompt, path, is_new);
+    let dialog = (question.dialog)(typed.clone());
+    if typed != path {
+        actions.push(Action::OpenDialog(dialog.clone()));
+    }
+    folder(ui, session, &dialog);
+    if let Some(problem) = problem {
+        widgets::error_label(ui, problem);
+    }
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let typed = typed.trim();
+        let accept = ui
+            .add_enabled(!typed.is_empty(), Button::new(question.accept))
+            .on_disabled_hover_text("There is no path yet");
+        if (accept.clicked() || entered) && !typed.is_empty() {
+            let path = session.full_path(&dialog, Path::new(typed));
+            let action = (question.action)(path.clone());
+            actions.push(match dialog {
+                Dialog::Open { .. } => action,
+                _ => unless_there(session, path, action, dialog),
+            });
+        }
+        browse(ui, actions);
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Vec<Action>) {
+    let tooltip = "Open the system's file dialog, where it has one";
+    if ui.button("Browse…").on_hover_text(tooltip).clicked() {
+        actions.push(Action::ChoosePath);
+    }
+}
+
+/// Says in which folder a path is that is typed without one.
+pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &Dialog) {
+    let Some(typed) = dialog.path() else { return };
+    let full = session.full_path(dialog, typed);
+    let full = std::path::absolute(&full).unwrap_or(full);
+    let folder = full.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
+    ui.add(Label::new(RichText::new(format!("In {folder}")).weak()).truncate());
+}
+
+/// The action, or a question before it if it would overwrite a file that is not the open one.
+pub(in crate::ui) fn unless_there(
+    session: &Session,
+    path: PathBuf,
+    action: Action,
+    back: Dialog,
+) -> Action {
+    let is_own = session.file() == Some(path.as_path());
+    match existing(&path).filter(|_| !is_own) {
+        Some(path) => {
+            let (then, back) = (Box::new(action), Box::new(back));
+            Action::OpenDialog(Dialog::Replace { path, then, back })
+        }
+        None => action,
+    }
+}

@@ -1,0 +1,101 @@
+//! The table of the keys.
+
+use egui::{Grid, ScrollArea, Ui, vec2};
+
+use crate::session::Session;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
+    let navigation = session.preferences().navigation;
+    let [turn, pan, zoom] = navigation.help();
+    let view = format!("View ({})", navigation.name());
+    let groups: [(&str, &[(&str, &str)]); 7] = [
+        (&view, &[("Turn", turn), ("Move", pan), ("Zoom", zoom), ("Over handles too", "Alt+drag")]),
+        (
+            "Look",
+            &[
+                ("Front, right, top", "1, 3, 7"),
+                ("Back, left, bottom", "Ctrl+1, 3, 7"),
+                ("Perspective or orthographic", "5"),
+                ("Frame the arm, all", "F, Home"),
+                ("Turn, move, zoom the focused view", "arrows, Shift+arrows, + -"),
+                ("First view", "double-click on the background"),
+            ],
+        ),
+        (
+            "Skeleton",
+            &[
+                ("Select, add to the selection", "click, Shift+click"),
+                ("Add a child, at the pointer", "A, Ctrl+click"),
+                ("Add or remove a target, rename, delete", "T, F2, Delete"),
+                ("Run the solver, one iteration", "R, S"),
+                ("Select all, none", "Ctrl+A, Esc"),
+            ],
+        ),
+        (
+            "While something is dragged",
+            &[
+                ("A tenth, whole steps", "Shift, Ctrl"),
+                ("Along an axis, in a plane", "X Y Z, Shift+X Y Z"),
+                ("Type the offset", "digits , - ."),
+                ("Accept, take back", "Enter, Esc or right button"),
+            ],
+        ),
+        (
+            "Sliders",
+            &[
+                ("1, a tenth, 10", "arrows, Shift+arrows, Page keys"),
+                ("Ends, reset", "Home End, double-click"),
+                ("Take back a drag", "Esc"),
+            ],
+        ),
+        (
+            "Document",
+            &[
+                ("Undo, redo", "Ctrl+Z, Ctrl+Shift+Z"),
+                ("Open, save, save as", "Ctrl+O, Ctrl+S, Ctrl+Shift+S"),
+                ("Export, save a picture", "Ctrl+E, Ctrl+P"),
+            ],
+        ),
+        (
+            "Time and keys",
+            &[
+                ("Play or pause", "Space"),
+                ("Key what is selected, all", "K, Shift+K"),
+                ("Frame and key before, after", "arrows in the timeline"),
+                ("Start, end", "Home, End in the timeline"),
+                ("Select keys, more, all", "click or box, Shift, Ctrl+A"),
+                ("Delete, copy, paste keys", "Delete, Ctrl+C, Ctrl+V"),
+                ("Drag between frames", "Ctrl"),
+                ("Zoom the time, move it", "wheel, middle drag"),
+            ],
+        ),
+    ];
+    // Beside each other, so that all is seen at once; where the window is smaller still, it scrolls.
+    let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
+    let size = vec2(900.0, 460.0).min(room);
+    ui.set_min_size(size);
+    ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = 24.0;
+            for column in [&[5, 1, 2, 4][..], &[0, 3, 6]] {
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing.x = 8.0;
+                    column.iter().for_each(|group| group_of_keys(ui, groups[*group]));
+                });
+            }
+        });
+    });
+}
+
+fn group_of_keys(ui: &mut Ui, (title, rows): (&str, &[(&str, &str)])) {
+    ui.strong(title);
+    let grid = Grid::new(title).num_columns(2).min_col_width(190.0);
+    grid.min_row_height(18.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
+        for (what, keys) in rows {
+            ui.label(*what);
+            ui.weak(*keys);
+            ui.end_row();
+        }
+    });
+    ui.add_space(8.0);
+}

@@ -1,0 +1,90 @@
+//! Questions before something is lost.
+
+use std::path::Path;
+
+use egui::Ui;
+
+use super::first_button::first_button;
+use crate::document::Document;
+use crate::session::{Action, Session};
+
+pub(super) fn replace(ui: &mut Ui, path: &Path, then: &Action, actions: &mut Vec<Action>) {
+    ui.set_width(380.0);
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let folder = path.parent().unwrap_or(Path::new("")).display();
+    ui.label(format!("{name} is there already, in {folder}."));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        // Enter that is pressed twice, or held, overwrites nothing.
+        if first_button(ui, "Choose another name") {
+            actions.push(Action::CloseDialog);
+        }
+        if ui.button("Replace").on_hover_text("The file that is there is lost").clicked() {
+            actions.push(then.clone());
+        }
+    });
+}
+
+pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ui.set_width(380.0);
+    let path = session.job().map(|job| job.path.as_path());
+    let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+    ui.label(format!("{name} is being exported. If the program quits now, no file is left."));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if first_button(ui, "Go on exporting") {
+            actions.push(Action::CloseDialog);
+        }
+        if ui.button("Stop the export and quit").clicked() {
+            actions.push(Action::StopExportAndQuit);
+        }
+    });
+}
+
+pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Action>) {
+    ui.set_width(380.0);
+    let name = session.file().and_then(Path::file_name);
+    let name = name.map_or("The document".into(), |name| name.to_string_lossy());
+    ui.label(format!("{name} has changes that are not saved."));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if first_button(ui, "Save") {
+            actions.push(Action::SaveAnd(Box::new(then.clone())));
+        }
+        if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
+            actions.push(Action::Discard(Box::new(then.clone())));
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}
+
+pub(super) fn recover(
+    ui: &mut Ui,
+    document: &Document,
+    file: Option<&Path>,
+    actions: &mut Vec<Action>,
+) {
+    ui.set_width(420.0);
+    let name = file.and_then(Path::file_name).map(|name| name.to_string_lossy());
+    ui.label(match name {
+        Some(name) => {
+            format!("ik-arm ended before the changes of {name} were saved. They are kept.")
+        }
+        None => "ik-arm ended before the document was saved. It is kept.".to_owned(),
+    });
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if first_button(ui, "Open it") {
+            let (document, file) = (Box::new(document.clone()), file.map(Path::to_owned));
+            actions.push(Action::Recover { document, file });
+        }
+        if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
+            actions.push(Action::ForgetRecovered);
+        }
+        if ui.button("Ask again next time").clicked() {
+            actions.push(Action::CloseDialog);
+        }
+    });
+}

@@ -1,0 +1,86 @@
+//! The arm's grips: the hand, the pole, and the rings of its own angles.
+
+use egui::{Color32, Painter, Pos2, Ui};
+
+use super::rotate::RingMark;
+use super::shape::bright;
+use super::translate::Handles;
+use crate::document::TwistReferenceKind;
+use crate::session::{Grip, Handle, Session};
+use crate::ui::style;
+use crate::ui::viewport::Picture;
+
+/// Where the arm's grips are in the picture; those that are behind the eye are not.
+pub(in crate::ui) struct ArmGrips {
+    hand: Option<Handles>,
+    pole: Option<Handles>,
+    rings: Vec<RingMark>,
+}
+
+impl ArmGrips {
+    pub fn new(picture: &Picture, session: &Session) -> Self {
+        let (arm, pose) = (session.arm(), session.pose());
+        // Between IK and FK the hand is nowhere near its cursor, and is not taken for it.
+        let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
+        let is_led = arm.is_led_by_hand();
+        let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
+        let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
+        let ring = |grip| RingMark::new(picture, grip, session.arm_ring(grip)?);
+        Self {
+            hand: is_led.then(|| Handles::new(picture, arm.cursor_world(), hand)).flatten(),
+            pole: has_pole.then(|| Handles::new(picture, arm.root + arm.pole, None)).flatten(),
+            rings: angles.filter_map(ring).collect(),
+        }
+    }
+
+    /// What is under a point of the screen.
+    pub fn at(&self, pointer: Pos2) -> Option<Grip> {
+        let on = |handles: &Option<Handles>| handles.as_ref()?.at(pointer);
+        let of_hand = on(&self.hand).map(Grip::Hand);
+        let of_pole = || on(&self.pole).map(Grip::Pole);
+        of_hand.or_else(of_pole).or_else(|| RingMark::at(&self.rings, pointer))
+    }
+
+    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
+        let of_hand = |grip: Option<Grip>| match grip {
+            Some(Grip::Hand(handle)) => Some(handle),
+            _ => None,
+        };
+        let of_pole = |grip: Option<Grip>| match grip {
+            Some(Grip::Pole(handle)) => Some(handle),
+            _ => None,
+        };
+        paint(self.pole.as_ref(), painter, ui, [pointed, held].map(of_pole), held);
+        paint(self.hand.as_ref(), painter, ui, [pointed, held].map(of_hand), held);
+        let palette = style::palette(ui);
+        for ring in &self.rings {
+            let colour = style::colour(match ring.grip {
+                Grip::Shoulder(axis) => palette.axes[axis.min(2)],
+                _ => palette.accent,
+            });
+            let stands_out = held.or(pointed) == Some(ring.grip);
+            ring.paint(painter, look(colour, stands_out, held.is_some()), stands_out);
+        }
+    }
+}
+
+/// While something else is held they are away.
+fn paint(
+    handles: Option<&Handles>,
+    painter: &Painter,
+    ui: &Ui,
+    [pointed, own]: [Option<Handle>; 2],
+    held: Option<Grip>,
+) {
+    if let Some(handles) = handles.filter(|_| held.is_none() || own.is_some()) {
+        handles.paint(painter, ui, pointed, own);
+    }
+}
+
+fn look(colour: Color32, stands_out: bool, is_held: bool) -> Color32 {
+    match (stands_out, is_held) {
+        (true, _) => bright(colour),
+        (false, true) => colour.gamma_multiply(0.25),
+        (false, false) => colour,
+    }
+}

@@ -1,0 +1,196 @@
+//! A point's handles: three arrows, three squares and the point itself, as large on screen
+//! wherever they are.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
+use glam::Vec3;
+
+use super::shape::bright;
+use crate::session::Handle;
+use crate::ui::style;
+use crate::ui::viewport::Picture;
+
+/// In points.
+const LENGTH: f32 = 80.0;
+const SQUARE: (f32, f32) = (24.0, 42.0);
+const HIT: f32 = 10.0;
+const FREE_RADIUS: f32 = 14.0;
+
+/// An arrow shorter than this part of its length looks along itself; a square narrower than this
+/// part of its size is seen edge-on.
+const SHORTEST: f32 = 0.25;
+const NARROWEST: f32 = 0.2;
+
+const NAMES: [&str; 3] = ["X", "Y", "Z"];
+
+/// Where the handles are in the picture.
+pub(in crate::ui) struct Handles {
+    centre: Pos2,
+    /// The hand, which may not be at the Cursor.
+    hand: Option<Pos2>,
+    /// From the centre to each arrow's tip, on screen.
+    arrows: [Vec2; 3],
+}
+
+impl Handles {
+    /// Around the point at `cursor`, with a second place to take it by; nothing if it is behind the
+    /// eye.
+    pub fn new(picture: &Picture, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
+        let centre = picture.place(cursor)?;
+        let unit = LENGTH * picture.units_per_point(cursor);
+        let mut arrows = [Vec2::ZERO; 3];
+        for (arrow, axis) in arrows.iter_mut().zip(Vec3::AXES) {
+            // Their own perspective would make arrows towards the eye endless.
+            *arrow = picture.direction(axis * unit, cursor);
+        }
+        Some(Self { centre, hand: hand.and_then(|hand| picture.place(hand)), arrows })
+    }
+
+    /// What is under a point of the screen.
+    pub fn at(&self, pointer: Pos2) -> Option<Handle> {
+        let on_free = |centre: Pos2| centre.distance(pointer) <= FREE_RADIUS;
+        if on_free(self.centre) || self.hand.is_some_and(on_free) {
+            return Some(Handle::Free);
+        }
+        if let Some(axis) = (0..3).find(|axis| self.on_square(*axis, pointer)) {
+            return Some(Handle::Plane(axis));
+        }
+        (0..3)
+            .filter(|axis| self.arrow_shows(*axis))
+            .map(|axis| (self.to_arrow(axis, pointer), axis))
+            .filter(|(distance, _)| *distance <= HIT)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, axis)| Handle::Axis(axis))
+    }
+
+    /// Draws them; what is held or pointed at stands out, and while one is held the others fade.
+    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Handle>, held: Option<Handle>) {
+        let axes = style::palette(ui).axes.map(style::colour);
+        let look = |handle: Handle, colour: Color32| match (held, pointed) {
+            (Some(held), _) if held == handle => bright(colour),
+            (Some(_), _) => colour.gamma_multiply(0.25),
+            (None, Some(pointed)) if pointed == handle => bright(colour),
+            _ => colour,
+        };
+        for (axis, colour) in axes.into_iter().enumerate() {
+            if self.square_shows(axis) {
+                let colour = look(Handle::Plane(axis), colour);
+                let fill = colour.gamma_multiply(0.35);
+                let corners = self.square(axis).to_vec();
+                painter.add(Shape::convex_polygon(corners, fill, Stroke::new(1.5, colour)));
+            }
+        }
+        for (axis, colour) in axes.into_iter().enumerate() {
+            if self.arrow_shows(axis) {
+                self.paint_arrow(painter, axis, look(Handle::Axis(axis), colour));
+            }
+        }
+        let ring = ui.visuals().strong_text_color();
+        let free = look(Handle::Free, ring.gamma_multiply(0.85));
+        painter.circle_stroke(self.centre, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
+        if let Some(hand) = self.hand.filter(|hand| hand.distance(self.centre) > FREE_RADIUS) {
+            painter.circle_stroke(hand, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
+        }
+    }
+
+    fn paint_arrow(&self, painter: &Painter, axis: usize, colour: Color32) {
+        const HEAD: f32 = 12.0;
+        let arrow = self.arrows[axis];
+        let direction = arrow.normalized();
+        let tip = self.centre + arrow;
+        let neck = tip - direction * HEAD;
+        let start = self.centre + direction * FREE_RADIUS;
+        painter.line_segment([start, neck], Stroke::new(2.5, colour));
+        let aside = direction.rot90() * HEAD * 0.42;
+        let head = vec![tip, neck + aside, neck - aside];
+        painter.add(Shape::convex_polygon(head, colour, Stroke::NONE));
+        let beyond = tip + direction * 10.0;
+        let font = FontId::proportional(13.0);
+        painter.text(beyond, Align2::CENTER_CENTER, NAMES[axis], font, colour);
+    }
+
+    fn arrow_shows(&self, axis: usize) -> bool {
+        self.arrows[axis].length() > LENGTH * SHORTEST
+    }
+
+    /// The two axes of the square in which coordinate `axis` stays.
+    fn sides(&self, axis: usize) -> (Vec2, Vec2) {
+        (self.arrows[(axis + 1) % 3] / LENGTH, self.arrows[(axis + 2) % 3] / LENGTH)
+    }
+
+    fn square_shows(&self, axis: usize) -> bool {
+        let (u, v) = self.sides(axis);
+        (u.x * v.y - u.y * v.x).abs() > NARROWEST
+    }
+
+    fn square(&self, axis: usize) -> [Pos2; 4] {
+        let (u, v) = self.sides(axis);
+        let (near, far) = SQUARE;
+        [(near, near), (far, near), (far, far), (near, far)]
+            .map(|(along_u, along_v)| self.centre + u * along_u + v * along_v)
+    }
+
+    fn on_square(&self, axis: usize, pointer: Pos2) -> bool {
+        if !self.square_shows(axis) {
+            return false;
+        }
+        // The pointer in the square's own skewed coordinates, by Cramer's rule.
+        let (u, v) = self.sides(axis);
+        let at = pointer - self.centre;
+        let area = u.x * v.y - u.y * v.x;
+        let along_u = (at.x * v.y - at.y * v.x) / area;
+        let along_v = (u.x * at.y - u.y * at.x) / area;
+        let (near, far) = SQUARE;
+        let inside = near..=far;
+        inside.contains(&along_u) && inside.contains(&along_v)
+    }
+
+    fn to_arrow(&self, axis: usize, pointer: Pos2) -> f32 {
+        let arrow = self.arrows[axis];
+        let at = pointer - self.centre;
+        let part = (at.dot(arrow) / arrow.length_sq()).clamp(0.0, 1.15);
+        (at - arrow * part).length()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    fn handles() -> Handles {
+        let arrows = [Vec2::new(70.0, 20.0), Vec2::new(0.0, -78.0), Vec2::new(-60.0, 35.0)];
+        Handles { centre: pos2(400.0, 300.0), hand: None, arrows }
+    }
+
+    #[test]
+    fn each_part_is_hit_where_it_is_drawn() {
+        let handles = handles();
+        assert_eq!(handles.at(handles.centre), Some(Handle::Free));
+        for axis in 0..3 {
+            let arrow = handles.arrows[axis];
+            assert_eq!(handles.at(handles.centre + arrow * 0.85), Some(Handle::Axis(axis)));
+            let [a, _, c, _] = handles.square(axis);
+            assert_eq!(handles.at(a + (c - a) / 2.0), Some(Handle::Plane(axis)));
+        }
+        assert_eq!(handles.at(pos2(600.0, 100.0)), None);
+    }
+
+    #[test]
+    fn an_arrow_along_the_view_and_a_square_edge_on_cannot_be_hit() {
+        let mut handles = handles();
+        handles.arrows[2] = Vec2::new(3.0, 1.0);
+        assert_ne!(handles.at(handles.centre + Vec2::new(3.0, 1.0) * 6.0), Some(Handle::Axis(2)));
+        handles.arrows = [Vec2::new(80.0, 0.0), Vec2::new(0.0, -80.0), Vec2::ZERO];
+        for axis in [0, 1] {
+            let [a, _, c, _] = handles.square(axis);
+            assert_ne!(handles.at(a + (c - a) / 2.0), Some(Handle::Plane(axis)));
+        }
+    }
+
+    #[test]
+    fn a_hand_away_from_its_cursor_can_be_taken_too() {
+        let handles = Handles { hand: Some(pos2(100.0, 100.0)), ..handles() };
+        assert_eq!(handles.at(pos2(108.0, 100.0)), Some(Handle::Free));
+    }
+}

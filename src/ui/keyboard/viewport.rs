@@ -1,0 +1,143 @@
+//! Keys of the viewport and the outliner.
+
+use egui::{Event, Key, Ui};
+use glam::Vec2;
+
+use crate::document::{AxisView, RigKind};
+use crate::session::{Action, Constraint, PointDrag, Session};
+use crate::ui::commands;
+
+/// Single keys, while no widget or the viewport or the tree of joints has the keyboard.
+pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.is_asking() {
+        return;
+    }
+    if session.drag().is_some() {
+        drag(ui, session, actions);
+    } else {
+        view(ui, session, actions);
+        if session.rig() == RigKind::Skeleton {
+            skeleton(ui, session, actions);
+        }
+    }
+}
+
+fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let selected = session.selected();
+    if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
+        actions.push(Action::Select((0..session.skeleton_pose().len()).collect()));
+    }
+    if pressed(Key::A) {
+        actions.push(Action::AddJoint { tip: None });
+    }
+    if pressed(Key::T) {
+        actions.extend(commands::toggle_target(session));
+    }
+    if let Some(joint) = selected.filter(|_| pressed(Key::F2)) {
+        actions.push(commands::rename(session, joint));
+    }
+    if selected.is_some() && (pressed(Key::Delete) || pressed(Key::Backspace)) {
+        actions.push(commands::delete(session));
+    }
+    if pressed(Key::R) {
+        actions.push(Action::Run(!session.is_running()));
+    }
+    if pressed(Key::S) {
+        actions.push(Action::Step);
+    }
+}
+
+fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let camera = session.settled_camera();
+    let along = |view| Action::GlideTo(camera.along(view));
+    ui.input(|input| {
+        let other_side = input.modifiers.command;
+        if !(input.modifiers.is_none() || input.modifiers.command_only()) {
+            return;
+        }
+        for (key, view, opposite) in [
+            (Key::Num1, AxisView::Front, AxisView::Back),
+            (Key::Num3, AxisView::Right, AxisView::Left),
+            (Key::Num7, AxisView::Top, AxisView::Bottom),
+        ] {
+            if input.key_pressed(key) {
+                actions.push(along(if other_side { opposite } else { view }));
+            }
+        }
+        if other_side {
+            return;
+        }
+        if input.key_pressed(Key::Num5) {
+            actions.push(Action::SetCamera(commands::with_other_projection(camera)));
+        }
+        if input.key_pressed(Key::F) {
+            actions.push(commands::frame_selection(session));
+        }
+        if input.key_pressed(Key::Home) {
+            actions.push(commands::frame_all(session));
+        }
+    });
+}
+
+/// Arrow keys, while the viewport has the keyboard: they turn the view, with Shift they move it;
+/// plus and minus zoom.
+pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Vec<Action>) {
+    const TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
+    const PAN: f32 = 0.1;
+    const ZOOM: f32 = 1.15;
+    let camera = session.settled_camera();
+    let asked = ui.input(|input| {
+        if input.modifiers.command {
+            return camera;
+        }
+        let presses = |key| input.num_presses(key) as f32;
+        let across = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
+        let up = presses(Key::ArrowUp) - presses(Key::ArrowDown);
+        let nearer = presses(Key::Plus) + presses(Key::Equals) - presses(Key::Minus);
+        let moved = Vec2::new(across / aspect, up) * PAN;
+        let view = match (across, up) {
+            (0.0, 0.0) => camera,
+            _ if input.modifiers.shift => camera.panned(moved, Vec2::ZERO, aspect),
+            _ => camera.orbited(across * TURN, up * TURN),
+        };
+        if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
+    });
+    if asked != camera && session.drag().is_none() {
+        actions.push(Action::SetCamera(asked));
+    }
+}
+
+fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(drag) = session.drag() else {
+        return;
+    };
+    let mut typed = drag.typed().to_owned();
+    ui.input(|input| {
+        for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
+            if input.key_pressed(key) {
+                let asked = if input.modifiers.shift {
+                    Constraint::Plane(axis)
+                } else {
+                    Constraint::Axis(axis)
+                };
+                let released = drag.point().and_then(PointDrag::constraint) == Some(asked);
+                actions.push(Action::ConstrainDrag((!released).then_some(asked)));
+            }
+        }
+        for event in &input.events {
+            if let Event::Text(text) = event {
+                typed.extend(text.chars().filter(|c| c.is_ascii_digit() || "-.,".contains(*c)));
+            }
+        }
+        if input.key_pressed(Key::Backspace) {
+            typed.pop();
+        }
+        if input.key_pressed(Key::Enter) {
+            actions.push(Action::CommitEdit);
+        }
+    });
+    if typed != drag.typed() {
+        actions.push(Action::TypeOffset(typed));
+    }
+}

@@ -1,0 +1,49 @@
+//! The layout of the window.
+
+use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
+
+use super::panels::{crowd, explain, left, solver};
+use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport};
+use crate::document::RigKind;
+use crate::session::{Action, Session};
+
+/// Shows everything. Returns where the scene is to be drawn, in points; `picture` is the scene as
+/// last drawn there.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    machine: &Machine,
+    picture: Option<TextureId>,
+    actions: &mut Vec<Action>,
+) -> Rect {
+    keyboard::global(ui, session, actions);
+    Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, machine, actions));
+    Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, machine, actions));
+    if session.preferences().timeline {
+        Panel::bottom("timeline")
+            .resizable(true)
+            .default_size(152.0)
+            .size_range(120.0..=360.0)
+            .show(ui, |ui| timeline::ui(ui, session, actions));
+    }
+    Panel::left("controls")
+        .resizable(true)
+        .default_size(272.0)
+        .size_range(232.0..=420.0)
+        .show(ui, |ui| left::ui(ui, session, actions));
+    if session.preferences().explain {
+        Panel::right("explain").resizable(true).default_size(272.0).size_range(232.0..=460.0).show(
+            ui,
+            |ui| match session.rig() {
+                RigKind::Arm => explain::ui(ui, session, actions),
+                RigKind::Skeleton => solver::ui(ui, session, actions),
+            },
+        );
+    }
+    let viewport =
+        CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    crowd::ui(ui, viewport, session, machine, actions);
+    dialogs::ui(ui, session, machine, viewport, actions);
+    keyboard::focus::remember(ui);
+    viewport
+}

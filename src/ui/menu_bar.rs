@@ -1,0 +1,244 @@
+//! The menu bar.
+
+use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
+
+use super::machine::Machine;
+use super::{commands, labels};
+use crate::document::{Channel, Overlay, RigKind, Theme};
+use crate::io::{Example, Group};
+use crate::session::{Action, Dialog, Navigation, Session};
+
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    machine: &Machine,
+    actions: &mut Vec<Action>,
+) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file(ui, session, actions));
+        ui.menu_button("Edit", |ui| edit(ui, session, actions));
+        ui.menu_button("View", |ui| view(ui, session, actions));
+        ui.menu_button("Examples", |ui| examples(ui, actions));
+        ui.menu_button("Help", |ui| help(ui, machine, actions));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let rig = match session.rig() {
+                RigKind::Arm => match session.arm().influence {
+                    1.0 => "Arm · IK".to_owned(),
+                    0.0 => "Arm · FK".to_owned(),
+                    weight => format!("Arm · {:.0} % IK", weight * 100.0),
+                },
+                RigKind::Skeleton => {
+                    format!("Skeleton · {}", labels::method(session.skeleton().solver.method))
+                }
+            };
+            ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
+        });
+    });
+}
+
+fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
+    let button = Button::new(name);
+    ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked()
+}
+
+fn file(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    if item(ui, "New skeleton", "") {
+        actions.push(Action::NewSkeleton);
+    }
+    if item(ui, "Open…", "Ctrl+O") {
+        actions.push(commands::open());
+    }
+    ui.add_enabled_ui(!session.recent().is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| recent(ui, session, actions));
+    });
+    ui.separator();
+    if item(ui, "Save", "Ctrl+S") {
+        actions.push(Action::Save);
+    }
+    if item(ui, "Save as…", "Ctrl+Shift+S") {
+        actions.push(commands::save_as());
+    }
+    ui.separator();
+    if item(ui, "Export…", "Ctrl+E") {
+        actions.push(Action::OpenDialog(session.export_dialog()));
+    }
+    if item(ui, "Save picture…", "Ctrl+P") {
+        actions.push(commands::save_picture());
+    }
+    ui.separator();
+    if item(ui, "Quit", "Ctrl+Q") {
+        actions.push(Action::Quit);
+    }
+}
+
+fn recent(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for path in session.recent() {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let button = ui.button(name).on_hover_text(path.display().to_string());
+        if button.clicked() {
+            actions.push(Action::Open { path: path.clone(), skeleton: None });
+        }
+    }
+}
+
+fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    step(ui, "Undo", session.undo_name(), "Ctrl+Z", Action::Undo, actions);
+    step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", Action::Redo, actions);
+    ui.separator();
+    ui.menu_button("Key", |ui| key(ui, session, actions));
+    ui.separator();
+    if item(ui, "Copy pose as JSON line", "Ctrl+C") {
+        actions.push(Action::CopyPose);
+    }
+    ui.separator();
+    ui.menu_button("Navigation", |ui| {
+        for navigation in Navigation::ALL {
+            let chosen = session.preferences().navigation == navigation;
+            let [turn, pan, zoom] = navigation.help();
+            let tooltip = format!("Turn: {turn}\nMove: {pan}\nZoom: {zoom}");
+            if ui.radio(chosen, navigation.name()).on_hover_text(tooltip).clicked() {
+                actions.push(Action::SetNavigation(navigation));
+            }
+        }
+    });
+}
+
+/// Everything that can have keys, switches too.
+fn key(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    if item(ui, "Selected", "K") {
+        actions.push(Action::Key(session.channels_to_key()));
+    }
+    if item(ui, "All", "Shift+K") {
+        actions.push(Action::Key(session.all_channels()));
+    }
+    ui.separator();
+    let one = |ui: &mut Ui, channel: Channel, actions: &mut Vec<Action>| {
+        if ui.button(labels::channel(session, channel)).clicked() {
+            actions.push(Action::Key(vec![channel]));
+        }
+    };
+    match session.rig() {
+        RigKind::Arm => Channel::OF_ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
+        RigKind::Skeleton => {
+            one(ui, Channel::Translation, actions);
+            for joint in session.selection() {
+                let of_joint = [
+                    Channel::Rotation(*joint),
+                    Channel::Offset(*joint),
+                    Channel::Target(*joint),
+                    Channel::Enabled(*joint),
+                ];
+                let there = of_joint.into_iter().filter(|it| it.value(session.shown()).is_some());
+                there.for_each(|channel| one(ui, channel, actions));
+            }
+        }
+    }
+    ui.menu_button("What is shown", |ui| {
+        Overlay::all().map(Channel::Overlay).for_each(|channel| one(ui, channel, actions));
+    });
+}
+
+/// "Undo move hand", if there is something to undo.
+fn step(
+    ui: &mut Ui,
+    verb: &str,
+    name: Option<&str>,
+    keys: &str,
+    action: Action,
+    actions: &mut Vec<Action>,
+) {
+    let title = name.map_or(verb.to_owned(), |name| format!("{verb} {name}"));
+    let button = ui.add_enabled(name.is_some(), Button::new(title).shortcut_text(keys));
+    if button.clicked() {
+        actions.push(action);
+    }
+}
+
+fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for (axis_view, name, keys) in commands::AXIS_VIEWS {
+        if item(ui, name, keys) {
+            actions.push(Action::GlideTo(session.settled_camera().along(axis_view)));
+        }
+    }
+    ui.separator();
+    if item(ui, "Perspective / orthographic", "5") {
+        actions.push(Action::SetCamera(commands::with_other_projection(session.settled_camera())));
+    }
+    if item(ui, "Frame selection", "F") {
+        actions.push(commands::frame_selection(session));
+    }
+    if item(ui, "Frame all", "Home") {
+        actions.push(commands::frame_all(session));
+    }
+    ui.separator();
+    for (theme, name) in [(Theme::Light, "Light theme"), (Theme::Dark, "Dark theme")] {
+        if ui.radio(session.preferences().theme == theme, name).clicked() {
+            actions.push(Action::SetTheme(theme));
+        }
+    }
+    ui.separator();
+    let mut layers = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
+    if session.rig() == RigKind::Arm {
+        layers.push((Overlay::Globe, "Singularity globe"));
+        layers.push((Overlay::References, "Four swivel references"));
+    }
+    for (layer, name) in layers {
+        let mut shown = session.shown().display.shows(layer);
+        if ui.checkbox(&mut shown, name).changed() {
+            actions.push(Action::Show(layer, shown));
+        }
+    }
+    let mut crowd = session.crowd().is_some();
+    let tooltip = "Up to a million arms like this one, each after a target of its own";
+    if ui.checkbox(&mut crowd, "Crowd").on_hover_text(tooltip).changed() {
+        actions.push(Action::ShowCrowd(crowd));
+    }
+    let mut explain = session.preferences().explain;
+    let name = match session.rig() {
+        RigKind::Arm => "Explain panel",
+        RigKind::Skeleton => "Solver panel",
+    };
+    if ui.checkbox(&mut explain, name).changed() {
+        actions.push(Action::ShowExplain(explain));
+    }
+    let mut timeline = session.preferences().timeline;
+    if ui.checkbox(&mut timeline, "Timeline").changed() {
+        actions.push(Action::ShowTimeline(timeline));
+    }
+    let mut curves = session.preferences().curves;
+    if ui.checkbox(&mut curves, "Curves").on_hover_text("In the timeline").changed() {
+        actions.push(Action::ShowCurves(curves));
+    }
+}
+
+fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
+    examples_of(Group::Tour, ui, actions);
+    ui.separator();
+    ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
+}
+
+fn examples_of(group: Group, ui: &mut Ui, actions: &mut Vec<Action>) {
+    for example in Example::of(group) {
+        if ui.button(example.title).on_hover_text(example.sentence).clicked() {
+            actions.push(Action::OpenExample(example));
+        }
+    }
+}
+
+fn help(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
+    if item(ui, "Shortcuts", "F1") {
+        actions.push(Action::OpenDialog(Dialog::Shortcuts));
+    }
+    if item(ui, "Statistics", "") {
+        actions.push(Action::OpenDialog(Dialog::Statistics));
+    }
+    if item(ui, "About", "") {
+        actions.push(Action::OpenDialog(Dialog::About));
+    }
+    if machine.shows_debug_actions {
+        ui.separator();
+        if item(ui, "Lose the graphics device", "") {
+            actions.push(Action::LoseDevice);
+        }
+    }
+}

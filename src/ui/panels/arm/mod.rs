@@ -1,0 +1,125 @@
+//! The arm: what poses it, where the hand is, how the elbow and the hand are turned, where the root is,
+//! how long the limbs are and how they meet their limits.
+
+mod disabled;
+mod fk_ik;
+mod hand_orientation;
+mod socket_twist;
+mod soft_limits;
+
+use egui::Ui;
+use glam::Vec3;
+
+use crate::document::{Arm, Cursor};
+use crate::session::{Action, Session};
+use crate::ui::style;
+use crate::ui::widgets::{self, AXES, Point, Slider};
+use disabled::ANGLES_LEAD;
+
+/// Of an arm like the seed's.
+const ROOT_RANGE: f32 = 500.0;
+const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    fk_ik::switch(ui, session, actions);
+    ui.add_space(2.0);
+    if session.arm().influence < 1.0 {
+        widgets::section(ui, "Joint angles", |ui| fk_ik::angles(ui, session, actions));
+    }
+    let mut aside = Vec::new();
+    let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
+    widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
+    let reference = |ui: &mut Ui| socket_twist::reference(ui, session, &mut aside);
+    widgets::section_with(ui, "Elbow", reference, |ui| socket_twist::ui(ui, session, actions));
+    actions.append(&mut aside);
+    widgets::section(ui, "Root", |ui| root(ui, session, actions));
+    widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
+    widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));
+    widgets::folded_section(ui, "Hand orientation", |ui| {
+        hand_orientation::ui(ui, session, actions)
+    });
+}
+
+fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let (arm, seed) = (session.arm(), Arm::default().cursor());
+    let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
+    let hand = Point {
+        name: "Hand",
+        labels: AXES,
+        value: arm.cursor(),
+        default: seed,
+        range: arm.bones.outer_limit(),
+        step: session.arm_unit(),
+        tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
+        disabled,
+    };
+    match arm.goal {
+        Cursor::Root(_) => hand.show(ui, session, actions, Action::SetHand),
+        Cursor::World(pin) => {
+            let pinned = Point {
+                value: pin,
+                default: arm.root + seed,
+                range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
+                tooltip: "Where the Cursor is pinned, in the world",
+                ..hand
+            };
+            pinned.show(ui, session, actions, Action::SetPin);
+        }
+    }
+}
+
+fn pin(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut pinned = session.arm().is_pinned();
+    let check = ui.checkbox(&mut pinned, "Pinned to the world").on_hover_text(
+        "The hand stays where it is when the Root moves, as on the edge of a table; else it goes \
+         with the Root",
+    );
+    if check.changed() {
+        actions.push(Action::PinHand(pinned));
+    }
+}
+
+fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let root = Point {
+        name: "Root",
+        labels: AXES,
+        value: session.arm().root,
+        default: Vec3::ZERO,
+        range: ROOT_RANGE * session.arm_unit(),
+        step: session.arm_unit(),
+        tooltip: "Where the Root, the shoulder, is in the world; the arm moves with it, but for a \
+                  hand that is pinned",
+        disabled: None,
+    };
+    root.show(ui, session, actions, Action::SetRoot);
+}
+
+fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let (palette, bones) = (style::palette(ui), session.arm().bones);
+    let (seed, unit) = (Arm::default().bones, session.arm_unit());
+    let range = (LENGTH_RANGE.0 * unit, LENGTH_RANGE.1 * unit);
+    let upper = Slider {
+        name: "Upper length",
+        label: "Upper d_1",
+        colour: Some(style::colour(palette.upper)),
+        tooltip: "The Upper Limb, from shoulder to elbow",
+        value: bones.upper(),
+        range,
+        default: seed.upper(),
+        step: unit,
+        ..Slider::default()
+    };
+    upper.show(ui, session, actions, Action::SetUpper);
+    let lower = Slider {
+        name: "Lower length",
+        label: "Lower d_2",
+        colour: Some(style::colour(palette.lower)),
+        tooltip: "The Lower Limb, from elbow to hand",
+        value: bones.lower(),
+        range,
+        default: seed.lower(),
+        step: unit,
+        ..Slider::default()
+    };
+    lower.show(ui, session, actions, Action::SetLower);
+}

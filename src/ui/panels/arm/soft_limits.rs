@@ -1,0 +1,59 @@
+//! How the hand meets its limits.
+
+use core::f32::consts::PI;
+
+use egui::Ui;
+
+use crate::kinematics::soft_reach::SoftReach;
+use crate::session::{Action, Session};
+use crate::ui::widgets::{Slider, angle_slider};
+
+const MOST_SOFT: f32 = 0.99;
+const MOST_STRETCHED: f32 = 3.0;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let soft_reach = session.arm().soft_reach;
+    let [softness, stretch, angle] =
+        [soft_reach.softness(), soft_reach.max_stretch(), soft_reach.min_elbow_angle()];
+    let seed = SoftReach::default();
+    // What no softening can have is brought to the nearest that one can.
+    let set = |softness: f32, stretch: f32, angle: f32| {
+        let widest = PI - 1e-3;
+        let soft_reach = SoftReach::new(
+            softness.clamp(0.0, MOST_SOFT),
+            stretch.max(1.0),
+            angle.clamp(0.0, widest),
+        );
+        Action::SetSoftReach(soft_reach.unwrap_or(seed))
+    };
+    let slider = Slider {
+        name: "Softness",
+        label: "Softness",
+        tooltip: "The hand lags behind the Cursor before it comes to a limit, so that the elbow does \
+                  not snap; 0 is exact, and stops dead",
+        value: softness,
+        range: (0.0, MOST_SOFT),
+        default: seed.softness(),
+        step: 0.1,
+        ..Slider::default()
+    };
+    slider.show(ui, session, actions, |softness| set(softness, stretch, angle));
+    let slider = Slider {
+        name: "Stretch",
+        label: "Stretch",
+        tooltip: "How many times as long the limbs may become to bring the hand to the Cursor",
+        value: stretch,
+        range: (1.0, MOST_STRETCHED),
+        default: seed.max_stretch(),
+        step: 0.1,
+        ..Slider::default()
+    };
+    slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
+    let tooltip = "How far the elbow is open at least: the hand comes no nearer to the shoulder";
+    let slider = Slider {
+        label: "φ_min",
+        range: (0.0, 179.0),
+        ..angle_slider("Smallest elbow angle", tooltip, angle)
+    };
+    slider.show(ui, session, actions, |degrees| set(softness, stretch, degrees.to_radians()));
+}

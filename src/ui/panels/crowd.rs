@@ -1,0 +1,103 @@
+//! The panel of the crowd: how many arms, solved by what, and how long that takes.
+
+use egui::{Align2, Rect, Slider, Ui, Window, vec2};
+
+use crate::rig::{Crowd, SolvedBy};
+use crate::session::{Action, Session};
+use crate::ui::machine::Machine;
+use crate::ui::widgets::format::grouped;
+
+const WIDTH: f32 = 232.0;
+
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    viewport: Rect,
+    session: &Session,
+    machine: &Machine,
+    actions: &mut Vec<Action>,
+) {
+    let Some(crowd) = session.crowd() else {
+        return;
+    };
+    let mut open = true;
+    Window::new("Crowd")
+        .open(&mut open)
+        .resizable(false)
+        .collapsible(false)
+        .pivot(Align2::LEFT_TOP)
+        .default_pos(viewport.min + vec2(12.0, 12.0))
+        .constrain_to(viewport)
+        .default_width(WIDTH)
+        .show(ui.ctx(), |ui| {
+            count(ui, &crowd, actions);
+            ui.add_space(8.0);
+            solver(ui, &crowd, actions);
+            ui.add_space(8.0);
+            figures(ui, &crowd, machine);
+            ui.add_space(8.0);
+            moving(ui, session, actions);
+        });
+    if !open {
+        actions.push(Action::ShowCrowd(false));
+    }
+}
+
+fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
+    let mut arms = crowd.arms;
+    ui.horizontal(|ui| {
+        let label = ui.label("Arms");
+        ui.spacing_mut().slider_width = 110.0;
+        let slider = Slider::new(&mut arms, 1..=Crowd::MOST)
+            .logarithmic(true)
+            .custom_formatter(|value, _| grouped(value as u64))
+            .custom_parser(|text| text.replace(',', "").trim().parse().ok());
+        if ui.add(slider).labelled_by(label.id).changed() {
+            actions.push(Action::SetCrowd(arms));
+        }
+    });
+}
+
+fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
+    let solvers = [
+        (SolvedBy::Cpu, "CPU", "By the batch solver, on all cores"),
+        (SolvedBy::Gpu, "GPU", "By the same mathematics in a shader"),
+    ];
+    ui.horizontal(|ui| {
+        ui.label("Solved by");
+        for (solved_by, name, tooltip) in solvers {
+            let button = ui.radio(crowd.solved_by == solved_by, name);
+            if button.on_hover_text(tooltip).clicked() {
+                actions.push(Action::SolveCrowd(solved_by));
+            }
+        }
+    });
+}
+
+fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
+    let times = machine.crowd.filter(|times| times.arms == crowd.arms);
+    let solve_ms = times.map(|times| times.solve.as_secs_f64() * 1e3);
+    let work_ms = machine.times.last().map(|frame| frame.work().as_secs_f64() * 1e3);
+    let rest_ms = work_ms.zip(solve_ms).map(|(work, solve)| (work - solve).max(0.0));
+    let per_arm = solve_ms.map(|solve| solve * 1e6 / f64::from(crowd.arms));
+    let rows = [
+        ("Solve", solve_ms, "ms", "From cursors to elbows and hands"),
+        ("Each arm", per_arm, "ns", "Solving, divided by the arms"),
+        ("The rest of the frame", rest_ms, "ms", "Targets, sending, drawing, panels"),
+    ];
+    for (name, value, unit, tooltip) in rows {
+        ui.horizontal(|ui| {
+            ui.label(name).on_hover_text(tooltip);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let text = value.map_or("–".to_owned(), |value| format!("{value:.2} {unit}"));
+                ui.label(egui::RichText::new(text).monospace());
+            });
+        });
+    }
+}
+
+fn moving(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut moving = session.is_crowd_moving();
+    if ui.checkbox(&mut moving, "Follow the targets").changed() {
+        actions.push(Action::MoveCrowd(moving));
+    }
+}

@@ -1,0 +1,175 @@
+//! The right panel: the paper's figures and formulas with the numbers of this very pose.
+
+mod pops;
+mod reach_curve;
+mod reach_meter;
+mod triangle;
+mod twist_references;
+
+use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Ui, vec2};
+
+use crate::document::Arm;
+use crate::session::{Action, Session};
+use crate::ui::widgets::{self, symbol};
+use crate::ui::{pose_summary, style};
+
+const FORMULA_SIZE: f32 = 13.5;
+
+/// A quantity of the paper: its symbol, how it is computed, its value, what it means.
+struct Quantity {
+    symbol: &'static str,
+    formula: &'static str,
+    value: String,
+    meaning: &'static str,
+    colour: Option<Color32>,
+}
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(6.0);
+        widgets::section(ui, "Triangle", |ui| {
+            triangle::ui(ui, session.arm(), session.pose());
+            sentence(ui, session);
+        });
+        widgets::section(ui, "Reach", |ui| reach_meter::ui(ui, session));
+        widgets::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
+        widgets::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
+        widgets::section(ui, "Swivel references", |ui| twist_references::ui(ui, session, actions));
+        widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
+        widgets::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
+    });
+}
+
+fn sentence(ui: &mut Ui, session: &Session) {
+    // Two lines, whatever it says, so that nothing below moves.
+    let height = 2.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
+    ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
+        ui.set_min_height(height);
+        ui.label(pose_summary::sentence(session.arm(), session.pose()));
+    });
+}
+
+fn pointer(session: &Session) -> [Quantity; 4] {
+    let (arm, pose) = (session.arm(), session.pose());
+    let cursor = if arm.is_led_by_hand() { arm.cursor() } else { pose.hand };
+    [
+        Quantity {
+            symbol: "θ_z",
+            formula: "atan2(z_c, x_c)",
+            value: degrees(pose.yaw()),
+            meaning: "How far the Pointer is turned about the vertical, from x towards z",
+            colour: None,
+        },
+        Quantity {
+            symbol: "h_c",
+            formula: "hypot(x_c, z_c)",
+            value: length(arm, cursor.x.hypot(cursor.z)),
+            meaning: "How far the cursor is from the vertical through the root",
+            colour: None,
+        },
+        Quantity {
+            symbol: "θ_y",
+            formula: "atan2(y_c, h_c)",
+            value: degrees(pose.pitch()),
+            meaning: "How far the Pointer rises above the xz-plane",
+            colour: None,
+        },
+        Quantity {
+            symbol: "D",
+            formula: match arm.soft_reach.is_hard() {
+                true => "|c| within limits",
+                false => "|c| softened",
+            },
+            value: length(arm, pose.distance),
+            meaning: "From shoulder to hand: the cursor's distance, held between the two limits",
+            colour: None,
+        },
+    ]
+}
+
+fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
+    let (arm, pose) = (session.arm(), session.pose());
+    let bones = arm.bones;
+    let palette = style::palette(ui);
+    [
+        Quantity {
+            symbol: "d_1",
+            formula: "",
+            value: length(arm, bones.upper() * pose.stretch),
+            meaning: "Length of the Upper Limb",
+            colour: Some(style::colour(palette.upper)),
+        },
+        Quantity {
+            symbol: "d_2",
+            formula: "",
+            value: length(arm, bones.lower() * pose.stretch),
+            meaning: "Length of the Lower Limb",
+            colour: Some(style::colour(palette.lower)),
+        },
+        Quantity {
+            symbol: "h_e",
+            formula: "(D + δ L / D) / 2",
+            value: length(arm, pose.along),
+            meaning: "How far along the Pointer the elbow is. L is the sum of the lengths, δ their \
+                      difference",
+            colour: None,
+        },
+        Quantity {
+            symbol: "o_e",
+            formula: "Heron's formula",
+            value: length(arm, pose.out),
+            meaning: "How far out from the Pointer the elbow is: twice the triangle's area over D",
+            colour: None,
+        },
+        Quantity {
+            symbol: "θ_e",
+            formula: "atan2(o_e, h_e)",
+            value: degrees(pose.shoulder_angle()),
+            meaning: "At the shoulder, between Pointer and Upper Limb",
+            colour: None,
+        },
+        Quantity {
+            symbol: "φ",
+            formula: "at the elbow",
+            value: degrees(pose.elbow_angle()),
+            meaning: "The inner angle at the elbow: 180° straight, 0° folded",
+            colour: None,
+        },
+    ]
+}
+
+fn table(ui: &mut Ui, id: &str, quantities: &[Quantity]) {
+    let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+    Grid::new(id).num_columns(3).min_col_width(24.0).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+        for quantity in quantities {
+            let colour = quantity.colour.unwrap_or(text);
+            symbol::label(ui, quantity.symbol, FORMULA_SIZE, colour)
+                .on_hover_text(quantity.meaning);
+            if quantity.formula.is_empty() {
+                ui.label("");
+            } else {
+                symbol::label(ui, quantity.formula, FORMULA_SIZE, weak)
+                    .on_hover_text(quantity.meaning);
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(&quantity.value).monospace());
+            });
+            ui.end_row();
+        }
+    });
+}
+
+fn degrees(radians: f32) -> String {
+    format!("{:.1}°", tidy(radians.to_degrees()))
+}
+
+/// Without a sign on what is shown as nothing.
+fn length(arm: &Arm, length: f32) -> String {
+    let nothing = 0.0005 * arm.cell();
+    arm.length_in_words(if length.abs() < nothing { 0.0 } else { length })
+}
+
+/// Without a sign on what is shown as nothing.
+fn tidy(value: f32) -> f32 {
+    if value.abs() < 0.05 { 0.0 } else { value }
+}

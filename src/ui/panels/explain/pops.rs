@@ -1,0 +1,304 @@
+//! How fast the elbow is beside the cursor, and what helps where it pops.
+
+use egui::{Align2, Color32, RichText, Role, Stroke, Ui, WidgetInfo};
+use egui_plot::{
+    AxisHints, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi, Points,
+    Text, VLine,
+};
+
+use crate::document::{Arm, TwistReferenceKind};
+use crate::kinematics::pop::{Change, Pop};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::TwistReference;
+use crate::session::{Action, PopFix, Pops, Sample, Session, Spike, What};
+use crate::ui::style;
+use crate::ui::widgets::{self, plot};
+
+const HEIGHT: f32 = 140.0;
+/// What is shown of ratios: beyond, they are at the edge.
+const SHOWN: (f64, f64) = (0.05, 100.0);
+/// How many spikes are written out.
+const LISTED: usize = 3;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let spikes = session.pops().spikes();
+    ui.weak("Elbow speed / cursor speed");
+    show(ui, session.pops(), &spikes);
+    if spikes.is_empty() {
+        ui.label(match session.pops().samples().len() {
+            0 => "Drag the hand, or play: what pops is named here.",
+            _ => "No pops: the elbow goes calmly with the cursor.",
+        });
+    }
+    let mut offered: Vec<PopFix> = Vec::new();
+    for spike in spikes.iter().rev().take(LISTED) {
+        list(ui, session.arm(), spike, &mut offered, actions);
+    }
+    let changes = Change::ALL.into_iter().filter(|change| is_marked(session.pops(), *change));
+    let changes: Vec<_> = changes.map(Change::name).collect();
+    if !changes.is_empty() {
+        ui.weak(format!("Dotted: {} changed, apart from pops", changes.join(", ")));
+    }
+}
+
+fn is_marked(pops: &Pops, change: Change) -> bool {
+    pops.samples().any(|sample| sample.what == What::Change(change))
+}
+
+/// One spike: what it was, and what helps, unless it has been offered above.
+fn list(
+    ui: &mut Ui,
+    arm: &Arm,
+    spike: &Spike,
+    offered: &mut Vec<PopFix>,
+    actions: &mut Vec<Action>,
+) {
+    let text = format!("{}: {}", name(spike.pop), describe(spike));
+    if !spike.stands(arm) {
+        ui.weak(format!("{text} – since then changed"));
+        return;
+    }
+    ui.label(RichText::new(text));
+    match PopFix::new(spike, arm) {
+        Some(pop_fix) if !offered.contains(&pop_fix) => {
+            offered.push(pop_fix);
+            let (label, tooltip) = wording(pop_fix, arm.soft_reach);
+            if widgets::button(ui, label, &tooltip, None) {
+                actions.push(pop_fix.action());
+            }
+        }
+        Some(_) => {}
+        None => {
+            ui.weak(why_none(spike.pop, arm));
+        }
+    }
+}
+
+fn name(pop: Pop) -> &'static str {
+    match pop {
+        Pop::Singular { .. } => "Pole",
+        Pop::Straight => "Straight",
+        Pop::Folded => "Inner limit",
+        Pop::Shoulder => "Shoulder",
+    }
+}
+
+fn describe(spike: &Spike) -> String {
+    let times = if spike.ratio < 1e3 { format!("{:.1}×", spike.ratio) } else { ">999×".into() };
+    match spike.pop {
+        Pop::Singular { nearest } => {
+            let pole = match spike.ik.reference {
+                TwistReference::Limb => "the vertical",
+                TwistReference::Pole(_) => "the pole",
+                TwistReference::Stereographic(_) | TwistReference::Transport => {
+                    "what the map leaves out, −x"
+                }
+            };
+            let degrees = nearest.to_degrees();
+            format!("the Pointer passed within {degrees:.1}° of {pole} ({times})")
+        }
+        Pop::Straight => format!("the arm reached its outer limit ({times})"),
+        Pop::Folded => format!("the arm folded up ({times})"),
+        Pop::Shoulder => format!("the cursor passed the shoulder ({times})"),
+    }
+}
+
+/// A button's name and what it does.
+fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
+    match pop_fix {
+        PopFix::Measure(TwistReferenceKind::Transport) => (
+            "Carry it along",
+            "The elbow's side goes along with the Pointer by the least turn: no direction is \
+             singular, but a closed way does not bring it back"
+                .to_owned(),
+        ),
+        PopFix::Measure(_) => (
+            "Measure from the map",
+            "The elbow's spin is measured from a map of all directions that leaves out only the \
+             one behind, −x; the elbow stays"
+                .to_owned(),
+        ),
+        PopFix::Soften(soft_reach) => (
+            if now.softness() == 0.0 { "Soften the reach" } else { "Soften it more" },
+            format!("Softness {:.2}: the hand lags behind near the limits", soft_reach.softness()),
+        ),
+        PopFix::KeepOpen(soft_reach) => (
+            "Keep the elbow open",
+            format!("Smallest elbow angle {:.0}°", soft_reach.min_elbow_angle().to_degrees()),
+        ),
+    }
+}
+
+fn why_none(pop: Pop, arm: &Arm) -> String {
+    match pop {
+        Pop::Shoulder => {
+            let least = arm.soft_reach.least_distance(arm.bones);
+            match least > 1e-3 * arm.bones.outer_limit() {
+                true => format!(
+                    "No remedy: from one side to the other the hand must jump by twice the least \
+                     reach, {}.",
+                    arm.length_in_words(2.0 * least)
+                ),
+                false => "No remedy: the whole arm must turn about.".to_owned(),
+            }
+        }
+        _ => "No remedy: all that helps is done already.".to_owned(),
+    }
+}
+
+fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
+    let places = places(pops);
+    let room = places.last().map_or(0.0, |last| *last).max(60.0);
+    let logs = SHOWN.0.log10()..=SHOWN.1.log10();
+    let bounds = PlotBounds::from_min_max([-0.02 * room, *logs.start()], [1.03 * room, 2.25]);
+    let colours = Colours::new(ui);
+    let response = plot::still("pops", HEIGHT)
+        .label_formatter(|_| None)
+        .show_grid(egui::Vec2b::new(false, true))
+        .custom_x_axes(vec![])
+        .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), times).min_thickness(30.0)])
+        .x_grid_spacer(|_| Vec::new())
+        .y_grid_spacer(|_| plot::marks(&[-1.0, 0.0, 1.0, 2.0]))
+        .show(ui, |plot| {
+            plot::show(plot, bounds);
+            draw_changes(plot, pops, &places, colours);
+            for run in runs(pops, &places) {
+                draw_run(plot, &run, colours);
+            }
+            draw_spikes(plot, spikes, &places, room, colours);
+        })
+        .response;
+    let said = match spikes {
+        [] => "Pops: none".to_owned(),
+        [.., last] => format!("Pops: {}, the last one {}", spikes.len(), name(last.pop)),
+    };
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+    response.on_hover_text(
+        "How many times as far as the cursor the elbow went, step by step; a drag or what was \
+         played ends where the line does. Above the dashed line, twice what a calm arm needs, it \
+         is a pop. Dotted: something else changed",
+    );
+}
+
+#[derive(Clone, Copy)]
+struct Colours {
+    line: Color32,
+    limit: Color32,
+    spike: Color32,
+    change: Color32,
+}
+
+impl Colours {
+    fn new(ui: &Ui) -> Self {
+        let visuals = ui.visuals();
+        let weak = visuals.weak_text_color();
+        Self {
+            line: visuals.text_color(),
+            limit: weak,
+            spike: style::accent(ui),
+            change: weak.gamma_multiply(0.7),
+        }
+    }
+}
+
+/// One run's steps: place and logarithm of ratio and limit.
+#[derive(Default)]
+struct Run {
+    ratios: Vec<[f64; 2]>,
+    limits: Vec<[f64; 2]>,
+}
+
+/// Where each sample is: one beside the other, with a gap between runs.
+fn places(pops: &Pops) -> Vec<f64> {
+    const GAP: f64 = 4.0;
+    let (mut at, mut last) = (0.0, None);
+    let place = |sample: &Sample| {
+        at += if last.is_some_and(|run| run != sample.run) { GAP } else { 1.0 };
+        last = Some(sample.run);
+        at
+    };
+    pops.samples().map(place).collect()
+}
+
+fn runs(pops: &Pops, places: &[f64]) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut last = None;
+    for (sample, at) in pops.samples().zip(places) {
+        let What::Step(step) = sample.what else {
+            last = None;
+            continue;
+        };
+        if last != Some(sample.run) {
+            runs.push(Run::default());
+        }
+        last = Some(sample.run);
+        if let Some(run) = runs.last_mut() {
+            run.ratios.push([*at, log(step.ratio)]);
+            run.limits.push([*at, log(step.limit)]);
+        }
+    }
+    runs
+}
+
+fn draw_run(plot: &mut PlotUi<'_>, run: &Run, colours: Colours) {
+    let dashed = LineStyle::dashed_dense();
+    let limits = Line::new("limit", PlotPoints::from(run.limits.clone()));
+    plot.line(limits.color(colours.limit).width(1.0).style(dashed));
+    let ratios = PlotPoints::from(run.ratios.clone());
+    match run.ratios.len() {
+        1 => plot.points(Points::new("ratio", ratios).color(colours.line).radius(1.5)),
+        _ => plot.line(Line::new("ratio", ratios).color(colours.line).width(1.5)),
+    }
+}
+
+fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: Colours) {
+    let dotted = LineStyle::Dotted { spacing: 4.0 };
+    for (sample, at) in pops.samples().zip(places) {
+        if let What::Change(change) = sample.what {
+            let stroke = Stroke::new(1.0, colours.change);
+            plot.vline(VLine::new(change.name(), *at).stroke(stroke).style(dotted));
+        }
+    }
+}
+
+/// A mark on each, an arrow where it is higher than what is shown; its name where there is room, of
+/// the last ones first.
+fn draw_spikes(
+    plot: &mut PlotUi<'_>,
+    spikes: &[Spike],
+    places: &[f64],
+    room: f64,
+    colours: Colours,
+) {
+    const APART: f64 = 0.28;
+    let mut named: Vec<f64> = Vec::new();
+    for spike in spikes.iter().rev() {
+        let Some(at) = places.get(spike.at).copied() else {
+            continue;
+        };
+        let is_beyond = f64::from(spike.ratio) > SHOWN.1;
+        let shape = if is_beyond { MarkerShape::Up } else { MarkerShape::Diamond };
+        let height = log(spike.ratio);
+        let mark = Points::new(name(spike.pop), vec![[at, height]]);
+        plot.points(mark.shape(shape).radius(4.5).color(colours.spike));
+        if named.iter().all(|other| (other - at).abs() > APART * room) {
+            named.push(at);
+            let anchor = match at / room {
+                ..0.2 => Align2::LEFT_BOTTOM,
+                0.8.. => Align2::RIGHT_BOTTOM,
+                _ => Align2::CENTER_BOTTOM,
+            };
+            let above = PlotPoint::new(at, height + 0.12);
+            let text = RichText::new(name(spike.pop)).size(11.5);
+            plot.text(Text::new("", above, text).anchor(anchor).color(colours.spike));
+        }
+    }
+}
+
+fn log(ratio: f32) -> f64 {
+    f64::from(ratio).clamp(SHOWN.0, SHOWN.1).log10()
+}
+
+fn times(power: f64) -> String {
+    format!("{}×", 10_f64.powf(power))
+}

@@ -1,0 +1,196 @@
+//! How far the hand goes for where it is asked to be: hard, soft and stretched.
+
+use egui::{Color32, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use egui_plot::{
+    AxisHints, HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoints, PlotResponse, PlotUi,
+    Points, VLine,
+};
+
+use crate::document::Arm;
+use crate::kinematics::soft_reach::{Extent, SoftReach};
+use crate::session::Session;
+use crate::ui::style;
+use crate::ui::widgets::{format, plot};
+
+const HEIGHT: f32 = 168.0;
+const POINTS: u16 = 240;
+/// What is shown of an arm that has neither.
+const EXAMPLE_SOFTNESS: f32 = 0.5;
+const EXAMPLE_STRETCH: f32 = 1.5;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
+    let arm = session.arm();
+    let curves = Curve::all(ui, arm);
+    ui.weak("Actual reach / asked reach");
+    let shown = show(ui, arm, &curves);
+    let said = reading(arm, arm.cursor().length());
+    let name = format!("Reach curve: {said}");
+    shown.response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    if let Some(at) = shown.response.hover_pos() {
+        let over = shown.transform.value_from_position(at).x * outer(arm);
+        let reading = reading(arm, (over.max(0.0) as f32).min(f32::MAX));
+        shown.response.on_hover_text_at_pointer(reading);
+    }
+    ui.horizontal_wrapped(|ui| curves.iter().for_each(|curve| legend(ui, curve)));
+    ui.label(said);
+    ui.weak(note(arm.soft_reach));
+    if arm.influence < 1.0 {
+        ui.weak("As the hand alone would have it: the angles lead too");
+    }
+}
+
+/// The hand's distance over the cursor's, in parts of L.
+struct Curve {
+    name: String,
+    soft_reach: SoftReach,
+    is_own: bool,
+    colour: Color32,
+    style: LineStyle,
+}
+
+impl Curve {
+    /// None, soft and stretched: with what the arm has of each, else an example.
+    fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
+        let own = arm.soft_reach;
+        let (softness, stretch, angle) = (own.softness(), own.max_stretch(), own.min_elbow_angle());
+        let softer = if softness > 0.0 { softness } else { EXAMPLE_SOFTNESS };
+        let longer = if stretch > 1.0 { stretch } else { EXAMPLE_STRETCH };
+        let with = |softness, stretch| SoftReach::new(softness, stretch, angle).unwrap_or(own);
+        let palette = style::palette(ui);
+        let curve = |name: String, soft_reach: SoftReach, colour, style| {
+            let is_own = soft_reach == own;
+            Self { name, soft_reach, is_own, colour, style }
+        };
+        [
+            curve("none".to_owned(), with(0.0, 1.0), ui.visuals().text_color(), LineStyle::Solid),
+            curve(
+                format!("soft {softer:.2}"),
+                with(softer, 1.0),
+                style::colour(palette.accent),
+                LineStyle::Dashed { length: 7.0 },
+            ),
+            curve(
+                format!("stretch {longer:.2}"),
+                with(softness, longer),
+                style::colour(palette.lower),
+                LineStyle::Dotted { spacing: 5.0 },
+            ),
+        ]
+    }
+
+    fn width(&self) -> f32 {
+        if self.is_own { 2.2 } else { 1.5 }
+    }
+}
+
+/// L, which plots and screens measure by.
+fn outer(arm: &Arm) -> f64 {
+    f64::from(arm.bones.upper()) + f64::from(arm.bones.lower())
+}
+
+fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
+    let outer = outer(arm);
+    let least = f64::from(arm.soft_reach.least_distance(arm.bones)) / outer;
+    let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
+    // No arm is stretched so far that its limits would be lost in a corner.
+    let most = f64::from(longest.min(4.0)) + 0.2;
+    let digits = format::decimals_of_cell(arm.cell());
+    let length = move |part: f64| format!("{:.digits$}", part * outer);
+    let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
+    let ticks = limits.clone();
+    let weak = ui.visuals().weak_text_color();
+    // The arm's own is the widest, and beneath the others.
+    let (own, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_own);
+    let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(arm, most)).collect();
+    let dot = Dot::new(arm, most);
+    let text = ui.visuals().strong_text_color();
+    plot::still("reach curve", HEIGHT)
+        .label_formatter(|_| None)
+        .show_grid(false)
+        .custom_x_axes(vec![plot::axis(ui, AxisHints::new_x(), length)])
+        .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), length)])
+        .x_grid_spacer(move |_| plot::marks(&ticks))
+        .y_grid_spacer(move |_| plot::marks(&limits))
+        .show(ui, |plot| {
+            plot::show(plot, PlotBounds::from_min_max([0.0, 0.0], [most, most - 0.08]));
+            let thin = Stroke::new(1.0, weak.gamma_multiply(0.5));
+            for at in [least, 1.0] {
+                plot.vline(VLine::new("limit", at).stroke(thin));
+                plot.hline(HLine::new("limit", at).stroke(thin));
+            }
+            lines.into_iter().for_each(|line| plot.line(line));
+            dot.show(plot, text);
+        })
+}
+
+impl Curve {
+    fn line(&self, arm: &Arm, most: f64) -> Line<'static> {
+        let outer = outer(arm);
+        let point = |step| {
+            let asked = most * f64::from(step) / f64::from(POINTS);
+            let actual = self.soft_reach.extent(arm.bones, (asked * outer) as f32).distance;
+            [asked, f64::from(actual) / outer]
+        };
+        let points: PlotPoints<'_> = (0..=POINTS).map(point).collect();
+        Line::new(&self.name, points).color(self.colour).width(self.width()).style(self.style)
+    }
+}
+
+/// Where the arm is on its curve.
+struct Dot {
+    at: [f64; 2],
+    shape: MarkerShape,
+}
+
+impl Dot {
+    /// A cursor farther away than what is shown is an arrow at the edge.
+    fn new(arm: &Arm, most: f64) -> Self {
+        let asked = arm.cursor().length().min(f32::MAX);
+        let part = f64::from(asked) / outer(arm);
+        let actual = f64::from(arm.soft_reach.extent(arm.bones, asked).distance) / outer(arm);
+        let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };
+        Self { at: [part.min(most - 0.04), actual.min(most - 0.14)], shape }
+    }
+
+    fn show(&self, plot: &mut PlotUi<'_>, colour: Color32) {
+        let dot = |radius| Points::new("now", vec![self.at]).shape(self.shape).radius(radius);
+        plot.points(dot(5.0).color(colour));
+    }
+}
+
+/// A piece of the line, and its name.
+fn legend(ui: &mut Ui, curve: &Curve) {
+    ui.spacing_mut().item_spacing.x = 5.0;
+    let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
+    let ends = [rect.left_center(), rect.right_center()];
+    let stroke = Stroke::new(curve.width(), curve.colour);
+    match curve.style {
+        LineStyle::Solid => drop(ui.painter().line_segment(ends, stroke)),
+        LineStyle::Dashed { length } => {
+            ui.painter().extend(Shape::dashed_line(&ends, stroke, length, length * 0.6));
+        }
+        LineStyle::Dotted { spacing } => {
+            ui.painter().extend(Shape::dotted_line(&ends, curve.colour, spacing, curve.width()));
+        }
+    }
+    let text = RichText::new(&curve.name).size(12.0);
+    ui.label(if curve.is_own { text.strong() } else { text });
+    ui.add_space(4.0);
+}
+
+/// How far the hand goes for a cursor at a distance from the shoulder.
+fn reading(arm: &Arm, asked: f32) -> String {
+    let asked = asked.min(f32::MAX);
+    let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, asked);
+    format!("Asked {asked:.1}, actual {distance:.1}, slope {slope:.2}")
+}
+
+/// Which of the curves is the arm's own, and which are only examples.
+fn note(own: SoftReach) -> &'static str {
+    match (own.softness() > 0.0, own.max_stretch() > 1.0) {
+        (false, false) => "Hard arm: soft and stretch are examples",
+        (true, false) => "Soft arm: stretch is an example",
+        (false, true) => "Stretching arm: soft is an example",
+        (true, true) => "This arm is soft and stretches",
+    }
+}

@@ -1,0 +1,128 @@
+//! The four swivel references beside each other: how far apart their elbows are, how well each goes
+//! here, and what carrying along has made of it.
+
+use egui::{
+    Align, Align2, FontId, Grid, Layout, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
+
+use crate::document::{Arm, Overlay, TwistReferenceKind};
+use crate::kinematics::twist::TransportedFrame;
+use crate::scene::Palette;
+use crate::session::{Action, Session};
+use crate::ui::widgets;
+use crate::ui::{labels, style};
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let arm = session.arm();
+    if !arm.is_led_by_hand() {
+        ui.weak("The joints' own angles lead: nothing is measured.");
+        return;
+    }
+    table(ui, arm, session.transport_path().transported());
+    ui.add_space(4.0);
+    transport_path(ui, session, actions);
+    let display = session.shown().display;
+    let shown = [
+        (Overlay::References, "As ghosts", "The arm as the other references would have it"),
+        (Overlay::Globe, "Globe of gains", "Where the hand would be when the elbow flips: hot"),
+    ];
+    ui.horizontal(|ui| {
+        for (layer, name, tooltip) in shown {
+            let mut on = display.shows(layer);
+            if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
+                actions.push(Action::Show(layer, on));
+            }
+        }
+    });
+    if display.shows(Overlay::Globe) {
+        legend(ui);
+    }
+}
+
+/// The globe's colours, each where its gain is, evenly in its logarithm.
+fn legend(ui: &mut Ui) {
+    const HEIGHT: f32 = 30.0;
+    const STEPS: usize = 64;
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let summary = "Gain, from calm at 0 to hot at 8 and more";
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, summary));
+    let (palette, painter) = (style::palette(ui), ui.painter());
+    let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
+    let end = Palette::HOT.ln_1p();
+    for step in 0..STEPS {
+        let [from, to] = [step, step + 1].map(|step| step as f32 / STEPS as f32);
+        let gain = (0.5 * (from + to) * end).exp_m1();
+        let colour = style::colour(palette.gain(gain).with_opacity(1.0));
+        let [left, right] = [from, to].map(|part| bar.left() + part * bar.width());
+        let part = Rect::from_x_y_ranges(left..=right, bar.y_range());
+        painter.rect_filled(part, 0.0, colour);
+    }
+    let font = FontId::proportional(12.0);
+    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::HOT, "8+")] {
+        let x = bar.left() + bar.width() * f32::ln_1p(gain) / end;
+        let at = pos2(x, bar.bottom() + 3.0);
+        let colour = ui.visuals().weak_text_color();
+        painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);
+    }
+    response.on_hover_text(summary);
+}
+
+fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
+    let own = arm.solve().pose;
+    let palette = style::palette(ui);
+    Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+        ui.label(RichText::new("Measured from").weak());
+        for heading in ["Elbow", "Gain"] {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(heading).weak());
+            });
+        }
+        ui.end_row();
+        for twist_reference in TwistReferenceKind::ALL {
+            let colour = match twist_reference == arm.twist_reference {
+                true => ui.visuals().strong_text_color(),
+                false => style::colour(palette.twist_reference(twist_reference)),
+            };
+            let name = RichText::new(twist_reference.name()).color(colour);
+            ui.label(name).on_hover_text(labels::twist_reference(twist_reference));
+            let pose = arm.pose_measured_from(twist_reference, Some(transported));
+            let apart = turn_in_words(own.elbow_turn_to(&pose));
+            let gain = arm.reference_of(twist_reference).gain(own.facing);
+            for (value, tooltip) in [
+                (apart, "How far its elbow is turned from the arm's, with the same spin"),
+                (gain_in_words(gain), "How far the elbow turns for every degree of the Pointer"),
+            ] {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    ui.label(RichText::new(value).monospace()).on_hover_text(tooltip);
+                });
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    widgets::pair(ui, "Holonomy", |ui| {
+        if widgets::button(ui, "Start here", "Carries along from here", None) {
+            actions.push(Action::ResetTransport);
+        }
+        let turned = turn_in_words(session.transport_path().holonomy());
+        ui.label(RichText::new(turned).monospace()).on_hover_text(
+            "What was carried along the hand's way is turned by so much against what goes straight: \
+             the solid angle that the way goes around. A hand that comes back does not bring its \
+             elbow back",
+        );
+    });
+}
+
+/// As in "0.47" or "∞".
+fn gain_in_words(gain: f32) -> String {
+    if gain < 1e3 { format!("{gain:.2}") } else { "∞".to_owned() }
+}
+
+/// As in "−17.0°"; what is shown as nothing has no sign.
+fn turn_in_words(radians: f32) -> String {
+    let degrees = radians.to_degrees();
+    if degrees.abs() < 0.05 { "0.0°".to_owned() } else { format!("{degrees:+.1}°") }
+}

@@ -1,0 +1,98 @@
+//! The left panel: which rig it is, its parts, and what is shown.
+
+use egui::{ScrollArea, Ui};
+
+use super::{arm, skeleton};
+use crate::document::{Overlay, RigKind};
+use crate::session::{Action, Session};
+use crate::ui::labels;
+use crate::ui::widgets;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ui.add_space(4.0);
+    rig(ui, session, actions);
+    ui.add_space(2.0);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        match session.rig() {
+            RigKind::Arm => arm::ui(ui, session, actions),
+            RigKind::Skeleton => skeleton::ui(ui, session, actions),
+        }
+        widgets::section(ui, "Guides", |ui| layers(ui, session, 2, guides(session), actions));
+        let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
+        let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
+        widgets::section(ui, "Display", |ui| layers(ui, session, 3, &surroundings, actions));
+        resets(ui, session, actions);
+        ui.add_space(8.0);
+    });
+}
+
+fn rig(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rigs = [
+        (RigKind::Arm, "Arm", "Two limbs in closed form"),
+        (RigKind::Skeleton, "Skeleton", "A tree of joints, brought to targets by iteration"),
+    ];
+    ui.columns(2, |columns| {
+        for (column, (rig, name, tooltip)) in columns.iter_mut().zip(rigs) {
+            let chosen = session.rig() == rig;
+            let layout = egui::Layout::top_down_justified(egui::Align::Center);
+            column.with_layout(layout, |ui| {
+                let button =
+                    ui.add(egui::Button::selectable(chosen, name).frame_when_inactive(true));
+                if button.on_hover_text(tooltip).clicked() && !chosen {
+                    actions.push(Action::ShowRig(rig));
+                }
+            });
+        }
+    });
+}
+
+fn guides(session: &Session) -> &'static [Overlay] {
+    match session.rig() {
+        RigKind::Arm => &Overlay::GUIDES,
+        RigKind::Skeleton if session.skeleton().follow_path.is_some() => {
+            &[Overlay::Cursor, Overlay::Pointer]
+        }
+        RigKind::Skeleton => &[Overlay::Cursor],
+    }
+}
+
+/// In so many columns.
+fn layers(
+    ui: &mut Ui,
+    session: &Session,
+    count: usize,
+    layers: &[Overlay],
+    actions: &mut Vec<Action>,
+) {
+    ui.columns(count, |columns| {
+        for (index, layer) in layers.iter().enumerate() {
+            let (name, tooltip) = labels::overlay(session.rig(), *layer);
+            let mut shown = session.shown().display.shows(*layer);
+            let column = &mut columns[index % count];
+            if column.checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
+                actions.push(Action::Show(*layer, shown));
+            }
+        }
+    });
+}
+
+fn resets(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let (name, tooltip) = match session.rig() {
+        RigKind::Arm => (
+            "Reset pose",
+            "Reset hand, pin, elbow, root, lengths, soft limits, FK and hand orientation",
+        ),
+        RigKind::Skeleton => ("Bind pose", "Every joint without rotation"),
+    };
+    ui.horizontal(|ui| {
+        if ui.button(name).on_hover_text(tooltip).clicked() {
+            actions.push(Action::ResetPose);
+        }
+        let all = ui
+            .button("Reset all")
+            .on_hover_text("Reset the pose, guides, display and view, and hide the crowd");
+        if all.clicked() {
+            actions.push(Action::ResetAll);
+        }
+    });
+}

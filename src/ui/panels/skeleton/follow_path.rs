@@ -1,0 +1,62 @@
+//! What moves with the time, beside what has keys.
+
+use egui::Ui;
+
+use crate::document::FollowPath;
+use crate::session::{Action, Session};
+use crate::ui::widgets::Slider;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    slithers(ui, session, actions);
+    if let Some(follow_path) = session.skeleton().follow_path {
+        sliders(ui, session, follow_path, actions);
+    }
+}
+
+fn slithers(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut slithers = session.skeleton().follow_path.is_some();
+    let tooltip = "The first chain of joints follows its head along a wavy ring, like a snake";
+    if ui.checkbox(&mut slithers, "Slither").on_hover_text(tooltip).changed() {
+        let follow_path = first(session.skeleton().reach());
+        actions.push(Action::SetFollowPath(slithers.then_some(follow_path)));
+    }
+}
+
+/// The way that a skeleton of such a reach has at first.
+fn first(reach: f32) -> FollowPath {
+    FollowPath { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
+}
+
+fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Vec<Action>) {
+    let reach = session.skeleton().reach();
+    let first = first(reach);
+    let step = session.shown().cell() * 0.1;
+    let set = |follow_path| Action::SetFollowPath(Some(follow_path));
+    let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
+        name,
+        label,
+        tooltip,
+        value,
+        range,
+        default,
+        unit,
+        step,
+        ..Slider::default()
+    };
+    let tooltip = "How far from the middle the way is";
+    slider("Ring", "Ring", tooltip, follow_path.radius, (0.0, 2.0 * reach), first.radius, "", step)
+        .show(ui, session, actions, |radius| set(FollowPath { radius, ..follow_path }));
+    let tooltip = "How far the waves go to either side";
+    let range = (0.0, 0.5 * reach);
+    slider("Amplitude", "Waves", tooltip, follow_path.amplitude, range, first.amplitude, "", step)
+        .show(ui, session, actions, |amplitude| set(FollowPath { amplitude, ..follow_path }));
+    let tooltip = "How many waves there are once around";
+    let waves = follow_path.waves as f32;
+    slider("Number of waves", "Count", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0)
+        .show(ui, session, actions, |waves| {
+            set(FollowPath { waves: waves.round().clamp(0.0, 1000.0) as u32, ..follow_path })
+        });
+    let tooltip = "How long the head takes once around";
+    slider("Period", "Period", tooltip, follow_path.period, (1.0, 60.0), first.period, " s", 1.0)
+        .show(ui, session, actions, |period| set(FollowPath { period, ..follow_path }));
+}

@@ -1,0 +1,174 @@
+//! The selected joint: how it is turned, how far it can be, its bone and what it hangs from.
+
+use core::f32::consts::PI;
+
+use egui::{ComboBox, Ui};
+use glam::Vec3;
+
+use crate::kinematics::skeleton::{Joint, Limit};
+use crate::session::{Action, Session};
+use crate::ui::style;
+use crate::ui::widgets::{self, AXES, Field, Slider, format};
+
+const STIFF: &str = "The limit leaves no room";
+const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Vec<Action>) {
+    let Some(joint) = session.skeleton().skeleton.joint(index) else { return };
+    if session.selection().len() > 1 {
+        let count = session.selection().len();
+        ui.weak(format!("{count} joints are selected; this is the last of them."));
+    }
+    rotation(ui, session, index, joint, actions);
+    limits(ui, session, index, joint, actions);
+    bone(ui, session, index, joint, actions);
+    parent(ui, session, index, joint, actions);
+    let mut locked = joint.locked;
+    let tooltip = "Solvers do not turn a locked joint; these sliders do";
+    if ui.checkbox(&mut locked, "Locked").on_hover_text(tooltip).changed() {
+        actions.push(Action::SetLocked { joint: index, locked });
+    }
+}
+
+fn rotation(
+    ui: &mut Ui,
+    session: &Session,
+    index: usize,
+    joint: &Joint,
+    actions: &mut Vec<Action>,
+) {
+    let colours = style::palette(ui).axes;
+    let shown = match session.skeleton().follow_path {
+        Some(_) => session.skeleton().at(session.time()).joints()[index].rotation,
+        None => joint.rotation,
+    };
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let limit = joint.limits[axis];
+        let is_stiff = limit.is_some_and(|limit| limit.min == limit.max);
+        let range = limit
+            .filter(|_| !is_stiff)
+            .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
+        let slithers = session.skeleton().follow_path.map(|_| SLITHERS);
+        let slider = Slider {
+            name: &format!("Rotation {label}"),
+            label: &format!("Turn {label}"),
+            colour: Some(style::colour(colours[axis])),
+            tooltip: &format!("Euler angle about {label}; x is applied first, then y, then z"),
+            value: shown[axis].to_degrees(),
+            range,
+            default: 0.0,
+            unit: "°",
+            step: 1.0,
+            disabled: slithers.or(is_stiff.then_some(STIFF)),
+        };
+        slider.show(ui, session, actions, |degrees| {
+            let mut rotation = joint.rotation;
+            rotation[axis] = degrees.to_radians();
+            Action::SetRotation { joint: index, rotation }
+        });
+    }
+}
+
+/// A check box for each angle, and how far it can go behind it.
+fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let limit = joint.limits[axis];
+        let set = |limit| Action::SetLimit { joint: index, axis, limit };
+        ui.horizontal(|ui| {
+            ui.set_height(22.0);
+            let mut limited = limit.is_some();
+            let tooltip = format!("Whether the angle about {label} goes only so far");
+            let name = format!("Limit {label}");
+            if ui.checkbox(&mut limited, name).on_hover_text(tooltip).changed() {
+                let wide = Limit { min: -PI / 2.0, max: PI / 2.0 };
+                actions.push(set(limited.then_some(wide)));
+            }
+            let Some(limit) = limit else { return };
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                angle(ui, session, actions, &format!("{label} to"), limit.max, &|max| {
+                    set(Some(Limit { min: limit.min.min(max), max }))
+                });
+                ui.weak("to");
+                angle(ui, session, actions, &format!("{label} from"), limit.min, &|min| {
+                    set(Some(Limit { min, max: limit.max.max(min) }))
+                });
+            });
+        });
+    }
+}
+
+/// One end of a limit, in radians; shown in degrees.
+fn angle(
+    ui: &mut Ui,
+    session: &Session,
+    actions: &mut Vec<Action>,
+    name: &str,
+    value: f32,
+    set: &dyn Fn(f32) -> Action,
+) {
+    let tooltip = "How far the angle can go";
+    Field { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
+        ui,
+        session,
+        actions,
+        |degrees| set(degrees.to_radians()),
+    );
+}
+
+fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+    let step = session.shown().cell() * 0.1;
+    let tooltip = "From the joint's base to its tip, in its own space";
+    widgets::pair(ui, "Bone", |ui| {
+        for axis in (0..3).rev() {
+            let name = format!("Bone {}", AXES[axis]);
+            let value = joint.axis[axis];
+            Field { name: &name, value, unit: "", step, digits: format::decimals(step), tooltip }
+                .show(ui, session, actions, |value| {
+                    let mut bone = joint.axis;
+                    bone[axis] = value;
+                    Action::SetAxis { joint: index, axis: bone }
+                });
+        }
+    });
+    let length = joint.axis.length();
+    widgets::pair(ui, "Length", |ui| {
+        let tooltip = "How long the bone is; its direction stays";
+        Field {
+            name: "Length",
+            value: length,
+            unit: "",
+            step,
+            digits: format::decimals(step),
+            tooltip,
+        }
+        .show(ui, session, actions, |length| {
+            let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
+            Action::SetAxis { joint: index, axis: direction * length.max(0.0) }
+        });
+    });
+}
+
+fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+    let skeleton = &session.skeleton().skeleton;
+    let name = |joint: Option<usize>| match joint.and_then(|joint| skeleton.joint(joint)) {
+        Some(joint) => joint.name.clone(),
+        None => "none".to_owned(),
+    };
+    widgets::pair(ui, "Parent", |ui| {
+        let combo = ComboBox::from_id_salt("parent")
+            .selected_text(name(joint.parent))
+            .width(ui.available_width().min(150.0))
+            .truncate();
+        let response = combo.show_ui(ui, |ui| {
+            let others = (0..skeleton.joints().len()).filter(|j| !skeleton.hangs_from(*j, index));
+            for parent in std::iter::once(None).chain(others.map(Some)) {
+                if ui.selectable_label(joint.parent == parent, name(parent)).clicked() {
+                    actions.push(Action::Reparent { joint: index, parent });
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Parent"));
+        response.on_hover_text("What the joint hangs from; it stays where it is");
+    });
+}

@@ -1,0 +1,48 @@
+//! The joints, targets and motion of the skeleton.
+
+mod follow_path;
+mod joint;
+mod outliner;
+mod targets;
+
+use crate::ui::widgets::{self, AXES, Point};
+use egui::Ui;
+use glam::Vec3;
+
+use crate::session::{Action, Session};
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
+    if let Some(selected) = session.selected()
+        && let Some(joint) = rig.skeleton.joint(selected)
+    {
+        let title = format!("Joint: {}", joint.name);
+        widgets::named_section(ui, "joint", &title, |ui| joint::ui(ui, session, selected, actions));
+        if let Some(target) = rig.target(selected) {
+            let title = format!("Target of {}", joint.name);
+            let target = rig.targets[target];
+            widgets::named_section(ui, "target", &title, |ui| {
+                targets::selected(ui, session, target, actions);
+            });
+        }
+    }
+    widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    widgets::section(ui, "Place", |ui| place(ui, session, actions));
+    widgets::section(ui, "Motion", |ui| follow_path::ui(ui, session, actions));
+}
+
+fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    let place = Point {
+        name: "Skeleton",
+        labels: AXES,
+        value: rig.skeleton.transform().translation.into(),
+        default: Vec3::ZERO,
+        range: 2.0 * rig.reach(),
+        step: session.shown().cell() * 0.1,
+        tooltip: "Where the skeleton's own origin is, in the world; its targets stay",
+        disabled: None,
+    };
+    place.show(ui, session, actions, Action::SetTranslation);
+}

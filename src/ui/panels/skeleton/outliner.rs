@@ -1,0 +1,238 @@
+//! The tree of joints: what hangs from what, what is selected, and what can be done with it.
+
+use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+use crate::session::{Action, Session};
+use crate::ui::keyboard::{focus, viewport};
+use crate::ui::widgets;
+use crate::ui::{commands, style};
+
+const ROW: f32 = 20.0;
+const INDENT: f32 = 13.0;
+const ROWS: f32 = 9.0;
+
+const NONE_SELECTED: &str = "Select a joint first";
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    // Above the tree: it grows with every joint, and no button may move under the mouse.
+    buttons(ui, session, actions);
+    ui.add_space(4.0);
+    tree(ui, session, actions);
+}
+
+/// Marks whether a joint of the tree has the keyboard.
+#[derive(Clone, Copy, Default)]
+struct Focused(bool);
+
+/// A joint's place in the tree.
+struct Row {
+    joint: usize,
+    depth: usize,
+}
+
+fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rows = rows(session);
+    let height = ROW * ROWS.min(rows.len().max(1) as f32);
+    let area = ScrollArea::both().auto_shrink([false, false]).max_height(height);
+    let mut pointed = None;
+    area.id_salt("joints").show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut focused = Focused(false);
+        for row in &rows {
+            let response = show(ui, session, row);
+            if response.hovered() {
+                pointed = Some(row.joint);
+            }
+            focused.0 |= response.has_focus();
+            respond(ui, session, &rows, row, &response, actions);
+        }
+        ui.data_mut(|data| data.insert_temp(ui.scope_id(), focused));
+    });
+    let said = ui.make_persistent_id("pointed in the tree");
+    let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
+    if pointed.is_some() && pointed != session.pointed() || was && pointed.is_none() {
+        actions.push(Action::Point(pointed));
+    }
+    ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
+    if rows.is_empty() {
+        ui.weak("No joints yet: add a root.");
+    }
+}
+
+/// Depth first, so that what hangs from a joint stands below it.
+fn rows(session: &Session) -> Vec<Row> {
+    let joints = session.skeleton().skeleton.joints();
+    let mut children = vec![Vec::new(); joints.len()];
+    let mut open = Vec::new();
+    for (joint, it) in joints.iter().enumerate().rev() {
+        match it.parent {
+            Some(parent) => children[parent].push(joint),
+            None => open.push(Row { joint, depth: 0 }),
+        }
+    }
+    let mut rows = Vec::with_capacity(joints.len());
+    while let Some(row) = open.pop() {
+        let depth = row.depth + 1;
+        open.extend(children[row.joint].iter().map(|&joint| Row { joint, depth }));
+        rows.push(row);
+    }
+    rows
+}
+
+fn show(ui: &mut Ui, session: &Session, row: &Row) -> Response {
+    let rig = session.skeleton();
+    let joint = &rig.skeleton.joints()[row.joint];
+    let selected = session.selection().contains(&row.joint);
+    let indent = INDENT * row.depth.min(12) as f32;
+    let font = TextStyle::Body.resolve(ui.style());
+    let width = ui.fonts_mut(|fonts| {
+        let white = egui::Color32::WHITE;
+        fonts.layout_no_wrap(joint.name.clone(), font.clone(), white).size().x
+    });
+    let marks = if rig.target(row.joint).is_some() { 44.0 } else { 24.0 };
+    let size = vec2(ui.available_width().max(indent + width + marks), ROW);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| {
+        WidgetInfo::selected(Role::Button, true, selected, format!("Joint {}", joint.name))
+    });
+    if !ui.is_rect_visible(rect) {
+        reveal(ui, session, row, &response);
+        return response;
+    }
+    let visuals = ui.visuals();
+    let painter = ui.painter();
+    if selected {
+        painter.rect_filled(rect, 4.0, visuals.selection.bg_fill);
+    } else if response.hovered() || session.pointed() == Some(row.joint) {
+        painter.rect_filled(rect, 4.0, visuals.widgets.hovered.weak_bg_fill);
+    }
+    if response.has_focus() {
+        let inside = rect.shrink(1.0);
+        painter.rect_stroke(inside, 4.0, visuals.selection.stroke, egui::StrokeKind::Inside);
+    }
+    for depth in 0..row.depth.min(12) {
+        let x = rect.left() + 8.0 + INDENT * depth as f32;
+        painter.vline(x, rect.y_range(), visuals.widgets.noninteractive.bg_stroke);
+    }
+    let at = pos2(rect.left() + indent + 8.0, rect.center().y);
+    let palette = style::palette(ui);
+    let dot = if joint.locked { palette.joint } else { palette.upper };
+    painter.circle_filled(at, 3.0, style::colour(dot));
+    let text = if selected { visuals.strong_text_color() } else { visuals.text_color() };
+    painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
+    if let Some(target) = rig.target(row.joint) {
+        let enabled = rig.targets[target].enabled;
+        let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
+        let centre = pos2(rect.left() + indent + width + 30.0, rect.center().y);
+        painter.circle_stroke(centre, 4.5, (1.5, colour));
+        painter.circle_filled(centre, 1.5, colour);
+    }
+    reveal(ui, session, row, &response);
+    let mut said = vec![joint.name.clone()];
+    if joint.locked {
+        said.push("locked".to_owned());
+    }
+    if rig.target(row.joint).is_some() {
+        said.push("has a target".to_owned());
+    }
+    response.on_hover_text(said.join(", "))
+}
+
+/// Brings a joint into sight, clear of the tree's edges, when it has just been selected elsewhere; a
+/// tree that has the keyboard hands it on.
+fn reveal(ui: &Ui, session: &Session, row: &Row, response: &Response) {
+    let seen = response.id.with("selected");
+    let is_new = session.selected() == Some(row.joint);
+    let was = ui.data(|data| data.get_temp::<bool>(seen)).unwrap_or(false);
+    if is_new && !was {
+        ui.scroll_to_rect(response.rect.expand2(vec2(0.0, ROW)), None);
+        if ui.data(|data| data.get_temp::<Focused>(ui.scope_id())).is_some_and(|focused| focused.0)
+        {
+            response.request_focus();
+        }
+    }
+    ui.data_mut(|data| data.insert_temp(seen, is_new));
+}
+
+fn respond(
+    ui: &Ui,
+    session: &Session,
+    rows: &[Row],
+    row: &Row,
+    response: &Response,
+    actions: &mut Vec<Action>,
+) {
+    // Space lets the time go on, here as anywhere.
+    let by_space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
+    if response.double_clicked() {
+        actions.push(commands::rename(session, row.joint));
+    } else if response.clicked() && !by_space {
+        response.request_focus();
+        let modifiers = ui.input(|input| input.modifiers);
+        let mut selection = session.selection().to_vec();
+        let was_selected = selection.contains(&row.joint);
+        if modifiers.shift || modifiers.command {
+            selection.retain(|joint| *joint != row.joint);
+            if !was_selected {
+                selection.push(row.joint);
+            }
+        } else {
+            selection = vec![row.joint];
+        }
+        actions.push(Action::Select(selection));
+    }
+    if !response.has_focus() {
+        return;
+    }
+    focus::leave_space(ui, response.id);
+    let arrows = egui::EventFilter { vertical_arrows: true, ..Default::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    viewport::viewport(ui, session, actions);
+    let presses = |key| ui.input(|input| input.num_presses(key)) as isize;
+    let by = presses(Key::ArrowDown) - presses(Key::ArrowUp);
+    let from = session.selected().unwrap_or(row.joint);
+    let here = rows.iter().position(|row| row.joint == from).unwrap_or(0);
+    if by != 0 {
+        let to = here.saturating_add_signed(by).min(rows.len() - 1);
+        actions.push(Action::Select(vec![rows[to].joint]));
+    }
+}
+
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let selected = session.selected();
+    let none = selected.is_none().then_some(NONE_SELECTED);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+        let tooltip = "Add a joint at the tip of the selected one, else of the last (A). \
+                       Ctrl+click in the view puts its tip there";
+        if widgets::button(ui, "Add child", tooltip, None) {
+            actions.push(Action::AddJoint { tip: None });
+        }
+        if widgets::button(ui, "Add root", "Begin another tree with a point that is locked", None) {
+            actions.push(Action::AddRoot);
+        }
+        let tooltip = "Delete the selected joints; asks whether their children stay (Delete)";
+        if widgets::button(ui, "Delete", tooltip, none) {
+            actions.push(commands::delete(session));
+        }
+        if widgets::button(ui, "Rename…", "Give the selected joint another name (F2)", none)
+            && let Some(joint) = selected
+        {
+            actions.push(commands::rename(session, joint));
+        }
+        target_button(ui, session, actions);
+    });
+}
+
+fn target_button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let selected = session.selected();
+    let none = selected.is_none().then_some(NONE_SELECTED);
+    let has_target = selected.is_some_and(|joint| session.skeleton().target(joint).is_some());
+    let (name, tooltip) = match has_target {
+        true => ("Remove target", "Let the joint's tip go where it will (T)"),
+        false => ("Add target", "Ask for a place for the joint's tip (T)"),
+    };
+    if widgets::button(ui, name, tooltip, none) {
+        actions.extend(commands::toggle_target(session));
+    }
+}

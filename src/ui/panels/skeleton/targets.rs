@@ -1,0 +1,119 @@
+//! The targets: which are on, how far tips are from them, and where the selected one is.
+
+use egui::{ComboBox, RichText, Ui};
+
+use crate::document::{Target, TargetMotion, TargetPath};
+use crate::session::{Action, Session};
+use crate::ui::widgets::{self, AXES, Field, Point, format};
+
+const PATHS: [(TargetPath, &str); 3] = [
+    (TargetPath::Still, "Still"),
+    (TargetPath::Circle, "Circle"),
+    (TargetPath::FigureEight, "Figure eight"),
+];
+
+/// Every target in a row.
+pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    if rig.targets.is_empty() {
+        ui.weak("No targets yet: select a joint and add one.");
+    }
+    for target in &rig.targets {
+        let Some(joint) = rig.skeleton.joint(target.joint) else { continue };
+        widgets::pair(ui, "", |ui| {
+            let residual = residual(session, target);
+            ui.label(RichText::new(format::short(residual)).monospace())
+                .on_hover_text("From the tip to its target");
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let mut enabled = target.enabled;
+                let name = format!("Target of {}", joint.name);
+                let check = ui.checkbox(&mut enabled, "").on_hover_text("Whether solvers mind it");
+                ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
+                if check.changed() {
+                    actions.push(Action::SetTarget(Target { enabled, ..*target }));
+                }
+                let selected = session.selected() == Some(target.joint);
+                let label = egui::Button::selectable(selected, &joint.name).truncate();
+                if ui.add(label).on_hover_text("Select its joint").clicked() {
+                    actions.push(Action::Select(vec![target.joint]));
+                }
+            });
+        });
+    }
+}
+
+fn residual(session: &Session, target: &Target) -> f32 {
+    session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
+}
+
+/// The target of the selected joint.
+pub(in crate::ui) fn selected(
+    ui: &mut Ui,
+    session: &Session,
+    target: Target,
+    actions: &mut Vec<Action>,
+) {
+    let step = session.shown().cell() * 0.1;
+    place(ui, session, target, step, actions);
+    widgets::pair(ui, "Weight", |ui| {
+        let tooltip = "How much it counts beside other targets";
+        let field =
+            Field { name: "Weight", value: target.weight, unit: "", step: 0.1, digits: 2, tooltip };
+        field.show(ui, session, actions, |weight| Action::SetTarget(Target { weight, ..target }));
+    });
+    moves(ui, target, actions);
+    if target.motion.path != TargetPath::Still {
+        motion(ui, session, target, step, actions);
+    }
+}
+
+fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
+    let place = Point {
+        name: "Target",
+        labels: AXES,
+        value: target.home,
+        default: session.skeleton_pose().tip(target.joint),
+        range: 1.5 * session.skeleton().reach(),
+        step,
+        tooltip: "Where the tip is asked to be, in the world",
+        disabled: None,
+    };
+    place.show(ui, session, actions, |home| Action::SetTarget(Target { home, ..target }));
+}
+
+fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
+    widgets::pair(ui, "Moves", |ui| {
+        let now = PATHS.iter().find(|(path, _)| *path == target.motion.path);
+        let combo = ComboBox::from_id_salt("moves").selected_text(now.map_or("", |now| now.1));
+        let response = combo.show_ui(ui, |ui| {
+            for (path, name) in PATHS {
+                if ui.selectable_label(path == target.motion.path, name).clicked() {
+                    let motion = TargetMotion { path, ..target.motion };
+                    actions.push(Action::SetTarget(Target { motion, ..target }));
+                    actions.push(Action::Play(path != TargetPath::Still));
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Moves"));
+        response.on_hover_text("How the target moves by itself while the time goes on");
+    });
+}
+
+fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
+    let set = |motion| Action::SetTarget(Target { motion, ..target });
+    widgets::pair(ui, "Radius", |ui| {
+        let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
+        Field { name: "Radius", value, unit: "", step, digits: format::decimals(step), tooltip }
+            .show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
+    });
+    widgets::pair(ui, "Period", |ui| {
+        let (value, tooltip) = (target.motion.period, "How long once around takes");
+        Field { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
+            ui,
+            session,
+            actions,
+            |period| set(TargetMotion { period, ..target.motion }),
+        );
+    });
+}

@@ -1,0 +1,99 @@
+//! All solvers beside each other: what they took and how near they came.
+
+use core::time::Duration;
+
+use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
+
+use super::can_solve::why_not;
+use crate::kinematics::chain_ik::Method;
+use crate::session::{Action, Runner, Session};
+use crate::ui::widgets::{self, format};
+use crate::ui::{labels, style};
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(comparison) = session.comparison() else {
+        let tooltip = "From the present pose to the same targets: each as a ghost in its colour";
+        if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
+            actions.push(Action::Comparison(true));
+        }
+        return;
+    };
+    let tooltip = "Take the ghosts away; the skeleton stays as it is";
+    if widgets::button(ui, "End race", tooltip, None) {
+        actions.push(Action::Comparison(false));
+    }
+    Grid::new("race").num_columns(4).min_col_width(20.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
+        ui.weak("Solver");
+        for heading in ["iter.", "error", "time"] {
+            right(ui, |ui| ui.weak(heading));
+        }
+        ui.end_row();
+        for runner in comparison.runners() {
+            show(ui, runner);
+            ui.end_row();
+        }
+    });
+}
+
+fn show(ui: &mut Ui, runner: &Runner) {
+    let colour = style::colour(style::palette(ui).method(runner.method));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        let said = format!("{}: {}", short_name(runner.method), state(runner));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+        // Whoever is not there has an empty one.
+        if runner.report().is_ok_and(|report| report.converged) {
+            ui.painter().rect_filled(rect, 2.0, colour);
+        } else {
+            ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside);
+        }
+        response.on_hover_text(said);
+        let label = ui.label(short_name(runner.method));
+        label.on_hover_text(format!("{}. {}", labels::method(runner.method), state(runner)));
+    });
+    let texts = match runner.report() {
+        Ok(report) => {
+            [report.iterations.to_string(), format::short(report.error), duration(runner.time)]
+        }
+        Err(_) => ["–", "–", "–"].map(str::to_owned),
+    };
+    for text in texts {
+        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(state(runner));
+    }
+}
+
+fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Response {
+    ui.with_layout(Layout::right_to_left(Align::Center), label).inner
+}
+
+fn state(runner: &Runner) -> String {
+    match runner.report() {
+        Err(error) => error.to_string(),
+        Ok(report) if report.converged => "Reached".to_owned(),
+        Ok(report) if report.resting => "At rest, out of reach".to_owned(),
+        Ok(_) if runner.is_running() => "Running".to_owned(),
+        Ok(_) => "Gave up".to_owned(),
+    }
+}
+
+fn short_name(method: Method) -> &'static str {
+    match method {
+        Method::TransposeFixed => "Fixed step",
+        Method::Transpose => "Transpose",
+        Method::DampedLeastSquares => "Damped l. s.",
+        Method::Ccd => "CCD",
+        Method::Fabrik => "FABRIK",
+        Method::TwoBone => "Two-bone",
+    }
+}
+
+fn duration(time: Duration) -> String {
+    let micros = time.as_secs_f64() * 1e6;
+    match micros {
+        ..10.0 => format!("{micros:.1} µs"),
+        ..1_000.0 => format!("{micros:.0} µs"),
+        ..100_000.0 => format!("{:.1} ms", micros / 1e3),
+        _ => format!("{:.0} ms", micros / 1e3),
+    }
+}

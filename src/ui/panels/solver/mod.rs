@@ -1,0 +1,186 @@
+//! The right panel of a skeleton: how it is brought to its targets, and how that goes.
+
+mod can_solve;
+mod comparison;
+mod convergence;
+
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
+
+use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+use crate::session::{Action, Session};
+use crate::ui::labels;
+use crate::ui::widgets::{self, Field, format};
+use can_solve::why_not;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(6.0);
+        widgets::section(ui, "Solver", |ui| {
+            method(ui, session, actions);
+            settings(ui, session, actions);
+            buttons(ui, session, actions);
+            // A race has a table of its own.
+            if session.comparison().is_none() {
+                report(ui, session);
+            }
+        });
+        widgets::section(ui, "Convergence", |ui| convergence::ui(ui, session));
+        widgets::section(ui, "Race", |ui| comparison::ui(ui, session, actions));
+    });
+}
+
+fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let options = session.skeleton().solver;
+    let combo = ComboBox::from_id_salt("method")
+        .selected_text(labels::method(options.method))
+        .width(ui.available_width() - 12.0)
+        .truncate();
+    let response = combo.show_ui(ui, |ui| {
+        for method in Method::ALL {
+            let item = ui.selectable_label(method == options.method, labels::method(method));
+            if item.on_hover_text(labels::method_tooltip(method)).clicked() {
+                actions.push(Action::SetSolver(SolverOptions { method, ..options }));
+            }
+        }
+    });
+    let response = response.response;
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Method"));
+    response.on_hover_text(labels::method_tooltip(options.method));
+}
+
+fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let rig = session.skeleton();
+    let options = rig.solver;
+    let set = |options| Action::SetSolver(options);
+    widgets::pair(ui, "Iterations per frame", |ui| {
+        let value = rig.iterations_per_frame as f32;
+        let tooltip = "How many iterations a running solver makes between two pictures";
+        Field { name: "Iterations per frame", value, unit: "", step: 1.0, digits: 0, tooltip }
+            .show(ui, session, actions, |value| {
+                Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
+            });
+    });
+    widgets::pair(ui, "Iterations at most", |ui| {
+        let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
+        let tooltip = "After so many a solver gives up";
+        Field { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }.show(
+            ui,
+            session,
+            actions,
+            |value| {
+                let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
+                set(SolverOptions { iterations, ..options })
+            },
+        );
+    });
+    tolerance(ui, session, actions);
+    match options.method {
+        Method::DampedLeastSquares => {
+            widgets::pair(ui, "Damping", |ui| {
+                let tooltip = "λ, in chain lengths: more is calmer and slower";
+                let value = options.damping;
+                Field { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
+                    ui,
+                    session,
+                    actions,
+                    |damping| set(SolverOptions { damping, ..options }),
+                );
+            });
+        }
+        Method::TransposeFixed => {
+            widgets::pair(ui, "Step", |ui| {
+                let tooltip = "The step's length, in parts of the one that is always stable";
+                Field {
+                    name: "Step length",
+                    value: options.step,
+                    unit: "",
+                    step: 0.1,
+                    digits: 2,
+                    tooltip,
+                }
+                .show(ui, session, actions, |step| set(SolverOptions { step, ..options }));
+            });
+        }
+        Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
+    }
+    let mut free = options.root == Root::Free;
+    let tooltip = "Whether the roots may move, as a snake's head does";
+    if ui.checkbox(&mut free, "Free root").on_hover_text(tooltip).changed() {
+        let root = if free { Root::Free } else { Root::Fixed };
+        actions.push(set(SolverOptions { root, ..options }));
+    }
+    let mut follow = session.preferences().follow;
+    let tooltip = "Solve at once while a target is dragged; switch it off to watch the solver run";
+    if ui.checkbox(&mut follow, "Follow while dragged").on_hover_text(tooltip).changed() {
+        actions.push(Action::SetFollow(follow));
+    }
+}
+
+fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let options = session.skeleton().solver;
+    widgets::pair(ui, "Tolerance", |ui| {
+        let auto = 1e-4 * session.skeleton().reach();
+        if let Some(tolerance) = options.tolerance {
+            let tooltip = "How near every tip must come, in the world";
+            let step = 0.05 * tolerance;
+            let short = |value: f64| format::short(value as f32);
+            Field { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
+                .show_as(ui, session, actions, &short, |tolerance| {
+                    Action::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
+                });
+        }
+        let mut is_auto = options.tolerance.is_none();
+        let tooltip = "A ten-thousandth of the chain's length";
+        if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
+            let tolerance = (!is_auto).then_some(auto);
+            actions.push(Action::SetSolver(SolverOptions { tolerance, ..options }));
+        }
+    });
+}
+
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let disabled = why_not(session);
+    ui.add_space(2.0);
+    ui.columns(3, |columns| {
+        for column in columns.iter_mut() {
+            column.set_min_height(24.0);
+        }
+        let [run, step, reset] = columns else { return };
+        let running = session.is_running();
+        let name = if running { "Pause solver" } else { "Run" };
+        if wide(run, name, "Iterate until it is there (R)", disabled) {
+            actions.push(Action::Run(!running));
+        }
+        if wide(step, "Step", "One iteration (S)", disabled) {
+            actions.push(Action::Step);
+        }
+        let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
+        if wide(reset, "Reset", "Back to the pose before the solver ran", nothing) {
+            actions.push(Action::ResetSolver);
+        }
+    });
+}
+
+fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
+    let layout = Layout::top_down_justified(Align::Center);
+    ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
+}
+
+/// Of the pose that is shown. Always as high, so that nothing below moves.
+fn report(ui: &mut Ui, session: &Session) {
+    let status = session.solver_status();
+    let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
+    let none = || "–".to_owned();
+    widgets::pair(ui, "Iterations", |ui| {
+        let made = status.map(|status| status.report.iterations);
+        value(ui, made.filter(|made| *made > 0).map_or_else(none, |made| made.to_string()))
+            .on_hover_text("Iterations of the run that led to this pose")
+    });
+    widgets::pair(ui, "Error", |ui| {
+        value(ui, status.map_or_else(none, |status| format::short(status.report.error)))
+            .on_hover_text("The largest distance from a tip to its target, in the world")
+    });
+    widgets::pair(ui, "State", |ui| {
+        ui.label(status.map_or("no target", |status| status.state.describe()))
+    });
+}

@@ -1,0 +1,266 @@
+//! What a frame costs: a graph of the last ones, the parts of one in figures, and what is in it.
+
+use core::time::Duration;
+
+use egui::{Align, Color32, Grid, Layout, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
+
+use crate::kinematics::chain_ik::Method;
+use crate::scene::Palette;
+use crate::ui::frame_times::{Frame, FrameTimes};
+use crate::ui::machine::Machine;
+use crate::ui::style;
+use crate::ui::widgets::format::grouped;
+use crate::ui::widgets::plot;
+
+pub(in crate::ui) const WIDTH: f32 = 272.0;
+const HEIGHT: f32 = 96.0;
+const ROW: f32 = 17.0;
+/// Wide enough for a figure of any frame that is not a standstill.
+const FIGURE: f32 = 76.0;
+const GAP: f32 = 8.0;
+const NAME: f32 = WIDTH - 2.0 * (FIGURE + GAP);
+/// What a screen of 60 pictures a second leaves for one.
+const SIXTIETH: f64 = 1000.0 / 60.0;
+
+/// What the processor does for a frame, in the order in which it does it, one part on the other in
+/// the graph.
+const PARTS: [Part; 5] = [
+    Part {
+        name: "Solve",
+        tooltip: "Actions, solvers and time: the session",
+        of: |frame| frame.solve,
+        colour: |palette| style::colour(palette.method(Method::DampedLeastSquares)),
+    },
+    Part {
+        name: "Panels",
+        tooltip: "The panels, laid out and cut into triangles",
+        of: |frame| frame.panels,
+        colour: |palette| style::colour(palette.method(Method::Fabrik)),
+    },
+    Part {
+        name: "Scene",
+        tooltip: "What is to be drawn, made from the document",
+        of: |frame| frame.scene,
+        colour: |palette| style::colour(palette.method(Method::TwoBone)),
+    },
+    Part {
+        name: "Encode",
+        tooltip: "What changed, sent to the graphics device, and its orders",
+        of: |frame| frame.encode,
+        colour: |palette| style::colour(palette.method(Method::Transpose)),
+    },
+    Part {
+        name: "Wait",
+        tooltip: "For the screen, or for the graphics device to finish what it was told before",
+        of: |frame| frame.wait,
+        colour: |palette| style::colour(palette.joint).gamma_multiply(0.55),
+    },
+];
+
+struct Part {
+    name: &'static str,
+    tooltip: &'static str,
+    of: fn(&Frame) -> Duration,
+    colour: fn(&Palette) -> Color32,
+}
+
+pub(in crate::ui) fn ui(ui: &mut Ui, machine: &Machine) {
+    ui.set_width(WIDTH);
+    ui.spacing_mut().item_spacing.y = 4.0;
+    let times = &machine.times;
+    graph(ui, times);
+    ui.add_space(4.0);
+    grid("parts", 3).show(ui, |ui| parts(ui, machine));
+    ui.separator();
+    grid("counts", 2).show(ui, |ui| {
+        let count = |count: Option<u64>| count.map_or("–".to_owned(), grouped);
+        let per_second = times.per_second().map(|it| it.round() as u64);
+        row(ui, "Frames a second", "While something moves", &count(per_second));
+        let counts = machine.counts;
+        let of = |part: fn(crate::render::Counts) -> u64| count(counts.map(part));
+        row(ui, "Cones and balls", "In the scene", &of(|it| it.solids.into()));
+        row(ui, "Lines", "In the scene", &of(|it| it.lines.into()));
+        row(ui, "Labels", "In the scene", &of(|it| it.labels.into()));
+        row(ui, "Triangles", "Of the scene, without the panels", &of(|it| it.triangles.into()));
+        let uploaded = "For the scene of the last frame: the device keeps what does not change";
+        row(ui, "Bytes uploaded", uploaded, &of(|it| it.uploaded));
+    });
+    ui.separator();
+    let (adapter, backend) = machine.adapter.rsplit_once(" (").unwrap_or((&machine.adapter, ""));
+    ui.label(RichText::new(adapter).size(12.0)).on_hover_text("The graphics adapter");
+    let backend = backend.trim_end_matches(')');
+    ui.label(RichText::new(format!("Backend: {backend}")).size(12.0).weak())
+        .on_hover_text("The interface that the adapter is reached by");
+}
+
+fn grid(name: &str, columns: usize) -> Grid {
+    Grid::new(name).num_columns(columns).min_row_height(ROW).spacing(vec2(GAP, 2.0))
+}
+
+fn parts(ui: &mut Ui, machine: &Machine) {
+    let (times, palette) = (&machine.times, style::palette(ui));
+    ui.allocate_exact_size(vec2(NAME, ROW), Sense::hover());
+    heading(ui, "median", "Half of the last frames took less");
+    heading(ui, "99 %", "One frame in a hundred took longer");
+    ui.end_row();
+    for part in &PARTS {
+        name(ui, part.name, part.tooltip, Some((part.colour)(&palette)));
+        figures(ui, times, |frame| Some((part.of)(frame)));
+    }
+    name(ui, "Total", "From the input until the picture was on its way to the screen", None);
+    figures(ui, times, |frame| Some(frame.total()));
+    let text = ui.visuals().strong_text_color();
+    if machine.has_clock {
+        let tooltip =
+            "The graphics device's own time for scene and panels, while the processor goes on";
+        name(ui, "GPU", tooltip, Some(text));
+        figures(ui, times, |frame| frame.gpu);
+    } else {
+        name(ui, "GPU", "The graphics device's own time", None);
+        ui.label(RichText::new("not measured by this adapter").weak().size(12.0))
+            .on_hover_text("It has no clock for it");
+        ui.end_row();
+    }
+}
+
+fn heading(ui: &mut Ui, text: &str, tooltip: &str) {
+    figure(ui, RichText::new(format!("{text}, ms")).weak().size(12.0)).on_hover_text(tooltip);
+}
+
+/// With a piece of its colour in the graph, if it has one.
+fn name(ui: &mut Ui, text: &str, tooltip: &str, colour: Option<Color32>) {
+    let left = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(NAME, ROW), left, |ui| {
+        ui.set_min_width(NAME);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        if let Some(colour) = colour {
+            ui.painter().rect_filled(rect, 2.0, colour);
+        }
+        ui.label(text).on_hover_text(tooltip);
+    });
+}
+
+fn figures(ui: &mut Ui, times: &FrameTimes, part: impl Fn(&Frame) -> Option<Duration>) {
+    let spread = times.spread(part);
+    for time in [spread.map(|it| it.median), spread.map(|it| it.slowest)] {
+        let text = time.map_or("–".to_owned(), |time| format!("{:.3}", milliseconds(time)));
+        figure(ui, RichText::new(text).monospace());
+    }
+    ui.end_row();
+}
+
+fn row(ui: &mut Ui, name: &str, tooltip: &str, text: &str) {
+    let size = vec2(NAME + FIGURE + GAP, ROW);
+    let left = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(size, left, |ui| {
+        ui.set_min_width(size.x);
+        ui.label(name).on_hover_text(tooltip);
+    });
+    figure(ui, RichText::new(text).monospace());
+    ui.end_row();
+}
+
+/// At the right of its column, always as wide.
+fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
+    let right = Layout::right_to_left(Align::Center);
+    let label = |ui: &mut Ui| {
+        ui.set_min_width(FIGURE);
+        ui.label(text)
+    };
+    ui.allocate_ui_with_layout(vec2(FIGURE, ROW), right, label).inner
+}
+
+/// The parts of each frame, one on the other, and the device's time as a line.
+fn graph(ui: &mut Ui, times: &FrameTimes) {
+    let top = top(times);
+    let (palette, weak) = (style::palette(ui), ui.visuals().weak_text_color());
+    let strong = ui.visuals().strong_text_color();
+    // In parts of the whole height, which is what a mark's spacing is told by.
+    let ticks = [0.0, 0.5, 1.0];
+    let points = |part: &dyn Fn(&Frame) -> Option<Duration>| points(times, top, part);
+    let response = plot::still("frame times", HEIGHT)
+        .label_formatter(|_| None)
+        .show_grid(false)
+        .show_axes([false, true])
+        .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), move |part| {
+            format!("{} ms", part * top)
+        })])
+        .y_grid_spacer(move |_| plot::marks(&ticks))
+        .show(ui, |plot| {
+            let last = FrameTimes::MOST as f64;
+            plot::show(plot, PlotBounds::from_min_max([1.0, 0.0], [last, 1.04]));
+            // Each covers all but the part on top of it.
+            for count in (1..=PARTS.len()).rev() {
+                let sum =
+                    |frame: &Frame| Some(PARTS[..count].iter().map(|part| (part.of)(frame)).sum());
+                let colour = (PARTS[count - 1].colour)(&palette);
+                let line = Line::new(PARTS[count - 1].name, points(&sum));
+                plot.line(line.color(colour).width(1.0).fill(0.0).fill_alpha(1.0));
+            }
+            let gpu = Line::new("GPU", points(&|frame| frame.gpu));
+            plot.line(gpu.color(strong).width(1.5));
+            for at in [SIXTIETH / top, 1.0].into_iter().filter(|at| *at <= 1.0) {
+                plot.hline(HLine::new("", at).stroke(Stroke::new(1.0, weak.gamma_multiply(0.4))));
+            }
+        })
+        .response;
+    let said = match times.last() {
+        Some(frame) => format!("Frame times: the last took {:.1} ms", milliseconds(frame.total())),
+        None => "Frame times: no frame has been drawn".to_owned(),
+    };
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+    response.on_hover_text("The last 240 frames, the newest at the right; a frame is drawn only when something changes");
+}
+
+/// The newest frame is at the right.
+fn points(
+    times: &FrameTimes,
+    top: f64,
+    part: &dyn Fn(&Frame) -> Option<Duration>,
+) -> PlotPoints<'static> {
+    let frames = times.frames();
+    let first = FrameTimes::MOST - frames.len() + 1;
+    let point = |(index, frame)| Some([(first + index) as f64, milliseconds(part(frame)?) / top]);
+    frames.enumerate().filter_map(point).collect()
+}
+
+/// Where the graph ends: a round number that nearly all frames are below, so that it seldom changes.
+fn top(times: &FrameTimes) -> f64 {
+    let total = times.spread(|frame| Some(frame.total().max(frame.gpu.unwrap_or_default())));
+    let slowest = total.map_or(1.0, |total| milliseconds(total.slowest)).max(1.0);
+    let power = 10_f64.powf(slowest.log10().floor());
+    [1.0, 2.0, 3.0, 5.0, 10.0]
+        .map(|times| times * power)
+        .into_iter()
+        .find(|it| *it >= slowest)
+        .unwrap_or(slowest)
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_graph_ends_at_a_round_number_above_nearly_all_frames() {
+        for (micros, expected) in [
+            (0, 1.0),
+            (900, 1.0),
+            (1_100, 2.0),
+            (16_700, 20.0),
+            (23_100, 30.0),
+            (49_000, 50.0),
+            (51_000, 100.0),
+            (100_000, 100.0),
+        ] {
+            let mut times = FrameTimes::default();
+            times.push(Frame { wait: Duration::from_micros(micros), ..Frame::default() });
+            assert!((top(&times) - expected).abs() < 1e-9, "{micros} µs: {}", top(&times));
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Sentences about the current pose.
+
+use crate::document::{Arm, RigKind};
+use crate::kinematics::two_bone::{Reach, TwoBonePose};
+use crate::rig::Crowd;
+use crate::session::{Session, SolverStatus};
+use crate::ui::labels;
+use crate::ui::widgets::format::{decimals_of_cell, grouped};
+
+/// One sentence on why the arm is as it is.
+pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
+    let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
+    if !arm.is_led_by_hand() {
+        return "FK: the joints' own angles place the hand.".to_owned();
+    }
+    if arm.influence < 1.0 {
+        return format!("Between FK and IK: the hand is {gap} from the cursor.");
+    }
+    if pose.stretch > 1.0 {
+        let reached = if pose.reach == Reach::Reached { "" } else { " as far as they may" };
+        return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
+    }
+    match pose.reach {
+        Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
+        Reach::TooFar if arm.soft_reach.softness() > 0.0 => {
+            format!("Soft: the hand lags {gap} behind the cursor, so that the elbow does not snap.")
+        }
+        Reach::TooClose if !arm.soft_reach.is_hard() => {
+            format!("Soft: the hand keeps away from the shoulder, {gap} from the cursor.")
+        }
+        Reach::TooFar => {
+            format!("Too far: the arm is straight and points at the cursor, {gap} short.")
+        }
+        Reach::TooClose => {
+            format!("Too close: the arm is folded and points past the cursor, by {gap}.")
+        }
+    }
+}
+
+/// How the rig stands, for those who do not see it.
+pub(in crate::ui) fn summary(session: &Session) -> String {
+    if let Some(crowd) = session.crowd() {
+        return describe_crowd(&crowd);
+    }
+    match session.rig() {
+        RigKind::Arm => sentence(session.arm(), session.pose()),
+        RigKind::Skeleton => describe_skeleton(session),
+    }
+}
+
+pub(in crate::ui) fn describe(session: &Session) -> String {
+    if let Some(crowd) = session.crowd() {
+        return describe_crowd(&crowd);
+    }
+    match session.rig() {
+        RigKind::Arm => describe_pose(session),
+        RigKind::Skeleton => describe_skeleton(session),
+    }
+}
+
+fn describe_crowd(crowd: &Crowd) -> String {
+    match crowd.arms {
+        1 => "A crowd of 1 arm".to_owned(),
+        arms => format!("A crowd of {} arms", grouped(arms.into())),
+    }
+}
+
+fn describe_skeleton(session: &Session) -> String {
+    let rig = session.skeleton();
+    let joints = rig.skeleton.joints();
+    let count = |count: usize, one: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {one}s"),
+    };
+    let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
+    if let Some(SolverStatus { state, report }) = session.solver_status() {
+        line.push(match report.iterations {
+            0 => state.describe().to_owned(),
+            made => format!(
+                "{}: {} after {}",
+                labels::method(report.method),
+                state.describe(),
+                count(made as usize, "iteration")
+            ),
+        });
+    }
+    match session.selected().and_then(|joint| joints.get(joint)) {
+        Some(joint) => line.insert(0, joint.name.clone()),
+        None => line.push("click a joint to select it, drag its tip to pose it".to_owned()),
+    }
+    line.join(" · ")
+}
+
+fn describe_pose(session: &Session) -> String {
+    let (arm, pose) = (session.arm(), session.pose());
+    let reach = match pose.reach {
+        _ if !arm.is_led_by_hand() => "FK",
+        _ if arm.influence < 1.0 => "Between FK and IK",
+        Reach::Reached => "Reached",
+        Reach::TooFar => "Too far",
+        Reach::TooClose => "Too close",
+    };
+    let hand = pose.hand;
+    let (least, most) = arm.reach();
+    let [x, y, z] = hand.to_array().map(|coordinate| arm.length_in_words(coordinate));
+    let distance = arm.length_in_words(pose.distance);
+    let digits = decimals_of_cell(arm.cell());
+    format!("{reach} · hand ({x}, {y}, {z}) · D {distance} of {least:.digits$}–{most:.digits$}")
+}

@@ -1,0 +1,125 @@
+//! The line at the bottom: what just happened, or what the keys do now, or how the arm stands.
+
+use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
+
+use super::machine::Machine;
+use super::pose_summary;
+use super::widgets::{self, format};
+use crate::document::RigKind;
+use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, TurnDrag};
+
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    machine: &Machine,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        ui.set_height(24.0);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add(Label::new(RichText::new(describe_machine(machine)).weak()).selectable(false));
+            if let Some(job) = session.job() {
+                show_job(ui, job, actions);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let is_error = session.drag().is_none() && session.has_failed();
+                match is_error {
+                    true => widgets::error_label(ui, &line(session)),
+                    false => {
+                        ui.add(Label::new(line(session)).truncate().selectable(false));
+                    }
+                }
+            });
+        });
+    });
+}
+
+/// How far an export is; a press stops it.
+fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
+    ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+    if ui.small_button("Cancel").on_hover_text("Stops the export; no file is left").clicked() {
+        actions.push(Action::CancelExport);
+    }
+    let name = job.path.file_name().unwrap_or(job.path.as_os_str()).to_string_lossy();
+    let part = job.progress.part();
+    let bar = ProgressBar::new(part).desired_width(140.0).text(format!("{:.0} %", part * 100.0));
+    ui.add(bar).on_hover_text(format!("Exporting {}", job.path.display()));
+    ui.add(Label::new(format!("Exporting {name}")).selectable(false));
+}
+
+fn line(session: &Session) -> String {
+    if let Some(drag) = session.drag() {
+        return describe_drag(session, drag);
+    }
+    session.message().map_or_else(|| pose_summary::describe(session), ToOwned::to_owned)
+}
+
+fn describe_drag(session: &Session, drag: &Drag) -> String {
+    match (drag.point(), drag.turn()) {
+        (Some(point), _) => describe_move(session, drag.grip(), point),
+        (_, Some(turn)) => describe_turn(session, drag.grip(), turn),
+        (None, None) => String::new(),
+    }
+}
+
+fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
+    let moved = drag.moved();
+    let how = drag.constraint().map_or("freely".to_owned(), |constraint| constraint.to_string());
+    let verb = match grip {
+        Grip::Tip(..) => "Pose",
+        Grip::Target(..) => "Target",
+        Grip::Pole(_) => "Pole",
+        _ => "Move",
+    };
+    let digits = match session.rig() {
+        RigKind::Arm => format::decimals_of_cell(session.shown().cell() * 0.1),
+        RigKind::Skeleton => format::decimals_of_cell(session.shown().cell()),
+    };
+    format!(
+        "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift fine · Ctrl snap · X Y Z \
+         lock · digits type · Enter accept · Esc take back",
+        moved.x,
+        moved.y,
+        moved.z,
+        typed(drag.typed()),
+    )
+}
+
+/// What was turned, which at a limit is less than the mouse has gone around.
+fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
+    const AT_LIMIT: f32 = 1e-5;
+    let joints = session.skeleton().skeleton.joints();
+    let angle = match grip {
+        Grip::Ring(joint, axis) => joints.get(joint).map(|joint| joint.rotation[axis.min(2)]),
+        _ => None,
+    };
+    let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));
+    let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
+    let verb = match grip {
+        Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
+            format!("Turn about {}", ["x", "y", "z"][axis.min(2)])
+        }
+        _ => "Bend".to_owned(),
+    };
+    format!(
+        "{verb}: {:+.1}°{limit}{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
+         take back",
+        turned.to_degrees(),
+        typed(drag.typed()),
+    )
+}
+
+fn typed(typed: &str) -> String {
+    match typed {
+        "" => String::new(),
+        typed => format!(" · typed {typed}"),
+    }
+}
+
+fn describe_machine(machine: &Machine) -> String {
+    let adapter = machine.adapter.split(" (").next().unwrap_or_default();
+    match machine.times.last() {
+        Some(frame) => format!("{adapter} · {:.0} ms", frame.total().as_secs_f64() * 1e3),
+        None => adapter.to_owned(),
+    }
+}

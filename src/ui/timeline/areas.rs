@@ -1,0 +1,39 @@
+//! The layout of the timeline.
+
+use egui::{Rect, Response, Ui, pos2};
+
+/// Of the column with the names.
+pub(super) const NAMES: f32 = 180.0;
+pub(super) const RULER: f32 = 24.0;
+pub(super) const ROW: f32 = 20.0;
+
+/// A press or a click in an area gives the ruler the keyboard for the whole timeline; a click beside
+/// the ruler has just taken it away.
+pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
+    let touched = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_click());
+    if touched && area.contains_pointer() {
+        ruler.request_focus();
+    }
+}
+
+/// What is where in the panel.
+pub(super) struct Areas {
+    pub whole: Rect,
+    /// Beside the lanes.
+    pub names: Rect,
+    pub ruler: Rect,
+    pub lanes: Rect,
+}
+
+impl Areas {
+    pub fn new(whole: Rect) -> Self {
+        let split = (whole.left() + NAMES).min(whole.right());
+        let top = (whole.top() + RULER).min(whole.bottom());
+        Self {
+            whole,
+            names: Rect::from_min_max(pos2(whole.left(), top), pos2(split, whole.bottom())),
+            ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(whole.right(), top)),
+            lanes: Rect::from_min_max(pos2(split, top), whole.max),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! What the right button offers.
+
+use egui::{Id, Response, Ui};
+
+use super::drag;
+use super::lane::Lane;
+use super::mouse::Lanes;
+use crate::document::Channel;
+use crate::session::{Action, Session};
+use crate::ui::{labels, widgets};
+
+/// Where the right button went down.
+#[derive(Clone, Copy)]
+struct Asked {
+    lane: Option<Lane>,
+    time: f64,
+}
+
+/// The menu of the lanes, for what was under the pointer.
+pub(in crate::ui) fn of_lanes(
+    ui: &Ui,
+    lanes: &Lanes<'_>,
+    body: &Response,
+    actions: &mut Vec<Action>,
+) {
+    let id = Id::unique("asked in the timeline");
+    let session = lanes.session;
+    if body.secondary_clicked()
+        && let Some(at) = ui.input(|input| input.pointer.interact_pos())
+    {
+        let time = drag::pointed_time(ui, session, lanes.scale, at);
+        ui.data_mut(|data| data.insert_temp(id, Asked { lane: lanes.lane(at), time }));
+    }
+    let Some(Asked { lane, time }) = ui.data(|data| data.get_temp(id)) else {
+        return;
+    };
+    body.context_menu(|ui| {
+        if let Some(lane) = lane
+            && widgets::button(ui, "Add key here", "Key it as it is shown at that time", None)
+        {
+            actions.extend([Action::SetTime(time), Action::Key(lane.channels(session))]);
+            ui.close();
+        }
+        of_keys(ui, session, actions);
+        let nothing = (!session.can_paste()).then_some("No keys have been copied");
+        if widgets::button(ui, "Paste here", "The copied keys, from here on", nothing) {
+            actions.extend([Action::SetTime(time), Action::PasteKeys]);
+            ui.close();
+        }
+        if let Some(Lane::Channel(channel)) = lane {
+            clear(ui, session, channel, actions);
+        }
+    });
+}
+
+/// The menu of a channel's name.
+pub(in crate::ui) fn of_channel(
+    response: &Response,
+    session: &Session,
+    channel: Channel,
+    actions: &mut Vec<Action>,
+) {
+    response.context_menu(|ui| {
+        if widgets::button(ui, "Key it now", "Where the time is", None) {
+            actions.push(Action::Key(vec![channel]));
+            ui.close();
+        }
+        clear(ui, session, channel, actions);
+    });
+}
+
+fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let keys = session.selected_keys();
+    let none = keys.is_empty().then_some("Select keys first: click them, or draw a box");
+    if widgets::button(ui, "Copy keys", "Ctrl+C", none) {
+        actions.push(Action::CopyKeys);
+        ui.close();
+    }
+    if widgets::button(ui, "Delete keys", "Delete", none) {
+        actions.push(Action::DeleteKeys(keys.to_vec()));
+        ui.close();
+    }
+}
+
+fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Vec<Action>) {
+    let name = labels::channel(session, channel);
+    let tooltip = format!("{name} no longer changes in time");
+    if widgets::button(ui, "Delete channel's keys", &tooltip, None) {
+        actions.push(Action::ClearChannels(vec![channel]));
+        ui.close();
+    }
+}

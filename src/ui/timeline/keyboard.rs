@@ -1,0 +1,138 @@
+//! What the keys do in the timeline, and wherever no text has the keyboard.
+
+use egui::{Event, EventFilter, Key, Modifiers, Ui};
+
+use super::{drag, ruler};
+use crate::session::{Action, Session};
+use crate::ui::keyboard::{focus, viewport};
+
+/// The keys for keys, wherever no text has the keyboard.
+pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    let is_busy = ui.text_edit_focused()
+        || session.drag().is_some()
+        || session.is_asking()
+        || egui::Popup::is_any_open(ui.ctx());
+    if is_busy {
+        return;
+    }
+    let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+    let pressed = |key| ui.input(|input| input.key_pressed(key));
+    let modifiers = ui.input(|input| input.modifiers);
+    if pressed(Key::K) && modifiers.shift_only() {
+        actions.push(Action::Key(session.all_channels()));
+    } else if pressed(Key::K) && modifiers.is_none() {
+        actions.push(Action::Key(session.channels_to_key()));
+    }
+    if focus::leaves_space(ui) && pressed(Key::Space) && modifiers.is_none() {
+        if session.is_playing() || session.has_motion() {
+            actions.push(Action::Play(!session.is_playing()));
+        } else {
+            actions.push(Action::Report("Nothing moves yet: K keys the rig".to_owned()));
+        }
+    }
+    let pasted = ui.input(|input| {
+        let is_paste = |event: &Event| matches!(event, Event::Paste(_));
+        input.events.iter().any(is_paste)
+    });
+    if session.can_paste() && (pasted || consumed(Modifiers::COMMAND, Key::V)) {
+        actions.push(Action::PasteKeys);
+    }
+    if has_the_word(ui, session) {
+        let delete = consumed(Modifiers::NONE, Key::Delete);
+        if delete || consumed(Modifiers::NONE, Key::Backspace) {
+            actions.push(Action::DeleteKeys(session.selected_keys().to_vec()));
+        }
+    }
+}
+
+/// Whether the selected keys are what is worked on: the timeline was used last, or no joint is
+/// selected beside them.
+pub(in crate::ui) fn has_the_word(ui: &Ui, session: &Session) -> bool {
+    let is_used = ui.memory(|memory| memory.has_focus(ruler::id()));
+    !session.selected_keys().is_empty() && (is_used || session.selection().is_empty())
+}
+
+/// Whether Esc is the timeline's: something in it is held.
+pub(in crate::ui) fn holds(ui: &Ui) -> bool {
+    drag::get(ui).is_some()
+}
+
+/// Keys while the timeline has the keyboard: arrows go from frame to frame and from key to key, Home
+/// and End to the ends; single keys do what they do in the viewport.
+pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if !ui.memory(|memory| memory.has_focus(ruler::id())) {
+        return;
+    }
+    let arrows =
+        EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(ruler::id(), arrows));
+    focus::leave_space(ui, ruler::id());
+    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+    let timeline = session.document().timeline;
+    let to = if pressed(Key::ArrowLeft) {
+        Some(next_frame(session, -1.0))
+    } else if pressed(Key::ArrowRight) {
+        Some(next_frame(session, 1.0))
+    } else if pressed(Key::ArrowUp) {
+        key_before(session)
+    } else if pressed(Key::ArrowDown) {
+        key_after(session)
+    } else if consumed(Modifiers::NONE, Key::Home) {
+        Some(timeline.start)
+    } else if pressed(Key::End) {
+        Some(timeline.end)
+    } else {
+        None
+    };
+    actions.extend(to.map(Action::SetTime));
+    if consumed(Modifiers::COMMAND, Key::A) {
+        let tracks = session.document().keys.tracks();
+        let keys = tracks.flat_map(|(channel, track)| {
+            track.knots().iter().map(move |knot| (channel, knot.time))
+        });
+        actions.push(Action::SelectKeys(keys.collect()));
+    }
+    // Here it never means joints.
+    for key in [Key::Delete, Key::Backspace] {
+        consumed(Modifiers::NONE, key);
+    }
+    viewport::viewport(ui, session, actions);
+}
+
+/// The next time on a frame, before or after.
+fn next_frame(session: &Session, by: f64) -> f64 {
+    /// What is so near a frame is on it, in frames.
+    const ROUNDING: f64 = 1e-6;
+    let timeline = session.document().timeline;
+    let rate = f64::from(timeline.frame_rate);
+    let frame = session.time() * rate;
+    let next = match by > 0.0 {
+        true => (frame + ROUNDING).floor() + 1.0,
+        false => (frame - ROUNDING).ceil() - 1.0,
+    };
+    let (first, last) = drag::span(session);
+    (next / rate).clamp(first.min(session.time()), last.max(session.time()))
+}
+
+/// When the last key before this time is.
+pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
+    let time = session.time();
+    let tracks = session.document().keys.tracks();
+    let before = tracks.filter_map(|(_, track)| {
+        let index = track.knots().partition_point(|knot| knot.time < time);
+        Some(track.knots().get(index.checked_sub(1)?)?.time)
+    });
+    before.max_by(f64::total_cmp)
+}
+
+/// When the first key after this time is.
+pub(in crate::ui) fn key_after(session: &Session) -> Option<f64> {
+    let time = session.time();
+    let tracks = session.document().keys.tracks();
+    let after = tracks.filter_map(|(_, track)| {
+        let index = track.knots().partition_point(|knot| knot.time <= time);
+        Some(track.knots().get(index)?.time)
+    });
+    after.min_by(f64::total_cmp)
+}

@@ -1,0 +1,101 @@
+//! Which lanes there are, and which keys are in them.
+
+use std::collections::HashSet;
+
+use crate::document::Channel;
+use crate::session::{Key, Session};
+
+/// A lane: all keys at a time together, or those of a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::ui) enum Lane {
+    All,
+    Channel(Channel),
+}
+
+/// The keyed channels, those of the rig that is shown first.
+pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
+    let rig = Some(session.rig());
+    let keyed = session.document().keys.tracks().map(|(channel, _)| channel);
+    let (mut first, others): (Vec<_>, Vec<_>) = keyed.partition(|channel| channel.rig() == rig);
+    first.extend(others);
+    first
+}
+
+impl Lane {
+    /// When it has keys, of those from one time to another; in order.
+    pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
+        let keys = &session.document().keys;
+        match self {
+            Self::Channel(channel) => {
+                keys.track(channel).map_or_else(Vec::new, |track| times(track, from, to).collect())
+            }
+            Self::All => {
+                let tracks = keys.tracks();
+                let mut all: Vec<f64> =
+                    tracks.flat_map(|(_, track)| times(track, from, to)).collect();
+                all.sort_unstable_by(f64::total_cmp);
+                all.dedup();
+                all
+            }
+        }
+    }
+
+    /// The keys that it has at a time.
+    pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
+        match self {
+            Self::Channel(channel) => vec![(channel, time)],
+            Self::All => {
+                let tracks = session.document().keys.tracks();
+                let there = tracks.filter(|(_, track)| track.get(time).is_some());
+                there.map(|(channel, _)| (channel, time)).collect()
+            }
+        }
+    }
+
+    /// What a key is added to.
+    pub fn channels(self, session: &Session) -> Vec<Channel> {
+        match self {
+            Self::Channel(channel) => vec![channel],
+            Self::All => session.document().keys.tracks().map(|(channel, _)| channel).collect(),
+        }
+    }
+}
+
+type Track = crate::kinematics::spline::Spline<glam::Vec3>;
+
+fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
+    let knots = track.knots();
+    let first = knots.partition_point(|knot| knot.time < from);
+    let seen = knots.iter().skip(first).take_while(move |knot| knot.time <= to);
+    seen.map(|knot| knot.time)
+}
+
+/// The selected keys, to be asked for quickly.
+pub(in crate::ui) struct Picked {
+    keys: HashSet<(Channel, u64)>,
+    times: HashSet<u64>,
+}
+
+impl Picked {
+    pub fn new(session: &Session) -> Self {
+        Self::of(session.selected_keys())
+    }
+
+    pub fn of(keys: &[Key]) -> Self {
+        let bits = |time: f64| (time + 0.0).to_bits();
+        let keys = keys.iter();
+        Self {
+            keys: keys.clone().map(|(channel, time)| (*channel, bits(*time))).collect(),
+            times: keys.map(|(_, time)| bits(*time)).collect(),
+        }
+    }
+
+    /// Whether any of a lane's keys at a time is selected.
+    pub fn has(&self, lane: Lane, time: f64) -> bool {
+        let bits = (time + 0.0).to_bits();
+        match lane {
+            Lane::All => self.times.contains(&bits),
+            Lane::Channel(channel) => self.keys.contains(&(channel, bits)),
+        }
+    }
+}

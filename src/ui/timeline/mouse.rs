@@ -1,0 +1,249 @@
+//! What the pointer does in the lanes: it selects keys, moves them, and draws boxes around them.
+
+use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
+
+use super::areas::{ROW, take_keyboard};
+use super::drag::{self, BoxDrag, Held, KeyDrag};
+use super::lane::{Lane, Picked};
+use super::time_scale::Scale;
+use crate::document::Channel;
+use crate::session::{Action, Key, Session};
+use crate::ui::{labels, style};
+
+/// How far from a key it can be taken hold of, in points.
+const REACH: f32 = 7.0;
+/// How far the pointer goes before a press is a drag.
+const SLACK: f32 = 3.0;
+
+/// The lanes as they are on screen.
+pub(in crate::ui) struct Lanes<'a> {
+    pub session: &'a Session,
+    pub scale: Scale,
+    pub channels: &'a [Channel],
+    pub area: Rect,
+    /// How far the channels' lanes are scrolled.
+    pub offset: f32,
+}
+
+impl Lanes<'_> {
+    /// The lane at a place on screen.
+    pub fn lane(&self, at: Pos2) -> Option<Lane> {
+        let y = at.y - self.area.top();
+        if y < ROW {
+            return Some(Lane::All);
+        }
+        let row = ((y - ROW + self.offset) / ROW).floor().max(0.0) as usize;
+        self.channels.get(row).map(|channel| Lane::Channel(*channel))
+    }
+
+    /// The lane and the time of the key that is nearest to a place.
+    pub fn key(&self, at: Pos2) -> Option<(Lane, f64)> {
+        let lane = self.lane(at)?;
+        let (from, to) = (self.scale.time(at.x - REACH), self.scale.time(at.x + REACH));
+        let off = |time: &f64| (self.scale.x(*time) - at.x).abs();
+        let times = lane.times(self.session, from, to).into_iter();
+        let nearest = times.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        Some((lane, nearest))
+    }
+
+    /// Below the top of the first channel's lane, scrolled or not.
+    fn content_y(&self, at: Pos2) -> f32 {
+        at.y - self.area.top() - ROW + self.offset
+    }
+
+    /// The keys of channels between two times and two heights.
+    fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
+        let centre = |row: usize| ROW * (row as f32 + 0.5);
+        let rows = self.channels.iter().enumerate();
+        let inside = rows.filter(|(row, _)| (ys.0..=ys.1).contains(&centre(*row)));
+        let keys = inside.flat_map(|(_, channel)| {
+            let found = Lane::Channel(*channel).times(self.session, times.0, times.1);
+            found.into_iter().map(|time| (*channel, time))
+        });
+        keys.collect()
+    }
+}
+
+/// Takes hold of what is under the pointer.
+pub(in crate::ui) fn press(
+    ui: &Ui,
+    lanes: &Lanes<'_>,
+    body: &Response,
+    ruler: &Response,
+    actions: &mut Vec<Action>,
+) {
+    take_keyboard(ui, body, ruler);
+    if !body.contains_pointer() {
+        return;
+    }
+    for event in ui.input(|input| input.events.clone()) {
+        let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
+            continue;
+        };
+        if lanes.session.is_editing() || drag::get(ui).is_some() {
+            continue;
+        }
+        match button {
+            PointerButton::Primary => {
+                let adds = modifiers.shift || modifiers.command;
+                match lanes.key(pos) {
+                    Some((lane, time)) => press_key(ui, lanes, lane, time, pos, adds, actions),
+                    None => press_lane(ui, lanes, pos, adds),
+                }
+            }
+            PointerButton::Middle => drag::set(ui, Held::Pan),
+            PointerButton::Secondary => {
+                if let Some((lane, time)) = lanes.key(pos)
+                    && !Picked::new(lanes.session).has(lane, time)
+                {
+                    actions.push(Action::SelectKeys(lane.keys(lanes.session, time)));
+                }
+            }
+            PointerButton::Extra1 | PointerButton::Extra2 => {}
+        }
+    }
+    let asked = body.double_clicked().then(|| ui.input(|input| input.pointer.interact_pos()));
+    if let Some(at) = asked.flatten()
+        && lanes.key(at).is_none()
+        && let Some(lane) = lanes.lane(at)
+    {
+        actions.push(Action::SetTime(drag::pointed_time(ui, lanes.session, lanes.scale, at)));
+        actions.push(Action::Key(lane.channels(lanes.session)));
+    }
+}
+
+fn press_key(
+    ui: &Ui,
+    lanes: &Lanes<'_>,
+    lane: Lane,
+    time: f64,
+    pressed: Pos2,
+    adds: bool,
+    actions: &mut Vec<Action>,
+) {
+    let session = lanes.session;
+    let pointed = lane.keys(session, time);
+    let selected = session.selected_keys();
+    let picked = |of: &[Key]| {
+        let of = Picked::of(of);
+        move |key: &&Key| of.has(Lane::Channel(key.0), key.1)
+    };
+    let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
+    let all_selected = pointed.iter().all(|key| is_selected(&key));
+    let (keys, clicked) = match (adds, all_selected) {
+        // Once more takes it out, unless it is dragged.
+        (true, true) => {
+            let others = selected.iter().filter(|key| !is_pointed(key)).copied();
+            (selected.to_vec(), others.collect())
+        }
+        (true, false) => {
+            let new = pointed.iter().filter(|key| !is_selected(key));
+            let both: Vec<_> = selected.iter().chain(new).copied().collect();
+            (both.clone(), both)
+        }
+        (false, true) => (selected.to_vec(), pointed),
+        (false, false) => (pointed.clone(), pointed),
+    };
+    if keys != selected {
+        actions.push(Action::SelectKeys(keys.clone()));
+    }
+    drag::set(ui, Held::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
+}
+
+fn press_lane(ui: &Ui, lanes: &Lanes<'_>, at: Pos2, adds: bool) {
+    let base = if adds { lanes.session.selected_keys().to_vec() } else { Vec::new() };
+    let drag = BoxDrag { time: lanes.scale.time(at.x), y: lanes.content_y(at), base };
+    drag::set(ui, Held::Box(drag));
+}
+
+/// What is held follows the pointer, until it is let go or taken back.
+pub(in crate::ui) fn follow(ui: &Ui, lanes: &Lanes<'_>, actions: &mut Vec<Action>) {
+    let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
+        return;
+    };
+    match drag::get(ui) {
+        Some(Held::Keys(drag)) => move_keys(ui, lanes, drag, pointer, actions),
+        Some(Held::Box(drag)) => draw_box(ui, lanes, &drag, pointer, actions),
+        Some(Held::Pan) if drag::is_released(ui) => drag::clear(ui),
+        Some(Held::Pan | Held::Playhead { .. }) | None => {}
+    }
+}
+
+fn move_keys(
+    ui: &Ui,
+    lanes: &Lanes<'_>,
+    mut drag: KeyDrag,
+    pointer: Pos2,
+    actions: &mut Vec<Action>,
+) {
+    let session = lanes.session;
+    let taken_back = ui.input(|input| input.key_pressed(Button::Escape));
+    if taken_back || drag.moved && !session.is_editing() {
+        actions.push(Action::SelectKeys(drag.keys));
+        drag::clear(ui);
+        return;
+    }
+    if !drag.moved && (pointer - drag.pressed).length() > SLACK {
+        actions.push(Action::BeginEdit);
+        drag.moved = true;
+        drag::set(ui, Held::Keys(drag.clone()));
+    }
+    if drag.moved {
+        let way = f64::from(pointer.x - drag.pressed.x) / lanes.scale.points_per_second();
+        let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
+        let count = labels::count_of_keys(drag.keys.len());
+        let said = format!("Move {count}: {by:+.2} s     Ctrl between frames · Esc take back");
+        actions.push(Action::MoveKeys { keys: drag.keys.clone(), by });
+        actions.push(Action::Report(said));
+    }
+    if drag::is_released(ui) {
+        actions.push(match drag.moved {
+            true => Action::CommitEdit,
+            false => Action::SelectKeys(drag.clicked),
+        });
+        drag::clear(ui);
+    }
+}
+
+fn draw_box(ui: &Ui, lanes: &Lanes<'_>, drag: &BoxDrag, pointer: Pos2, actions: &mut Vec<Action>) {
+    if ui.input(|input| input.key_pressed(Button::Escape)) {
+        actions.push(Action::SelectKeys(drag.base.clone()));
+        drag::clear(ui);
+        return;
+    }
+    let corner = place(lanes, drag);
+    let is_box = (pointer - corner).length() > SLACK;
+    let mut keys = drag.base.clone();
+    if is_box {
+        let (time, y) = (lanes.scale.time(pointer.x), lanes.content_y(pointer));
+        let times = (drag.time.min(time), drag.time.max(time));
+        let inside = lanes.keys_in(times, (drag.y.min(y), drag.y.max(y)));
+        let picked = Picked::of(&keys);
+        keys.extend(inside.into_iter().filter(|(it, at)| !picked.has(Lane::Channel(*it), *at)));
+    }
+    if keys != lanes.session.selected_keys() {
+        actions.push(Action::SelectKeys(keys));
+    }
+    if drag::is_released(ui) {
+        drag::clear(ui);
+    }
+}
+
+fn place(lanes: &Lanes<'_>, drag: &BoxDrag) -> Pos2 {
+    let y = drag.y - lanes.offset + ROW + lanes.area.top();
+    pos2(lanes.scale.x(drag.time), y)
+}
+
+/// The box that selects.
+pub(in crate::ui) fn paint_box(ui: &Ui, lanes: &Lanes<'_>) {
+    let (Some(Held::Box(drag)), Some(pointer)) =
+        (drag::get(ui), ui.input(|input| input.pointer.latest_pos()))
+    else {
+        return;
+    };
+    let accent = style::accent(ui);
+    let rect = Rect::from_two_pos(place(lanes, &drag), pointer);
+    let painter = ui.painter().with_clip_rect(lanes.area);
+    let rim = Stroke::new(1.0, accent);
+    painter.rect(rect, 0.0, accent.gamma_multiply(0.15), rim, egui::StrokeKind::Inside);
+}

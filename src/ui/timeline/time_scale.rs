@@ -1,0 +1,158 @@
+//! Which part of the time is seen, and where it is on screen.
+
+use egui::{Event, Id, MouseWheelUnit, Rangef, Rect, Ui};
+
+use crate::document::Timeline;
+use crate::session::Session;
+
+/// Left of what is fitted and right of it, in points.
+const MARGIN: f32 = 16.0;
+/// How much a step of the wheel shows more or less.
+const WHEEL: f64 = 1.2;
+const POINTS_PER_STEP: f32 = 50.0;
+/// The least that can be seen at once, in frames.
+const LEAST_FRAMES: f64 = 4.0;
+
+/// Takes times to places on screen and back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::ui) struct Scale {
+    /// The whole width, in points.
+    seen: Rangef,
+    /// When it is a margin right of the left end, in seconds.
+    from: f64,
+    /// When it is a margin left of the right end.
+    to: f64,
+}
+
+/// What is kept from frame to frame: what is seen once it is not the whole timeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Zoom {
+    of: (f64, f64),
+    from: f64,
+    to: f64,
+}
+
+impl Scale {
+    /// What is seen in such a width; all of the timeline if it is another one than before.
+    pub fn load(ui: &Ui, timeline: Timeline, seen: Rangef) -> Self {
+        let of = (timeline.start, timeline.end);
+        let zoom = ui.data(|data| data.get_temp::<Zoom>(id())).filter(|zoom| zoom.of == of);
+        let (from, to) = zoom.map_or(of, |zoom| (zoom.from, zoom.to));
+        Self { seen, from, to }
+    }
+
+    #[cfg(test)]
+    pub fn showing(seen: Rangef, from: f64, to: f64) -> Self {
+        Self { seen, from, to }
+    }
+
+    fn keep(self, ui: &Ui, timeline: Timeline) {
+        let zoom = Zoom { of: (timeline.start, timeline.end), from: self.from, to: self.to };
+        ui.data_mut(|data| data.insert_temp(id(), zoom));
+    }
+
+    /// Shows all of the timeline again.
+    pub fn fit(ui: &Ui) {
+        ui.data_mut(|data| data.remove::<Zoom>(id()));
+    }
+
+    fn width(self) -> f64 {
+        f64::from((self.seen.span() - 2.0 * MARGIN).max(1.0))
+    }
+
+    pub fn points_per_second(self) -> f64 {
+        self.width() / (self.to - self.from)
+    }
+
+    pub fn x(self, time: f64) -> f32 {
+        let x = (time - self.from) * self.points_per_second();
+        // What is far out of sight stays there, and finite.
+        self.seen.min + MARGIN + x.clamp(-1e6, 1e6) as f32
+    }
+
+    pub fn time(self, x: f32) -> f64 {
+        self.from + f64::from(x - self.seen.min - MARGIN) / self.points_per_second()
+    }
+
+    /// The first and the last time that is seen.
+    pub fn range(self) -> (f64, f64) {
+        (self.time(self.seen.min), self.time(self.seen.max))
+    }
+
+    /// The wheel shows more or less, about the pointer; with Shift or across, and by the middle
+    /// button, it goes on to other times. What is played stays in sight.
+    pub fn follow_input(&mut self, ui: &Ui, session: &Session, area: Rect, is_panning: bool) {
+        let before = *self;
+        let timeline = session.document().timeline;
+        if session.is_playing() {
+            self.reveal(session.time());
+        }
+        let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
+            self.keep_if_other(ui, before, timeline);
+            return;
+        };
+        if is_panning {
+            self.pan(-ui.input(|input| input.pointer.delta().x));
+        }
+        if ui.rect_contains_pointer(area) {
+            for event in ui.input(|input| input.events.clone()) {
+                match event {
+                    Event::Zoom(factor) => self.zoom(pointer.x, f64::from(factor), timeline),
+                    Event::MouseWheel { unit, delta, modifiers, .. } => {
+                        let steps = match unit {
+                            MouseWheelUnit::Point => delta / POINTS_PER_STEP,
+                            MouseWheelUnit::Line => delta,
+                            MouseWheelUnit::Page => delta * 10.0,
+                        };
+                        let across = if modifiers.shift { steps.x + steps.y } else { steps.x };
+                        self.pan(-across * POINTS_PER_STEP);
+                        if !modifiers.shift {
+                            self.zoom(pointer.x, WHEEL.powf(f64::from(steps.y)), timeline);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        self.keep_if_other(ui, before, timeline);
+    }
+
+    fn keep_if_other(self, ui: &Ui, before: Self, timeline: Timeline) {
+        if self != before {
+            self.keep(ui, timeline);
+        }
+    }
+
+    fn pan(&mut self, points: f32) {
+        let farthest = 2.0 * Timeline::FARTHEST;
+        let by = f64::from(points) / self.points_per_second();
+        let by = by.clamp(-farthest - self.from, farthest - self.to);
+        self.from += by;
+        self.to += by;
+    }
+
+    /// The time at x stays where it is.
+    fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
+        let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
+        let span = self.to - self.from;
+        let asked = (span / factor).clamp(least, 4.0 * Timeline::FARTHEST);
+        if !asked.is_finite() {
+            return;
+        }
+        let fixed = self.time(x);
+        self.from = fixed - (fixed - self.from) * asked / span;
+        self.to = self.from + asked;
+    }
+
+    /// Turns the page when the time leaves it.
+    fn reveal(&mut self, time: f64) {
+        let span = self.to - self.from;
+        if !(self.from..=self.to).contains(&time) {
+            (self.from, self.to) = (time, time + span);
+        }
+    }
+}
+
+fn id() -> Id {
+    Id::unique("timeline zoom")
+}

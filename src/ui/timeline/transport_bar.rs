@@ -1,0 +1,258 @@
+//! Playing: to start and end, from key to key, how fast, from when to when, and the making of keys.
+
+use egui::{ComboBox, RichText, Ui};
+
+use super::keyboard;
+use crate::document::Timeline;
+use crate::session::{Action, Session};
+use crate::ui::style;
+use crate::ui::widgets::{self, Icon, IconButton, Number, format};
+
+/// In a narrower window numbers stand without their names.
+const ROOMY: f32 = 1180.0;
+const GAP: f32 = 8.0;
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let roomy = ui.available_width() > ROOMY;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.set_height(28.0);
+        buttons(ui, session, actions);
+        ui.add_space(GAP);
+        time(ui, session, roomy, actions);
+        ui.add_space(GAP);
+        keying(ui, session, actions);
+        ui.add_space(GAP);
+        pace(ui, session, roomy, actions);
+        ui.add_space(GAP);
+        ends(ui, session, roomy, actions);
+        ui.add_space(GAP);
+        curves(ui, session, actions);
+    });
+}
+
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Timeline { start, end, .. } = session.document().timeline;
+    let button =
+        |icon, name, tooltip, disabled| IconButton { icon, name, tooltip, on: None, disabled };
+    let tooltip = "To where the timeline starts (Home, in the timeline)";
+    if button(Icon::Start, "To start", tooltip, None).show(ui) {
+        actions.push(Action::SetTime(start));
+    }
+    let before = keyboard::key_before(session);
+    let tooltip = "To the key before (up arrow, in the timeline)";
+    let why = before.is_none().then_some("There is no key before this time");
+    if button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
+        actions.extend(before.map(Action::SetTime));
+    }
+    play(ui, session, actions);
+    let after = keyboard::key_after(session);
+    let tooltip = "To the key after (down arrow, in the timeline)";
+    let why = after.is_none().then_some("There is no key after this time");
+    if button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
+        actions.extend(after.map(Action::SetTime));
+    }
+    let tooltip = "To where the timeline ends (End, in the timeline)";
+    if button(Icon::End, "To end", tooltip, None).show(ui) {
+        actions.push(Action::SetTime(end));
+    }
+    let looping = session.is_looping();
+    let tooltip = "Whether the time begins again where the timeline ends";
+    let on = Some(looping);
+    if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled: None }).show(ui) {
+        actions.push(Action::SetLooping(!looping));
+    }
+}
+
+fn play(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let playing = session.is_playing();
+    let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let tooltip = "Let the time go on, or stand (Space)";
+    let nothing = "Nothing moves yet: key the rig at two times (K), or let a target go around";
+    let disabled = (!playing && !session.has_motion()).then_some(nothing);
+    if (IconButton { icon, name, tooltip, on: None, disabled }).show(ui) {
+        actions.push(Action::Play(!playing));
+    }
+}
+
+/// A number of the timeline.
+struct Figure<'a> {
+    name: &'a str,
+    /// What stands before it where there is room.
+    label: &'a str,
+    value: f64,
+    unit: &'a str,
+    speed: f32,
+    width: f32,
+    digits: usize,
+    tooltip: &'a str,
+}
+
+impl Figure<'_> {
+    fn show(
+        self,
+        ui: &mut Ui,
+        roomy: bool,
+        is_editing: bool,
+        actions: &mut Vec<Action>,
+        set: impl Fn(f64) -> Action,
+    ) {
+        if roomy && !self.label.is_empty() {
+            ui.add(egui::Label::new(RichText::new(self.label).weak()).selectable(false));
+        }
+        let Self { name, value, unit, speed, width, digits, .. } = self;
+        let format = &|value| format::fixed(value, digits);
+        let number = Number { name, value, unit, speed, width, format };
+        number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
+    }
+
+    /// Shows one that is not the document's: there is nothing to take back.
+    fn show_free(
+        self,
+        ui: &mut Ui,
+        roomy: bool,
+        actions: &mut Vec<Action>,
+        set: impl Fn(f64) -> Action,
+    ) {
+        let mut own = Vec::new();
+        self.show(ui, roomy, true, &mut own, set);
+        own.retain(|action| !matches!(action, Action::BeginEdit | Action::CommitEdit));
+        actions.extend(own);
+    }
+}
+
+fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+    let timeline = session.document().timeline;
+    let rate = f64::from(timeline.frame_rate);
+    let is_dragged = ui.input(|input| input.pointer.any_down());
+    let set = |time| Action::SetTime(if is_dragged { timeline.snapped(time) } else { time });
+    let seconds = Figure {
+        name: "Time",
+        label: "",
+        value: session.time(),
+        unit: " s",
+        speed: 0.25 / rate as f32,
+        width: 70.0,
+        digits: 2,
+        tooltip: "The time in seconds: drag, or click to type. Left and right arrow go a frame, in \
+                  the timeline",
+    };
+    seconds.show_free(ui, roomy, actions, set);
+    let frame = Figure {
+        name: "Frame",
+        label: "Frame",
+        value: (session.time() * rate).round() + 0.0,
+        unit: " f",
+        speed: 0.25,
+        width: 74.0,
+        digits: 0,
+        tooltip: "The time in frames: drag, or click to type",
+    };
+    frame.show_free(ui, roomy, actions, |frame| Action::SetTime(frame.round() / rate));
+}
+
+fn keying(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let channels = session.channels_to_key();
+    let nothing = "There is nothing to key";
+    let why = channels.is_empty().then_some(nothing);
+    let tooltip = "Key the selected channels or joints as they are shown; of an arm hand and elbow \
+                   spin (K)";
+    if widgets::button(ui, "Key", tooltip, why) {
+        actions.push(Action::Key(channels));
+    }
+    let tooltip = "Key all that shapes the rig, and all that has keys (Shift+K)";
+    if widgets::button(ui, "Key all", tooltip, None) {
+        actions.push(Action::Key(session.all_channels()));
+    }
+    let on = session.is_auto_key();
+    let accent = style::accent(ui);
+    let text = RichText::new("Auto-key");
+    let button = if on {
+        let text = text.color(ui.visuals().panel_fill);
+        egui::Button::selectable(true, text).fill(accent)
+    } else {
+        egui::Button::selectable(false, text).frame_when_inactive(true)
+    };
+    let tooltip = match on {
+        true => "Every edit makes keys where the time is. Press to end that",
+        false => "Let every edit make keys where the time is",
+    };
+    if ui.add(button).on_hover_text(tooltip).clicked() {
+        actions.push(Action::SetAutoKey(!on));
+    }
+}
+
+fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+    let speed = Figure {
+        name: "Speed",
+        label: "Speed",
+        value: session.speed(),
+        unit: "×",
+        speed: 0.01,
+        width: 52.0,
+        digits: 2,
+        tooltip: "Seconds of the timeline in one of yours: 0.1 to 4",
+    };
+    speed.show_free(ui, roomy, actions, Action::SetSpeed);
+    frame_rate(ui, session, actions);
+}
+
+fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let timeline = session.document().timeline;
+    let name = |rate: u32| format!("{rate} fps");
+    let combo = ComboBox::from_id_salt("frame rate")
+        .selected_text(name(timeline.frame_rate))
+        .width(72.0)
+        .truncate();
+    let mut rates = Timeline::FRAME_RATES.to_vec();
+    if !rates.contains(&timeline.frame_rate) {
+        rates.push(timeline.frame_rate);
+    }
+    let response = combo.show_ui(ui, |ui| {
+        for frame_rate in rates {
+            let chosen = frame_rate == timeline.frame_rate;
+            if ui.selectable_label(chosen, name(frame_rate)).clicked() && !chosen {
+                actions.push(Action::SetTimeline(Timeline { frame_rate, ..timeline }));
+            }
+        }
+    });
+    let response = response.response;
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Frame rate"));
+    response
+        .on_hover_text("Frames in a second: where times snap to, and what is saved as pictures");
+}
+
+fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+    let timeline = session.document().timeline;
+    let figure = |name, value, tooltip| Figure {
+        name,
+        label: name,
+        value,
+        unit: " s",
+        speed: 0.02,
+        width: 70.0,
+        digits: 2,
+        tooltip,
+    };
+    let is_editing = session.is_editing();
+    let start = figure("Start", timeline.start, "When the timeline starts");
+    start.show(ui, roomy, is_editing, actions, |start| {
+        Action::SetTimeline(Timeline { start, ..timeline })
+    });
+    let end = figure("End", timeline.end, "When the timeline ends");
+    end.show(ui, roomy, is_editing, actions, |end| {
+        Action::SetTimeline(Timeline { end, ..timeline })
+    });
+}
+
+fn curves(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let on = session.preferences().curves;
+    let button = egui::Button::selectable(on, "Curves").frame_when_inactive(true);
+    let tooltip = match on {
+        true => "Show the keys in lanes again",
+        false => "Show how the selected channels go between their keys",
+    };
+    if ui.add(button).on_hover_text(tooltip).clicked() {
+        actions.push(Action::ShowCurves(!on));
+    }
+}

@@ -1,0 +1,99 @@
+//! Orbit, pan and zoom by mouse and trackpad.
+
+use egui::{CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Ui, Vec2};
+
+use super::projection::Picture;
+use crate::document::Camera;
+use crate::session::{Action, Grip, Motion, Navigation, Session};
+
+/// How much nearer a step of the wheel comes.
+const WHEEL: f32 = 1.15;
+
+const POINTS_PER_STEP: f32 = 50.0;
+
+pub(super) fn motion(
+    navigation: Navigation,
+    button: PointerButton,
+    modifiers: egui::Modifiers,
+) -> Option<Motion> {
+    use PointerButton::{Middle, Primary, Secondary};
+    if modifiers.alt {
+        // Works everywhere, also over handles.
+        return match button {
+            Primary => Some(Motion::Orbit),
+            Middle => Some(Motion::Pan),
+            Secondary => Some(Motion::Zoom),
+            _ => None,
+        };
+    }
+    match (navigation, button) {
+        (Navigation::Maya, _) => None,
+        (_, Middle) if modifiers.shift => Some(Motion::Pan),
+        (_, Middle) if modifiers.command => Some(Motion::Zoom),
+        (_, Middle) => Some(Motion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Primary) => Some(Motion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Secondary) => Some(Motion::Pan),
+        _ => None,
+    }
+}
+
+pub(super) fn wheel(
+    ui: &Ui,
+    session: &Session,
+    picture: &Picture,
+    pointer: Pos2,
+    actions: &mut Vec<Action>,
+) {
+    let mut camera = session.settled_camera();
+    let (at, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
+    let trackpad = session.preferences().navigation == Navigation::Trackpad;
+    ui.input(|input| {
+        for event in &input.events {
+            match event {
+                Event::Zoom(factor) => camera = camera.zoomed(1.0 / factor, at, aspect),
+                Event::MouseWheel { unit, delta, modifiers, .. } => {
+                    let steps = match unit {
+                        MouseWheelUnit::Point => *delta / POINTS_PER_STEP,
+                        MouseWheelUnit::Line => *delta,
+                        MouseWheelUnit::Page => *delta * 10.0,
+                    };
+                    camera = if trackpad && !modifiers.command {
+                        scrolled(camera, steps, modifiers.shift, aspect)
+                    } else {
+                        let steps = if steps.y == 0.0 { steps.x } else { steps.y };
+                        camera.zoomed(WHEEL.powf(-steps), at, aspect)
+                    };
+                }
+                _ => {}
+            }
+        }
+    });
+    if camera != session.settled_camera() {
+        actions.push(Action::SetCamera(camera));
+    }
+}
+
+/// Two fingers on a trackpad turn the view, with Shift they move it.
+fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
+    const TURN: f32 = 0.15;
+    const PAN: f32 = 0.1;
+    if shift {
+        camera.panned(glam::Vec2::ZERO, glam::Vec2::new(steps.x / aspect, -steps.y) * PAN, aspect)
+    } else {
+        camera.orbited(-steps.x * TURN, -steps.y * TURN)
+    }
+}
+
+pub(super) fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
+    let icon = match (session.drag(), session.view_drag(), grip) {
+        (Some(_), _, _) => CursorIcon::Grabbing,
+        (_, Some(drag), _) => match drag.motion {
+            Motion::Orbit => CursorIcon::Grabbing,
+            Motion::Pan => CursorIcon::Move,
+            Motion::Zoom => CursorIcon::ZoomIn,
+        },
+        (_, _, Some(_)) => CursorIcon::Grab,
+        _ => return,
+    };
+    ui.set_cursor_icon(icon);
+}

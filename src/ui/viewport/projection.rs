@@ -1,0 +1,48 @@
+//! World points to screen points and back.
+
+use egui::{Pos2, Rect, Vec2, vec2};
+use glam::Vec3;
+
+use crate::document::{Camera, Projection, Ray};
+
+/// The picture on screen: takes points of the world to points of the screen and back.
+pub(in crate::ui) struct Picture {
+    pub rect: Rect,
+    pub projection: Projection,
+}
+
+impl Picture {
+    pub fn new(rect: Rect, camera: &Camera) -> Self {
+        Self { rect, projection: camera.projection(rect.aspect_ratio()) }
+    }
+
+    pub fn place(&self, point: Vec3) -> Option<Pos2> {
+        let at = self.projection.project(point)?;
+        Some(self.rect.center() + vec2(at.x, -at.y) * self.rect.size() / 2.0)
+    }
+
+    pub fn ray(&self, at: Pos2) -> Ray {
+        self.projection.ray(self.normalised(at))
+    }
+
+    /// −1 to 1 across and up.
+    pub fn normalised(&self, at: Pos2) -> glam::Vec2 {
+        let from_centre = (at - self.rect.center()) / (self.rect.size() / 2.0);
+        glam::Vec2::new(from_centre.x, -from_centre.y)
+    }
+
+    pub fn units_per_point(&self, at: Vec3) -> f32 {
+        self.projection.half_height_at(at) / (self.rect.height() / 2.0)
+    }
+
+    /// How far from the eye, along the view.
+    pub fn depth(&self, point: Vec3) -> f32 {
+        (point - self.projection.eye).dot(self.projection.forward)
+    }
+
+    /// A short vector of the world at a point, as it lies on screen.
+    pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
+        let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
+        vec2(vector.dot(right), -vector.dot(up)) / self.units_per_point(at)
+    }
+}

@@ -1,0 +1,47 @@
+//! Sliders for angles in degrees.
+
+use egui::Ui;
+use glam::Vec3;
+
+use super::point::AXES;
+use super::slider::Slider;
+use crate::session::{Action, Session};
+use crate::ui::style;
+
+/// A slider of an angle in degrees.
+pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: f32) -> Slider<'a> {
+    Slider {
+        name,
+        label: name,
+        tooltip,
+        value: radians.to_degrees(),
+        range: (-180.0, 180.0),
+        default: 0.0,
+        unit: "°",
+        step: 1.0,
+        ..Slider::default()
+    }
+}
+
+/// Three angles about x, y and z.
+pub(in crate::ui) fn euler_sliders(
+    ui: &mut Ui,
+    session: &Session,
+    name: &str,
+    tooltip: &str,
+    angles: Vec3,
+    actions: &mut Vec<Action>,
+    set: impl Fn(Vec3) -> Action,
+) {
+    let colours = style::palette(ui).axes;
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let name = format!("{name} {label}");
+        let slider = angle_slider(&name, tooltip, angles[axis]);
+        let slider = Slider { label, colour: Some(style::colour(colours[axis])), ..slider };
+        slider.show(ui, session, actions, |degrees| {
+            let mut turned = angles;
+            turned[axis] = degrees.to_radians();
+            set(turned)
+        });
+    }
+}

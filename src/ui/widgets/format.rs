@@ -1,0 +1,64 @@
+//! Numbers as text.
+
+/// In about six letters, whatever its size: with three digits, or as a power of ten.
+pub(in crate::ui) fn short(value: f32) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        ..0.001 => format!("{value:.1e}"),
+        ..10.0 => format!("{value:.3}"),
+        ..1_000.0 => format!("{value:.1}"),
+        ..100_000.0 => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// A whole number with thousands apart: "1,000,000".
+pub(in crate::ui) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// How many digits behind the point show a tenth of a step.
+pub(in crate::ui) fn decimals(step: f32) -> usize {
+    (1.0 - step.log10().floor()).clamp(0.0, 12.0) as usize
+}
+
+/// In seven letters at most, which is what there is room for.
+pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
+    const MOST: usize = 4;
+    // Nothing has no sign.
+    let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
+    match value.abs() {
+        0.0 if decimals > MOST => "0".to_owned(),
+        _ if decimals > MOST => format!("{value:.2e}"),
+        ..99.995 => format!("{value:.decimals$}"),
+        ..9_999.95 => format!("{value:.0$}", decimals.min(1)),
+        ..999_999.5 => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// How many digits behind the point tell a hundredth of a grid's cell.
+pub(in crate::ui) fn decimals_of_cell(cell: f32) -> usize {
+    (2.0 - cell.log10().round()).clamp(0.0, 6.0) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_have_their_thousands_apart() {
+        let cases = [(0, "0"), (999, "999"), (1_000, "1,000"), (12_345_678, "12,345,678")];
+        for (number, text) in cases {
+            assert_eq!(grouped(number), text);
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Buttons with pictures: the fonts have none of their signs.
+
+use egui::{Color32, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo};
+use egui::{pos2, vec2};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::ui) enum Icon {
+    Play,
+    Pause,
+    Start,
+    End,
+    PreviousKey,
+    NextKey,
+    Loop,
+}
+
+/// A button that can be on; its tooltip tells why it cannot be pressed, if it cannot.
+pub(in crate::ui) struct IconButton<'a> {
+    pub icon: Icon,
+    pub name: &'a str,
+    pub tooltip: &'a str,
+    /// Whether it is switched on; nothing if it is no switch.
+    pub on: Option<bool>,
+    pub disabled: Option<&'a str>,
+}
+
+impl IconButton<'_> {
+    /// Whether it was pressed.
+    pub fn show(self, ui: &mut Ui) -> bool {
+        let enabled = self.disabled.is_none();
+        let response = ui.add_enabled_ui(enabled, |ui| self.button(ui)).inner;
+        match self.disabled {
+            Some(why) => response.on_disabled_hover_text(why).clicked(),
+            None => response.on_hover_text(self.tooltip).clicked(),
+        }
+    }
+
+    fn button(&self, ui: &mut Ui) -> Response {
+        let (rect, response) = ui.allocate_exact_size(vec2(28.0, 24.0), Sense::click());
+        let enabled = ui.is_enabled();
+        response.widget_info(|| match self.on {
+            Some(on) => WidgetInfo::selected(Role::Button, enabled, on, self.name),
+            None => WidgetInfo::labeled(Role::Button, enabled, self.name),
+        });
+        let on = self.on == Some(true);
+        let visuals = ui.style().interact_selectable(&response, on);
+        let painter = ui.painter();
+        let round = visuals.corner_radius;
+        painter.rect(
+            rect,
+            round,
+            visuals.weak_bg_fill,
+            visuals.bg_stroke,
+            egui::StrokeKind::Inside,
+        );
+        self.icon.paint(painter, rect.center(), visuals.fg_stroke.color);
+        response
+    }
+}
+
+impl Icon {
+    fn paint(self, painter: &Painter, centre: Pos2, colour: Color32) {
+        let at = |x: f32, y: f32| centre + vec2(x, y);
+        let shape = |points: &[(f32, f32)]| {
+            let points = points.iter().map(|(x, y)| at(*x, *y)).collect();
+            painter.add(Shape::convex_polygon(points, colour, Stroke::NONE));
+        };
+        let bar = |from: f32, to: f32| {
+            painter.rect_filled(Rect::from_min_max(at(from, -5.0), at(to, 5.0)), 0.5, colour);
+        };
+        match self {
+            Self::Play => shape(&[(-4.0, -6.0), (6.0, 0.0), (-4.0, 6.0)]),
+            Self::Pause => {
+                bar(-5.0, -1.5);
+                bar(1.5, 5.0);
+            }
+            Self::Start | Self::End => {
+                let side = if self == Self::Start { -1.0 } else { 1.0 };
+                shape(&[(5.0 * side, 0.0), (-4.0 * side, -5.0), (-4.0 * side, 5.0)]);
+                let (a, b) = (5.0 * side, 6.5 * side);
+                bar(a.min(b), a.max(b));
+            }
+            Self::PreviousKey | Self::NextKey => {
+                let side = if self == Self::PreviousKey { -1.0 } else { 1.0 };
+                shape(&[(-1.5 * side, 0.0), (-8.0 * side, -5.0), (-8.0 * side, 5.0)]);
+                painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
+            }
+            Self::Loop => {
+                let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());
+                let ends = (0.35 * core::f32::consts::PI, 1.85 * core::f32::consts::PI);
+                let points = (0..=20).map(|i| ends.0 + (ends.1 - ends.0) * i as f32 / 20.0);
+                painter.line(points.map(place).collect(), Stroke::new(1.6, colour));
+                shape(&[(7.6, -6.2), (6.6, 0.6), (1.6, -2.8)]);
+            }
+        }
+    }
+}
+
+/// What stands for a key.
+pub(in crate::ui) fn diamond(at: Pos2, size: f32, fill: Color32, stroke: Stroke) -> Shape {
+    let points = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
+    let points = points.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();
+    Shape::convex_polygon(points, fill, stroke)
+}

@@ -1,0 +1,24 @@
+//! The parts that panels are made of. None knows a panel.
+
+mod angle_slider;
+mod button;
+mod error_label;
+mod field;
+pub(in crate::ui) mod format;
+mod icon_button;
+mod number;
+pub(in crate::ui) mod plot;
+mod point;
+mod section;
+mod slider;
+pub(in crate::ui) mod symbol;
+
+pub(in crate::ui) use angle_slider::{angle_slider, euler_sliders};
+pub(in crate::ui) use button::button;
+pub(in crate::ui) use error_label::error_label;
+pub(in crate::ui) use field::Field;
+pub(in crate::ui) use icon_button::{Icon, IconButton, diamond};
+pub(in crate::ui) use number::Number;
+pub(in crate::ui) use point::{AXES, Point};
+pub(in crate::ui) use section::{folded_section, named_section, pair, section, section_with};
+pub(in crate::ui) use slider::Slider;

@@ -1,0 +1,85 @@
+//! Numbers as panels show them, and as they are typed and dragged.
+
+use egui::emath::Numeric;
+use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
+
+use crate::session::Action;
+
+const HEIGHT: f32 = 22.0;
+
+/// A number that is dragged or typed.
+pub(in crate::ui) struct Number<'a, N = f32> {
+    /// What it is called where there is nothing else to see.
+    pub name: &'a str,
+    pub value: N,
+    pub unit: &'a str,
+    /// What a point of the pointer's way adds.
+    pub speed: f32,
+    pub width: f32,
+    pub format: &'a dyn Fn(f64) -> String,
+}
+
+impl<N: Numeric> Number<'_, N> {
+    /// Shows it, always as wide. Pushes what `set` makes of a new value; a drag begins and commits
+    /// an edit, and goes on only while there is one, so that it can be taken back.
+    pub fn show(
+        &self,
+        ui: &mut Ui,
+        is_editing: bool,
+        actions: &mut Vec<Action>,
+        set: impl Fn(N) -> Action,
+    ) -> Response {
+        let mut value = self.value;
+        let number = DragValue::new(&mut value)
+            .speed(self.speed)
+            .suffix(self.unit)
+            .custom_formatter(|value, _| (self.format)(value))
+            .custom_parser(|text| self.parse(text))
+            .clip_text(true)
+            .update_while_editing(false);
+        let size = vec2(self.width, HEIGHT);
+        let right = Layout::right_to_left(Align::Center).with_main_justify(true);
+        let row = ui.allocate_ui_with_layout(size, right, |ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+            ui.spacing_mut().button_padding = vec2(5.0, 1.0);
+            ui.add(number)
+        });
+        let response = row.inner;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
+        if response.drag_started() {
+            actions.push(Action::BeginEdit);
+        }
+        // egui enters what was typed in the pass after the one in which Esc left it.
+        let was_left = ui.data_mut(|data| data.remove_temp::<Left>(response.id)).is_some();
+        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            ui.data_mut(|data| data.insert_temp(response.id, Left));
+            ui.request_repaint();
+        }
+        let dropped = response.dragged() && !response.drag_started() && !is_editing;
+        if response.changed() && was_left {
+            ui.request_repaint();
+        } else if response.changed() && !dropped {
+            actions.push(set(value));
+        }
+        if response.drag_stopped() {
+            actions.push(Action::CommitEdit);
+        }
+        response
+    }
+
+    /// What is typed, with or without the unit. The text that stands for the value as it is keeps
+    /// the value's unseen digits.
+    fn parse(&self, text: &str) -> Option<f64> {
+        let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
+        let text = text.replace('\u{2212}', "-");
+        let value = self.value.to_f64();
+        if text == (self.format)(value) {
+            return Some(value);
+        }
+        text.parse().ok().filter(|value: &f64| value.is_finite())
+    }
+}
+
+/// Marks a number that Esc has just left.
+#[derive(Clone, Copy, Default)]
+struct Left;

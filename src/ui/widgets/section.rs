@@ -1,0 +1,81 @@
+//! What the side panels are made of.
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{
+    Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Rect, Ui, UiBuilder, WidgetText,
+};
+
+/// Below a section.
+const SPACE: f32 = 1.0;
+
+/// A section that can be folded; whether it is, survives a restart.
+pub(in crate::ui) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    named_section(ui, title, title, contents);
+}
+
+/// A section with something of its own at the right of its title.
+pub(in crate::ui) fn section_with(
+    ui: &mut Ui,
+    title: &str,
+    aside: impl FnOnce(&mut Ui),
+    contents: impl FnOnce(&mut Ui),
+) {
+    let header = show_section(ui, title, title, true, contents);
+    let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), header.y_range());
+    let right = Layout::right_to_left(Align::Center);
+    // Beside what is there: it takes no room.
+    aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
+}
+
+/// A section that is folded at first.
+pub(in crate::ui) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    show_section(ui, title, title, false, contents);
+}
+
+/// A section whose title changes; `id` says which it is.
+pub(in crate::ui) fn named_section(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    contents: impl FnOnce(&mut Ui),
+) {
+    show_section(ui, id, title, true, contents);
+}
+
+/// Gives where the title is.
+fn show_section(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    open: bool,
+    contents: impl FnOnce(&mut Ui),
+) -> Rect {
+    let heading = cut(ui, title);
+    let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
+    let shown = header.show_unindented(ui, contents);
+    ui.add_space(SPACE);
+    shown.header_response.rect
+}
+
+/// A title in one line no wider than the panel, whatever a joint is called: a header would make the
+/// panel as wide as its title.
+fn cut(ui: &Ui, title: &str) -> WidgetText {
+    let colour = ui.visuals().strong_text_color();
+    let font = FontId::proportional(13.5);
+    let width = ui.available_width() - ui.spacing().indent - 12.0;
+    let mut job = LayoutJob::simple_singleline(title.to_owned(), font, colour);
+    job.wrap = TextWrapping::truncate_at_width(width.max(24.0));
+    ui.fonts_mut(|fonts| fonts.layout_job(job)).into()
+}
+
+/// A name on the left and what belongs to it on the right.
+pub(in crate::ui) fn pair<T>(
+    ui: &mut Ui,
+    name: &str,
+    contents: impl FnOnce(&mut Ui) -> T,
+) -> InnerResponse<T> {
+    ui.horizontal(|ui| {
+        ui.add(Label::new(name).selectable(false));
+        ui.with_layout(Layout::right_to_left(Align::Center), contents).inner
+    })
+}

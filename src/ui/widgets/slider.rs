@@ -1,0 +1,279 @@
+use egui::{
+    Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
+    Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
+};
+
+use super::format;
+use super::number::Number;
+use super::symbol;
+use crate::session::{Action, Session};
+use crate::ui::keyboard::focus;
+use crate::ui::style;
+
+/// A number that is shown and set: a name, a rail with a thumb, and the value, which can be typed.
+///
+/// It shows any value and never changes one by showing it; the range is the thumb's alone.
+#[derive(Default)]
+pub(in crate::ui) struct Slider<'a> {
+    /// What it is called where there is nothing else to see: "Hand x".
+    pub name: &'a str,
+    /// What stands before the rail; may have a lowered part, as in `d_1`.
+    pub label: &'a str,
+    pub colour: Option<Color32>,
+    pub tooltip: &'a str,
+    pub value: f32,
+    pub range: (f32, f32),
+    pub default: f32,
+    pub unit: &'a str,
+    /// What an arrow key adds; with Shift a tenth of it, by page keys ten times. The value is shown
+    /// to a tenth of it.
+    pub step: f32,
+    /// Why it cannot be set now, if it cannot.
+    pub disabled: Option<&'a str>,
+}
+
+const LABEL_WIDTH: f32 = 60.0;
+const VALUE_WIDTH: f32 = 66.0;
+const HEIGHT: f32 = 22.0;
+const THUMB: f32 = 6.5;
+const RAIL: f32 = 4.0;
+
+/// What Shift makes of a step, and page keys.
+const FINE: f32 = 0.1;
+const PAGE: f32 = 10.0;
+
+impl Slider<'_> {
+    /// Shows the row. Pushes what `set` makes of a new value; a drag begins and commits an edit,
+    /// and goes on only while there is one, so that it can be taken back.
+    pub fn show(
+        self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Vec<Action>,
+        set: impl Fn(f32) -> Action,
+    ) {
+        let label = |ui: &mut Ui, actions: &mut Vec<Action>| {
+            if self.label(ui).double_clicked() {
+                actions.push(set(self.default));
+            }
+        };
+        self.show_after(ui, session, actions, &set, label);
+    }
+
+    /// As [`Self::show`], with something else where the label is.
+    pub fn show_after(
+        &self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Vec<Action>,
+        set: impl Fn(f32) -> Action,
+        head: impl FnOnce(&mut Ui, &mut Vec<Action>),
+    ) {
+        let row = ui.add_enabled_ui(self.disabled.is_none(), |ui| {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 8.0;
+                head(ui, actions);
+                let rail = self.rail(ui);
+                self.edit_by_rail(ui, &rail, session, actions, &set);
+                self.number(ui, session, actions, &set);
+                if rail.double_clicked() {
+                    actions.push(set(self.default));
+                }
+            });
+        });
+        if let Some(why) = self.disabled {
+            row.response.on_disabled_hover_text(why);
+        }
+    }
+
+    fn label(&self, ui: &mut Ui) -> Response {
+        let (rect, response) = ui.allocate_exact_size(vec2(LABEL_WIDTH, HEIGHT), Sense::CLICK);
+        let colour = self.colour.unwrap_or(ui.visuals().text_color());
+        let size = TextStyle::Body.resolve(ui.style()).size;
+        let text = ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(self.label, size, colour)));
+        let at = Align2::LEFT_CENTER.anchor_size(rect.left_center(), text.size()).min;
+        ui.painter().galley(at, text, colour);
+        response.widget_info(|| {
+            WidgetInfo::labeled(egui::Role::Label, true, symbol::spoken(self.label))
+        });
+        response.on_hover_text(self.tooltip)
+    }
+
+    fn rail(&self, ui: &mut Ui) -> Response {
+        let width = ui.available_width() - VALUE_WIDTH - ui.spacing().item_spacing.x;
+        let size = vec2(width.max(40.0), HEIGHT);
+        let (rect, mut response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::slider(true, f64::from(self.value), self.name));
+        ui.ctx().accesskit_node_builder(response.id, |node| {
+            node.set_min_numeric_value(f64::from(self.range.0));
+            node.set_max_numeric_value(f64::from(self.range.1));
+            node.set_numeric_value_step(f64::from(self.step));
+            node.add_action(accesskit::Action::SetValue);
+            node.add_action(accesskit::Action::Increment);
+            node.add_action(accesskit::Action::Decrement);
+        });
+        self.paint(ui, rect, &response);
+        response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+        response.on_hover_text(self.tooltip)
+    }
+
+    fn paint(&self, ui: &Ui, rect: Rect, response: &Response) {
+        let visuals = ui.style().interact(response);
+        let accent = self.colour.unwrap_or(style::accent(ui));
+        let track = Self::track(rect);
+        let bar = |from: f32, to: f32| {
+            Rect::from_center_size(
+                pos2((from + to) / 2.0, rect.center().y),
+                vec2((to - from).abs(), RAIL),
+            )
+        };
+        let round = CornerRadius::same(2);
+        let painter = ui.painter();
+        painter.rect_filled(
+            bar(track.left() - 2.0, track.right() + 2.0),
+            round,
+            ui.visuals().widgets.inactive.bg_fill,
+        );
+        let zero = self.place(track, 0.0_f32.clamp(self.range.0, self.range.1));
+        let thumb = self.place(track, self.value);
+        painter.rect_filled(bar(zero, thumb), round, accent.gamma_multiply(0.7));
+        let centre = pos2(thumb, rect.center().y);
+        painter.circle_filled(centre, THUMB, accent);
+        if response.has_focus() || response.hovered() || response.dragged() {
+            painter.circle_stroke(centre, THUMB + 2.0, (1.5, visuals.fg_stroke.color));
+        }
+    }
+
+    fn track(rect: Rect) -> Rect {
+        rect.shrink2(Vec2::new(THUMB + 2.0, 0.0))
+    }
+
+    fn place(&self, track: Rect, value: f32) -> f32 {
+        let part = (value - self.range.0) / (self.range.1 - self.range.0);
+        track.left() + part.clamp(0.0, 1.0) * track.width()
+    }
+
+    fn edit_by_rail(
+        &self,
+        ui: &Ui,
+        rail: &Response,
+        session: &Session,
+        actions: &mut Vec<Action>,
+        set: &impl Fn(f32) -> Action,
+    ) {
+        let track = Self::track(rail.rect);
+        let pointed = rail.interact_pointer_pos().map(|at| {
+            let part = ((at.x - track.left()) / track.width()).clamp(0.0, 1.0);
+            let value = self.range.0 + part * (self.range.1 - self.range.0);
+            // A pixel is the finest that a pointer can mean.
+            let grain =
+                10.0_f32.powf(((self.range.1 - self.range.0) / track.width()).log10().floor());
+            (value / grain).round() * grain
+        });
+        // From the press on, not only once egui calls it a drag; and a click that the keyboard
+        // makes has no place on the rail.
+        let pressed = rail.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
+        if pressed {
+            rail.request_focus();
+            actions.push(Action::BeginEdit);
+        }
+        let let_go = (rail.clicked() && !rail.double_clicked()) || rail.drag_stopped();
+        let taken_back = ui.input(|input| input.key_pressed(Key::Escape));
+        let held =
+            (rail.is_pointer_button_down_on() || let_go) && is_sliding(session) && !taken_back;
+        if let (true, Some(value)) = (pressed || held, pointed) {
+            actions.push(set(value));
+        }
+        if rail.clicked() || rail.drag_stopped() {
+            actions.push(Action::CommitEdit);
+        }
+        let asked = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
+        if asked != 0.0 {
+            actions.push(set(self.value + asked));
+        }
+        if let Some(end) = self.keyed_end(ui, rail) {
+            actions.push(set(end));
+        }
+        for value in spoken_values(ui, rail) {
+            actions.push(set(value));
+        }
+    }
+
+    /// What the keyboard adds.
+    fn keyed(&self, ui: &Ui, rail: &Response) -> f32 {
+        if !rail.has_focus() {
+            return 0.0;
+        }
+        focus::leave_space(ui, rail.id);
+        let arrows =
+            EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(rail.id, arrows));
+        ui.input(|input| {
+            let pressed = |key: Key| input.num_presses(key) as f32;
+            let step = self.step * if input.modifiers.shift { FINE } else { 1.0 };
+            let arrows = pressed(Key::ArrowRight) + pressed(Key::ArrowUp)
+                - pressed(Key::ArrowLeft)
+                - pressed(Key::ArrowDown);
+            arrows * step + (pressed(Key::PageUp) - pressed(Key::PageDown)) * PAGE * self.step
+        })
+    }
+
+    fn keyed_end(&self, ui: &Ui, rail: &Response) -> Option<f32> {
+        let pressed = |key| rail.has_focus() && ui.input(|input| input.key_pressed(key));
+        if pressed(Key::Home) {
+            Some(self.range.0)
+        } else if pressed(Key::End) {
+            Some(self.range.1)
+        } else {
+            None
+        }
+    }
+
+    /// What a screen reader adds.
+    fn spoken_steps(&self, ui: &Ui, rail: &Response) -> f32 {
+        ui.input(|input| {
+            let asked = |action| input.num_accesskit_action_requests(rail.id, action) as f32;
+            (asked(accesskit::Action::Increment) - asked(accesskit::Action::Decrement)) * self.step
+        })
+    }
+
+    fn number(
+        &self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Vec<Action>,
+        set: &impl Fn(f32) -> Action,
+    ) {
+        let number = Number {
+            name: &format!("{} value", self.name),
+            value: self.value,
+            unit: self.unit,
+            speed: (self.range.1 - self.range.0) / 1000.0,
+            width: VALUE_WIDTH,
+            format: &|value| format::fixed(value, self.decimals()),
+        };
+        let response = number.show(ui, is_sliding(session), actions, set);
+        response.on_hover_text("Drag, or click to type");
+    }
+
+    fn decimals(&self) -> usize {
+        format::decimals(self.step)
+    }
+}
+
+fn spoken_values(ui: &Ui, rail: &Response) -> Vec<f32> {
+    ui.input(|input| {
+        input
+            .accesskit_action_requests(rail.id, accesskit::Action::SetValue)
+            .filter_map(|request| match request.data {
+                Some(accesskit::ActionData::NumericValue(value)) => Some(value as f32),
+                _ => None,
+            })
+            .collect()
+    })
+}
+
+/// True while a slider is dragged, rather than something in the viewport.
+fn is_sliding(session: &Session) -> bool {
+    session.is_editing() && session.drag().is_none()
+}

@@ -1,0 +1,83 @@
+//! The paper's symbols on screen: `θ_e` is shown with a lowered e and read out as "theta e".
+
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Align, Color32, FontFamily, FontId, Label, Response, Role, Ui, WidgetInfo};
+
+/// Text in which what follows an underscore is lowered, as far as the letters and digits go.
+pub(in crate::ui) fn layout(text: &str, size: f32, colour: Color32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let format = |size, valign| TextFormat {
+        font_id: FontId::new(size, FontFamily::Proportional),
+        color: colour,
+        valign,
+        ..Default::default()
+    };
+    for (part, lowered) in parts(text) {
+        let (size, align) =
+            if lowered { (size * 0.72, Align::BOTTOM) } else { (size, Align::Center) };
+        job.append(part, 0.0, format(size, align));
+    }
+    job
+}
+
+/// How a screen reader says it.
+pub(in crate::ui) fn spoken(text: &str) -> String {
+    let mut spoken = String::new();
+    for letter in text.chars() {
+        match letter {
+            'θ' => spoken.push_str("theta"),
+            'φ' => spoken.push_str("phi"),
+            'ψ' => spoken.push_str("psi"),
+            'δ' => spoken.push_str("delta"),
+            '_' => spoken.push(' '),
+            _ => spoken.push(letter),
+        }
+    }
+    spoken
+}
+
+/// A label that shows the symbols and is named by their words.
+pub(in crate::ui) fn label(ui: &mut Ui, text: &str, size: f32, colour: Color32) -> Response {
+    let response = ui.add(Label::new(layout(text, size, colour)).selectable(false));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken(text)));
+    response
+}
+
+/// The text's parts with whether they are lowered.
+fn parts(text: &str) -> impl Iterator<Item = (&str, bool)> {
+    text.split('_').enumerate().flat_map(|(index, part)| {
+        let lowered = if index == 0 {
+            0
+        } else {
+            part.find(|c: char| !c.is_alphanumeric()).unwrap_or(part.len())
+        };
+        let (low, rest) = part.split_at(lowered);
+        [(low, true), (rest, false)].into_iter().filter(|(part, _)| !part.is_empty())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_an_underscore_is_lowered_up_to_its_end() {
+        let found: Vec<_> = parts("θ_e = atan2(o_e, h_e)").collect();
+        let expected = [
+            ("θ", false),
+            ("e", true),
+            (" = atan2(o", false),
+            ("e", true),
+            (", h", false),
+            ("e", true),
+            (")", false),
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn symbols_are_read_out_as_words() {
+        assert_eq!(spoken("θ_e"), "theta e");
+        assert_eq!(spoken("d_1 − d_2 = δ"), "d 1 − d 2 = delta");
+    }
+}
