@@ -35,14 +35,14 @@ fn refusal(text: &str) -> String {
 }
 
 fn shown(skeleton: Skeleton) -> Document {
-    let skeleton = SkeletonRig::new(skeleton);
-    Document { rig: RigKind::Skeleton, skeleton, ..Document::default() }
+    let skeleton_rig = SkeletonRig::new(skeleton);
+    Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() }
 }
 
 /// Where the bases are at a time, and the tips of what nothing hangs from.
 fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
     let document = document.at(time);
-    let skeleton = document.skeleton.at(time);
+    let skeleton = document.skeleton_rig.at(time);
     let pose = skeleton.pose();
     let mut points = HashMap::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {
@@ -79,7 +79,7 @@ fn even_transform(random: &mut Random) -> Affine3A {
 }
 
 fn key_rotations(random: &mut Random, document: &mut Document) {
-    for joint in 0..document.skeleton.skeleton.joints().len() {
+    for joint in 0..document.skeleton().joints().len() {
         for _ in 0..random.below(4) {
             let (time, angles) = (random.within(0.0..1.0), 3.0 * random.angles());
             document.keys.insert(Channel::Rotation(joint), f64::from(time), angles);
@@ -96,7 +96,7 @@ fn random_forests_with_random_keys_come_back_where_they_were() {
         let joints = 1 + random.below(20);
         let mut document = shown(rigs::forest(&mut random, joints));
         let transform = even_transform(&mut random);
-        document.skeleton.skeleton.set_transform(transform).expect("finite");
+        document.skeleton_mut().set_transform(transform).expect("finite");
         document.timeline = Timeline { start: -0.25, end: 1.0, frame_rate: 24 };
         key_rotations(&mut random, &mut document);
         if case % 3 == 0 {
@@ -114,7 +114,7 @@ fn random_forests_with_random_keys_come_back_where_they_were() {
 fn a_single_roots_offset_moves_in_the_file_too() {
     let mut random = Random(2);
     let mut document = shown(rigs::chain(&mut random, 5, 1.0));
-    document.skeleton.skeleton.set_transform(even_transform(&mut random)).expect("finite");
+    document.skeleton_mut().set_transform(even_transform(&mut random)).expect("finite");
     for time in [0.0, 0.5, 1.0] {
         document.keys.insert(Channel::Offset(0), time, random.vector(2.0));
     }
@@ -172,7 +172,7 @@ fn a_file_is_written_as_it_was_read() {
     let first = open(text(&export(&document))).document;
     assert_eq!(first.timeline, document.timeline);
     let again = open(text(&export(&first))).document;
-    assert_eq!(again.skeleton.skeleton.joints().len(), first.skeleton.skeleton.joints().len());
+    assert_eq!(again.skeleton().joints().len(), first.skeleton().joints().len());
     assert_same(&first, &export(&first), 1.0);
 }
 
@@ -238,9 +238,9 @@ fn units_are_chosen() {
     let document = shown(rigs::chain(&mut Random(5), 3, 2.0));
     let length = |document: &Document, unit| {
         let read = open(text(&export_in(document, unit))).document;
-        read.skeleton.skeleton.joints()[1].axis.length()
+        read.skeleton().joints()[1].axis.length()
     };
-    let own = document.skeleton.skeleton.joints()[1].axis.length();
+    let own = document.skeleton().joints()[1].axis.length();
     let inches = Document { metres: Some(0.0254), ..document };
     for (unit, per_unit) in
         [(BvhUnit::Centimetres, 2.54), (BvhUnit::Metres, 0.0254), (BvhUnit::Scene, 1.0)]
@@ -272,7 +272,7 @@ fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
 #[test]
 fn angles_go_on_over_full_turns() {
     let mut document = shown(rigs::chain(&mut Random(7), 3, 1.0));
-    document.skeleton.skeleton.set_transform(even_transform(&mut Random(8))).expect("finite");
+    document.skeleton_mut().set_transform(even_transform(&mut Random(8))).expect("finite");
     for (time, turns) in [(0.0, 0.0), (8.0, 2.0)] {
         let angles = Vec3::new(0.3, -0.2, 1.0) * turns * std::f32::consts::TAU;
         document.keys.insert(Channel::Rotation(1), time, angles);
@@ -302,13 +302,13 @@ fn angles_go_on_over_full_turns() {
 #[test]
 fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
     let mut document = shown(rigs::chain(&mut Random(9), 3, 1.0));
-    let offset = document.skeleton.skeleton.joints()[2].offset;
+    let offset = document.skeleton().joints()[2].offset;
     document.keys.insert(Channel::Offset(2), 0.0, offset);
     document.keys.insert(Channel::Offset(2), 1.0, offset + Vec3::X);
     let exported = export(&document);
     assert_eq!(exported.notes.len(), 1);
     assert!(exported.notes[0].starts_with("the offset of \"j1\" changes"), "{:?}", exported.notes);
-    let read = open(text(&exported)).document.skeleton.skeleton;
+    let read = open(text(&exported)).document.skeleton().clone();
     assert!(read.joints()[2].offset.distance(offset * 100.0) < 1e-3);
 
     let mut arm = Document::default();
@@ -338,17 +338,17 @@ fn an_uneven_or_flat_transform_is_noted_and_written_as_nearly_as_can_be() {
     let mut random = Random(10);
     for scale in [Vec3::new(1.0, 2.0, 1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO] {
         let mut document = shown(rigs::tree(&mut random, 3, 1.0).0);
-        rigs::shake(&mut random, &mut document.skeleton.skeleton);
-        document.skeleton.skeleton.set_transform(Affine3A::from_scale(scale)).expect("finite");
+        rigs::shake(&mut random, document.skeleton_mut());
+        document.skeleton_mut().set_transform(Affine3A::from_scale(scale)).expect("finite");
         let exported = export(&document);
         assert!(exported.notes[0].contains("unevenly"), "{:?}", exported.notes);
         open(text(&exported));
     }
     // Where it is nearly even, turns are nearly right.
     let mut document = shown(rigs::chain(&mut random, 4, 1.0));
-    rigs::shake(&mut random, &mut document.skeleton.skeleton);
+    rigs::shake(&mut random, document.skeleton_mut());
     let nearly = Affine3A::from_scale(Vec3::new(-1.0, 1.00002, 1.0));
-    document.skeleton.skeleton.set_transform(nearly).expect("finite");
+    document.skeleton_mut().set_transform(nearly).expect("finite");
     let exported = export(&document);
     assert_eq!(exported.notes.len(), 1);
     assert_same(&document, &exported, 100.0);
@@ -389,7 +389,7 @@ fn a_very_deep_skeleton_goes_out_and_in() {
     }
     let document = shown(Skeleton::from_joints(joints).expect("a chain"));
     let read = open(text(&export(&document))).document;
-    assert_eq!(read.skeleton.skeleton.joints().len(), Skeleton::MOST_JOINTS);
+    assert_eq!(read.skeleton().joints().len(), Skeleton::MOST_JOINTS);
 }
 
 // In
@@ -402,7 +402,7 @@ const SMALL: &str = "HIERARCHY\nROOT hip\n{\n OFFSET 1 2 3\n CHANNELS 3 Zrotatio
 #[test]
 fn a_small_file_is_read_as_it_says() {
     let Opened { document, warnings, order, skeletons } = open(SMALL);
-    let joints = document.skeleton.skeleton.joints();
+    let joints = document.skeleton().joints();
     let name = |index: usize| (joints[index].name.as_str(), joints[index].parent);
     assert_eq!((name(0), name(1)), (("hip", None), ("knee", Some(0))));
     // A position channel stands in the place of one component of the offset.
@@ -415,7 +415,7 @@ fn a_small_file_is_read_as_it_says() {
     assert_eq!(keyed, [Channel::Rotation(0)]);
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25 });
     assert_eq!((document.rig, document.metres), (RigKind::Skeleton, Some(0.01)));
-    assert_eq!(document.camera, document.skeleton.first_view());
+    assert_eq!(document.camera, document.skeleton_rig.first_view());
     assert_eq!((warnings, order, skeletons), (vec![], vec![0, 1], vec!["hip".to_owned()]));
     assert!(io::parse("x", SMALL, Some("hip")).is_ok());
     let error = io::parse("x", SMALL, Some("knee")).expect_err("no skeleton").to_string();
@@ -492,7 +492,7 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
         let document = open(&text).document;
         // A file of no channels has no frames to tell apart.
         for frame in 0..2 {
-            let pose = document.at(frame as f64 * 0.5).skeleton.skeleton.pose();
+            let pose = document.at(frame as f64 * 0.5).skeleton().pose();
             let size = 400.0 * joints as f64;
             for joint in 0..joints {
                 let expected = expected[frame][joint + 1];
@@ -514,7 +514,7 @@ fn several_roots_are_one_skeleton() {
     let text =
         format!("HIERARCHY\n{}{}MOTION\nFrames: 1\nFrame Time: 1\n", root("a", 1), root("b", 2));
     let document = open(&text).document;
-    let joints = document.skeleton.skeleton.joints();
+    let joints = document.skeleton().joints();
     assert_eq!(
         [0, 1].map(|index| (joints[index].parent, joints[index].offset.x)),
         [(None, 1.0), (None, 2.0)]
@@ -530,7 +530,7 @@ fn names_that_are_there_twice_are_changed_with_a_remark() {
         leaf.repeat(30)
     );
     let Opened { document, warnings, .. } = open(&text);
-    let joints = document.skeleton.skeleton.joints();
+    let joints = document.skeleton().joints();
     assert_eq!(
         [0, 1, 30].map(|index| &joints[index].name),
         ["left arm", "left arm_2", "left arm_31"]
@@ -550,7 +550,7 @@ fn a_bone_goes_to_the_only_child_or_to_the_middle_of_several() {
     let text = "HIERARCHY\nROOT a { OFFSET 0 0 0\n\
         JOINT b { OFFSET 2 4 0 JOINT c { OFFSET 0 6 0 } }\n\
         JOINT d { OFFSET 0 4 0 } }\nMOTION\nFrames: 0\nFrame Time: 1\n";
-    let joints = open(text).document.skeleton.skeleton;
+    let joints = open(text).document.skeleton().clone();
     let axis = |name| joints.joints()[joints.find(name).expect("there")].axis;
     assert_eq!(axis("a"), Vec3::new(1.0, 4.0, 0.0));
     assert_eq!(axis("b"), Vec3::new(0.0, 6.0, 0.0));

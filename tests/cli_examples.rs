@@ -43,7 +43,7 @@ fn with_an_output_its_file_is_written() {
     let output = examples(&["snake", "-o", path.to_str().expect("a path in UTF-8")]);
     assert_eq!(stdout(&output), "");
     let opened = io::open(&path, None).expect("it opens");
-    assert_eq!(opened.document.skeleton.skeleton.joints().len(), 24);
+    assert_eq!(opened.document.skeleton().joints().len(), 24);
 }
 
 #[test]

@@ -117,7 +117,7 @@ fn bvh_goes_out_in_the_chosen_unit_and_comes_in_again() {
     let size = |name: &str| {
         let opened = io::open(&desk.out(name), None).expect("it opens");
         assert!(!opened.skeletons.is_empty(), "it is not saved over");
-        opened.document.skeleton.reach()
+        opened.document.skeleton_rig.reach()
     };
     assert!((size("b.bvh") / size("a.bvh") - 100.0).abs() < 1e-3);
     let again = Desk::new(&fs::read_to_string(desk.out("b.bvh")).expect("read"));

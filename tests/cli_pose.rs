@@ -145,7 +145,7 @@ fn joints_have_the_order_and_the_numbers_of_the_file_and_stand_in_the_world() {
 fn a_transform_takes_the_joints_own_space_to_the_world() {
     for name in ["human", "snake", "degenerate"] {
         let scene = Scene::example(name);
-        let skeleton = io::open(&scene.path, None).expect("opens").document.skeleton;
+        let skeleton = io::open(&scene.path, None).expect("opens").document.skeleton_rig;
         for (joint, own) in scene.pose(&[]).joints.iter().zip(skeleton.skeleton.joints()) {
             let full = Mat4::from_cols_array(&joint.transform);
             assert!(full.transform_point3(Vec3::ZERO).distance(joint.base) < 1e-5);
@@ -337,7 +337,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
     let scene = Scene::new(&io::to_json(&document).expect("written"));
     for time in ["-2", "-0.25", "0", "1.3", "2", "1e9"] {
         let posed = document.at(time.parse().expect("a number"));
-        let pose = posed.skeleton.skeleton.pose();
+        let pose = posed.skeleton().pose();
         let answer = scene.pose(&["--time", time]);
         for (index, joint) in answer.joints.iter().enumerate() {
             assert_eq!((joint.base, joint.tip), (pose.base(index), pose.tip(index)), "{time}");
@@ -351,11 +351,11 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 fn a_time_moves_what_moves_by_itself_and_the_targets() {
     let snake = Scene::example("snake");
     let document = Example::find("snake").expect("there").open().expect("opens").document;
-    let pose = document.skeleton.at(2.5).pose();
+    let pose = document.skeleton_rig.at(2.5).pose();
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(0));
 
     let mut document = keyed_chain();
-    let target = &mut document.skeleton.targets[0];
+    let target = &mut document.skeleton_rig.targets[0];
     target.motion.path = ik_arm::document::TargetPath::Circle;
     let expected = target.at(1.0);
     let scene = Scene::new(&io::to_json(&document).expect("written"));

@@ -18,8 +18,8 @@ fn a_small_skeleton_is_this_table() {
     let thigh = Joint { offset: Vec3::X, ..Joint::new("thigh", Some(0), Vec3::Y) };
     skeleton.add(thigh).expect("joint");
     skeleton.add(Joint::new("point", Some(0), Vec3::ZERO)).expect("joint");
-    let skeleton = SkeletonRig::new(skeleton);
-    let mut document = Document { rig: RigKind::Skeleton, skeleton, ..Document::default() };
+    let skeleton_rig = SkeletonRig::new(skeleton);
+    let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
     document.timeline = Timeline { start: -1.0, end: 0.0, frame_rate: 2 };
     document.keys.insert(Channel::Translation, -1.0, Vec3::ZERO);
     document.keys.insert(Channel::Translation, 0.0, Vec3::new(0.0, 1.0, -0.0));
@@ -70,7 +70,7 @@ fn what_moves_by_itself_moves_in_the_table() {
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     for (frame, row) in rows.records().enumerate().step_by(60) {
         let row = row.expect("a row");
-        let head = document.skeleton.at(document.timeline.time(frame)).pose().base(0);
+        let head = document.skeleton_rig.at(document.timeline.time(frame)).pose().base(0);
         let found = [2, 3, 4].map(|column| row[column].parse::<f32>().expect("a number"));
         assert_eq!(Vec3::from_array(found), head);
     }
@@ -78,8 +78,8 @@ fn what_moves_by_itself_moves_in_the_table() {
 
 #[test]
 fn a_table_of_nothing_has_one_row_and_a_cancelled_one_none() {
-    let skeleton = SkeletonRig::new(Skeleton::default());
-    let mut document = Document { rig: RigKind::Skeleton, skeleton, ..Document::default() };
+    let skeleton_rig = SkeletonRig::new(Skeleton::default());
+    let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
     assert_eq!(table(&document, None), "frame,time\n0,0\n");
     let progress = Progress::default();
     progress.cancel();
@@ -87,7 +87,7 @@ fn a_table_of_nothing_has_one_row_and_a_cancelled_one_none() {
     assert!(matches!(stopped, Err(MotionError::Cancelled(_))));
     let mut far = Joint::new("far", None, Vec3::splat(3e38));
     far.offset = Vec3::splat(3e38);
-    document.skeleton.skeleton.add(far).expect("joint");
+    document.skeleton_mut().add(far).expect("joint");
     let refused = io::to_csv(&document, None, &Progress::default()).expect_err("refused");
     assert_eq!(refused.to_string(), "\"far_tip\" is beyond 3.4028235e38; bring it nearer to 0");
 }

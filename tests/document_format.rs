@@ -42,7 +42,7 @@ fn every_document_is_read_again_bit_for_bit() {
         let opened = open(&json);
         assert_eq!(opened.document, document, "{json}");
         assert_eq!(opened.warnings, []);
-        let joints = document.skeleton.skeleton.joints().len();
+        let joints = document.skeleton().joints().len();
         assert_eq!(opened.order, (0..joints).collect::<Vec<_>>());
         // Equal numbers may differ in the sign of 0; their texts do not.
         assert_eq!(io::to_json(&opened.document).expect("written"), json);
@@ -53,10 +53,10 @@ fn every_document_is_read_again_bit_for_bit() {
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
     document.arm.goal = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
-    document.skeleton.skeleton.change(0, |root| root.rotation.y = -0.0).expect("possible");
+    document.skeleton_mut().change(0, |root| root.rotation.y = -0.0).expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
     assert!(opened.arm.cursor().x.is_sign_negative() && opened.arm.cursor().z.is_sign_positive());
-    assert!(opened.skeleton.skeleton.joints()[0].rotation.y.is_sign_negative());
+    assert!(opened.skeleton().joints()[0].rotation.y.is_sign_negative());
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn random_document(random: &mut Random) -> Document {
     Document {
         rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
         arm,
-        skeleton: rig,
+        skeleton_rig: rig,
         keys,
         timeline,
         metres: random.coin().then(|| random.above_0()),
@@ -238,7 +238,7 @@ fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
         r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]},{"name":"b","parent":0,"axis":[0,2,0]},
            {"name":"c","parent":1},{"name":"d","parent":0,"offset":[0,0,0]}]}"#,
     ));
-    let rig = &opened.document.skeleton;
+    let rig = &opened.document.skeleton_rig;
     let base = |joint| rig.skeleton.base(joint);
     assert_eq!([base(0), base(1), base(2), base(3)].map(|base| base.y), [0.0, 1.0, 3.0, 0.0]);
     assert_eq!(rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
@@ -281,7 +281,7 @@ fn unknown_fields_and_angles_beyond_limits_are_remarked_on_and_do_no_harm() {
                 .to_owned(),
         ]
     );
-    assert_eq!(opened.document.skeleton.skeleton.joints()[0].rotation.x, 0.5);
+    assert_eq!(opened.document.skeleton().joints()[0].rotation.x, 0.5);
 }
 
 #[test]
@@ -649,7 +649,7 @@ fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
 
 #[test]
 fn the_examples_are_what_they_are_called() {
-    let rig = |name| Example::find(name).expect("there").open().expect("opens").document.skeleton;
+    let rig = |name| Example::find(name).expect("there").open().expect("opens").document.skeleton_rig;
     let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
     let arm = Example::find("arm").expect("there").open().expect("opens").document;
     assert_eq!((arm.rig, arm), (RigKind::Arm, Document::default()));
@@ -667,7 +667,7 @@ fn the_examples_are_what_they_are_called() {
 
 #[test]
 fn the_human_stands_on_the_ground_within_its_limits() {
-    let human = Example::find("human").expect("there").open().expect("opens").document.skeleton;
+    let human = Example::find("human").expect("there").open().expect("opens").document.skeleton_rig;
     let joints = human.skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
     assert!(joints.iter().filter(|joint| joint.is_limited()).count() >= 12);
@@ -679,7 +679,7 @@ fn the_human_stands_on_the_ground_within_its_limits() {
 
 #[test]
 fn the_snake_lies_in_an_s() {
-    let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton;
+    let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton_rig;
     let posed = snake.at(0.0).pose();
     let turn = |joint: usize| {
         let (before, after) =

@@ -132,9 +132,9 @@ fn a_guide_that_is_missing_is_noticed() {
 fn example(name: &str) -> Document {
     let example = Example::find(name).expect("an example");
     let mut document = example.open().expect("it opens").document;
-    let goals = document.skeleton.goals(0.0);
-    let options = document.skeleton.solver;
-    chain_ik::solve(&mut document.skeleton.skeleton, &goals, &options).expect("it can be solved");
+    let goals = document.skeleton_rig.goals(0.0);
+    let options = document.skeleton_rig.solver;
+    chain_ik::solve(document.skeleton_mut(), &goals, &options).expect("it can be solved");
     document.camera.distance *= 0.9;
     document
 }
@@ -164,7 +164,7 @@ fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let selected = Overlays { selection: vec![6], ..Overlays::default() };
     let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
-    let bind = document.skeleton.skeleton.bind_pose();
+    let bind = document.skeleton().bind_pose();
     let ghosts = vec![Ghost { method: Method::Ccd, pose: bind }];
     let drawn =
         draw(&Scene::new(&document, &Overlays { ghosts, ..Overlays::default() }, Theme::Dark));

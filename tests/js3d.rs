@@ -33,7 +33,7 @@ fn bones(bones: &str) -> String {
 fn the_smallest_scene_opens() {
     let text = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"bones":[{"extent":[0,1,0]}]}}}}}"#;
     let Opened { document, warnings, order, skeletons } = open(text);
-    let skeleton = &document.skeleton.skeleton;
+    let skeleton = document.skeleton();
     let joint = &skeleton.joints()[0];
     assert_eq!(document.rig, RigKind::Skeleton);
     assert_eq!((joint.name.as_str(), joint.parent, joint.locked), ("bone_0", None, false));
@@ -72,7 +72,7 @@ fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
     };
     let text =
         format!(r#"{{"scene":{{"skinned_meshes":{{{},{}}}}}}}"#, one("zebra", 1), one("ant", 2));
-    let length = |opened: Opened| opened.document.skeleton.skeleton.joints()[0].axis.y;
+    let length = |opened: Opened| opened.document.skeleton().joints()[0].axis.y;
     assert_eq!(open(&text).skeletons, ["zebra", "ant"]);
     assert_eq!(length(open(&text)), 1.0);
     let named = |name| io::parse("x.js3d", &text, Some(name));
@@ -84,7 +84,7 @@ fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
 #[test]
 fn a_radius_and_a_pose_are_taken_over() {
     let opened = open(&bones(r#"{"extent":[0,1,0],"radius":0.25,"pose":[90,-180,720]}"#));
-    let joint = &opened.document.skeleton.skeleton.joints()[0];
+    let joint = &opened.document.skeleton().joints()[0];
     let degrees = joint.rotation.to_array().map(|angle| f64::from(angle).to_degrees() as f32);
     assert_eq!((joint.radius, degrees), (0.25, [90.0, -180.0, 720.0]));
 }
@@ -95,7 +95,7 @@ fn parents_that_follow_their_children_are_brought_before_them() {
         r#"{"extent":[1,0,0],"parent":2},{"extent":[0,1,0],"parent":4294967295},
            {"extent":[0,0,1],"parent":1},{"extent":[0,0,2],"parent":0}"#,
     ));
-    let joints = opened.document.skeleton.skeleton.joints();
+    let joints = opened.document.skeleton().joints();
     let name = |index: usize| joints[opened.order[index]].name.as_str();
     assert_eq!([0, 1, 2, 3].map(name), ["bone_0", "bone_1", "bone_2", "bone_3"]);
     let parent = |index: usize| joints[opened.order[index]].parent;
@@ -112,7 +112,7 @@ fn a_handle_is_a_target_that_the_instances_transform_brings_into_the_world() {
             "handles":[{"bone":1,"target":[1,2,3],"enabled":false},{"bone":0,"target":[0,0,0]}]}}},
         "transforms":{"T":{"translation":[10,20,30],"scale":[-2,1,1]}},
         "instances":{"skinned_meshes":{"I":{"mesh":"X","transform":"T"}}}}}"#;
-    let targets = open(text).document.skeleton.targets;
+    let targets = open(text).document.skeleton_rig.targets;
     let at = |target: usize| (targets[target].joint, targets[target].home, targets[target].enabled);
     assert_eq!(targets.len(), 2);
     assert_eq!(at(0), (1, Vec3::new(8.0, 22.0, 33.0), false));
@@ -134,7 +134,7 @@ fn of_several_handles_on_a_bone_the_first_enabled_one_counts() {
         let fields =
             format!("\"bones\":[{{\"extent\":[0,1,0]}}],\n\"handles\":[{}]", handles.join(","));
         let opened = open(&skeleton(&fields));
-        let targets = &opened.document.skeleton.targets;
+        let targets = &opened.document.skeleton_rig.targets;
         assert_eq!((targets.len(), targets[0].home.x), (1, counts as f32), "{enabled:?}");
         assert_eq!(opened.warnings.len(), 2);
         for warning in opened.warnings {
@@ -296,7 +296,7 @@ fn bones_stand_where_the_formulas_of_the_format_put_them() {
         let scene = Scene::random(&mut Random(seed));
         let text = scene.text();
         let Opened { document, order, .. } = open(&text);
-        let pose = document.skeleton.skeleton.pose();
+        let pose = document.skeleton().pose();
         assert_eq!(order.len(), scene.bones.len());
         for (bone, &joint) in order.iter().enumerate() {
             let full = scene.full(bone);
@@ -314,7 +314,7 @@ fn bones_stand_where_the_formulas_of_the_format_put_them() {
 fn tiny_and_huge_bones_have_a_frame() {
     for extent in ["[1e-45,0,0]", "[3e38,-3e38,3e38]", "[1,1e-40,0]", "[0,-1e-44,1e-44]"] {
         let opened = open(&bones(&format!("{{\"extent\":{extent},\"roll\":30}}")));
-        let frame = opened.document.skeleton.skeleton.joints()[0].frame;
+        let frame = opened.document.skeleton().joints()[0].frame;
         let squared = frame.transpose() * frame;
         assert!(squared.abs_diff_eq(glam::Mat3::IDENTITY, 1e-6), "{extent}: {frame}");
     }
@@ -477,7 +477,7 @@ fn long_chains_and_too_many_bones_are_no_trouble() {
     };
     let opened = open(&chain(10_000));
     let first = opened.order[0];
-    assert_eq!((first, opened.document.skeleton.skeleton.pose().tip(first).y), (9_999, 10_000.0));
+    assert_eq!((first, opened.document.skeleton().pose().tip(first).y), (9_999, 10_000.0));
     let expected = "scene.skinned_meshes.X.skeleton.bones: a skeleton has at most 10000 joints";
     assert_eq!(refusal(&chain(10_001)), format!("test.js3d, line 2, column 9: {expected}"));
 }

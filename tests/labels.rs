@@ -24,7 +24,7 @@ fn named(names: &[&str]) -> Scene {
         skeleton.add(joint).expect("a joint");
     }
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.skeleton.skeleton = skeleton;
+    *document.skeleton_mut() = skeleton;
     document.display = Display::from_iter([Overlay::Labels]);
     let selection = (0..names.len()).collect();
     let mut scene =

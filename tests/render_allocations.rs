@@ -81,7 +81,7 @@ fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
 /// A skeleton of one joint with its name.
 fn named(name: &str) -> Scene {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.skeleton.skeleton = Skeleton::with_root(name);
+    *document.skeleton_mut() = Skeleton::with_root(name);
     let overlays = Overlays { selection: vec![0], ..Overlays::default() };
     Scene::new(&document, &overlays, Theme::Dark)
 }

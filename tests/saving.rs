@@ -28,7 +28,7 @@ fn document(joints: usize) -> Document {
     };
     let skeleton = Skeleton::from_joints((0..joints).map(joint).collect()).expect("a skeleton");
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.skeleton.skeleton = skeleton;
+    *document.skeleton_mut() = skeleton;
     document
 }
 

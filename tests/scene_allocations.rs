@@ -87,13 +87,13 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
     let opened = Example::find("ten-joints").expect("an example").open().expect("it opens");
     let mut document = opened.document;
     document.display = all_layers_but_onion_skins();
-    let joints = document.skeleton.skeleton.joints().len();
+    let joints = document.skeleton().joints().len();
     assert!(joints >= 10);
-    let target = document.skeleton.targets.first_mut().expect("a target");
+    let target = document.skeleton_rig.targets.first_mut().expect("a target");
     target.motion.path = TargetPath::FigureEight;
     for (time, angle) in [(0.0, 0.2), (1.0, 0.9)] {
         let turned = Vec3::splat(angle);
-        document.skeleton.skeleton.set_rotation(3, turned).expect("a joint");
+        document.skeleton_mut().set_rotation(3, turned).expect("a joint");
         document.key(Channel::Rotation(3), time);
     }
     let mut stage = Stage::new(document);

@@ -223,7 +223,7 @@ fn session() -> Session {
 }
 
 fn check(session: &Session) -> Result<(), TestCaseError> {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let joints = rig.skeleton.joints();
     prop_assert_eq!(session.skeleton_pose().len(), joints.len());
     prop_assert!(session.selection().iter().all(|joint| *joint < joints.len()));
@@ -314,7 +314,7 @@ proptest! {
         }
         session.apply(Action::CancelEdit);
         if held {
-            prop_assert!(same(session.skeleton(), &shown.skeleton));
+            prop_assert!(same(session.skeleton_rig(), &shown.skeleton_rig));
             prop_assert_eq!(session.arm(), &shown.arm);
             prop_assert_eq!(&session.document().keys, &document.keys);
         }
@@ -433,7 +433,7 @@ fn selected_and_copied_keys_follow_their_joints() {
     let channels: Vec<Channel> = (0..19).map(Channel::Rotation).collect();
     session.apply(Action::Key(channels));
     let name =
-        |session: &Session, joint: usize| session.skeleton().skeleton.joints()[joint].name.clone();
+        |session: &Session, joint: usize| session.skeleton().joints()[joint].name.clone();
     let foot = name(&session, 15);
     session.apply(Action::SelectKeys(vec![(Channel::Rotation(15), 0.0)]));
     session.apply(Action::SelectChannels(vec![Channel::Rotation(15)]));
@@ -556,7 +556,7 @@ fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
     let mut session = Session::default();
     session.apply(Action::OpenExample(Example::find("two-targets").expect("an example")));
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
-    let targets: Vec<_> = session.skeleton().targets.clone();
+    let targets: Vec<_> = session.skeleton_rig().targets.clone();
     for (target, home) in targets.iter().zip(apart) {
         session.apply(Action::SetTarget(Target { home, ..*target }));
     }

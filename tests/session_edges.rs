@@ -151,10 +151,10 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
         session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         assert!(session.drag().is_some());
         session.apply(change);
-        let joints = session.skeleton().skeleton.joints().len();
+        let joints = session.skeleton().joints().len();
         session.apply(Action::TypeOffset("0.1".to_owned()));
         assert!(session.drag().is_none() && session.is_editing());
-        assert_eq!(session.skeleton().skeleton.joints().len(), joints);
+        assert_eq!(session.skeleton().joints().len(), joints);
     }
 }
 
@@ -237,7 +237,7 @@ fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
     session.apply(Action::SetRotation { joint: 1, rotation: Vec3::new(1.0, -3.0, 2.0) });
     for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
         session.apply(Action::Reparent { joint, parent });
-        for joint in session.skeleton().skeleton.joints() {
+        for joint in session.skeleton().joints() {
             assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
         }
     }
@@ -311,6 +311,6 @@ fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
             assert!(turned.is_some_and(f32::is_finite), "{turned:?}");
             assert!(session.message().is_none(), "{:?}", session.message());
         }
-        assert!(session.skeleton().skeleton.joints()[0].rotation.is_finite());
+        assert!(session.skeleton().joints()[0].rotation.is_finite());
     }
 }

@@ -45,12 +45,12 @@ fn check(opened: &Opened) {
 }
 
 fn check_skeleton(document: &Document, order: &[usize]) {
-    let rig = &document.skeleton;
+    let rig = &document.skeleton_rig;
     let joints = rig.skeleton.joints();
     assert!(order.iter().all(|joint| *joint < joints.len()), "{order:?}");
     let mut again = Skeleton::from_joints(joints.to_vec()).expect("one that can be");
     again.set_transform(rig.skeleton.transform()).expect("one that can be");
-    assert_eq!(again, rig.skeleton);
+    assert_eq!(again, *rig.skeleton);
 
     let aimed: HashSet<_> = rig.targets.iter().map(|target| target.joint).collect();
     assert_eq!(aimed.len(), rig.targets.len());
@@ -64,8 +64,8 @@ fn check_poses(document: &Document) {
         let at = document.at(time);
         let pose = at.arm.pose();
         assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
-        let skeleton = at.skeleton.at(time);
-        let of_skeleton = at.skeleton.bounds(&skeleton.pose(), time);
+        let skeleton = at.skeleton_rig.at(time);
+        let of_skeleton = at.skeleton_rig.bounds(&skeleton.pose(), time);
         for (centre, radius) in [at.arm.bounds(&pose), of_skeleton] {
             assert!(centre.is_finite() && radius.is_finite(), "{centre} ± {radius} at {time}");
         }

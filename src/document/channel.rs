@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{Arm, Cursor, Document, Overlay, RigKind, SkeletonRig, TwistReferenceKind, Wrist};
-use crate::kinematics::skeleton::{JointRemap, Skeleton};
+use crate::kinematics::skeleton::JointRemap;
 
 /// One thing of a document that keys can change in time.
 ///
@@ -138,7 +138,7 @@ impl Channel {
             let shapes = |channel: &Self| channel.shapes(&document.arm);
             return Self::OF_ARM.into_iter().filter(shapes).collect();
         }
-        let SkeletonRig { skeleton, targets, .. } = &document.skeleton;
+        let SkeletonRig { skeleton, targets, .. } = &document.skeleton_rig;
         let joints = skeleton.joints().iter().enumerate();
         let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
         let mut channels = vec![Self::Translation];
@@ -203,7 +203,7 @@ impl Channel {
     /// The value that a document has; nothing if it has no such joint or target,
     /// or its hand is pinned or not.
     pub fn value(self, document: &Document) -> Option<Vec3> {
-        let Document { arm, skeleton: rig, display, .. } = document;
+        let Document { arm, skeleton_rig: rig, display, .. } = document;
         let number = |value| Vec3::new(value, 0.0, 0.0);
         let switch = |on: bool| number(f32::from(u8::from(on)));
         let target = |joint| Some(rig.targets[rig.target(joint)?]);
@@ -238,7 +238,7 @@ impl Channel {
     /// Gives a document the value, brought within what is valid; nothing happens where it has no
     /// such joint or target.
     pub fn set(self, document: &mut Document, value: Vec3) {
-        let Document { arm, skeleton: rig, display, .. } = document;
+        let Document { arm, skeleton_rig: rig, display, .. } = document;
         let value = value.clamp(Vec3::MIN, Vec3::MAX);
         if value.is_nan() {
             return;
@@ -265,11 +265,22 @@ impl Channel {
             Self::Root => arm.root = value,
             Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),
             Self::Lower => arm.set_lengths(arm.bones.upper(), value.x),
-            Self::Translation => translate(&mut rig.skeleton, value),
-            Self::Rotation(joint) => rig.skeleton.turn(joint, |joint| {
-                joint.rotation = joint.clamped(value);
-            }),
-            Self::Offset(joint) => rig.skeleton.turn(joint, |joint| joint.offset = value),
+            Self::Translation => translate(rig, value),
+            Self::Rotation(joint) => {
+                if let Some(before) = rig.skeleton.joint(joint) {
+                    let rotation = before.clamped(value);
+                    if !is_identical(before.rotation, rotation) {
+                        rig.skeleton_mut().turn(joint, |joint| joint.rotation = rotation);
+                    }
+                }
+            }
+            Self::Offset(joint) => {
+                if let Some(before) = rig.skeleton.joint(joint)
+                    && !is_identical(before.offset, value)
+                {
+                    rig.skeleton_mut().turn(joint, |joint| joint.offset = value);
+                }
+            }
             Self::Target(joint) => {
                 if let Some(target) = rig.target(joint) {
                     rig.targets[target].home = value;
@@ -285,9 +296,16 @@ impl Channel {
     }
 }
 
-fn translate(skeleton: &mut Skeleton, translation: Vec3) {
-    let mut transform = skeleton.transform();
-    transform.translation = translation.into();
-    // Refused only where it is not finite, which it is.
-    let _ = skeleton.set_transform(transform);
+fn translate(rig: &mut SkeletonRig, translation: Vec3) {
+    let mut transform = rig.skeleton.transform();
+    if !is_identical(transform.translation.into(), translation) {
+        transform.translation = translation.into();
+        // Refused only where it is not finite, which it is.
+        let _ = rig.skeleton_mut().set_transform(transform);
+    }
+}
+
+/// Whether two values have the same bits: a value that stays copies nothing that documents share.
+fn is_identical(a: Vec3, b: Vec3) -> bool {
+    a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
 }

@@ -20,9 +20,9 @@ impl Document {
     /// If a child's place below its new parent would not be finite.
     pub fn dissolve(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
         let before = self.clone();
-        let moved = self.skeleton.skeleton.dissolve(joints)?;
+        let moved = self.skeleton_mut().dissolve(joints)?;
         self.follow(&moved);
-        for orphan in orphans(&before.skeleton.skeleton, joints) {
+        for orphan in orphans(before.skeleton(), joints) {
             self.key_orphan(&before, &orphan, &moved)?;
         }
         Ok(moved)
@@ -49,17 +49,17 @@ impl Document {
         times.sort_by(f64::total_cmp);
         times.dedup();
 
-        let mut angles = before.skeleton.skeleton.joints()[orphan.child].rotation;
+        let mut angles = before.skeleton().joints()[orphan.child].rotation;
         for time in times {
             let posed = before.at(time);
-            let skeleton = &posed.skeleton.skeleton;
+            let skeleton = posed.skeleton();
             let offset;
             (offset, angles) = skeleton.placed_under(orphan.child, orphan.parent, angles);
             self.keys.insert(Channel::Rotation(child), time, angles);
             if is_swung || keys.has(Channel::Offset(orphan.child)) {
                 self.keys.insert(Channel::Offset(child), time, offset);
             }
-            self.skeleton.skeleton.change(child, |joint| joint.widen_limits(angles))?;
+            self.skeleton_mut().change(child, |joint| joint.widen_limits(angles))?;
         }
         Ok(())
     }
@@ -88,8 +88,8 @@ mod tests {
     /// Where bases and tips are in the world, by joint name.
     fn places(document: &Document, time: f64) -> Vec<(String, Vec3, Vec3)> {
         let posed = document.at(time);
-        let pose = posed.skeleton.at(time).pose();
-        let joints = posed.skeleton.skeleton.joints().iter().enumerate();
+        let pose = posed.skeleton_rig.at(time).pose();
+        let joints = posed.skeleton().joints().iter().enumerate();
         joints.map(|(at, joint)| (joint.name.clone(), pose.base(at), pose.tip(at))).collect()
     }
 
@@ -97,7 +97,7 @@ mod tests {
         let mut after = document.clone();
         after.dissolve(deleted).expect("dissolved");
         let names: Vec<_> =
-            deleted.iter().map(|at| &document.skeleton.skeleton.joints()[*at].name).collect();
+            deleted.iter().map(|at| &document.skeleton().joints()[*at].name).collect();
         for time in times {
             let mut before = places(document, *time);
             before.retain(|(name, ..)| !names.contains(&name));
@@ -113,11 +113,11 @@ mod tests {
 
     fn human() -> Document {
         let mut document = Example::find("human").expect("there").open().expect("opens").document;
-        let count = document.skeleton.skeleton.joints().len();
+        let count = document.skeleton().joints().len();
         for joint in 0..count {
             let turn = |axis: f32| (joint as f32 * 1.7 + axis).sin() * 0.8;
             let rotation = Vec3::new(turn(0.0), turn(1.0), turn(2.0));
-            document.skeleton.skeleton.set_rotation(joint, rotation).expect("turned");
+            document.skeleton_mut().set_rotation(joint, rotation).expect("turned");
         }
         document
     }
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn children_of_a_deleted_joint_stay_where_they_are() {
         let document = human();
-        let count = document.skeleton.skeleton.joints().len();
+        let count = document.skeleton().joints().len();
         for joint in 0..count {
             assert_children_stay(&document, &[joint], &[0.0]);
         }

@@ -1,21 +1,20 @@
 use core::f32::consts::TAU;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Arm, Channel, Document, HandSpace, Quantity, RigKind, TwistReferenceKind};
+use super::{Arm, Channel, Document, HandSpace, Quantity, RigKind, Shared, TwistReferenceKind};
 use crate::kinematics::skeleton::JointRemap;
 use crate::kinematics::spline::Spline;
 
 /// What changes in time: for every keyed channel, the knots that it goes through.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keys {
-    /// None is empty. Copies share those that neither changes: documents are copied for every picture
-    /// and every step that can be undone.
-    tracks: BTreeMap<Channel, Arc<Spline<Vec3>>>,
+    /// None is empty. An edit copies the map and the tracks that it changes; all others stay shared.
+    tracks: Shared<Tracks>,
 }
+
+type Tracks = BTreeMap<Channel, Shared<Spline<Vec3>>>;
 
 impl Keys {
     pub fn is_empty(&self) -> bool {
@@ -35,14 +34,18 @@ impl Keys {
         self.tracks.contains_key(&channel)
     }
 
-    /// Whether others are the same bit for bit: the signs of zeros too.
-    pub(crate) fn is_identical(&self, other: &Self) -> bool {
-        let is_same = |(a, b): (&Arc<Spline<Vec3>>, &Arc<Spline<Vec3>>)| {
-            let bits = |value: Vec3| value.to_array().map(f32::to_bits);
-            let knots = a.knots().iter().zip(b.knots());
-            Arc::ptr_eq(a, b) || knots.into_iter().all(|(a, b)| bits(a.value) == bits(b.value))
+    /// Bytes that these keys take and `other` does not share.
+    pub(crate) fn unshared_bytes(&self, other: Option<&Self>) -> usize {
+        if other.is_some_and(|other| self.tracks.is_same(&other.tracks)) {
+            return 0;
+        }
+        let is_shared = |channel: &Channel, track: &Shared<_>| {
+            let theirs = other.and_then(|other| other.tracks.get(channel));
+            theirs.is_some_and(|theirs| theirs.is_same(track))
         };
-        self == other && self.tracks.values().zip(other.tracks.values()).all(is_same)
+        let own = self.tracks.iter().filter(|(channel, track)| !is_shared(channel, track));
+        let knots = own.map(|(_, track)| size_of_val(track.knots())).sum::<usize>();
+        self.tracks.len() * size_of::<(Channel, Shared<Spline<Vec3>>)>() + knots
     }
 
     /// How many keys there are in all.
@@ -53,18 +56,15 @@ impl Keys {
     /// Puts a key, in the place of one that is there. Numbers that are not finite are refused.
     pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
         if time.is_finite() && value.is_finite() {
-            Arc::make_mut(self.tracks.entry(channel).or_default()).insert(time, value);
+            self.tracks.make_mut().entry(channel).or_default().make_mut().insert(time, value);
         }
     }
 
     /// Takes a key away, and gives its value.
     pub fn remove(&mut self, channel: Channel, time: f64) -> Option<Vec3> {
-        let track = Arc::make_mut(self.tracks.get_mut(&channel)?);
-        let value = track.remove(time);
-        if track.is_empty() {
-            self.tracks.remove(&channel);
-        }
-        value
+        let value = self.track(channel)?.get(time)?;
+        self.remove_all(&[(channel, time)]);
+        Some(value)
     }
 
     /// Takes many keys away, each named by its channel and time.
@@ -75,21 +75,23 @@ impl Keys {
         }
         for (channel, mut times) in times {
             times.sort_unstable_by(f64::total_cmp);
-            let Some(track) = self.tracks.get_mut(&channel) else { continue };
+            let Some(track) = self.track(channel) else { continue };
             let goes = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
             let left = track.knots().iter().filter(|knot| !goes(knot.time));
             let left: Spline<Vec3> = left.copied().collect();
             if left.is_empty() {
-                self.tracks.remove(&channel);
+                self.clear(channel);
             } else {
-                *track = Arc::new(left);
+                self.tracks.make_mut().insert(channel, Shared::from(left));
             }
         }
     }
 
     /// Takes all keys of a channel away.
     pub fn clear(&mut self, channel: Channel) {
-        self.tracks.remove(&channel);
+        if self.has(channel) {
+            self.tracks.make_mut().remove(&channel);
+        }
     }
 
     /// What a channel is at a time, before it is brought within what is valid there: limits of
@@ -115,9 +117,10 @@ impl Keys {
 
     /// Lets the keys follow their joints to new places; those whose joints are gone go too.
     pub fn follow(&mut self, moved: &JointRemap) {
-        let tracks = std::mem::take(&mut self.tracks).into_iter();
-        let moved = tracks.filter_map(|(channel, track)| Some((channel.moved(moved)?, track)));
-        self.tracks = moved.collect();
+        let follow = |(channel, track): (&Channel, &Shared<Spline<Vec3>>)| {
+            Some((channel.moved(moved)?, track.clone()))
+        };
+        self.tracks = Shared::from(self.tracks.iter().filter_map(follow).collect::<Tracks>());
     }
 }
 
@@ -133,18 +136,15 @@ impl Document {
     /// The document as it stands at a time: every keyed channel has the value that its keys give.
     /// What moves without keys, such as a [`FollowPath`](super::FollowPath), is not in it: see
     /// [`SkeletonRig::at`](super::SkeletonRig::at).
-    pub fn at(&self, time: f64) -> Cow<'_, Self> {
-        if self.keys.is_empty() {
-            return Cow::Borrowed(self);
-        }
+    pub fn at(&self, time: f64) -> Self {
         let mut posed = self.clone();
         posed.keys_to(time);
-        Cow::Owned(posed)
+        posed
     }
 
     /// Whether the pose of the rig that is shown changes in time.
     pub fn is_posed_by_time(&self) -> bool {
-        let slithers = self.rig == RigKind::Skeleton && self.skeleton.follow_path.is_some();
+        let slithers = self.rig == RigKind::Skeleton && self.skeleton_rig.follow_path.is_some();
         slithers || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
     }
 
@@ -198,7 +198,7 @@ impl Document {
 
     /// Gives every keyed channel the value that its keys give at a time.
     pub(crate) fn keys_to(&mut self, time: f64) {
-        let keys = std::mem::take(&mut self.keys);
+        let keys = self.keys.clone();
         if keys.has(Channel::Hand) || keys.has(Channel::Pin) || keys.has(Channel::Root) {
             // Playing never transports.
             self.arm.forget_way();
@@ -208,6 +208,5 @@ impl Document {
                 channel.set(self, value);
             }
         }
-        self.keys = keys;
     }
 }

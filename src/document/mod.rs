@@ -11,6 +11,7 @@ mod display;
 mod dissolve;
 mod follow_path;
 mod keys;
+mod shared;
 mod skeleton;
 mod timeline;
 mod wrist;
@@ -21,13 +22,14 @@ pub use channel::{Channel, Quantity};
 pub use display::{Display, Overlay, Theme};
 pub use follow_path::FollowPath;
 pub use keys::Keys;
+pub use shared::Shared;
 pub use skeleton::{SkeletonRig, Target, TargetMotion, TargetPath};
 pub use timeline::Timeline;
 pub use wrist::{HandSpace, Wrist};
 
 use serde::{Deserialize, Serialize};
 
-use crate::kinematics::skeleton::{JointRemap, SkeletonError};
+use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonError};
 
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,7 +37,7 @@ pub struct Document {
     /// Which rig is shown and edited; the other is kept as it is.
     pub rig: RigKind,
     pub arm: Arm,
-    pub skeleton: SkeletonRig,
+    pub skeleton_rig: SkeletonRig,
     pub keys: Keys,
     pub timeline: Timeline,
     /// Where the shown rig is looked at from.
@@ -66,6 +68,16 @@ impl Document {
         })
     }
 
+    /// The joints of the skeleton rig.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton_rig.skeleton
+    }
+
+    /// The joints of the skeleton rig, to change; copied first if other documents share them.
+    pub fn skeleton_mut(&mut self) -> &mut Skeleton {
+        self.skeleton_rig.skeleton_mut()
+    }
+
     /// Shows a rig, from where it was looked at last.
     pub fn show(&mut self, rig: RigKind) {
         if rig == self.rig {
@@ -84,7 +96,7 @@ impl Document {
                 let (centre, radius) = self.arm.bounds(&self.arm.pose());
                 Camera::default().framing(centre, radius, 1.0)
             }
-            RigKind::Skeleton => self.skeleton.first_view(),
+            RigKind::Skeleton => self.skeleton_rig.first_view(),
         }
     }
 
@@ -94,14 +106,14 @@ impl Document {
     ///
     /// None; [`Document::dissolve`] has some.
     pub fn delete(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
-        let moved = self.skeleton.skeleton.remove(joints);
+        let moved = self.skeleton_mut().remove(joints);
         self.follow(&moved);
         Ok(moved)
     }
 
     /// Lets targets and keys follow their joints to new places.
     pub fn follow(&mut self, moved: &JointRemap) {
-        self.skeleton.follow(moved);
+        self.skeleton_rig.follow(moved);
         self.keys.follow(moved);
     }
 
@@ -110,7 +122,7 @@ impl Document {
     pub fn cell(&self) -> f32 {
         match self.rig {
             RigKind::Arm => self.arm.cell(),
-            RigKind::Skeleton => SkeletonRig::cell(self.skeleton.reach()),
+            RigKind::Skeleton => SkeletonRig::cell(self.skeleton_rig.reach()),
         }
     }
 }

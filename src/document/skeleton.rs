@@ -3,14 +3,14 @@ use core::f32::consts::TAU;
 use glam::{Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 
-use super::{Camera, FollowPath};
+use super::{Camera, FollowPath, Shared};
 use crate::kinematics::chain_ik::{self, SolverOptions};
-use crate::kinematics::skeleton::{Joint, JointRemap, Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonPose};
 
 /// A skeleton with its targets, and how it is brought to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkeletonRig {
-    pub skeleton: Skeleton,
+    pub skeleton: Shared<Skeleton>,
     /// At most one for a joint.
     pub targets: Vec<Target>,
     pub solver: SolverOptions,
@@ -88,7 +88,7 @@ impl SkeletonRig {
     /// A skeleton without targets.
     pub fn new(skeleton: Skeleton) -> Self {
         Self {
-            skeleton,
+            skeleton: Shared::from(skeleton),
             targets: Vec::new(),
             solver: SolverOptions::default(),
             iterations_per_frame: 1,
@@ -96,33 +96,9 @@ impl SkeletonRig {
         }
     }
 
-    /// Whether another is the same bit for bit: the signs of zeros too.
-    pub(crate) fn is_identical(&self, other: &Self) -> bool {
-        let both = self.numbers().zip(other.numbers());
-        self == other && both.into_iter().all(|(a, b)| a.to_bits() == b.to_bits())
-    }
-
-    /// Those that a zero can be among.
-    fn numbers(&self) -> impl Iterator<Item = f32> + '_ {
-        let of_joint = |joint: &Joint| {
-            let vectors = [joint.offset, joint.axis, joint.rotation].map(|it| it.to_array());
-            let limits = joint.limits.map(|limit| limit.map_or([1.0; 2], |it| [it.min, it.max]));
-            let frame = joint.frame.to_cols_array();
-            let all = vectors.into_iter().flatten().chain(limits.into_iter().flatten());
-            all.chain(frame).chain([joint.radius])
-        };
-        let of_target =
-            |target: &Target| target.home.to_array().into_iter().chain([target.motion.radius]);
-        let follow_path = self.follow_path.iter().flat_map(|it| [it.radius, it.amplitude]);
-        let joints = self.skeleton.joints().iter().flat_map(of_joint);
-        let targets = self.targets.iter().flat_map(of_target);
-        self.skeleton
-            .transform()
-            .to_cols_array()
-            .into_iter()
-            .chain(joints)
-            .chain(targets)
-            .chain(follow_path)
+    /// The joints, to change; copied first if other rigs share them.
+    pub fn skeleton_mut(&mut self) -> &mut Skeleton {
+        self.skeleton.make_mut()
     }
 
     /// From where all of it is seen at time 0.
@@ -159,10 +135,10 @@ impl SkeletonRig {
     }
 
     /// The skeleton as it stands at a time.
-    pub fn at(&self, time: f64) -> std::borrow::Cow<'_, Skeleton> {
+    pub fn at(&self, time: f64) -> Shared<Skeleton> {
         match &self.follow_path {
-            None => std::borrow::Cow::Borrowed(&self.skeleton),
-            Some(follow_path) => std::borrow::Cow::Owned(follow_path.pose(&self.skeleton, time)),
+            None => self.skeleton.clone(),
+            Some(follow_path) => Shared::from(follow_path.pose(&self.skeleton, time)),
         }
     }
 

@@ -62,7 +62,7 @@ impl Columns {
                 let names = ["shoulder", "elbow", "hand"].map(str::to_owned).into();
                 Self { names, ends: Vec::new() }
             }
-            RigKind::Skeleton => Self::of_skeleton(&document.skeleton.skeleton),
+            RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
         }
     }
 
@@ -92,7 +92,7 @@ impl Columns {
                 vec![arm.root, arm.root + pose.elbow, arm.root + pose.hand]
             }
             RigKind::Skeleton => {
-                let pose = document.skeleton.at(time).pose();
+                let pose = document.skeleton_rig.at(time).pose();
                 let bases = (0..pose.len()).map(|joint| pose.base(joint));
                 bases.chain(self.ends.iter().map(|joint| pose.tip(*joint))).collect()
             }

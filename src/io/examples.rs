@@ -27,8 +27,8 @@ pub enum Group {
 /// The document of a new window: the arm, and the Human to switch to.
 pub fn new_document() -> Document {
     let human = Example::find("human").and_then(|human| human.open().ok());
-    let skeleton = human.map(|opened| opened.document.skeleton).unwrap_or_default();
-    Document { skeleton, ..Document::default() }
+    let skeleton_rig = human.map(|opened| opened.document.skeleton_rig).unwrap_or_default();
+    Document { skeleton_rig, ..Document::default() }
 }
 
 impl Example {

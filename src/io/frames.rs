@@ -26,7 +26,7 @@ impl Frames {
     ///
     /// As [`Frames::of_pose`].
     pub fn of_picture(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
-        let moves = document.rig == RigKind::Skeleton && document.skeleton.is_moving();
+        let moves = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
         Self::new(document, fps, moves || !document.keys.is_empty())
     }
 

@@ -128,7 +128,7 @@ impl Scene {
                 let arm = &document.arm;
                 (arm.root, arm.bones.outer_limit(), arm.cell())
             }
-            RigKind::Skeleton => skeleton::stage(&document.skeleton, &mut self.scratch),
+            RigKind::Skeleton => skeleton::stage(&document.skeleton_rig, &mut self.scratch),
         };
         self.camera = document.camera;
         self.palette = Palette::new(theme);
@@ -150,7 +150,7 @@ impl Scene {
                     references::add(self, &document.arm, overlays.transported);
                 }
             }
-            RigKind::Skeleton => skeleton::add(self, &document.skeleton, overlays, display),
+            RigKind::Skeleton => skeleton::add(self, &document.skeleton_rig, overlays, display),
         }
         motion::add(self, document, overlays, reach);
         self.leave_out_endless();

@@ -39,7 +39,7 @@ pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, overlays: &Overlays, dis
     let mut scratch = core::mem::take(&mut scene.scratch);
     let Scratch { posed, pose, distances, depths, are_leaves, named } = &mut scratch;
     let skeleton = match &rig.follow_path {
-        None => &rig.skeleton,
+        None => &*rig.skeleton,
         Some(follow_path) => {
             follow_path.write_pose(&rig.skeleton, overlays.time, posed);
             posed

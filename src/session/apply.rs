@@ -87,14 +87,14 @@ impl Session {
             }
             Action::Rename { joint, name } => {
                 self.dialog = None;
-                self.edit_skeleton(|rig| rig.skeleton.rename(joint, name.trim()));
+                self.edit_skeleton(|rig| rig.skeleton_mut().rename(joint, name.trim()));
             }
             Action::Reparent { joint, parent } => self.reparent(joint, parent),
             Action::SetRotation { joint, rotation } => {
-                self.edit_skeleton(|rig| rig.skeleton.set_rotation(joint, rotation));
+                self.edit_skeleton(|rig| rig.skeleton_mut().set_rotation(joint, rotation));
             }
             Action::SetAxis { joint, axis } => {
-                self.edit_skeleton(|rig| rig.skeleton.set_axis(joint, axis));
+                self.edit_skeleton(|rig| rig.skeleton_mut().set_axis(joint, axis));
             }
             Action::SetLimit { joint, axis, limit } => self.set_limit(joint, axis, limit),
             Action::SetLocked { joint, locked } => {

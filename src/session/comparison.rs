@@ -33,7 +33,7 @@ impl Comparison {
             if let Ok(solve) = &solve {
                 history.push(solve.report().error);
             }
-            Runner { method, skeleton: rig.skeleton.clone(), history, time: Duration::ZERO, solve }
+            Runner { method, skeleton: Skeleton::clone(&rig.skeleton), history, time: Duration::ZERO, solve }
         });
         Self { runners: runners.collect() }
     }

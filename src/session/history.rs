@@ -1,26 +1,17 @@
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::document::{Arm, Channel, Display, Document, Keys, RigKind, SkeletonRig, Timeline};
-use crate::kinematics::skeleton::Joint;
-use crate::kinematics::spline::Knot;
+use crate::document::{Channel, Document};
 
 /// Values that keyed channels have against their keys, until the time changes.
 pub(super) type Overrides = BTreeMap<Channel, Vec3>;
 
-/// All of a session that an undo brings back: the document without the view, and what is shown
-/// against its keys. States beside each other in a history share what is the same.
+/// All that an undo restores: a document and its unkeyed edits. It shares with the documents before and
+/// after it what they have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct State {
-    rig: RigKind,
-    arm: Arm,
-    skeleton: Arc<SkeletonRig>,
-    keys: Arc<Keys>,
-    timeline: Timeline,
-    display: Display,
-    metres: Option<f32>,
+    document: Document,
     overrides: Overrides,
     /// When the overrides were made.
     time: f64,
@@ -38,54 +29,37 @@ impl State {
         revision: u64,
         content: u64,
     ) -> Self {
-        let Document { rig, arm, skeleton, keys, timeline, display, metres, .. } = document;
-        Self {
-            rig: *rig,
-            arm: *arm,
-            skeleton: Arc::new(skeleton.clone()),
-            keys: Arc::new(keys.clone()),
-            timeline: *timeline,
-            display: *display,
-            metres: *metres,
-            overrides: overrides.clone(),
-            time,
-            revision,
-            content,
-        }
+        let (document, overrides) = (document.clone(), overrides.clone());
+        Self { document, overrides, time, revision, content }
     }
 
     /// Its document, with the cameras of the one that is open.
     pub fn document(&self, open: &Document) -> Document {
         let mut document = Document {
             rig: open.rig,
-            arm: self.arm,
-            skeleton: SkeletonRig::clone(&self.skeleton),
-            keys: Keys::clone(&self.keys),
-            timeline: self.timeline,
             camera: open.camera,
             other_camera: open.other_camera,
-            display: self.display,
-            metres: self.metres,
+            ..self.document.clone()
         };
-        document.show(self.rig);
+        document.show(self.document.rig);
         document
     }
 
-    /// Whether its document is another one.
+    /// Whether its document is another one, cameras aside.
     pub fn differs_from(&self, document: &Document) -> bool {
-        self.rig != document.rig
-            || self.display != document.display
+        self.document.rig != document.rig
+            || self.document.display != document.display
             || self.differs_in_content_from(document)
     }
 
     /// Whether its document is another one in more than how it is looked at.
-    pub fn differs_in_content_from(&self, document: &Document) -> bool {
-        let Document { arm, skeleton, keys, timeline, metres, .. } = document;
-        self.arm != *arm
-            || *self.skeleton != *skeleton
-            || *self.keys != *keys
-            || self.timeline != *timeline
-            || self.metres != *metres
+    pub fn differs_in_content_from(&self, other: &Document) -> bool {
+        let Document { arm, skeleton_rig, keys, timeline, metres, .. } = &self.document;
+        *arm != other.arm
+            || *skeleton_rig != other.skeleton_rig
+            || *keys != other.keys
+            || *timeline != other.timeline
+            || *metres != other.metres
     }
 
     /// The overrides that are left at a time: at another one than theirs none.
@@ -99,28 +73,21 @@ impl State {
         self.revision == now.revision && self.overrides_at(now.time) == now.overrides
     }
 
-    fn share_with(&mut self, other: &Self) {
-        if self.skeleton.is_identical(&other.skeleton) {
-            self.skeleton = Arc::clone(&other.skeleton);
-        }
-        if self.keys.is_identical(&other.keys) {
-            self.keys = Arc::clone(&other.keys);
-        }
-    }
-
-    /// About how many bytes it takes that `other` does not take already.
-    fn bytes_beside(&self, other: Option<&Self>) -> usize {
-        let shares = |same: fn(&Self, &Self) -> bool| other.is_some_and(|other| same(self, other));
-        let mut bytes = size_of::<Self>();
-        if !shares(|a, b| Arc::ptr_eq(&a.skeleton, &b.skeleton)) {
-            let names = |joint: &Joint| joint.name.len();
-            let joints = self.skeleton.skeleton.joints();
-            bytes += joints.iter().map(names).sum::<usize>() + size_of_val(joints);
-        }
-        if !shares(|a, b| Arc::ptr_eq(&a.keys, &b.keys)) {
-            bytes += self.keys.count() * size_of::<Knot<Vec3>>();
-        }
-        bytes
+    /// About how many bytes it takes that `other` does not share.
+    fn unshared_bytes(&self, other: Option<&Self>) -> usize {
+        let Document { skeleton_rig, keys, .. } = &self.document;
+        let other = other.map(|other| &other.document);
+        let skeleton = &skeleton_rig.skeleton;
+        let is_shared =
+            other.is_some_and(|other| skeleton.is_same(&other.skeleton_rig.skeleton));
+        let joints = if is_shared { &[] } else { skeleton.joints() };
+        let names = joints.iter().map(|joint| joint.name.len()).sum::<usize>();
+        size_of::<Self>()
+            + size_of_val(joints)
+            + names
+            + size_of_val(&*skeleton_rig.targets)
+            + self.overrides.len() * size_of::<(Channel, Vec3)>()
+            + keys.unshared_bytes(other.map(|other| &other.keys))
     }
 }
 
@@ -136,6 +103,8 @@ pub(super) struct History {
 struct Step {
     name: &'static str,
     state: State,
+    /// What it takes beside the step before it.
+    bytes: usize,
 }
 
 impl History {
@@ -143,14 +112,24 @@ impl History {
     const MOST_BYTES: usize = 256 << 20;
 
     /// Notes how everything was before a change.
-    pub fn push(&mut self, name: &'static str, mut before: State) {
+    pub fn push(&mut self, name: &'static str, before: State) {
         self.redo.clear();
-        if let Some(last) = self.undo.back() {
-            before.share_with(&last.state);
-        }
-        self.undo.push_back(Step { name, state: before });
+        self.push_undo(name, before);
         while self.undo.len() > Self::MOST_STEPS || self.bytes() > Self::MOST_BYTES {
-            self.undo.pop_front();
+            self.forget_oldest();
+        }
+    }
+
+    fn push_undo(&mut self, name: &'static str, state: State) {
+        let bytes = state.unshared_bytes(self.undo.back().map(|step| &step.state));
+        self.undo.push_back(Step { name, state, bytes });
+    }
+
+    /// What the oldest step shared with the next one is the next one's alone.
+    fn forget_oldest(&mut self) {
+        self.undo.pop_front();
+        if let Some(oldest) = self.undo.front_mut() {
+            oldest.bytes = oldest.state.unshared_bytes(None);
         }
     }
 
@@ -165,35 +144,28 @@ impl History {
     }
 
     /// Goes a step back from `now`: its name, and how everything was.
-    pub fn undo(&mut self, mut now: State) -> Option<(&'static str, State)> {
+    pub fn undo(&mut self, now: State) -> Option<(&'static str, State)> {
         loop {
-            let Step { name, state } = self.undo.pop_back()?;
+            let Step { name, state, .. } = self.undo.pop_back()?;
             if !state.looks_like(&now) {
-                now.share_with(&state);
-                self.redo.push(Step { name, state: now });
+                self.redo.push(Step { name, state: now, bytes: 0 });
                 return Some((name, state));
             }
         }
     }
 
     /// Goes a step forward from `now`.
-    pub fn redo(&mut self, mut now: State) -> Option<(&'static str, State)> {
+    pub fn redo(&mut self, now: State) -> Option<(&'static str, State)> {
         loop {
-            let Step { name, state } = self.redo.pop()?;
+            let Step { name, state, .. } = self.redo.pop()?;
             if !state.looks_like(&now) {
-                now.share_with(&state);
-                self.undo.push_back(Step { name, state: now });
+                self.push_undo(name, now);
                 return Some((name, state));
             }
         }
     }
 
     fn bytes(&self) -> usize {
-        let before = std::iter::once(None).chain(self.undo.iter().map(Some));
-        self.undo
-            .iter()
-            .zip(before)
-            .map(|(step, before)| step.state.bytes_beside(before.map(|step| &step.state)))
-            .sum()
+        self.undo.iter().map(|step| step.bytes).sum()
     }
 }

@@ -57,7 +57,7 @@ pub use view_drag::{Motion, ViewDrag};
 
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::io;
-use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 use crowd::Crowding;
 use history::{Overrides, State};
@@ -142,7 +142,7 @@ impl Session {
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, document.arm.pose(), 0.0),
             pose: document.arm.pose(),
-            skeleton_pose: document.skeleton.at(0.0).pose(),
+            skeleton_pose: document.skeleton_rig.at(0.0).pose(),
             shown: document.clone(),
             document,
             file: None,
@@ -199,8 +199,14 @@ impl Session {
         &self.shown.arm
     }
 
-    pub fn skeleton(&self) -> &SkeletonRig {
-        &self.shown.skeleton
+    /// The skeleton as it stands now, with its targets.
+    pub fn skeleton_rig(&self) -> &SkeletonRig {
+        &self.shown.skeleton_rig
+    }
+
+    /// The joints of the skeleton rig.
+    pub fn skeleton(&self) -> &Skeleton {
+        self.shown.skeleton()
     }
 
     pub fn camera(&self) -> &Camera {
@@ -302,9 +308,9 @@ impl Session {
         let (centre, radius) = match self.rig() {
             RigKind::Arm => self.arm().bounds(&self.pose),
             RigKind::Skeleton => self
-                .skeleton()
+                .skeleton_rig()
                 .bounds_of(&self.skeleton_pose, &self.selection)
-                .unwrap_or_else(|| self.skeleton().bounds(&self.skeleton_pose, self.playback.time)),
+                .unwrap_or_else(|| self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time)),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -318,7 +324,7 @@ impl Session {
         }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
-            RigKind::Skeleton => self.skeleton().bounds(&self.skeleton_pose, self.playback.time),
+            RigKind::Skeleton => self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -333,11 +339,11 @@ impl Session {
         self.pose = self.shown.arm.pose();
         self.transport_path.go_on(&self.shown.arm);
         self.watch_elbow();
-        self.skeleton_pose = self.shown.skeleton.at(self.playback.time).pose();
+        self.skeleton_pose = self.shown.skeleton_rig.at(self.playback.time).pose();
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);
         self.pointed = self.pointed.filter(|joint| *joint < count);
-        let skeleton = &self.shown.skeleton.skeleton;
+        let skeleton = self.shown.skeleton();
         self.comparison.take_if(|comparison| !comparison.is_of(skeleton));
         self.retain_keys();
     }

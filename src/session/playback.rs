@@ -46,7 +46,7 @@ impl Session {
 
     /// Whether anything changes in time.
     pub fn has_motion(&self) -> bool {
-        !self.document.keys.is_empty() || self.skeleton().is_moving()
+        !self.document.keys.is_empty() || self.skeleton_rig().is_moving()
     }
 
     /// What has ended begins again at its start; what is stopped stands on a frame.

@@ -4,18 +4,18 @@ use super::{Comparison, Session, SolverRun};
 impl Session {
     /// The solver that is under way, or a new one at its start.
     fn solving_or_new(&mut self) -> Option<SolverRun> {
-        if self.skeleton().follow_path.is_some() {
+        if self.skeleton_rig().follow_path.is_some() {
             self.fail("This skeleton follows its head; it has nothing to solve");
             return None;
         }
-        if self.skeleton().goals(self.playback.time).is_empty() {
+        if self.skeleton_rig().goals(self.playback.time).is_empty() {
             self.say("There is no target to solve for; add one to a joint");
             return None;
         }
         if let Some(solver_run) = self.solver_run.take() {
             return Some(solver_run);
         }
-        match SolverRun::new(self.skeleton(), self.playback.time) {
+        match SolverRun::new(self.skeleton_rig(), self.playback.time) {
             Ok(solver_run) => Some(solver_run),
             Err(error) => {
                 self.fail(error.to_string());
@@ -88,7 +88,7 @@ impl Session {
                 return Ok(());
             }
             start.iter().enumerate().try_for_each(|(joint, before)| {
-                rig.skeleton.change(joint, |joint| {
+                rig.skeleton_mut().change(joint, |joint| {
                     (joint.rotation, joint.offset) = (before.rotation, before.offset);
                 })
             })
@@ -100,14 +100,14 @@ impl Session {
         self.stop_run();
         if let Some(solver_run) = self.solving_or_new() {
             self.solver_run = Some(solver_run);
-            self.comparison = Some(Comparison::new(self.skeleton(), self.playback.time));
+            self.comparison = Some(Comparison::new(self.skeleton_rig(), self.playback.time));
         }
     }
 
     /// Lets the solver and the race go on.
     pub(super) fn advance_solvers(&mut self) {
         if self.is_running() {
-            self.iterate(self.skeleton().iterations_per_frame);
+            self.iterate(self.skeleton_rig().iterations_per_frame);
             self.rest();
         }
         if let Some(comparison) = &mut self.comparison {
@@ -118,7 +118,7 @@ impl Session {
     fn iterate(&mut self, iterations: u32) {
         let Some(mut solver_run) = self.solver_run.take() else { return };
         let mut after = self.shown.clone();
-        match solver_run.advance(&mut after.skeleton, self.playback.time, iterations) {
+        match solver_run.advance(&mut after.skeleton_rig, self.playback.time, iterations) {
             Ok(()) => {
                 self.solver_run = Some(solver_run);
                 self.commit(after);

@@ -13,18 +13,18 @@ impl Session {
         &mut self,
         change: impl FnOnce(&mut SkeletonRig) -> Result<T, SkeletonError>,
     ) -> Option<T> {
-        self.edit_document(|document| change(&mut document.skeleton))
+        self.edit_document(|document| change(&mut document.skeleton_rig))
     }
 
     pub(super) fn change_joint(&mut self, joint: usize, change: impl FnOnce(&mut Joint)) {
-        self.edit_skeleton(|rig| rig.skeleton.change(joint, change));
+        self.edit_skeleton(|rig| rig.skeleton_mut().change(joint, change));
     }
 
     /// A joint on the tip of `parent`, with its bone ending at `tip` (world) or going on like the
     /// parent's; on nothing, a new root that is a point.
     pub(super) fn add_joint(&mut self, parent: Option<usize>, tip: Option<Vec3>) {
         let added = self.edit_skeleton(|rig| {
-            let skeleton = &mut rig.skeleton;
+            let skeleton = rig.skeleton_mut();
             let Some(parent) = parent else {
                 let name = skeleton.free_name("root");
                 let root = Joint { locked: true, ..Joint::new(&name, None, Vec3::ZERO) };
@@ -64,7 +64,7 @@ impl Session {
 
     /// Where the bone of the next joint begins, in the world.
     pub fn next_base(&self) -> Vec3 {
-        let origin = self.skeleton().skeleton.transform().translation.into();
+        let origin = self.skeleton().transform().translation.into();
         self.next_parent().map_or(origin, |parent| self.skeleton_pose.tip(parent))
     }
 
@@ -88,7 +88,7 @@ impl Session {
         joints: &[usize],
         delete: fn(&mut Document, &[usize]) -> Result<JointRemap, SkeletonError>,
     ) {
-        let skeleton = &self.skeleton().skeleton;
+        let skeleton = &self.skeleton();
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
         let parents: Vec<usize> = parents.collect();
         let selected = self.selected_in_timeline();
@@ -103,7 +103,7 @@ impl Session {
         let selected = self.selected_in_timeline();
         let before = self.selection.clone();
         let moved = self.edit_document(|document| {
-            let moved = document.skeleton.skeleton.reparent(joint, parent)?;
+            let moved = document.skeleton_mut().reparent(joint, parent)?;
             document.follow(&moved);
             Ok::<_, SkeletonError>(moved)
         });
@@ -125,7 +125,7 @@ impl Session {
     pub(super) fn bind_pose(&mut self) {
         self.edit_skeleton(|rig| {
             (0..rig.skeleton.joints().len())
-                .try_for_each(|joint| rig.skeleton.set_rotation(joint, Vec3::ZERO))
+                .try_for_each(|joint| rig.skeleton_mut().set_rotation(joint, Vec3::ZERO))
         });
     }
 
@@ -133,17 +133,17 @@ impl Session {
         self.edit_skeleton(|rig| {
             let mut transform = rig.skeleton.transform();
             transform.translation = to.into();
-            rig.skeleton.set_transform(transform)
+            rig.skeleton_mut().set_transform(transform)
         });
     }
 
     /// Puts a target where the joint's tip is.
     pub(super) fn add_target(&mut self, joint: usize) {
-        if joint >= self.skeleton_pose.len() || self.skeleton().target(joint).is_some() {
+        if joint >= self.skeleton_pose.len() || self.skeleton_rig().target(joint).is_some() {
             return;
         }
         let home = self.skeleton_pose.tip(joint);
-        let radius = self.skeleton().circle();
+        let radius = self.skeleton_rig().circle();
         self.edit_skeleton(|rig| {
             rig.targets.push(Target::new(joint, home, radius));
             Ok(())
@@ -161,7 +161,7 @@ impl Session {
             self.fail(format!("A weight must be a finite number above 0, not {weight}"));
         } else if !(above_0(motion.period) && motion.radius.is_finite()) {
             self.fail("A target needs a period above 0 and a finite radius");
-        } else if let Some(index) = self.skeleton().target(target.joint) {
+        } else if let Some(index) = self.skeleton_rig().target(target.joint) {
             self.edit_skeleton(|rig| {
                 rig.targets[index] = target;
                 Ok(())
@@ -203,7 +203,7 @@ impl Session {
     /// Takes a target away, with its keys.
     pub(super) fn remove_target(&mut self, joint: usize) {
         self.edit_document(|document| {
-            document.skeleton.targets.retain(|target| target.joint != joint);
+            document.skeleton_rig.targets.retain(|target| target.joint != joint);
             document.keys.clear(Channel::Target(joint));
             document.keys.clear(Channel::Enabled(joint));
             Ok::<_, SkeletonError>(())

@@ -12,14 +12,14 @@ const ITERATIONS_OF_A_DRAG: u32 = 64;
 /// What is dragged of a skeleton.
 impl Session {
     pub(super) fn grab_target(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
-        if let Some(target) = self.skeleton().target(joint) {
-            let at = self.skeleton().targets[target].at(self.playback.time);
+        if let Some(target) = self.skeleton_rig().target(joint) {
+            let at = self.skeleton_rig().targets[target].at(self.playback.time);
             self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
         }
     }
 
     pub(super) fn grab_tip(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
-        if joint < self.skeleton_pose.len() && self.skeleton().follow_path.is_none() {
+        if joint < self.skeleton_pose.len() && self.skeleton_rig().follow_path.is_none() {
             let tip = self.skeleton_pose.tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
@@ -32,7 +32,7 @@ impl Session {
 
     pub(super) fn grab_ring(&mut self, joint: usize, axis: usize, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
-        let start = self.skeleton().skeleton.joints()[joint].rotation[axis];
+        let start = self.skeleton().joints()[joint].rotation[axis];
         let drag = TurnDrag::new(ring, start, ray);
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: DragKind::Turn(drag) }));
     }
@@ -40,7 +40,7 @@ impl Session {
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
     /// limit leaves no room.
     pub fn ring(&self, joint: usize, axis: usize) -> Option<Ring> {
-        let skeleton = &self.skeleton().skeleton;
+        let skeleton = &self.skeleton();
         let limit = skeleton.joint(joint)?.limits.get(axis)?;
         if limit.is_some_and(|limit| limit.min == limit.max) {
             return None;
@@ -67,21 +67,21 @@ impl Session {
     }
 
     fn drag_target(&mut self, joint: usize, to: Vec3) {
-        let Some(index) = self.skeleton().target(joint) else { return };
-        let mut target = self.skeleton().targets[index];
+        let Some(index) = self.skeleton_rig().target(joint) else { return };
+        let mut target = self.skeleton_rig().targets[index];
         target.home = to - target.motion.offset(self.playback.time);
         self.set_target(target);
-        if self.preferences.follow && !self.is_running() && self.skeleton().follow_path.is_none() {
-            let goals = self.skeleton().goals(self.playback.time);
-            let skeleton = self.skeleton().skeleton.clone();
-            self.solve_drag(skeleton, &goals, self.skeleton().solver);
+        if self.preferences.follow && !self.is_running() && self.skeleton_rig().follow_path.is_none() {
+            let goals = self.skeleton_rig().goals(self.playback.time);
+            let skeleton = self.skeleton().clone();
+            self.solve_drag(skeleton, &goals, self.skeleton_rig().solver);
         }
     }
 
     /// The tip follows the pointer from the pose at the press; a root that is a point moves.
     fn drag_tip(&mut self, joint: usize, to: Vec3, moved: Vec3) {
         let Some(edit) = &self.edit else { return };
-        let before = edit.shown.skeleton.skeleton.clone();
+        let before = edit.shown.skeleton().clone();
         let Some(held) = before.joint(joint) else { return };
         if held.parent.is_none() && held.axis == Vec3::ZERO {
             let (transform, offset) = (before.transform(), held.offset);
@@ -89,10 +89,10 @@ impl Session {
             self.change_joint(joint, |joint| joint.offset = offset + moved);
             return;
         }
-        let mut goals = self.skeleton().goals(self.playback.time);
+        let mut goals = self.skeleton_rig().goals(self.playback.time);
         goals.retain(|goal| goal.joint != joint);
         goals.push(chain_ik::TipTarget { joint, point: to, weight: 1.0 });
-        let mut solver = self.skeleton().solver;
+        let mut solver = self.skeleton_rig().solver;
         if solver.method == Method::TwoBone {
             solver.method = Method::Fabrik;
         }
@@ -109,7 +109,7 @@ impl Session {
         let options = SolverOptions { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
         self.edit_document(|document| {
             chain_ik::solve(&mut from, goals, &options)?;
-            document.skeleton.skeleton = from;
+            *document.skeleton_mut() = from;
             Ok::<_, SolveError>(())
         });
     }

@@ -1,6 +1,6 @@
 use std::mem;
 
-use crate::document::SkeletonRig;
+use crate::document::{Shared, SkeletonRig};
 use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
@@ -8,12 +8,12 @@ use crate::kinematics::skeleton::Skeleton;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
     /// The skeleton before the first iteration.
-    start: Skeleton,
+    start: Shared<Skeleton>,
     solve: ChainSolver,
     options: SolverOptions,
     goals: Vec<TipTarget>,
     /// The skeleton as the last iteration left it.
-    written: Skeleton,
+    written: Shared<Skeleton>,
     /// Iterations before the targets moved last, or somebody else turned a joint.
     before: u32,
     history: History,
@@ -102,8 +102,8 @@ impl SolverRun {
             let report = self.solve.step();
             self.history.push(report.error);
         }
-        self.solve.write(&mut rig.skeleton);
-        self.written.clone_from(&rig.skeleton);
+        self.solve.write(rig.skeleton_mut());
+        self.written = rig.skeleton.clone();
         Ok(())
     }
 

@@ -39,7 +39,7 @@ impl SolverState {
 impl Session {
     /// State and residual of the pose that is shown; `None` without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
-        let rig = self.skeleton();
+        let rig = self.skeleton_rig();
         if rig.follow_path.is_some() || rig.goals(self.playback.time).is_empty() {
             return None;
         }

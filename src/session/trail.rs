@@ -1,5 +1,3 @@
-use std::borrow::Cow;
-
 use glam::Vec3;
 
 use super::{OnionSkin, Overlays, Session};
@@ -70,15 +68,13 @@ pub(super) fn write_onion_skins(
     let mut posed = document.at(time);
     let mut made = 0;
     for (place, time) in times.filter(|(_, time)| is_played(*time)) {
-        if let Cow::Owned(posed) = &mut posed {
-            posed.keys_to(time);
-        }
+        posed.keys_to(time);
         if made == skins.len() {
             skins.push(OnionSkin::default());
         }
         let skin = &mut skins[made];
         skin.arm = posed.arm;
-        posed.skeleton.at(time).write_pose(&mut skin.pose);
+        posed.skeleton_rig.at(time).write_pose(&mut skin.pose);
         (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
         made += 1;
     }
@@ -93,7 +89,7 @@ fn walk(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
     let timeline = document.timeline;
     let joints = match (document.rig, joint) {
         (RigKind::Arm, _) => 1,
-        (RigKind::Skeleton, Some(_)) => document.skeleton.skeleton.joints().len(),
+        (RigKind::Skeleton, Some(_)) => document.skeleton().joints().len(),
         (RigKind::Skeleton, None) => return Vec::new(),
     };
     let frames = timeline.frames();
@@ -104,7 +100,7 @@ fn walk(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
         posed.keys_to(time);
         match document.rig {
             RigKind::Arm => Some(posed.arm.root + posed.arm.pose().hand),
-            RigKind::Skeleton => Some(posed.skeleton.at(time).tip(joint?)),
+            RigKind::Skeleton => Some(posed.skeleton_rig.at(time).tip(joint?)),
         }
     };
     (0..frames).step_by(stride).filter_map(point).collect()

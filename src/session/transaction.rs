@@ -46,8 +46,8 @@ impl Session {
             return;
         }
         let [joints_before, joints] =
-            [&self.shown, &after].map(|it| it.skeleton.skeleton.joints().len());
-        let is_rebuilt = is_rebuilt(&self.shown.skeleton.skeleton, &after.skeleton.skeleton);
+            [&self.shown, &after].map(|it| it.skeleton().joints().len());
+        let is_rebuilt = is_rebuilt(self.shown.skeleton(), after.skeleton());
         let has_other_joints = is_rebuilt || joints != joints_before;
         if is_rebuilt {
             self.overrides.clear();
@@ -176,7 +176,7 @@ impl Session {
 
     pub(super) fn restore(&mut self, state: &State) {
         let document = state.document(&self.document);
-        if is_rebuilt(&self.document.skeleton.skeleton, &document.skeleton.skeleton) {
+        if is_rebuilt(self.document.skeleton(), document.skeleton()) {
             // They name joints by their places.
             self.selection.clear();
             self.forget_selected_keys();

@@ -40,7 +40,7 @@ pub(in crate::ui) fn frame_all(session: &Session) -> Action {
 pub(in crate::ui) fn delete(session: &Session) -> Action {
     let joints = session.selection().to_vec();
     let is_left = |parent: Option<usize>| parent.is_some_and(|parent| joints.contains(&parent));
-    let skeleton = &session.skeleton().skeleton;
+    let skeleton = &session.skeleton();
     let leaves_children = skeleton
         .joints()
         .iter()
@@ -55,14 +55,14 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
 
 /// Asks for a joint's name.
 pub(in crate::ui) fn rename(session: &Session, joint: usize) -> Action {
-    let name = session.skeleton().skeleton.joint(joint).map(|joint| joint.name.clone());
+    let name = session.skeleton().joint(joint).map(|joint| joint.name.clone());
     Action::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
 }
 
 /// Gives the selected joint a target, or takes it away.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Action> {
     let joint = session.selected()?;
-    Some(match session.skeleton().target(joint) {
+    Some(match session.skeleton_rig().target(joint) {
         Some(_) => Action::RemoveTarget(joint),
         None => Action::AddTarget(joint),
     })

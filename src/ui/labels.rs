@@ -7,7 +7,7 @@ use crate::session::Session;
 /// As in "Hand" or "left_1 · rotation".
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     let of_joint = |joint: usize, what: &str| {
-        let name = session.skeleton().skeleton.joint(joint).map_or("–", |joint| &joint.name);
+        let name = session.skeleton().joint(joint).map_or("–", |joint| &joint.name);
         format!("{name} · {what}")
     };
     match channel {

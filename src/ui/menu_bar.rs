@@ -28,7 +28,7 @@ pub(in crate::ui) fn ui(
                     weight => format!("Arm · {:.0} % IK", weight * 100.0),
                 },
                 RigKind::Skeleton => {
-                    format!("Skeleton · {}", labels::method(session.skeleton().solver.method))
+                    format!("Skeleton · {}", labels::method(session.skeleton_rig().solver.method))
                 }
             };
             ui.add(Label::new(RichText::new(rig).weak()).selectable(false));

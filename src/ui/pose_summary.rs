@@ -66,7 +66,7 @@ fn describe_crowd(crowd: &Crowd) -> String {
 }
 
 fn describe_skeleton(session: &Session) -> String {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let joints = rig.skeleton.joints();
     let count = |count: usize, one: &str| match count {
         1 => format!("1 {one}"),

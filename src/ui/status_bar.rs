@@ -88,7 +88,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
 /// What was turned, which at a limit is less than the mouse has gone around.
 fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     const AT_LIMIT: f32 = 1e-5;
-    let joints = session.skeleton().skeleton.joints();
+    let joints = session.skeleton().joints();
     let angle = match grip {
         Grip::Ring(joint, axis) => joints.get(joint).map(|joint| joint.rotation[axis.min(2)]),
         _ => None,

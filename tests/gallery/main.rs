@@ -255,15 +255,15 @@ fn moves_as_the_seeds_does(name: &str, length: f32) {
 #[test]
 fn two_bones_in_a_mirror_follow_their_target() {
     let document = opened("mirrored");
-    let mut skeleton = document.skeleton.skeleton.clone();
+    let mut skeleton = document.skeleton().clone();
     assert!(skeleton.transform().matrix3.determinant() < 0.0);
-    let (target, length) = (document.skeleton.targets[0], 1.4);
+    let (target, length) = (document.skeleton_rig.targets[0], 1.4);
     let [_, _, hand] = points(&skeleton);
     within("the hand as it is opened", hand.distance(target.home.as_dvec3()), 1e-4 * length);
     let mut before: Option<[DVec3; 3]> = None;
     for time in times(&document) {
-        let goals = document.skeleton.goals(time);
-        let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton.solver);
+        let goals = document.skeleton_rig.goals(time);
+        let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton_rig.solver);
         assert!(report.expect("it can be solved").converged, "at {time}");
         let at = points(&skeleton);
         within("the hand", at[2].distance(target.at(time).as_dvec3()), 2e-6 * length);

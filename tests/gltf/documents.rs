@@ -27,7 +27,7 @@ pub fn all() -> Vec<(String, Document)> {
             for variant in 0..4 {
                 let mut keyed = keyed_skeleton(document.clone(), &mut random);
                 let place = transform(&mut random);
-                keyed.skeleton.skeleton.set_transform(place).expect("finite");
+                keyed.skeleton_mut().set_transform(place).expect("finite");
                 all.push((format!("{name}-keyed-{variant}"), keyed));
             }
             all.push((format!("{name}-flat"), flat(document.clone())));
@@ -76,9 +76,9 @@ fn led_arm(random: &mut Random) -> Document {
 
 fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
     document.timeline = short();
-    let size = document.skeleton.reach();
-    for joint in 0..document.skeleton.skeleton.joints().len() {
-        let offset = document.skeleton.skeleton.joints()[joint].offset;
+    let size = document.skeleton_rig.reach();
+    for joint in 0..document.skeleton().joints().len() {
+        let offset = document.skeleton().joints()[joint].offset;
         let (turns, moves) = (random.chance(0.7), random.chance(0.2));
         for time in times() {
             if turns {
@@ -97,9 +97,9 @@ fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
 }
 
 fn flat(mut document: Document) -> Document {
-    let mut place = document.skeleton.skeleton.transform();
+    let mut place = document.skeleton().transform();
     place.matrix3.z_axis = glam::Vec3A::ZERO;
-    document.skeleton.skeleton.set_transform(place).expect("finite");
+    document.skeleton_mut().set_transform(place).expect("finite");
     document
 }
 
@@ -108,7 +108,7 @@ fn points() -> Document {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let joint = |name, parent| Joint::new(name, parent, Vec3::ZERO);
     let joints = vec![joint("one", None), joint("two", Some(0)), joint("three", None)];
-    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     document
 }
 
@@ -117,7 +117,7 @@ fn names() -> Document {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let joint = |name, parent| Joint::new(name, parent, Vec3::Y);
     let joints = vec![joint("Armature", None), joint("a", Some(0)), joint("a_tip", Some(0))];
-    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     document
 }
 

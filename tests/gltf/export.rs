@@ -111,7 +111,7 @@ fn the_rest_pose_is_the_bind_pose() {
 fn joints_have_the_documents_names_and_the_leaves_have_tips() {
     let glb = exported(&example("human"));
     let document = example("human");
-    let joints = document.skeleton.skeleton.joints();
+    let joints = document.skeleton().joints();
     let parents: HashSet<usize> = joints.iter().filter_map(|joint| joint.parent).collect();
     for (index, joint) in joints.iter().enumerate() {
         assert_eq!(glb.name(index), joint.name);
@@ -157,7 +157,7 @@ fn an_arm_rests_straight_along_x_in_metres_with_y_along_its_bones() {
 fn a_joints_y_is_along_its_bone() {
     let document = example("human");
     let glb = exported(&document);
-    let bind = document.skeleton.skeleton.bind_pose();
+    let bind = document.skeleton().bind_pose();
     for (joint, world) in glb.worlds().iter().take(bind.len()).enumerate() {
         let along = (bind.tip(joint) - bind.base(joint)).normalize_or_zero();
         let y = world.y_axis.truncate();
@@ -210,12 +210,12 @@ fn every_number_is_finite() {
 #[test]
 fn only_what_leaves_its_rest_has_a_channel() {
     let mut document = example("ten-joints");
-    for joint in 0..document.skeleton.skeleton.joints().len() {
-        document.skeleton.skeleton.set_rotation(joint, Vec3::ZERO).expect("angles");
+    for joint in 0..document.skeleton().joints().len() {
+        document.skeleton_mut().set_rotation(joint, Vec3::ZERO).expect("angles");
     }
     assert!(exported(&document).json.get("animations").is_none());
 
-    document.skeleton.skeleton.set_rotation(4, Vec3::X).expect("angles");
+    document.skeleton_mut().set_rotation(4, Vec3::X).expect("angles");
     let glb = exported(&document);
     let [Moving { node: 4, path, times, .. }] = &channels(&glb)[..] else {
         panic!("another channel")
@@ -251,7 +251,7 @@ fn the_mesh_is_around_the_bind_pose() {
         let high = ends.iter().copied().reduce(Vec3::max).expect("a joint");
         let room = match document.rig {
             RigKind::Arm => 0.1 * document.arm.bones.outer_limit() * document.metres_per_unit(),
-            RigKind::Skeleton => 0.05 * document.skeleton.reach(),
+            RigKind::Skeleton => 0.05 * document.skeleton_rig.reach(),
         };
         for primitive in glb.json["meshes"][0]["primitives"].as_array().expect("primitives") {
             let accessor = index(&primitive["attributes"]["POSITION"]);
@@ -291,7 +291,7 @@ fn the_mesh_has_the_colours_of_the_limbs_on_screen() {
 #[test]
 fn a_skeleton_without_joints_is_refused() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.skeleton.skeleton = Skeleton::default();
+    *document.skeleton_mut() = Skeleton::default();
     assert!(refusal(&document).contains("no joints"));
 }
 
@@ -300,7 +300,7 @@ fn a_joint_that_is_too_far_away_is_named() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let far = Joint { offset: Vec3::X * 3e38, ..Joint::new("far", Some(0), Vec3::Y) };
     let joints = vec![Joint::new("root", None, Vec3::Y), far];
-    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     glb(&document);
     document.metres = Some(10.0);
     assert_eq!(
@@ -316,8 +316,8 @@ fn huge_and_tiny_skeletons_stay_finite() {
         let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
         let tip = Joint { offset: Vec3::Y * size, ..Joint::new("b", Some(0), Vec3::X * size) };
         let joints = vec![Joint::new("a", None, Vec3::Y * size), tip];
-        document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
-        document.skeleton.skeleton.set_rotation(0, Vec3::ONE).expect("angles");
+        *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
+        document.skeleton_mut().set_rotation(0, Vec3::ONE).expect("angles");
         let glb = exported(&document);
         for Moving { values, .. } in channels(&glb) {
             assert!(values.iter().flatten().all(|number| number.is_finite()), "{size}");

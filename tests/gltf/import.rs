@@ -16,7 +16,7 @@ fn open(text: &Text) -> Opened {
 }
 
 fn skeleton(text: &Text) -> Skeleton {
-    open(text).document.skeleton.skeleton
+    open(text).document.skeleton().clone()
 }
 
 fn refusal(text: &str) -> String {
@@ -26,7 +26,7 @@ fn refusal(text: &str) -> String {
 /// Where a joint begins at a time, by its name.
 fn base(opened: &Opened, time: f64, name: &str) -> Vec3 {
     let document = opened.document.at(time);
-    let skeleton = &document.skeleton.skeleton;
+    let skeleton = document.skeleton();
     skeleton.base(skeleton.find(name).expect("a joint"))
 }
 
@@ -47,7 +47,7 @@ fn a_text_and_a_binary_file_give_the_same_joints() {
     let text = Text::chain();
     let opened = open(&text);
     assert_eq!(opened.document.rig, RigKind::Skeleton);
-    let joints = opened.document.skeleton.skeleton.joints();
+    let joints = opened.document.skeleton().joints();
     let told: Vec<_> = joints.iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
     assert_eq!(told, [("a", None), ("b", Some(0)), ("c", Some(1))]);
     assert_eq!(
@@ -73,7 +73,7 @@ fn nodes_between_joints_and_scaled_ones_above_are_in_the_offsets() {
         &[3, 1],
     );
     let opened = open(&text);
-    let joints = opened.document.skeleton.skeleton.joints();
+    let joints = opened.document.skeleton().joints();
     assert_eq!((joints[0].name.as_str(), joints[1].name.as_str()), ("hip", "knee"));
     assert_eq!((joints[1].parent, opened.order.as_slice()), (Some(0), &[1, 0][..]));
     assert_near(joints[0].offset, Vec3::new(2.0, 0.0, 7.0));
@@ -132,7 +132,7 @@ fn a_leaf_called_the_tip_of_its_parent_ends_the_bone() {
         &[0, 1, 2],
     );
     let opened = open(&text);
-    let joints = opened.document.skeleton.skeleton.joints();
+    let joints = opened.document.skeleton().joints();
     assert_eq!((joints.len(), joints[0].axis, joints[1].parent), (2, Vec3::Y * 3.0, Some(0)));
     assert_eq!(opened.order, [0, 1]);
 }
@@ -148,7 +148,7 @@ fn of_several_skins_the_first_is_read_or_the_one_that_is_named() {
     let count = |name| {
         let opened = named(name).expect("it opens");
         assert_eq!(opened.skeletons, ["lamp", "b", "b_2"]);
-        let joints = opened.document.skeleton.skeleton.joints().to_vec();
+        let joints = opened.document.skeleton().joints().to_vec();
         (joints.len(), joints[0].name.clone())
     };
     assert_eq!(count(None), (2, "a".to_owned()));
@@ -254,7 +254,7 @@ fn what_is_constant_has_no_keys_but_is_posed() {
     let opened = open(&text);
     let tracks: Vec<Channel> = opened.document.keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(tracks, [Channel::Rotation(1)]);
-    assert_near(opened.document.skeleton.skeleton.base(2), Vec3::NEG_X * 2.0);
+    assert_near(opened.document.skeleton().base(2), Vec3::NEG_X * 2.0);
 }
 
 #[test]

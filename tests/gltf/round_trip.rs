@@ -19,7 +19,7 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
     let document = document.at(time);
     let named = match document.rig {
         RigKind::Skeleton => {
-            let skeleton = document.skeleton.at(time);
+            let skeleton = document.skeleton_rig.at(time);
             let pose = skeleton.pose();
             let joints = skeleton.joints().iter().enumerate();
             joints.map(|(index, joint)| (joint.name.clone(), pose.base(index))).collect()
@@ -37,7 +37,7 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
 /// The same of an imported document, whose hand is a joint where its bone's length has keys.
 fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
     let document = document.at(time);
-    let skeleton = &document.skeleton.skeleton;
+    let skeleton = document.skeleton();
     let pose = skeleton.pose();
     let joint = |name| skeleton.find(name).map(|joint| pose.base(joint));
     match name {
@@ -82,7 +82,7 @@ fn every_joint_is_where_it_was_in_every_frame() {
         let Opened { document: read, warnings, order, skeletons } = &opened;
         assert_eq!(read.rig, RigKind::Skeleton);
         assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
-        assert_eq!(order.len(), read.skeleton.skeleton.joints().len());
+        assert_eq!(order.len(), read.skeleton().joints().len());
         let moves = document.is_posed_by_time();
         assert_eq!(moves, !read.keys.is_empty(), "{name}");
         check(&name, &document, &opened);
@@ -111,8 +111,8 @@ fn what_stands_still_has_no_keys_and_its_pose() {
 #[test]
 fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
     let document = example("human");
-    let (was, is) = (&document.skeleton.skeleton, reopened(&document).document);
-    let is = &is.skeleton.skeleton;
+    let (was, is) = (document.skeleton(), reopened(&document).document);
+    let is = is.skeleton();
     let names = |skeleton: &Skeleton| -> Vec<String> {
         skeleton.joints().iter().map(|joint| joint.name.clone()).collect()
     };
@@ -128,7 +128,7 @@ fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
 #[test]
 fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
     let read = reopened(&keyed_arm(&mut Random(1))).document;
-    let skeleton = &read.skeleton.skeleton;
+    let skeleton = read.skeleton();
     let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
 }
@@ -143,7 +143,7 @@ fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
         Joint { offset, ..Joint::new(&format!("j{index}"), parent, Vec3::Y) }
     };
     let joints = (0..Skeleton::MOST_JOINTS).map(joint).collect();
-    document.skeleton.skeleton = Skeleton::from_joints(joints).expect("a skeleton");
+    *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     for joint in 0..Skeleton::MOST_JOINTS {
         for (time, angle) in [(0.0, 0.0), (0.125, 0.002)] {
             let angles = Vec3::splat(angle * (joint % 7) as f32);
@@ -151,13 +151,13 @@ fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
         }
     }
     let opened = reopened(&document);
-    let joints = opened.document.skeleton.skeleton.joints();
+    let joints = opened.document.skeleton().joints();
     assert_eq!(joints.len(), Skeleton::MOST_JOINTS);
     assert!(
         opened.document.keys.tracks().all(|(channel, _)| matches!(channel, Channel::Rotation(_)))
     );
     let (was, is) = (document.at(0.125), opened.document.at(0.125));
-    let (was, is) = (was.skeleton.skeleton.pose(), is.skeleton.skeleton.pose());
+    let (was, is) = (was.skeleton().pose(), is.skeleton().pose());
     let gap = (0..was.len()).map(|joint| was.base(joint).distance(is.base(joint)));
     let far = (0..was.len()).map(|joint| was.base(joint).length()).fold(0.0, f32::max);
     assert!(gap.fold(0.0, f32::max) < 1e-5 * far);

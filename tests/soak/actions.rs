@@ -64,7 +64,7 @@ impl Actions {
     }
 
     fn made_smaller(&mut self, session: &Session) -> Option<Action> {
-        let joints = session.skeleton().skeleton.joints().len();
+        let joints = session.skeleton().joints().len();
         let keys = &session.document().keys;
         if joints > Self::HUGE && self.random.chance(0.1) {
             return Some(self.anew(session));

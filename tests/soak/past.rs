@@ -16,7 +16,7 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
     let Document {
         rig: _,
         arm,
-        skeleton,
+        skeleton_rig,
         keys,
         timeline,
         camera: _,
@@ -25,7 +25,7 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         metres,
     } = a;
     *arm == b.arm
-        && *skeleton == b.skeleton
+        && *skeleton_rig == b.skeleton_rig
         && *keys == b.keys
         && *timeline == b.timeline
         && *metres == b.metres

@@ -13,7 +13,7 @@ const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
     arm(session.arm(), session.pose())?;
-    let skeleton = session.skeleton().at(session.time());
+    let skeleton = session.skeleton_rig().at(session.time());
     joints(&skeleton, session.skeleton_pose())?;
     places(session)
 }
@@ -103,7 +103,7 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
 
 /// Whatever is pointed at is there.
 fn places(session: &Session) -> Result<(), Broken> {
-    let joints = session.skeleton().skeleton.joints().len();
+    let joints = session.skeleton().joints().len();
     hold!(session.selection().iter().all(|joint| *joint < joints), "selected joints are there");
     hold!(session.pointed().is_none_or(|joint| joint < joints), "the joint pointed at is there");
     let document = session.document();

@@ -15,9 +15,9 @@ use crate::{Broken, hold};
 
 /// Everything that a file could hold is finite and in its range.
 pub fn document(document: &Document) -> Result<(), Broken> {
-    let Document { arm, skeleton, timeline, camera, other_camera, metres, .. } = document;
+    let Document { arm, skeleton_rig, timeline, camera, other_camera, metres, .. } = document;
     self::arm(arm)?;
-    self::skeleton(skeleton)?;
+    skeleton(skeleton_rig)?;
     self::camera(camera)?;
     other_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
@@ -29,7 +29,7 @@ pub fn document(document: &Document) -> Result<(), Broken> {
 pub fn shown(session: &Session) -> Result<(), Broken> {
     let shown = session.shown();
     arm(&shown.arm)?;
-    skeleton(&shown.skeleton)?;
+    skeleton(&shown.skeleton_rig)?;
     hold!(shown.camera == session.document().camera, "the shown camera is the document's");
     hold!(shown.keys == session.document().keys, "the shown keys are the document's");
     Ok(())

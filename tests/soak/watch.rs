@@ -138,7 +138,7 @@ impl Watch {
             hold!(is_left, "it leaves the document alone");
         }
         if matches!(action, Action::Advance(_) | Action::Step) {
-            let [was, is] = [&before.document, document].map(|it| &it.skeleton.skeleton);
+            let [was, is] = [&before.document, document].map(|it| it.skeleton());
             posed::locked(was, is)?;
         }
         let takes_back = matches!(action, Action::CancelEdit | Action::Undo);

@@ -10,7 +10,7 @@ use crate::bench::Bench;
 const CTRL: Modifiers = Modifiers::COMMAND;
 
 fn names(bench: &Bench) -> Vec<String> {
-    let joints = bench.session().skeleton().skeleton.joints();
+    let joints = bench.session().skeleton().joints();
     joints.iter().map(|joint| joint.name.clone()).collect()
 }
 
@@ -90,12 +90,12 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     bench.hold(Modifiers::NONE);
     bench.settle();
     assert_eq!(names(&bench).len(), 3, "Ctrl+click with nothing selected continues the last one");
-    assert_eq!(bench.session().skeleton().skeleton.joints()[2].parent, Some(1));
+    assert_eq!(bench.session().skeleton().joints()[2].parent, Some(1));
 
     bench.apply([Action::Select(Vec::new())]);
     bench.key(Key::A);
     bench.settle();
-    assert_eq!(bench.session().skeleton().skeleton.joints()[3].parent, Some(2), "and so does A");
+    assert_eq!(bench.session().skeleton().joints()[3].parent, Some(2), "and so does A");
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn bones_of_one_skeleton_are_about_as_thick_however_long_they_are() {
     let mut bench = new_skeleton();
     let tips = [Vec3::Y, Vec3::Y * 1.1, Vec3::new(3.0, 1.1, 0.0), Vec3::new(3.0, 1.3, 0.0)];
     bench.apply(tips.map(|tip| Action::AddJoint { tip: Some(tip) }));
-    let joints = &bench.session().skeleton().skeleton.joints()[1..];
+    let joints = &bench.session().skeleton().joints()[1..];
     for joint in joints {
         assert!((0.02..=0.15).contains(&joint.radius), "{} of {}", joint.radius, joint.axis);
         assert!(joint.radius <= 0.5 * joint.axis.length(), "no bone is thicker than long");

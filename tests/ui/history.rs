@@ -92,10 +92,10 @@ fn a_running_solver_is_one_step() {
     bench.apply_moving([Action::Run(true)]);
     bench.wait(2.0);
     assert!(!bench.session().is_running());
-    assert_ne!(bench.session().document().skeleton, first.skeleton);
+    assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
     assert_eq!(bench.session().undo_name(), Some("solve"));
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document().skeleton, first.skeleton);
+    assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
     assert_eq!(bench.session().undo_name(), None);
 }
 
@@ -111,7 +111,7 @@ fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
     assert!(bench.session().is_running());
     bench.key_with(CTRL, Key::Z);
     assert!(!bench.session().is_running());
-    assert_eq!(bench.session().document().skeleton, first.skeleton);
+    assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
 }
 
 #[test]

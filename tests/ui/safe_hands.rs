@@ -18,7 +18,7 @@ fn human() -> Bench {
 }
 
 fn joint_named(bench: &Bench, name: &str) -> usize {
-    bench.session().skeleton().skeleton.find(name).expect("a joint of that name")
+    bench.session().skeleton().find(name).expect("a joint of that name")
 }
 
 /// The text of a dialog's field.
@@ -66,7 +66,7 @@ fn a_joint_is_named_after_a_click_on_it() {
     bench.type_text("Start 5");
     bench.key(Key::Enter);
     bench.settle();
-    assert_eq!(bench.session().skeleton().skeleton.joints()[joint].name, "Start 5");
+    assert_eq!(bench.session().skeleton().joints()[joint].name, "Start 5");
     assert_eq!(bench.session().skeleton_pose().len(), joints, "no letter adds a joint");
     assert!(!bench.session().is_running(), "no letter runs the solver");
 }
@@ -212,7 +212,7 @@ fn after_a_limit_the_reading_says_what_was_turned() {
     let mut bench = human();
     let joint = joint_named(&bench, "left_shin");
     bench.apply([Action::Select(vec![joint])]);
-    let limits = bench.session().skeleton().skeleton.joints()[joint].limits;
+    let limits = bench.session().skeleton().joints()[joint].limits;
     let free: Vec<_> =
         (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
@@ -222,14 +222,14 @@ fn after_a_limit_the_reading_says_what_was_turned() {
         assert_eq!(bench.session().ring(joint, fixed), None, "a fixed axis has none");
     }
     let grip = Grip::Ring(joint, axis);
-    let before = bench.session().skeleton().skeleton.joints()[joint].rotation[axis];
+    let before = bench.session().skeleton().joints()[joint].rotation[axis];
     let projection = bench.session().camera().projection(1.0);
     let ray = projection.ray(projection.project(ring.centre).expect("seen") + glam::Vec2::X * 0.05);
     bench.apply([Action::Grab { grip, ray, forward: projection.forward }]);
     let most = (limit.max - limit.min).to_degrees();
     bench.apply([Action::TypeOffset(format!("{}", most + 90.0))]);
     bench.apply([Action::Drag(DragInput { ray, precise: false, snap: false })]);
-    let now = bench.session().skeleton().skeleton.joints()[joint].rotation[axis];
+    let now = bench.session().skeleton().joints()[joint].rotation[axis];
     assert_eq!(now, limit.max);
     let turned = (now - before).to_degrees();
     assert!(bench.says(&format!("{turned:+.1}°, at its limit")), "{turned}");
@@ -243,7 +243,7 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
     let tip_to_target = |bench: &Bench| {
         let session = bench.session();
-        let target = session.skeleton().targets[0];
+        let target = session.skeleton_rig().targets[0];
         session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
     };
     assert_eq!(status(&bench).state, SolverState::NotSolved);
@@ -260,7 +260,7 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
 
     bench.apply([Action::Undo]);
     assert_eq!(status(&bench).state, SolverState::Reached, "it is the solved pose again");
-    let mut target = bench.session().skeleton().targets[0];
+    let mut target = bench.session().skeleton_rig().targets[0];
     target.home += Vec3::splat(0.5);
     bench.apply([Action::SetTarget(target)]);
     assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody moved the target");
@@ -272,7 +272,7 @@ fn deleting_a_joint_asks_what_becomes_of_its_children() {
     let mut bench = human();
     let shoulder = joint_named(&bench, "left_upper_arm");
     let names = |bench: &Bench| -> Vec<String> {
-        let joints = bench.session().skeleton().skeleton.joints();
+        let joints = bench.session().skeleton().joints();
         joints.iter().map(|joint| joint.name.clone()).collect()
     };
     let places = |bench: &Bench| -> Vec<(Vec3, Vec3)> {

@@ -22,7 +22,7 @@ fn example(name: &str) -> Bench {
 /// The Y-shaped tree with its last joint selected.
 fn tree() -> Bench {
     let mut bench = example("two-targets");
-    let joint = bench.session().skeleton().skeleton.find("left_3").expect("there");
+    let joint = bench.session().skeleton().find("left_3").expect("there");
     bench.apply([Action::Select(vec![joint])]);
     bench
 }
@@ -51,7 +51,7 @@ fn escape_in_a_number_leaves_it_and_the_selection_alone() {
 #[test]
 fn escape_in_a_number_lets_a_running_solver_run() {
     let mut bench = tree();
-    let solver = bench.session().skeleton().solver;
+    let solver = bench.session().skeleton_rig().solver;
     bench.apply([Action::SetSolver(SolverOptions { method: Method::TransposeFixed, ..solver })]);
     bench.apply_moving([Action::Run(true)]);
     bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
@@ -93,8 +93,8 @@ fn escape_closes_a_menu_and_leaves_the_selection() {
 fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
     let mut bench = tree();
     let joint = bench.session().selected().expect("one");
-    let target = bench.session().skeleton().targets[0];
-    let solver = bench.session().skeleton().solver;
+    let target = bench.session().skeleton_rig().targets[0];
+    let solver = bench.session().skeleton_rig().solver;
     bench.apply([
         Action::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
         Action::SetLimit { joint, axis: 0, limit: Some(Limit { min: -1.234_567, max: 0.7654 }) },
@@ -135,7 +135,7 @@ fn a_number_can_be_typed_with_its_unit() {
     bench.click(Role::CheckBox, "Limit x");
     enter_field(&mut bench, "x to", "30°", Key::Enter);
     let joint = bench.session().selected().expect("one");
-    let limit = bench.session().skeleton().skeleton.joints()[joint].limits[0].expect("limited");
+    let limit = bench.session().skeleton().joints()[joint].limits[0].expect("limited");
     assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
 }
 
@@ -160,7 +160,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
     bench.key(Key::ArrowDown);
     bench.settle();
     let next = bench.session().selected().expect("one");
-    assert_eq!(bench.session().skeleton().skeleton.joints()[next].name, "left_3");
+    assert_eq!(bench.session().skeleton().joints()[next].name, "left_3");
     bench.key(Key::ArrowUp);
     bench.settle();
     assert_eq!(bench.session().selection(), clicked);
@@ -172,7 +172,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
     assert_eq!(bench.session().skeleton_pose().len(), joints);
     bench.key(Key::T);
     bench.settle();
-    assert_eq!(bench.session().skeleton().targets.len(), 3);
+    assert_eq!(bench.session().skeleton_rig().targets.len(), 3);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     bench.key(Key::Escape);
     bench.click(Role::Button, "Bind pose");
     bench.apply([Action::Comparison(true)]);
-    assert!(bench.session().skeleton().skeleton.joints().is_empty());
+    assert!(bench.session().skeleton().joints().is_empty());
     assert_eq!(bench.session().dialog(), None);
 }
 
@@ -222,7 +222,7 @@ fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
         bench.apply([Action::OpenExample(example)]);
         bench.apply([Action::Select(vec![0])]);
         bench.harness.check_accessibility();
-        let joint = bench.session().skeleton().targets.first().map(|target| target.joint);
+        let joint = bench.session().skeleton_rig().targets.first().map(|target| target.joint);
         bench.apply([Action::Select(joint.into_iter().collect()), Action::Step]);
         bench.harness.check_accessibility();
     }
@@ -247,10 +247,10 @@ fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
     bench.node(Role::CheckBox, "Slither").scroll_to_me();
     bench.settle();
     bench.click(Role::CheckBox, "Slither");
-    assert_eq!(bench.session().skeleton().follow_path, None);
+    assert_eq!(bench.session().skeleton_rig().follow_path, None);
     bench.apply([Action::Select(vec![1])]);
     bench.enter("Rotation x", "10");
-    let angle = bench.session().skeleton().skeleton.joints()[1].rotation.x;
+    let angle = bench.session().skeleton().joints()[1].rotation.x;
     assert!((angle.to_degrees() - 10.0).abs() < 1e-3);
 }
 

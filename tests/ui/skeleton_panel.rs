@@ -28,7 +28,7 @@ fn example(name: &str) -> Bench {
 }
 
 fn names(bench: &Bench) -> Vec<&str> {
-    let joints = bench.session().skeleton().skeleton.joints();
+    let joints = bench.session().skeleton().joints();
     joints.iter().map(|joint| joint.name.as_str()).collect()
 }
 
@@ -66,7 +66,7 @@ fn the_rig_is_chosen_at_the_top_and_the_other_is_kept() {
 fn a_new_skeleton_is_a_locked_point_on_which_children_are_hung_one_on_the_other() {
     let bench = built();
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "joint_2"]);
-    let skeleton = &bench.session().skeleton().skeleton;
+    let skeleton = &bench.session().skeleton();
     let joints = skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
     for (joint, it) in joints.iter().enumerate().skip(1) {
@@ -143,7 +143,7 @@ fn a_joint_hangs_from_the_parent_that_is_chosen_and_stays_where_it_is() {
         (pose.base(3), pose.tip(3))
     };
     choose_item(&mut bench, "Parent", "root");
-    let rig = bench.session().skeleton();
+    let rig = bench.session().skeleton_rig();
     let moved = rig.skeleton.find("joint_2").expect("there");
     assert_eq!(rig.skeleton.joints()[moved].parent, Some(0));
     let pose = bench.session().skeleton_pose();
@@ -157,7 +157,7 @@ fn a_slider_turns_a_joint_and_all_that_hangs_from_it_and_nothing_else() {
     select(&mut bench, "joint_1");
     let before = bench.session().skeleton_pose().clone();
     bench.enter("Rotation z", "90");
-    let skeleton = &bench.session().skeleton().skeleton;
+    let skeleton = &bench.session().skeleton();
     assert!((skeleton.joints()[2].rotation.z - FRAC_PI_2).abs() < 1e-6);
     let pose = bench.session().skeleton_pose();
     assert_eq!(pose.tip(1), before.tip(1));
@@ -172,7 +172,7 @@ fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
     bench.click(Role::CheckBox, "Limit z");
     bench.enter("Rotation z", "170");
     let rotation =
-        |bench: &Bench| bench.session().skeleton().skeleton.joints()[3].rotation.z.to_degrees();
+        |bench: &Bench| bench.session().skeleton().joints()[3].rotation.z.to_degrees();
     assert!((rotation(&bench) - 90.0).abs() < 1e-4, "the limit begins at 90° either way");
     bench.click(Role::SpinButton, "z to");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -181,7 +181,7 @@ fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
     bench.settle();
     assert!((rotation(&bench) - 30.0).abs() < 1e-4);
     bench.click(Role::CheckBox, "Limit z");
-    assert_eq!(bench.session().skeleton().skeleton.joints()[3].limits, [None; 3]);
+    assert_eq!(bench.session().skeleton().joints()[3].limits, [None; 3]);
 }
 
 #[test]
@@ -202,10 +202,10 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         bench.click(Role::Button, "Add target");
         bench.enter("Target x", "-0.8");
         bench.enter("Target y", "1.9");
-        assert_eq!(bench.session().skeleton().targets.len(), 2);
+        assert_eq!(bench.session().skeleton_rig().targets.len(), 2);
 
         choose_item(&mut bench, "Method", name);
-        assert_eq!(bench.session().skeleton().solver.method, method);
+        assert_eq!(bench.session().skeleton_rig().solver.method, method);
         bench.click_at(bench.rect(Role::Button, "Run").center());
         assert!(bench.session().is_running());
         bench.wait(4.0);
@@ -214,7 +214,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         let report = solver_run.report();
         assert!(report.converged, "{name}: {report:?}");
         assert!(bench.says("reached"));
-        let (rig, pose) = (bench.session().skeleton(), bench.session().skeleton_pose());
+        let (rig, pose) = (bench.session().skeleton_rig(), bench.session().skeleton_pose());
         for target in &rig.targets {
             assert!(pose.tip(target.joint).distance(target.home) < 1e-3);
         }
@@ -227,15 +227,15 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
 #[test]
 fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
     let mut bench = example("two-targets");
-    let before = bench.session().skeleton().skeleton.clone();
+    let before = bench.session().skeleton().clone();
     for iterations in 1..=3 {
         bench.click(Role::Button, "Step");
         let report = bench.session().solver_run().expect("it stepped").report();
         assert_eq!(report.iterations, iterations);
     }
-    assert_ne!(bench.session().skeleton().skeleton, before);
+    assert_ne!(bench.session().skeleton(), &before);
     bench.click(Role::Button, "Reset");
-    assert_eq!(bench.session().skeleton().skeleton, before);
+    assert_eq!(bench.session().skeleton(), &before);
     assert!(bench.session().solver_run().is_none());
 }
 
@@ -243,25 +243,25 @@ fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
 fn escape_takes_back_what_a_running_solver_has_done() {
     let mut bench = example("ten-joints");
     bench.apply([Action::SetSolver({
-        let solver = bench.session().skeleton().solver;
+        let solver = bench.session().skeleton_rig().solver;
         ik_arm::kinematics::chain_ik::SolverOptions { method: Method::TransposeFixed, ..solver }
     })]);
-    let before = bench.session().skeleton().skeleton.clone();
+    let before = bench.session().skeleton().clone();
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(0.2);
     assert!(bench.session().is_running());
-    assert_ne!(bench.session().skeleton().skeleton, before);
+    assert_ne!(bench.session().skeleton(), &before);
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().skeleton().skeleton, before);
+    assert_eq!(bench.session().skeleton(), &before);
 }
 
 #[test]
 fn a_target_that_is_switched_off_is_not_minded() {
     let mut bench = example("two-targets");
     bench.click(Role::CheckBox, "Target of left_3");
-    assert!(!bench.session().skeleton().targets[0].enabled);
-    assert_eq!(bench.session().skeleton().goals(0.0).len(), 1);
+    assert!(!bench.session().skeleton_rig().targets[0].enabled);
+    assert_eq!(bench.session().skeleton_rig().goals(0.0).len(), 1);
     bench.click(Role::CheckBox, "Target of right_3");
     assert!(!is_enabled(&bench, Role::Button, "Run"));
 }
@@ -269,7 +269,7 @@ fn a_target_that_is_switched_off_is_not_minded() {
 #[test]
 fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     let mut bench = example("two-targets");
-    let before = bench.session().skeleton().clone();
+    let before = bench.session().skeleton_rig().clone();
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(4.0);
     let comparison = bench.session().comparison().expect("it goes on");
@@ -282,7 +282,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
         assert!(report.converged || !converges, "{:?}: {report:?}", runner.method);
     }
     assert_eq!(bench.session().overlays().ghosts.len(), Method::ALL.len());
-    assert_eq!(bench.session().skeleton(), &before);
+    assert_eq!(bench.session().skeleton_rig(), &before);
     assert!(bench.says("CCD") && bench.says("FABRIK"));
     bench.click(Role::Button, "End race");
     assert!(bench.session().comparison().is_none());
@@ -310,14 +310,14 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     let at = bench.rect(Role::Button, "Circle").center();
     bench.click_at(at);
     bench.wait(0.1);
-    let target = bench.session().skeleton().targets[0];
+    let target = bench.session().skeleton_rig().targets[0];
     assert_eq!(target.motion.path, TargetPath::Circle);
     assert!(bench.session().is_playing(), "it goes at once");
     bench.apply_moving([Action::Run(true)]);
     bench.wait(1.0);
     let time = bench.session().time();
     assert!(time > 0.8, "{time} s");
-    let at = bench.session().skeleton().targets[0].at(time);
+    let at = bench.session().skeleton_rig().targets[0].at(time);
     assert!(at.distance(target.home) > 0.1 * target.motion.radius);
     let tip = bench.session().skeleton_pose().tip(3);
     assert!(tip.distance(at) < 0.2, "{tip} follows {at}");
@@ -380,11 +380,11 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.key(Key::A);
     assert_eq!(names(&bench).len(), 3);
     bench.key(Key::T);
-    assert_eq!(bench.session().skeleton().targets.len(), 1);
+    assert_eq!(bench.session().skeleton_rig().targets.len(), 1);
     bench.key(Key::S);
     assert!(bench.session().solver_run().is_some());
     bench.key(Key::T);
-    assert!(bench.session().skeleton().targets.is_empty());
+    assert!(bench.session().skeleton_rig().targets.is_empty());
     bench.key(Key::F2);
     assert!(matches!(bench.session().dialog(), Some(Dialog::Rename { joint: 2, .. })));
     bench.frame([]);
@@ -414,7 +414,7 @@ fn a_bone_is_made_longer_and_what_sits_on_its_tip_goes_with_it() {
     bench.frame([egui::Event::Text("2.5".to_owned())]);
     bench.key(Key::Enter);
     bench.settle();
-    let skeleton = &bench.session().skeleton().skeleton;
+    let skeleton = &bench.session().skeleton();
     assert!((skeleton.joints()[2].axis.length() - 2.5).abs() < 1e-6);
     assert!(skeleton.base(3).distance(skeleton.tip(2)) < 1e-6);
 }
@@ -424,13 +424,13 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
     bench.click(Role::CheckBox, "Free root");
-    assert_eq!(bench.session().skeleton().solver.root, Root::Free);
+    assert_eq!(bench.session().skeleton_rig().solver.root, Root::Free);
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(4.0);
     let report = bench.session().solver_run().expect("it ran").report();
     assert!(report.converged, "{report:?}");
-    assert!(bench.session().skeleton().skeleton.joints()[0].offset.x > 15.0);
+    assert!(bench.session().skeleton().joints()[0].offset.x > 15.0);
 }
 
 #[test]

@@ -475,7 +475,7 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
 fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([Action::OpenExample(Example::find("human").expect("an example"))]);
-    let names = |joint: usize| bench.session().skeleton().skeleton.joints()[joint].name.clone();
+    let names = |joint: usize| bench.session().skeleton().joints()[joint].name.clone();
     let (turned, reached) = (names(1), names(8));
     bench.apply([Action::Key(vec![Channel::Rotation(1), Channel::Target(8), Channel::Hand])]);
     for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
@@ -490,9 +490,9 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
 #[test]
 fn ten_thousand_channels_are_scrolled_in_no_time() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    for joint in document.skeleton.skeleton.joints().len()..5_000 {
+    for joint in document.skeleton().joints().len()..5_000 {
         let joint = Joint::new(&format!("j{joint}"), Some(0), Vec3::ONE);
-        document.skeleton.skeleton.add(joint).expect("room");
+        document.skeleton_mut().add(joint).expect("room");
     }
     for joint in 0..5_000 {
         for frame in 0..3 {

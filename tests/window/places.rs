@@ -64,7 +64,7 @@ impl Places {
         let place = |point| place_in(&session, point);
         let mut human = Session::default();
         human.apply(Action::ShowRig(RigKind::Skeleton));
-        let head = human.skeleton().skeleton.find("head").expect("the Human has a head");
+        let head = human.skeleton().find("head").expect("the Human has a head");
         let pose = human.skeleton_pose();
         let head = place_in(&human, pose.base(head).midpoint(pose.tip(head)));
         let track = rail.x_range().shrink(8.5);

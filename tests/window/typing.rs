@@ -54,7 +54,7 @@ fn a_joint_that_was_clicked_is_named_by_the_keyboard() {
     program.at_rest();
     program.key("Return");
     let joints = |document: &Document| -> Vec<String> {
-        let joints = document.skeleton.skeleton.joints();
+        let joints = document.skeleton().joints();
         joints.iter().map(|joint| joint.name.clone()).collect()
     };
     let document = saved_to(&program, &folder.path().join("named.json"));
@@ -63,7 +63,7 @@ fn a_joint_that_was_clicked_is_named_by_the_keyboard() {
     "Start 5".clone_into(&mut expected[head]);
     assert_eq!(joints(&document), expected, "no letter adds a joint");
     let rotations = |document: &Document| -> Vec<_> {
-        document.skeleton.skeleton.joints().iter().map(|joint| joint.rotation).collect()
+        document.skeleton().joints().iter().map(|joint| joint.rotation).collect()
     };
     assert_eq!(rotations(&document), rotations(&io::new_document()), "or runs the solver");
 }

@@ -100,9 +100,9 @@ fn pose(args: &Args) -> Result<(), Failure> {
     }
     let Opened { document, order, .. } = opened;
     let Time(time) = args.time;
-    let mut rig = document.at(time).into_owned().skeleton;
+    let mut rig = document.at(time).skeleton_rig;
     // As it stands then, where it moves by itself.
-    rig.skeleton = rig.at(time).into_owned();
+    rig.skeleton = rig.at(time);
     let report = match args.solver {
         Some(method) => Some(solved(&mut rig, args, method, &order, &file)?),
         None => None,
@@ -127,7 +127,7 @@ fn solved(
         ..rig.solver
     };
     let targets = rig.goals(args.time.0);
-    chain_ik::solve(&mut rig.skeleton, &targets, &options).map_err(|error| {
+    chain_ik::solve(rig.skeleton_mut(), &targets, &options).map_err(|error| {
         let file = file.to_owned();
         Failure::Solve { file, error: numbered_as_in_file(error, order) }
     })

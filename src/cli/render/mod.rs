@@ -199,7 +199,7 @@ impl Args {
         let mut document = match &self.file {
             Some(file) => {
                 let opened = open::open(file, self.skeleton.as_deref())?;
-                opened.document.at(time).into_owned()
+                opened.document.at(time)
             }
             None => Document { arm: self.arm()?, ..Document::default() },
         };
@@ -230,7 +230,7 @@ fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
     match document.rig {
         RigKind::Arm => framed(&document.arm, document.display),
         RigKind::Skeleton => {
-            let rig = &document.skeleton;
+            let rig = &document.skeleton_rig;
             rig.bounds(&rig.at(time).pose(), time)
         }
     }

@@ -42,7 +42,7 @@ impl Figure {
                 parents: vec![None, Some(0)],
                 kind: Kind::Arm,
             }),
-            RigKind::Skeleton => Self::of_skeleton(&document.skeleton.skeleton),
+            RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
         }
     }
 
@@ -79,7 +79,7 @@ impl Figure {
     pub fn stance(&self, document: &Document, place: &Place, time: f64) -> Stance {
         match &self.kind {
             Kind::Arm => arm(&document.arm),
-            Kind::Skeleton(nodes) => self.skeleton(nodes, &document.skeleton.at(time), place),
+            Kind::Skeleton(nodes) => self.skeleton(nodes, &document.skeleton_rig.at(time), place),
         }
     }
 

@@ -84,7 +84,7 @@ fn document(nodes: &[Node], motion: &Motion) -> Result<Document, Fault> {
     Ok(Document {
         rig: RigKind::Skeleton,
         camera: rig.first_view(),
-        skeleton: rig,
+        skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
         metres: Some(METRES),

@@ -34,7 +34,7 @@ pub fn to_bvh(
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         let posed = playback.at(time);
-        let place = Place::new(posed.skeleton.skeleton.transform());
+        let place = Place::new(posed.skeleton().transform());
         let stance = figure.stance(posed, &place, time);
         let first = match &first {
             Some(first) => first,

@@ -21,7 +21,7 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     let at = |key| JsonPath::root().key(key);
     let rig = file.rig;
     let arm = file.arm.map_or_else(|| Ok(Arm::default()), |Object(file)| arm(&at("arm"), &file))?;
-    let skeleton = skeleton_rig(
+    let skeleton_rig = skeleton_rig(
         file.skeleton.map(|Object(skeleton)| skeleton),
         file.targets.unwrap_or_default(),
         file.solver.map(|Object(solver)| solver).unwrap_or_default(),
@@ -30,7 +30,7 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     )?;
     let seen_from = match file.camera {
         Some(Object(file)) => camera(&at("camera"), &file)?,
-        None => first_view(rig, &skeleton),
+        None => first_view(rig, &skeleton_rig),
     };
     let other_camera = file.other_camera.map(|Object(file)| camera(&at("other_camera"), &file));
     let display = file.display.map(|layers| layers.into_iter().collect()).unwrap_or_default();
@@ -39,7 +39,7 @@ pub fn document(file: File, odd: &mut Odd) -> Result<Document, Wrong> {
     let mut document = Document {
         rig,
         arm,
-        skeleton,
+        skeleton_rig,
         keys: Keys::default(),
         timeline: timeline.transpose()?.unwrap_or_default(),
         camera: seen_from,
@@ -60,7 +60,7 @@ fn skeleton_rig(
 ) -> Result<SkeletonRig, Wrong> {
     let mut rig = SkeletonRig::default();
     if let Some(file) = skeleton {
-        rig.skeleton = self::skeleton(file, odd)?;
+        rig.skeleton = self::skeleton(file, odd)?.into();
     }
     let circle = rig.circle();
     let mut aimed = HashSet::new();

@@ -117,8 +117,8 @@ pub struct View {
 
 impl File {
     pub fn new(document: &Document) -> Self {
-        let Document { rig, arm, skeleton: rig_of_joints, camera, display, .. } = document;
-        let SkeletonRig { skeleton, targets, follow_path: slither, .. } = rig_of_joints;
+        let Document { rig, arm, skeleton_rig, camera, display, .. } = document;
+        let SkeletonRig { skeleton, targets, follow_path: slither, .. } = skeleton_rig;
         Self {
             format: NAME.to_owned(),
             version: Whole(VERSION),
@@ -126,7 +126,7 @@ impl File {
             arm: Some(Object(Arm::new(arm))),
             skeleton: Some(Object(Skeleton::new(skeleton))),
             targets: Some(targets.iter().map(Target::new).map(Object).collect()),
-            solver: Some(Object(Solver::new(rig_of_joints))),
+            solver: Some(Object(Solver::new(skeleton_rig))),
             slither: slither.as_ref().map(Slither::new).map(Object),
             keys: (!document.keys.is_empty()).then(|| keys::tracks(&document.keys)),
             timeline: Some(Object(Timeline::new(document.timeline))),

@@ -95,7 +95,7 @@ impl Track {
             let missing =
                 || Wrong::new(at.clone(), "this channel is a joint's: `joint` is missing");
             let joint = self.joint.ok_or_else(missing)?.0 as usize;
-            let joints = document.skeleton.skeleton.joints().len();
+            let joints = document.skeleton().joints().len();
             if joint < joints {
                 return Ok(joint);
             }
@@ -105,7 +105,7 @@ impl Track {
         let target = || {
             let joint = joint()?;
             let none = || format!("joint {joint} has no target");
-            let target = document.skeleton.target(joint);
+            let target = document.skeleton_rig.target(joint);
             target.ok_or_else(|| Wrong::new(at.clone().key("joint"), none()))?;
             Ok(joint)
         };

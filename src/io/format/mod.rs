@@ -92,7 +92,7 @@ pub fn read(source: &Source) -> Result<Opened, OpenError> {
     })?;
     let document = check::document(file, &mut odd).map_err(|wrong| source.wrong(&wrong))?;
     Ok(Opened {
-        order: (0..document.skeleton.skeleton.joints().len()).collect(),
+        order: (0..document.skeleton().joints().len()).collect(),
         document,
         warnings: source.remarks(&odd),
         skeletons: Vec::new(),

@@ -43,7 +43,7 @@ pub(super) fn rename(
     if typed != name {
         actions.push(Action::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
     }
-    let other = session.skeleton().skeleton.find(typed.trim()).filter(|other| *other != joint);
+    let other = session.skeleton().find(typed.trim()).filter(|other| *other != joint);
     let why_not = match other {
         _ if typed.trim().is_empty() => Some("A joint needs a name"),
         Some(_) => Some("Another joint has this name"),
@@ -73,7 +73,7 @@ pub(super) fn delete_joints(
     actions: &mut Vec<Action>,
 ) {
     ui.set_width(360.0);
-    let skeleton = &session.skeleton().skeleton;
+    let skeleton = &session.skeleton();
     let what = match joints {
         [joint] => skeleton.joint(*joint).map_or("The joint", |joint| joint.name.as_str()),
         _ => "The selected joints",

@@ -137,7 +137,7 @@ impl Figure {
 }
 
 fn bones(picture: &Picture, session: &Session) -> Vec<Bone> {
-    let (rig, pose) = (session.skeleton(), session.skeleton_pose());
+    let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
     let joints = rig.skeleton.joints();
     let bone = |joint: usize| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
@@ -160,18 +160,18 @@ fn targets(picture: &Picture, session: &Session) -> Vec<TargetMark> {
         let at = picture.place(target.at(session.time()))?;
         Some(TargetMark { joint: target.joint, at, enabled: target.enabled })
     };
-    session.skeleton().targets.iter().filter_map(mark).collect()
+    session.skeleton_rig().targets.iter().filter_map(mark).collect()
 }
 
 fn handles(picture: &Picture, session: &Session) -> Option<(usize, Handles)> {
     let joint = session.selected()?;
-    let target = session.skeleton().targets[session.skeleton().target(joint)?];
+    let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
     Some((joint, Handles::new(picture, target.at(session.time()), None)?))
 }
 
 /// The rings of the selected joint, all as large on screen wherever they are.
 fn rings(picture: &Picture, session: &Session) -> Vec<RingMark> {
-    let Some(joint) = session.selected().filter(|_| session.skeleton().follow_path.is_none())
+    let Some(joint) = session.selected().filter(|_| session.skeleton_rig().follow_path.is_none())
     else {
         return Vec::new();
     };

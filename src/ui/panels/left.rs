@@ -49,7 +49,7 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn guides(session: &Session) -> &'static [Overlay] {
     match session.rig() {
         RigKind::Arm => &Overlay::GUIDES,
-        RigKind::Skeleton if session.skeleton().follow_path.is_some() => {
+        RigKind::Skeleton if session.skeleton_rig().follow_path.is_some() => {
             &[Overlay::Cursor, Overlay::Pointer]
         }
         RigKind::Skeleton => &[Overlay::Cursor],

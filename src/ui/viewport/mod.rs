@@ -45,7 +45,7 @@ pub(in crate::ui) fn ui(
     let pointed = pointer.filter(|_| over).and_then(|at| grips.at(at));
     grips.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
-    if has_joints(session) && !session.skeleton().has_bones() {
+    if has_joints(session) && !session.skeleton_rig().has_bones() {
         invite(ui, rect);
     }
 
@@ -115,7 +115,7 @@ fn select(
         Some(Grip::Ring(..)) => return,
         _ => grips.joint_at(pointer),
     };
-    let is_first = joint.is_none() && !session.skeleton().has_bones();
+    let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
         let base = session.next_base();
         let at = picture.ray(pointer).meets_plane(base, picture.projection.forward);

@@ -79,11 +79,11 @@ impl Values<'_> {
 }
 
 fn skeleton(skeleton: Skeleton) -> Document {
-    let skeleton = SkeletonRig::new(skeleton);
+    let skeleton_rig = SkeletonRig::new(skeleton);
     Document {
         rig: RigKind::Skeleton,
-        camera: skeleton.first_view(),
-        skeleton,
+        camera: skeleton_rig.first_view(),
+        skeleton_rig,
         ..Document::default()
     }
 }

@@ -8,7 +8,7 @@ use super::Values;
 
 impl Values<'_> {
     fn joints(&self) -> usize {
-        self.session.skeleton().skeleton.joints().len()
+        self.session.skeleton().joints().len()
     }
 
     /// Mostly one that is there.
@@ -25,7 +25,7 @@ impl Values<'_> {
 
     /// Mostly one with a target, if there is any.
     pub fn aimed(&mut self) -> usize {
-        let targets = &self.session.skeleton().targets;
+        let targets = &self.session.skeleton_rig().targets;
         if targets.is_empty() || self.chance(0.1) {
             return self.joint();
         }
@@ -77,12 +77,12 @@ impl Values<'_> {
 
     fn joint_name(&mut self) -> Option<String> {
         let joint = self.joint();
-        Some(self.session.skeleton().skeleton.joint(joint)?.name.clone())
+        Some(self.session.skeleton().joint(joint)?.name.clone())
     }
 
     pub fn target(&mut self) -> Target {
         let joint = self.aimed();
-        let size = self.session.skeleton().reach();
+        let size = self.session.skeleton_rig().reach();
         let path = self.one_of(&[
             TargetPath::Still,
             TargetPath::Still,

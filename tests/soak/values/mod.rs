@@ -114,7 +114,7 @@ impl Values<'_> {
     pub fn size(&self) -> f32 {
         let size = match self.session.rig() {
             RigKind::Arm => self.session.arm().bones.outer_limit(),
-            RigKind::Skeleton => self.session.skeleton().reach(),
+            RigKind::Skeleton => self.session.skeleton_rig().reach(),
         };
         if size.is_normal() { size } else { 1.0 }
     }
@@ -124,7 +124,7 @@ impl Values<'_> {
     }
 
     pub fn small_point(&mut self) -> Vec3 {
-        let size = self.session.skeleton().reach();
+        let size = self.session.skeleton_rig().reach();
         self.point(1.5 * if size.is_normal() { size } else { 1.0 })
     }
 

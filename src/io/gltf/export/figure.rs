@@ -66,7 +66,7 @@ impl Figure {
                 figure.bones = figure.limbs();
             }
             RigKind::Skeleton => {
-                let skeleton = &document.skeleton.skeleton;
+                let skeleton = document.skeleton();
                 figure.rest = figure.metric(placed(skeleton, |_| DMat3::IDENTITY));
                 figure.bones = figure.joints(skeleton.joints());
             }
@@ -81,7 +81,7 @@ impl Figure {
         let document = &self.document;
         self.metric(match document.rig {
             RigKind::Arm => posed_arm(document),
-            RigKind::Skeleton => placed(&document.skeleton.at(time), turned),
+            RigKind::Skeleton => placed(&document.skeleton_rig.at(time), turned),
         })
     }
 
@@ -127,9 +127,9 @@ impl Figure {
     }
 
     fn joints(&self, joints: &[Joint]) -> Vec<Bone> {
-        let scale = self.document.skeleton.skeleton.transform().as_daffine3().matrix3;
+        let scale = self.document.skeleton().transform().as_daffine3().matrix3;
         let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
-        let reach = f64::from(self.document.skeleton.reach()) * self.metres_per_unit;
+        let reach = f64::from(self.document.skeleton_rig.reach()) * self.metres_per_unit;
         let mut depths = vec![0_usize; joints.len()];
         let mut are_leaves = vec![true; joints.len()];
         for (index, joint) in joints.iter().enumerate() {

@@ -83,8 +83,8 @@ pub fn build(
         joint.parent = joint.parent.and_then(|parent| kept[parent]);
         left.extend((!is_tip).then_some(joint));
     }
-    document.skeleton = SkeletonRig::new(Skeleton::from_joints(left)?);
-    document.camera = document.skeleton.first_view();
+    document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(left)?);
+    document.camera = document.skeleton_rig.first_view();
     Ok(Built { document, kept })
 }
 

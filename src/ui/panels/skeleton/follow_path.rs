@@ -8,16 +8,16 @@ use crate::ui::widgets::Slider;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     slithers(ui, session, actions);
-    if let Some(follow_path) = session.skeleton().follow_path {
+    if let Some(follow_path) = session.skeleton_rig().follow_path {
         sliders(ui, session, follow_path, actions);
     }
 }
 
 fn slithers(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let mut slithers = session.skeleton().follow_path.is_some();
+    let mut slithers = session.skeleton_rig().follow_path.is_some();
     let tooltip = "The first chain of joints follows its head along a wavy ring, like a snake";
     if ui.checkbox(&mut slithers, "Slither").on_hover_text(tooltip).changed() {
-        let follow_path = first(session.skeleton().reach());
+        let follow_path = first(session.skeleton_rig().reach());
         actions.push(Action::SetFollowPath(slithers.then_some(follow_path)));
     }
 }
@@ -28,7 +28,7 @@ fn first(reach: f32) -> FollowPath {
 }
 
 fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Vec<Action>) {
-    let reach = session.skeleton().reach();
+    let reach = session.skeleton_rig().reach();
     let first = first(reach);
     let step = session.shown().cell() * 0.1;
     let set = |follow_path| Action::SetFollowPath(Some(follow_path));

@@ -14,7 +14,7 @@ const STIFF: &str = "The limit leaves no room";
 const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Vec<Action>) {
-    let Some(joint) = session.skeleton().skeleton.joint(index) else { return };
+    let Some(joint) = session.skeleton().joint(index) else { return };
     if session.selection().len() > 1 {
         let count = session.selection().len();
         ui.weak(format!("{count} joints are selected; this is the last of them."));
@@ -38,8 +38,8 @@ fn rotation(
     actions: &mut Vec<Action>,
 ) {
     let colours = style::palette(ui).axes;
-    let shown = match session.skeleton().follow_path {
-        Some(_) => session.skeleton().at(session.time()).joints()[index].rotation,
+    let shown = match session.skeleton_rig().follow_path {
+        Some(_) => session.skeleton_rig().at(session.time()).joints()[index].rotation,
         None => joint.rotation,
     };
     for (axis, label) in AXES.into_iter().enumerate() {
@@ -48,7 +48,7 @@ fn rotation(
         let range = limit
             .filter(|_| !is_stiff)
             .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
-        let slithers = session.skeleton().follow_path.map(|_| SLITHERS);
+        let slithers = session.skeleton_rig().follow_path.map(|_| SLITHERS);
         let slider = Slider {
             name: &format!("Rotation {label}"),
             label: &format!("Turn {label}"),
@@ -149,7 +149,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
 }
 
 fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
-    let skeleton = &session.skeleton().skeleton;
+    let skeleton = &session.skeleton();
     let name = |joint: Option<usize>| match joint.and_then(|joint| skeleton.joint(joint)) {
         Some(joint) => joint.name.clone(),
         None => "none".to_owned(),

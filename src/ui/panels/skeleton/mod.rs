@@ -12,7 +12,7 @@ use glam::Vec3;
 use crate::session::{Action, Session};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
     if let Some(selected) = session.selected()
         && let Some(joint) = rig.skeleton.joint(selected)
@@ -33,7 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
 }
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let place = Point {
         name: "Skeleton",
         labels: AXES,

@@ -61,7 +61,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 /// Depth first, so that what hangs from a joint stands below it.
 fn rows(session: &Session) -> Vec<Row> {
-    let joints = session.skeleton().skeleton.joints();
+    let joints = session.skeleton().joints();
     let mut children = vec![Vec::new(); joints.len()];
     let mut open = Vec::new();
     for (joint, it) in joints.iter().enumerate().rev() {
@@ -80,7 +80,7 @@ fn rows(session: &Session) -> Vec<Row> {
 }
 
 fn show(ui: &mut Ui, session: &Session, row: &Row) -> Response {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let joint = &rig.skeleton.joints()[row.joint];
     let selected = session.selection().contains(&row.joint);
     let indent = INDENT * row.depth.min(12) as f32;
@@ -227,7 +227,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn target_button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let selected = session.selected();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    let has_target = selected.is_some_and(|joint| session.skeleton().target(joint).is_some());
+    let has_target = selected.is_some_and(|joint| session.skeleton_rig().target(joint).is_some());
     let (name, tooltip) = match has_target {
         true => ("Remove target", "Let the joint's tip go where it will (T)"),
         false => ("Add target", "Ask for a place for the joint's tip (T)"),

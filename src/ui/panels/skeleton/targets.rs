@@ -14,7 +14,7 @@ const PATHS: [(TargetPath, &str); 3] = [
 
 /// Every target in a row.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     if rig.targets.is_empty() {
         ui.weak("No targets yet: select a joint and add one.");
     }
@@ -73,7 +73,7 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         labels: AXES,
         value: target.home,
         default: session.skeleton_pose().tip(target.joint),
-        range: 1.5 * session.skeleton().reach(),
+        range: 1.5 * session.skeleton_rig().reach(),
         step,
         tooltip: "Where the tip is asked to be, in the world",
         disabled: None,

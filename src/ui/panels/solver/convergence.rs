@@ -15,7 +15,7 @@ const HEIGHT: f32 = 132.0;
 const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let least = f64::from(LEAST * rig.reach());
     let tolerance = f64::from(rig.solver.tolerance.unwrap_or(1e-4 * rig.reach()));
     let curves = curves(session, least);

@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
 }
 
 fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let options = session.skeleton().solver;
+    let options = session.skeleton_rig().solver;
     let combo = ComboBox::from_id_salt("method")
         .selected_text(labels::method(options.method))
         .width(ui.available_width() - 12.0)
@@ -49,7 +49,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let rig = session.skeleton();
+    let rig = session.skeleton_rig();
     let options = rig.solver;
     let set = |options| Action::SetSolver(options);
     widgets::pair(ui, "Iterations per frame", |ui| {
@@ -117,9 +117,9 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let options = session.skeleton().solver;
+    let options = session.skeleton_rig().solver;
     widgets::pair(ui, "Tolerance", |ui| {
-        let auto = 1e-4 * session.skeleton().reach();
+        let auto = 1e-4 * session.skeleton_rig().reach();
         if let Some(tolerance) = options.tolerance {
             let tooltip = "How near every tip must come, in the world";
             let step = 0.05 * tolerance;
