@@ -649,7 +649,8 @@ fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
 
 #[test]
 fn the_examples_are_what_they_are_called() {
-    let rig = |name| Example::find(name).expect("there").open().expect("opens").document.skeleton_rig;
+    let rig =
+        |name| Example::find(name).expect("there").open().expect("opens").document.skeleton_rig;
     let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
     let arm = Example::find("arm").expect("there").open().expect("opens").document;
     assert_eq!((arm.rig, arm), (RigKind::Arm, Document::default()));

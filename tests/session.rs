@@ -432,8 +432,7 @@ fn selected_and_copied_keys_follow_their_joints() {
     session.apply(Action::OpenExample(Example::find("human").expect("an example")));
     let channels: Vec<Channel> = (0..19).map(Channel::Rotation).collect();
     session.apply(Action::Key(channels));
-    let name =
-        |session: &Session, joint: usize| session.skeleton().joints()[joint].name.clone();
+    let name = |session: &Session, joint: usize| session.skeleton().joints()[joint].name.clone();
     let foot = name(&session, 15);
     session.apply(Action::SelectKeys(vec![(Channel::Rotation(15), 0.0)]));
     session.apply(Action::SelectChannels(vec![Channel::Rotation(15)]));

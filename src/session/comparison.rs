@@ -33,7 +33,13 @@ impl Comparison {
             if let Ok(solve) = &solve {
                 history.push(solve.report().error);
             }
-            Runner { method, skeleton: Skeleton::clone(&rig.skeleton), history, time: Duration::ZERO, solve }
+            Runner {
+                method,
+                skeleton: Skeleton::clone(&rig.skeleton),
+                history,
+                time: Duration::ZERO,
+                solve,
+            }
         });
         Self { runners: runners.collect() }
     }

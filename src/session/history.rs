@@ -78,8 +78,7 @@ impl State {
         let Document { skeleton_rig, keys, .. } = &self.document;
         let other = other.map(|other| &other.document);
         let skeleton = &skeleton_rig.skeleton;
-        let is_shared =
-            other.is_some_and(|other| skeleton.is_same(&other.skeleton_rig.skeleton));
+        let is_shared = other.is_some_and(|other| skeleton.is_same(&other.skeleton_rig.skeleton));
         let joints = if is_shared { &[] } else { skeleton.joints() };
         let names = joints.iter().map(|joint| joint.name.len()).sum::<usize>();
         size_of::<Self>()

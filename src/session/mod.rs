@@ -307,10 +307,11 @@ impl Session {
         }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => self.arm().bounds(&self.pose),
-            RigKind::Skeleton => self
-                .skeleton_rig()
-                .bounds_of(&self.skeleton_pose, &self.selection)
-                .unwrap_or_else(|| self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time)),
+            RigKind::Skeleton => {
+                self.skeleton_rig().bounds_of(&self.skeleton_pose, &self.selection).unwrap_or_else(
+                    || self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time),
+                )
+            }
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -324,7 +325,9 @@ impl Session {
         }
         let (centre, radius) = match self.rig() {
             RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
-            RigKind::Skeleton => self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time),
+            RigKind::Skeleton => {
+                self.skeleton_rig().bounds(&self.skeleton_pose, self.playback.time)
+            }
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }

@@ -71,7 +71,10 @@ impl Session {
         let mut target = self.skeleton_rig().targets[index];
         target.home = to - target.motion.offset(self.playback.time);
         self.set_target(target);
-        if self.preferences.follow && !self.is_running() && self.skeleton_rig().follow_path.is_none() {
+        if self.preferences.follow
+            && !self.is_running()
+            && self.skeleton_rig().follow_path.is_none()
+        {
             let goals = self.skeleton_rig().goals(self.playback.time);
             let skeleton = self.skeleton().clone();
             self.solve_drag(skeleton, &goals, self.skeleton_rig().solver);

@@ -45,8 +45,7 @@ impl Session {
         if after == self.shown {
             return;
         }
-        let [joints_before, joints] =
-            [&self.shown, &after].map(|it| it.skeleton().joints().len());
+        let [joints_before, joints] = [&self.shown, &after].map(|it| it.skeleton().joints().len());
         let is_rebuilt = is_rebuilt(self.shown.skeleton(), after.skeleton());
         let has_other_joints = is_rebuilt || joints != joints_before;
         if is_rebuilt {

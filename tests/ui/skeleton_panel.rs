@@ -171,8 +171,7 @@ fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
     let mut bench = built();
     bench.click(Role::CheckBox, "Limit z");
     bench.enter("Rotation z", "170");
-    let rotation =
-        |bench: &Bench| bench.session().skeleton().joints()[3].rotation.z.to_degrees();
+    let rotation = |bench: &Bench| bench.session().skeleton().joints()[3].rotation.z.to_degrees();
     assert!((rotation(&bench) - 90.0).abs() < 1e-4, "the limit begins at 90° either way");
     bench.click(Role::SpinButton, "z to");
     bench.key_with(Modifiers::COMMAND, Key::A);

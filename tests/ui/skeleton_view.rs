@@ -159,9 +159,7 @@ fn a_tip_comes_back_to_where_it_was_when_the_pointer_does() {
     bench.drag(LEFT, start, start + vec2(-70.0, 90.0));
     bench.move_to(start + vec2(1.0, 0.0));
     bench.release(LEFT);
-    for (now, then) in
-        bench.session().skeleton().joints().iter().zip(before.skeleton.joints())
-    {
+    for (now, then) in bench.session().skeleton().joints().iter().zip(before.skeleton.joints()) {
         assert!(now.rotation.distance(then.rotation) < 0.1, "{} at {}", now.name, now.rotation);
     }
 }

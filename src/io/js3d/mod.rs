@@ -51,7 +51,12 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.wrong(&w))?;
     let camera = rig.first_view();
     Ok(Opened {
-        document: Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, ..Document::default() },
+        document: Document {
+            rig: RigKind::Skeleton,
+            skeleton_rig: rig,
+            camera,
+            ..Document::default()
+        },
         warnings: source.remarks(&odd),
         order,
         skeletons: names,
