@@ -21,7 +21,7 @@ use super::settings::Settings;
 use super::{AppError, UserEvent};
 use crate::scene::Scene;
 use crate::session::{Action, Effect, Overlays, Session};
-use crate::ui::{self, Frame, Machine, style};
+use crate::ui::{self, FrameTime, Machine, style};
 
 pub(super) const TITLE: &str = "ik-arm";
 
@@ -173,7 +173,7 @@ impl AppWindow {
         let input = self.egui.take_egui_input(&self.window);
         style::apply(self.egui.egui_ctx(), session.preferences().theme);
         let interval = self.moving_since.take().map(|last| started - last);
-        let mut frame = Frame { interval, ..Frame::default() };
+        let mut frame = FrameTime { interval, ..FrameTime::default() };
         let (mut output, viewport, effects) = self.run(input, session, &mut frame);
         self.viewport = viewport;
         if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
@@ -264,7 +264,7 @@ impl AppWindow {
         &mut self,
         mut input: RawInput,
         session: &mut Session,
-        frame: &mut Frame,
+        frame: &mut FrameTime,
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut events = std::mem::take(&mut self.held_keys);
         if !session.is_asking() {
@@ -297,7 +297,7 @@ impl AppWindow {
         &mut self,
         input: RawInput,
         session: &mut Session,
-        frame: &mut Frame,
+        frame: &mut FrameTime,
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut lap = laps();
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
@@ -342,7 +342,7 @@ impl AppWindow {
         &mut self,
         session: &Session,
         output: FullOutput,
-        frame: &mut Frame,
+        frame: &mut FrameTime,
     ) -> Result<Presented, GraphicsError> {
         let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
             output;

@@ -2,7 +2,7 @@ use core::time::Duration;
 
 /// What one frame took, part by part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Frame {
+pub struct FrameTime {
     /// The session: actions, solvers, time.
     pub solve: Duration,
     /// The panels, laid out and cut into triangles.
@@ -18,7 +18,7 @@ pub struct Frame {
     pub interval: Option<Duration>,
 }
 
-impl Frame {
+impl FrameTime {
     /// All that the processor did for it.
     pub fn work(&self) -> Duration {
         self.solve + self.panels + self.scene + self.encode
@@ -34,20 +34,20 @@ impl Frame {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
     /// A ring: frame n is at n modulo its length.
-    frames: [Frame; Self::MOST],
+    frames: [FrameTime; Self::MOST],
     drawn: u64,
 }
 
 /// Of many times, the one in the middle and the one that only a hundredth exceeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Spread {
+pub struct TimeSpread {
     pub median: Duration,
     pub slowest: Duration,
 }
 
 impl Default for FrameTimes {
     fn default() -> Self {
-        Self { frames: [Frame::default(); Self::MOST], drawn: 0 }
+        Self { frames: [FrameTime::default(); Self::MOST], drawn: 0 }
     }
 }
 
@@ -55,7 +55,7 @@ impl FrameTimes {
     /// How many frames are kept.
     pub const MOST: usize = 240;
 
-    pub fn push(&mut self, frame: Frame) {
+    pub fn push(&mut self, frame: FrameTime) {
         let place = self.place(self.drawn);
         self.frames[place] = frame;
         self.drawn += 1;
@@ -76,18 +76,18 @@ impl FrameTimes {
     }
 
     /// The frames that are kept, the first one first.
-    pub fn frames(&self) -> impl ExactSizeIterator<Item = &Frame> {
+    pub fn frames(&self) -> impl ExactSizeIterator<Item = &FrameTime> {
         let count = self.drawn.min(Self::MOST as u64);
         let first = self.drawn - count;
         (0..count as usize).map(move |index| &self.frames[self.place(first + index as u64)])
     }
 
-    pub fn last(&self) -> Option<&Frame> {
+    pub fn last(&self) -> Option<&FrameTime> {
         self.frames().last()
     }
 
     /// How a part of the frames is spread; nothing where no frame has it.
-    pub fn spread(&self, part: impl Fn(&Frame) -> Option<Duration>) -> Option<Spread> {
+    pub fn spread(&self, part: impl Fn(&FrameTime) -> Option<Duration>) -> Option<TimeSpread> {
         let mut times = [Duration::ZERO; Self::MOST];
         let mut count = 0;
         for time in self.frames().filter_map(part) {
@@ -98,7 +98,7 @@ impl FrameTimes {
         times.sort_unstable();
         // The smallest that at least such a part of all does not exceed.
         let at = |hundredths: usize| (count * hundredths).div_ceil(100).saturating_sub(1);
-        Some(Spread { median: *times.get(at(50))?, slowest: *times.get(at(99))? })
+        Some(TimeSpread { median: *times.get(at(50))?, slowest: *times.get(at(99))? })
     }
 
     /// How many frames a second there are while something moves, by the median.
@@ -116,8 +116,8 @@ impl FrameTimes {
 mod tests {
     use super::*;
 
-    fn of_millis(solve: u64) -> Frame {
-        Frame { solve: Duration::from_millis(solve), ..Frame::default() }
+    fn of_millis(solve: u64) -> FrameTime {
+        FrameTime { solve: Duration::from_millis(solve), ..FrameTime::default() }
     }
 
     fn after(count: u64) -> FrameTimes {
@@ -173,7 +173,7 @@ mod tests {
         let mut times = after(5);
         assert_eq!(times.per_second(), None);
         let interval = Some(Duration::from_millis(20));
-        (0..5).for_each(|_| times.push(Frame { interval, ..Frame::default() }));
+        (0..5).for_each(|_| times.push(FrameTime { interval, ..FrameTime::default() }));
         let per_second = times.per_second().expect("something moves");
         assert!((per_second - 50.0).abs() < 1e-9, "{per_second}");
     }
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn a_frame_is_its_parts() {
         let [solve, panels, scene, encode, wait] = [1, 2, 4, 8, 16].map(Duration::from_millis);
-        let frame = Frame { solve, panels, scene, encode, wait, ..Frame::default() };
+        let frame = FrameTime { solve, panels, scene, encode, wait, ..FrameTime::default() };
         assert_eq!(frame.work(), Duration::from_millis(15));
         assert_eq!(frame.total(), Duration::from_millis(31));
     }

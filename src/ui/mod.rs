@@ -18,7 +18,7 @@ mod timeline;
 mod viewport;
 mod widgets;
 
-pub use frame_times::{Frame, FrameTimes, Spread};
+pub use frame_times::{FrameTime, FrameTimes, TimeSpread};
 pub use input_parts::{hold_typed, strokes};
 pub use layout::show;
 pub use machine::Machine;

@@ -15,7 +15,7 @@ use crate::scene::{Colour, Palette};
 
 /// The colours of the panels that are not the scene's.
 #[derive(Clone, Copy, Debug)]
-struct Tones {
+struct PanelColours {
     panel: Color32,
     field: Color32,
     button: Color32,
@@ -27,7 +27,7 @@ struct Tones {
     error: Color32,
 }
 
-impl Tones {
+impl PanelColours {
     fn new(theme: Theme) -> Self {
         let grey = Color32::from_rgb;
         match theme {
@@ -124,7 +124,7 @@ fn egui_theme(theme: Theme) -> egui::Theme {
 }
 
 fn visuals(theme: Theme) -> Visuals {
-    let tones = Tones::new(theme);
+    let tones = PanelColours::new(theme);
     let accent = colour(Palette::new(theme).accent);
     let mut visuals = match theme {
         Theme::Dark => Visuals::dark(),
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn every_text_stands_out_from_what_it_is_on() {
         for theme in [Theme::Dark, Theme::Light] {
-            let (tones, palette) = (Tones::new(theme), Palette::new(theme));
+            let (tones, palette) = (PanelColours::new(theme), Palette::new(theme));
             let on_panel = [
                 tones.text,
                 tones.weak,

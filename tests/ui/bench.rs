@@ -11,7 +11,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
 use ik_arm::session::{Action, Effect, Preferences, Session};
-use ik_arm::ui::{self, Frame, FrameTimes, Machine, style};
+use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
 pub const SMALL: Vec2 = vec2(960.0, 600.0);
@@ -29,7 +29,7 @@ pub struct App {
 /// One frame of 12 milliseconds.
 fn times() -> FrameTimes {
     let mut times = FrameTimes::default();
-    times.push(Frame { panels: Duration::from_millis(12), ..Frame::default() });
+    times.push(FrameTime { panels: Duration::from_millis(12), ..FrameTime::default() });
     times
 }
 

@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use ik_arm::document::Document;
 use ik_arm::rig::{Crowd, CrowdTimes, SolvedBy};
 use ik_arm::session::Action;
-use ik_arm::ui::Frame;
+use ik_arm::ui::FrameTime;
 
 use crate::bench::Bench;
 
@@ -72,7 +72,7 @@ fn its_figures_are_those_of_the_machine() {
     assert!(bench.says("–"), "nothing is measured before the first frame");
     let machine = &mut bench.harness.state_mut().machine;
     machine.crowd = Some(CrowdTimes { arms: 1_000, solve: Duration::from_micros(1_250) });
-    machine.times.push(Frame { encode: Duration::from_millis(10), ..Frame::default() });
+    machine.times.push(FrameTime { encode: Duration::from_millis(10), ..FrameTime::default() });
     bench.frame([]);
     for figure in ["1.25 ms", "1250.00 ns", "8.75 ms"] {
         assert!(bench.says(figure), "{figure}");

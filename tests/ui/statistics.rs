@@ -9,15 +9,15 @@ use glam::Vec3;
 use ik_arm::document::Theme;
 use ik_arm::render::Counts;
 use ik_arm::session::{Action, Dialog};
-use ik_arm::ui::{Frame, FrameTimes, Machine};
+use ik_arm::ui::{FrameTime, FrameTimes, Machine};
 
 use crate::bench::{Bench, LARGE, SMALL};
 
 /// A frame in which everything takes a part of a unit; every tenth takes three times as long.
-fn frame(index: u64) -> Frame {
+fn frame(index: u64) -> FrameTime {
     let unit = if index.is_multiple_of(10) { 3_000 } else { 1_000 + 40 * (index % 7) };
     let part = |hundredths: u64| Duration::from_micros(unit * hundredths / 100);
-    Frame {
+    FrameTime {
         solve: part(30),
         panels: part(200),
         scene: part(20),
@@ -32,7 +32,7 @@ fn machine(frames: u64, has_clock: bool) -> Machine {
     let mut times = FrameTimes::default();
     for index in 1..=frames {
         let gpu = frame(index).gpu.filter(|_| has_clock);
-        times.push(Frame { gpu, ..frame(index) });
+        times.push(FrameTime { gpu, ..frame(index) });
     }
     Machine {
         adapter: "Test adapter (of tests) (vulkan)".to_owned(),
@@ -60,11 +60,11 @@ fn opened(size: Vec2, machine: Machine) -> Bench {
 fn the_help_menu_opens_the_statistics_and_esc_closes_them() {
     let mut bench = opened(LARGE, machine(3, true));
     assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
-    assert!(bench.says("Frame times: the last took 8.6 ms"));
+    assert!(bench.says("FrameTime times: the last took 8.6 ms"));
     bench.key(Key::Escape);
     bench.settle();
     assert_eq!(bench.session().dialog(), None);
-    assert!(!bench.says("Frame times"));
+    assert!(!bench.says("FrameTime times"));
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn an_adapter_without_a_clock_is_said_to_have_none() {
 #[test]
 fn before_the_first_frame_there_is_nothing_to_tell() {
     let bench = opened(LARGE, Machine::default());
-    assert!(bench.says("Frame times: no frame has been drawn"));
+    assert!(bench.says("FrameTime times: no frame has been drawn"));
     assert!(bench.shows(Role::Label, "–"));
 }
 
@@ -119,7 +119,7 @@ fn nothing_moves_when_the_figures_change_their_widths() {
         bench.settle();
         assert_eq!(places(&bench), before, "{frames} frames");
     }
-    let slow = Frame { panels: Duration::from_millis(9_876), ..Frame::default() };
+    let slow = FrameTime { panels: Duration::from_millis(9_876), ..FrameTime::default() };
     bench.harness.state_mut().machine.times.push(slow);
     bench.harness.state_mut().machine.counts =
         Some(Counts { uploaded: 9_999_999, ..Counts::default() });

@@ -10,48 +10,48 @@ use crate::document::Timeline;
 use crate::export::Format;
 use crate::io::Frames;
 use crate::session::{Action, Dialog, Export, Session};
-use crate::ui::widgets::Field;
+use crate::ui::widgets::NumberField;
 
 /// A format, what it is called and for, and the ending of its files.
-struct Choice {
+struct FormatChoice {
     format: Format,
     name: &'static str,
     ending: &'static str,
     tooltip: &'static str,
 }
 
-const CHOICES: [Choice; 6] = [
-    Choice {
+const CHOICES: [FormatChoice; 6] = [
+    FormatChoice {
         format: Format::Glb,
         name: "GLB",
         ending: ".glb",
         tooltip: "glTF: a skinned, animated model for Blender, Unity, Unreal, three.js",
     },
-    Choice {
+    FormatChoice {
         format: Format::Bvh,
         name: "BVH",
         ending: ".bvh",
         tooltip: "Joints and their motion, as motion capture has it",
     },
-    Choice {
+    FormatChoice {
         format: Format::Csv,
         name: "CSV",
         ending: ".csv",
         tooltip: "The joints' positions at every frame, as a table",
     },
-    Choice {
+    FormatChoice {
         format: Format::Apng,
         name: "Animated PNG",
         ending: ".apng",
         tooltip: "The motion as a picture that moves",
     },
-    Choice {
+    FormatChoice {
         format: Format::PngSequence,
         name: "PNG sequence",
         ending: "_####.png",
         tooltip: "A picture of every frame; # stand for its number",
     },
-    Choice {
+    FormatChoice {
         format: Format::Png,
         name: "PNG",
         ending: ".png",
@@ -71,7 +71,7 @@ pub(in crate::ui) fn ui(
     let change = |export: Export| Action::OpenDialog(Dialog::Export(export));
     let chosen = Format::of(&export.path).ok();
     ui.horizontal_wrapped(|ui| {
-        for Choice { format, name, ending, tooltip } in CHOICES {
+        for FormatChoice { format, name, ending, tooltip } in CHOICES {
             let is_chosen = chosen == Some(format);
             let button = egui::Button::selectable(is_chosen, name).frame_when_inactive(true);
             if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
@@ -102,8 +102,15 @@ pub(in crate::ui) fn ui(
             ui.label("Metres in a unit");
             let tooltip = "How long a unit of the scene is for other programs";
             let value = session.document().metres_per_unit();
-            Field { name: "Metres in a unit", value, unit: "", step: 0.001, digits: 4, tooltip }
-                .show(ui, session, actions, |metres| Action::SetMetres(Some(metres)));
+            NumberField {
+                name: "Metres in a unit",
+                value,
+                unit: "",
+                step: 0.001,
+                digits: 4,
+                tooltip,
+            }
+            .show(ui, session, actions, |metres| Action::SetMetres(Some(metres)));
             ui.end_row();
         }
         ui.label("Length");

@@ -10,28 +10,28 @@ use crate::session::{Action, Dialog, Session};
 use crate::ui::widgets;
 
 /// What a path box asks for.
-pub(super) struct Question {
+pub(super) struct PathPrompt {
     prompt: &'static str,
     accept: &'static str,
     dialog: fn(String) -> Dialog,
     action: fn(PathBuf) -> Action,
 }
 
-pub(super) const SAVE_PICTURE: Question = Question {
+pub(super) const SAVE_PICTURE: PathPrompt = PathPrompt {
     prompt: "Save the viewport as PNG to",
     accept: "Save",
     dialog: |path| Dialog::SavePicture { path },
     action: |path| Action::SavePicture(path.display().to_string()),
 };
 
-pub(super) const OPEN: Question = Question {
+pub(super) const OPEN: PathPrompt = PathPrompt {
     prompt: "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf",
     accept: "Open",
     dialog: |path| Dialog::Open { path, problem: None },
     action: |path| Action::Open { path, skeleton: None },
 };
 
-pub(super) const SAVE_AS: Question = Question {
+pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     prompt: "Save the document to",
     accept: "Save",
     dialog: |path| Dialog::SaveAs { path, problem: None },
@@ -42,7 +42,7 @@ pub(super) const SAVE_AS: Question = Question {
 pub(super) fn ask_path(
     ui: &mut Ui,
     session: &Session,
-    question: &Question,
+    question: &PathPrompt,
     (path, problem): (&str, Option<&str>),
     is_new: bool,
     actions: &mut Vec<Action>,

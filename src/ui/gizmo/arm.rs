@@ -2,43 +2,47 @@
 
 use egui::{Color32, Painter, Pos2, Ui};
 
-use super::rotate::RingMark;
+use super::rotate::RotateRing;
 use super::shape::bright;
-use super::translate::Handles;
+use super::translate::TranslateHandles;
 use crate::document::TwistReferenceKind;
 use crate::session::{Grip, Handle, Session};
 use crate::ui::style;
-use crate::ui::viewport::Picture;
+use crate::ui::viewport::projection::ScreenProjection;
 
 /// Where the arm's grips are in the picture; those that are behind the eye are not.
-pub(in crate::ui) struct ArmGrips {
-    hand: Option<Handles>,
-    pole: Option<Handles>,
-    rings: Vec<RingMark>,
+pub(in crate::ui) struct ArmGizmo {
+    hand: Option<TranslateHandles>,
+    pole: Option<TranslateHandles>,
+    rings: Vec<RotateRing>,
 }
 
-impl ArmGrips {
-    pub fn new(picture: &Picture, session: &Session) -> Self {
+impl ArmGizmo {
+    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
         let (arm, pose) = (session.arm(), session.pose());
         // Between IK and FK the hand is nowhere near its cursor, and is not taken for it.
         let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
         let is_led = arm.is_led_by_hand();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
-        let ring = |grip| RingMark::new(picture, grip, session.arm_ring(grip)?);
+        let ring = |grip| RotateRing::new(picture, grip, session.arm_ring(grip)?);
         Self {
-            hand: is_led.then(|| Handles::new(picture, arm.cursor_world(), hand)).flatten(),
-            pole: has_pole.then(|| Handles::new(picture, arm.root + arm.pole, None)).flatten(),
+            hand: is_led
+                .then(|| TranslateHandles::new(picture, arm.cursor_world(), hand))
+                .flatten(),
+            pole: has_pole
+                .then(|| TranslateHandles::new(picture, arm.root + arm.pole, None))
+                .flatten(),
             rings: angles.filter_map(ring).collect(),
         }
     }
 
     /// What is under a point of the screen.
     pub fn at(&self, pointer: Pos2) -> Option<Grip> {
-        let on = |handles: &Option<Handles>| handles.as_ref()?.at(pointer);
+        let on = |handles: &Option<TranslateHandles>| handles.as_ref()?.at(pointer);
         let of_hand = on(&self.hand).map(Grip::Hand);
         let of_pole = || on(&self.pole).map(Grip::Pole);
-        of_hand.or_else(of_pole).or_else(|| RingMark::at(&self.rings, pointer))
+        of_hand.or_else(of_pole).or_else(|| RotateRing::at(&self.rings, pointer))
     }
 
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
@@ -66,7 +70,7 @@ impl ArmGrips {
 
 /// While something else is held they are away.
 fn paint(
-    handles: Option<&Handles>,
+    handles: Option<&TranslateHandles>,
     painter: &Painter,
     ui: &Ui,
     [pointed, own]: [Option<Handle>; 2],

@@ -11,25 +11,25 @@ use egui::{Painter, Pos2, Ui};
 
 use crate::document::RigKind;
 use crate::session::{Grip, Session};
-use crate::ui::viewport::Picture;
-use arm::ArmGrips;
-use skeleton::Figure;
+use crate::ui::viewport::projection::ScreenProjection;
+use arm::ArmGizmo;
+use skeleton::SkeletonGizmo;
 
-pub(in crate::ui) enum Grips {
-    Arm(ArmGrips),
-    Skeleton(Figure),
+pub(in crate::ui) enum Gizmo {
+    Arm(ArmGizmo),
+    Skeleton(SkeletonGizmo),
     /// A crowd has none.
     None,
 }
 
-impl Grips {
-    pub fn new(picture: &Picture, session: &Session) -> Self {
+impl Gizmo {
+    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
         if session.crowd().is_some() {
             return Self::None;
         }
         match session.rig() {
-            RigKind::Arm => Self::Arm(ArmGrips::new(picture, session)),
-            RigKind::Skeleton => Self::Skeleton(Figure::new(picture, session)),
+            RigKind::Arm => Self::Arm(ArmGizmo::new(picture, session)),
+            RigKind::Skeleton => Self::Skeleton(SkeletonGizmo::new(picture, session)),
         }
     }
 

@@ -6,7 +6,7 @@ use egui::{Color32, Painter, Pos2, Shape, Stroke};
 
 use super::shape::to_segment;
 use crate::session::{Grip, Ring};
-use crate::ui::viewport::Picture;
+use crate::ui::viewport::projection::ScreenProjection;
 
 /// In points.
 const RADIUS: f32 = 56.0;
@@ -14,16 +14,16 @@ const HIT: f32 = 7.0;
 const STEPS: usize = 64;
 
 /// Where a ring is in the picture.
-pub(in crate::ui) struct RingMark {
+pub(in crate::ui) struct RotateRing {
     pub grip: Grip,
     points: Vec<Pos2>,
     /// Whether a point is on the side of the eye.
     near: Vec<bool>,
 }
 
-impl RingMark {
+impl RotateRing {
     /// Nothing if its middle is behind the eye.
-    pub fn new(picture: &Picture, grip: Grip, ring: Ring) -> Option<Self> {
+    pub fn new(picture: &ScreenProjection, grip: Grip, ring: Ring) -> Option<Self> {
         let Ring { centre, axis } = ring;
         let radius = RADIUS * picture.units_per_point(centre);
         let (u, v) = axis.any_orthonormal_pair();

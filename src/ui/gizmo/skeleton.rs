@@ -3,12 +3,12 @@
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
-use super::rotate::RingMark;
+use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
-use super::translate::Handles;
+use super::translate::TranslateHandles;
 use crate::session::{Grip, Handle, Session};
 use crate::ui::style;
-use crate::ui::viewport::Picture;
+use crate::ui::viewport::projection::ScreenProjection;
 
 /// In points.
 const TIP: f32 = 7.0;
@@ -18,16 +18,16 @@ const TARGET_HIT: f32 = 12.0;
 const BONE_HIT: f32 = 8.0;
 
 /// Where the skeleton's grips are in the picture.
-pub(in crate::ui) struct Figure {
-    bones: Vec<Bone>,
+pub(in crate::ui) struct SkeletonGizmo {
+    bones: Vec<ScreenBone>,
     targets: Vec<TargetMark>,
     /// Arrows and squares of the selected joint's target.
-    handles: Option<(usize, Handles)>,
-    rings: Vec<RingMark>,
+    handles: Option<(usize, TranslateHandles)>,
+    rings: Vec<RotateRing>,
 }
 
 /// A bone on screen, and how far from the eye.
-struct Bone {
+struct ScreenBone {
     base: Pos2,
     tip: Pos2,
     depth: f32,
@@ -41,8 +41,8 @@ struct TargetMark {
     enabled: bool,
 }
 
-impl Figure {
-    pub fn new(picture: &Picture, session: &Session) -> Self {
+impl SkeletonGizmo {
+    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
         Self {
             bones: bones(picture, session),
             targets: targets(picture, session),
@@ -60,7 +60,7 @@ impl Figure {
         of_handles
             .or_else(|| self.target_at(pointer))
             .or_else(|| {
-                RingMark::at(&self.rings, pointer).filter(|_| self.tip_at(pointer).is_none())
+                RotateRing::at(&self.rings, pointer).filter(|_| self.tip_at(pointer).is_none())
             })
             .or_else(|| self.tip_at(pointer))
     }
@@ -78,7 +78,7 @@ impl Figure {
             .enumerate()
             .filter(|(_, bone)| bone.can_be_posed && bone.tip.distance(pointer) <= TIP_HIT);
         let (joint, _) = tips.max_by(|(_, a), (_, b)| {
-            let rank = |bone: &Bone| (bone.is_selected, -bone.tip.distance(pointer));
+            let rank = |bone: &ScreenBone| (bone.is_selected, -bone.tip.distance(pointer));
             let ((a_selected, a_near), (b_selected, b_near)) = (rank(a), rank(b));
             a_selected.cmp(&b_selected).then(a_near.total_cmp(&b_near))
         })?;
@@ -136,14 +136,14 @@ impl Figure {
     }
 }
 
-fn bones(picture: &Picture, session: &Session) -> Vec<Bone> {
+fn bones(picture: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
     let joints = rig.skeleton.joints();
     let bone = |joint: usize| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
         let is_root_point = joints[joint].parent.is_none() && joints[joint].axis == Vec3::ZERO;
         let nowhere = Pos2::new(f32::INFINITY, f32::INFINITY);
-        Bone {
+        ScreenBone {
             base: picture.place(base).unwrap_or(nowhere),
             tip: picture.place(tip).unwrap_or(nowhere),
             depth: picture.depth(base.midpoint(tip)),
@@ -155,7 +155,7 @@ fn bones(picture: &Picture, session: &Session) -> Vec<Bone> {
     (0..pose.len()).map(bone).collect()
 }
 
-fn targets(picture: &Picture, session: &Session) -> Vec<TargetMark> {
+fn targets(picture: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
     let mark = |target: &crate::document::Target| {
         let at = picture.place(target.at(session.time()))?;
         Some(TargetMark { joint: target.joint, at, enabled: target.enabled })
@@ -163,18 +163,18 @@ fn targets(picture: &Picture, session: &Session) -> Vec<TargetMark> {
     session.skeleton_rig().targets.iter().filter_map(mark).collect()
 }
 
-fn handles(picture: &Picture, session: &Session) -> Option<(usize, Handles)> {
+fn handles(picture: &ScreenProjection, session: &Session) -> Option<(usize, TranslateHandles)> {
     let joint = session.selected()?;
     let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
-    Some((joint, Handles::new(picture, target.at(session.time()), None)?))
+    Some((joint, TranslateHandles::new(picture, target.at(session.time()), None)?))
 }
 
 /// The rings of the selected joint, all as large on screen wherever they are.
-fn rings(picture: &Picture, session: &Session) -> Vec<RingMark> {
+fn rings(picture: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
     let Some(joint) = session.selected().filter(|_| session.skeleton_rig().follow_path.is_none())
     else {
         return Vec::new();
     };
-    let ring = |axis| RingMark::new(picture, Grip::Ring(joint, axis), session.ring(joint, axis)?);
+    let ring = |axis| RotateRing::new(picture, Grip::Ring(joint, axis), session.ring(joint, axis)?);
     (0..3).filter_map(ring).collect()
 }

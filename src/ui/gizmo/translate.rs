@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::shape::bright;
 use crate::session::Handle;
 use crate::ui::style;
-use crate::ui::viewport::Picture;
+use crate::ui::viewport::projection::ScreenProjection;
 
 /// In points.
 const LENGTH: f32 = 80.0;
@@ -23,7 +23,7 @@ const NARROWEST: f32 = 0.2;
 const NAMES: [&str; 3] = ["X", "Y", "Z"];
 
 /// Where the handles are in the picture.
-pub(in crate::ui) struct Handles {
+pub(in crate::ui) struct TranslateHandles {
     centre: Pos2,
     /// The hand, which may not be at the Cursor.
     hand: Option<Pos2>,
@@ -31,10 +31,10 @@ pub(in crate::ui) struct Handles {
     arrows: [Vec2; 3],
 }
 
-impl Handles {
+impl TranslateHandles {
     /// Around the point at `cursor`, with a second place to take it by; nothing if it is behind the
     /// eye.
-    pub fn new(picture: &Picture, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
+    pub fn new(picture: &ScreenProjection, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
         let centre = picture.place(cursor)?;
         let unit = LENGTH * picture.units_per_point(cursor);
         let mut arrows = [Vec2::ZERO; 3];
@@ -158,9 +158,9 @@ mod tests {
 
     use super::*;
 
-    fn handles() -> Handles {
+    fn handles() -> TranslateHandles {
         let arrows = [Vec2::new(70.0, 20.0), Vec2::new(0.0, -78.0), Vec2::new(-60.0, 35.0)];
-        Handles { centre: pos2(400.0, 300.0), hand: None, arrows }
+        TranslateHandles { centre: pos2(400.0, 300.0), hand: None, arrows }
     }
 
     #[test]
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn a_hand_away_from_its_cursor_can_be_taken_too() {
-        let handles = Handles { hand: Some(pos2(100.0, 100.0)), ..handles() };
+        let handles = TranslateHandles { hand: Some(pos2(100.0, 100.0)), ..handles() };
         assert_eq!(handles.at(pos2(108.0, 100.0)), Some(Handle::Free));
     }
 }

@@ -15,7 +15,7 @@ const RADIUS: f32 = 38.0;
 const END: f32 = 9.0;
 const MARGIN: f32 = 16.0;
 
-struct End {
+struct AxisEnd {
     view: AxisView,
     name: &'static str,
     letter: &'static str,
@@ -72,7 +72,7 @@ pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mu
     }
 }
 
-fn ends(ui: &Ui, centre: Pos2, session: &Session) -> [End; 6] {
+fn ends(ui: &Ui, centre: Pos2, session: &Session) -> [AxisEnd; 6] {
     let (back, right, up) = session.camera().basis();
     let axes = style::palette(ui).axes.map(style::colour);
     [
@@ -83,7 +83,7 @@ fn ends(ui: &Ui, centre: Pos2, session: &Session) -> [End; 6] {
         (AxisView::Bottom, "View from the bottom", "", -Vec3::Y, axes[1]),
         (AxisView::Back, "View from the back", "", -Vec3::Z, axes[2]),
     ]
-    .map(|(view, name, letter, axis, colour)| End {
+    .map(|(view, name, letter, axis, colour)| AxisEnd {
         view,
         name,
         letter,

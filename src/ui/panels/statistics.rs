@@ -7,7 +7,7 @@ use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 
 use crate::kinematics::chain_ik::Method;
 use crate::scene::Palette;
-use crate::ui::frame_times::{Frame, FrameTimes};
+use crate::ui::frame_times::{FrameTime, FrameTimes};
 use crate::ui::machine::Machine;
 use crate::ui::style;
 use crate::ui::widgets::format::grouped;
@@ -25,32 +25,32 @@ const SIXTIETH: f64 = 1000.0 / 60.0;
 
 /// What the processor does for a frame, in the order in which it does it, one part on the other in
 /// the graph.
-const PARTS: [Part; 5] = [
-    Part {
+const PARTS: [FramePart; 5] = [
+    FramePart {
         name: "Solve",
         tooltip: "Actions, solvers and time: the session",
         of: |frame| frame.solve,
         colour: |palette| style::colour(palette.method(Method::DampedLeastSquares)),
     },
-    Part {
+    FramePart {
         name: "Panels",
         tooltip: "The panels, laid out and cut into triangles",
         of: |frame| frame.panels,
         colour: |palette| style::colour(palette.method(Method::Fabrik)),
     },
-    Part {
+    FramePart {
         name: "Scene",
         tooltip: "What is to be drawn, made from the document",
         of: |frame| frame.scene,
         colour: |palette| style::colour(palette.method(Method::TwoBone)),
     },
-    Part {
+    FramePart {
         name: "Encode",
         tooltip: "What changed, sent to the graphics device, and its orders",
         of: |frame| frame.encode,
         colour: |palette| style::colour(palette.method(Method::Transpose)),
     },
-    Part {
+    FramePart {
         name: "Wait",
         tooltip: "For the screen, or for the graphics device to finish what it was told before",
         of: |frame| frame.wait,
@@ -58,10 +58,10 @@ const PARTS: [Part; 5] = [
     },
 ];
 
-struct Part {
+struct FramePart {
     name: &'static str,
     tooltip: &'static str,
-    of: fn(&Frame) -> Duration,
+    of: fn(&FrameTime) -> Duration,
     colour: fn(&Palette) -> Color32,
 }
 
@@ -142,7 +142,7 @@ fn name(ui: &mut Ui, text: &str, tooltip: &str, colour: Option<Color32>) {
     });
 }
 
-fn figures(ui: &mut Ui, times: &FrameTimes, part: impl Fn(&Frame) -> Option<Duration>) {
+fn figures(ui: &mut Ui, times: &FrameTimes, part: impl Fn(&FrameTime) -> Option<Duration>) {
     let spread = times.spread(part);
     for time in [spread.map(|it| it.median), spread.map(|it| it.slowest)] {
         let text = time.map_or("–".to_owned(), |time| format!("{:.3}", milliseconds(time)));
@@ -179,7 +179,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
     let strong = ui.visuals().strong_text_color();
     // In parts of the whole height, which is what a mark's spacing is told by.
     let ticks = [0.0, 0.5, 1.0];
-    let points = |part: &dyn Fn(&Frame) -> Option<Duration>| points(times, top, part);
+    let points = |part: &dyn Fn(&FrameTime) -> Option<Duration>| points(times, top, part);
     let response = plot::still("frame times", HEIGHT)
         .label_formatter(|_| None)
         .show_grid(false)
@@ -193,8 +193,9 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
             plot::show(plot, PlotBounds::from_min_max([1.0, 0.0], [last, 1.04]));
             // Each covers all but the part on top of it.
             for count in (1..=PARTS.len()).rev() {
-                let sum =
-                    |frame: &Frame| Some(PARTS[..count].iter().map(|part| (part.of)(frame)).sum());
+                let sum = |frame: &FrameTime| {
+                    Some(PARTS[..count].iter().map(|part| (part.of)(frame)).sum())
+                };
                 let colour = (PARTS[count - 1].colour)(&palette);
                 let line = Line::new(PARTS[count - 1].name, points(&sum));
                 plot.line(line.color(colour).width(1.0).fill(0.0).fill_alpha(1.0));
@@ -207,8 +208,10 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
         })
         .response;
     let said = match times.last() {
-        Some(frame) => format!("Frame times: the last took {:.1} ms", milliseconds(frame.total())),
-        None => "Frame times: no frame has been drawn".to_owned(),
+        Some(frame) => {
+            format!("FrameTime times: the last took {:.1} ms", milliseconds(frame.total()))
+        }
+        None => "FrameTime times: no frame has been drawn".to_owned(),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
     response.on_hover_text("The last 240 frames, the newest at the right; a frame is drawn only when something changes");
@@ -218,7 +221,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
 fn points(
     times: &FrameTimes,
     top: f64,
-    part: &dyn Fn(&Frame) -> Option<Duration>,
+    part: &dyn Fn(&FrameTime) -> Option<Duration>,
 ) -> PlotPoints<'static> {
     let frames = times.frames();
     let first = FrameTimes::MOST - frames.len() + 1;
@@ -259,7 +262,7 @@ mod tests {
             (100_000, 100.0),
         ] {
             let mut times = FrameTimes::default();
-            times.push(Frame { wait: Duration::from_micros(micros), ..Frame::default() });
+            times.push(FrameTime { wait: Duration::from_micros(micros), ..FrameTime::default() });
             assert!((top(&times) - expected).abs() < 1e-9, "{micros} µs: {}", top(&times));
         }
     }

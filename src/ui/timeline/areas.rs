@@ -17,7 +17,7 @@ pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
 }
 
 /// What is where in the panel.
-pub(super) struct Areas {
+pub(super) struct TimelineAreas {
     pub whole: Rect,
     /// Beside the lanes.
     pub names: Rect,
@@ -25,7 +25,7 @@ pub(super) struct Areas {
     pub lanes: Rect,
 }
 
-impl Areas {
+impl TimelineAreas {
     pub fn new(whole: Rect) -> Self {
         let split = (whole.left() + NAMES).min(whole.right());
         let top = (whole.top() + RULER).min(whole.bottom());

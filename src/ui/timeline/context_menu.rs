@@ -3,23 +3,23 @@
 use egui::{Id, Response, Ui};
 
 use super::drag;
-use super::lane::Lane;
-use super::mouse::Lanes;
+use super::lane::TimelineLane;
+use super::mouse::LaneView;
 use crate::document::Channel;
 use crate::session::{Action, Session};
 use crate::ui::{labels, widgets};
 
 /// Where the right button went down.
 #[derive(Clone, Copy)]
-struct Asked {
-    lane: Option<Lane>,
+struct MenuTarget {
+    lane: Option<TimelineLane>,
     time: f64,
 }
 
 /// The menu of the lanes, for what was under the pointer.
 pub(in crate::ui) fn of_lanes(
     ui: &Ui,
-    lanes: &Lanes<'_>,
+    lanes: &LaneView<'_>,
     body: &Response,
     actions: &mut Vec<Action>,
 ) {
@@ -29,9 +29,9 @@ pub(in crate::ui) fn of_lanes(
         && let Some(at) = ui.input(|input| input.pointer.interact_pos())
     {
         let time = drag::pointed_time(ui, session, lanes.scale, at);
-        ui.data_mut(|data| data.insert_temp(id, Asked { lane: lanes.lane(at), time }));
+        ui.data_mut(|data| data.insert_temp(id, MenuTarget { lane: lanes.lane(at), time }));
     }
-    let Some(Asked { lane, time }) = ui.data(|data| data.get_temp(id)) else {
+    let Some(MenuTarget { lane, time }) = ui.data(|data| data.get_temp(id)) else {
         return;
     };
     body.context_menu(|ui| {
@@ -47,7 +47,7 @@ pub(in crate::ui) fn of_lanes(
             actions.extend([Action::SetTime(time), Action::PasteKeys]);
             ui.close();
         }
-        if let Some(Lane::Channel(channel)) = lane {
+        if let Some(TimelineLane::Channel(channel)) = lane {
             clear(ui, session, channel, actions);
         }
     });

@@ -6,10 +6,10 @@ use egui::{
     accesskit, pos2, vec2,
 };
 
-use super::areas::{Areas, ROW};
-use super::lane::{Lane, Picked, channels};
-use super::mouse::{self, Lanes};
-use super::time_scale::Scale;
+use super::areas::{ROW, TimelineAreas};
+use super::lane::{SelectedKeys, TimelineLane, channels};
+use super::mouse::{self, LaneView};
+use super::time_scale::TimeScale;
 use super::{context_menu, text};
 use crate::document::Channel;
 use crate::session::{Action, Session};
@@ -23,8 +23,8 @@ const NEAR: f32 = 5.0;
 pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
-    scale: Scale,
-    areas: &Areas,
+    scale: TimeScale,
+    areas: &TimelineAreas,
     ruler: &Response,
     actions: &mut Vec<Action>,
 ) {
@@ -36,29 +36,29 @@ pub(in crate::ui) fn ui(
     }
     let body = ui.interact(areas.lanes, Id::unique("timeline lanes"), Sense::click_and_drag());
     body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Keys"));
-    let shown = Shown { session, scale, picked: Picked::new(session), areas, ruler };
+    let shown = DopeSheet { session, scale, picked: SelectedKeys::new(session), areas, ruler };
 
     let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
-    shown.lane(ui, Lane::All, first, actions);
+    shown.lane(ui, TimelineLane::All, first, actions);
     let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
     let offset = shown.scrolled(ui, &channels, rest, actions);
 
-    let lanes = Lanes { session, scale, channels: &channels, area: areas.lanes, offset };
+    let lanes = LaneView { session, scale, channels: &channels, area: areas.lanes, offset };
     mouse::press(ui, &lanes, &body, ruler, actions);
     mouse::follow(ui, &lanes, actions);
     context_menu::of_lanes(ui, &lanes, &body, actions);
     mouse::paint_box(ui, &lanes);
 }
 
-struct Shown<'a> {
+struct DopeSheet<'a> {
     session: &'a Session,
-    scale: Scale,
-    picked: Picked,
-    areas: &'a Areas,
+    scale: TimeScale,
+    picked: SelectedKeys,
+    areas: &'a TimelineAreas,
     ruler: &'a Response,
 }
 
-impl Shown<'_> {
+impl DopeSheet<'_> {
     /// The channels' lanes, of which only those in sight are laid out. Returns how far they are
     /// scrolled.
     fn scrolled(
@@ -81,27 +81,27 @@ impl Shown<'_> {
                 for (row, channel) in channels.iter().enumerate().skip(first).take(count) {
                     let at = pos2(left, top + ROW * row as f32);
                     let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
-                    self.lane(ui, Lane::Channel(*channel), rect, actions);
+                    self.lane(ui, TimelineLane::Channel(*channel), rect, actions);
                 }
             })
         });
         scroll.inner.state.clamped_offset().y
     }
 
-    fn lane(&self, ui: &Ui, lane: Lane, rect: Rect, actions: &mut Vec<Action>) {
+    fn lane(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Vec<Action>) {
         let split = self.areas.lanes.left();
         let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
         let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
         let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6);
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
         match lane {
-            Lane::All => {
+            TimelineLane::All => {
                 text::line(ui, name, "All", ui.visuals().strong_text_color());
             }
-            Lane::Channel(channel) => self.name(ui, channel, name, actions),
+            TimelineLane::Channel(channel) => self.name(ui, channel, name, actions),
         }
         self.keys(ui, lane, keys, actions);
-        if let Lane::Channel(channel) = lane
+        if let TimelineLane::Channel(channel) = lane
             && self.session.is_overridden(channel)
         {
             self.overridden(ui, channel, keys);
@@ -156,7 +156,7 @@ impl Shown<'_> {
         response.on_hover_text(shown);
     }
 
-    fn keys(&self, ui: &Ui, lane: Lane, rect: Rect, actions: &mut Vec<Action>) {
+    fn keys(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Vec<Action>) {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
         let mut last = f32::NEG_INFINITY;
@@ -170,8 +170,11 @@ impl Shown<'_> {
             let hovered = x - last >= NEAR && self.key(ui, lane, time, at, rect, actions);
             last = x;
             let visuals = ui.visuals();
-            let plain =
-                if lane == Lane::All { visuals.weak_text_color() } else { visuals.text_color() };
+            let plain = if lane == TimelineLane::All {
+                visuals.weak_text_color()
+            } else {
+                visuals.text_color()
+            };
             let (size, fill, rim) = match picked {
                 true => {
                     (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
@@ -187,7 +190,7 @@ impl Shown<'_> {
     fn key(
         &self,
         ui: &Ui,
-        lane: Lane,
+        lane: TimelineLane,
         time: f64,
         at: egui::Pos2,
         lane_rect: Rect,
@@ -195,10 +198,10 @@ impl Shown<'_> {
     ) -> bool {
         let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
         let (id, said) = match lane {
-            Lane::All => {
+            TimelineLane::All => {
                 (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
             }
-            Lane::Channel(channel) => (
+            TimelineLane::Channel(channel) => (
                 Id::unique(("timeline key", channel, time.to_bits())),
                 format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),

@@ -2,12 +2,12 @@
 
 use egui::{Id, Key, Pos2, Ui};
 
-use super::time_scale::Scale;
+use super::time_scale::TimeScale;
 use crate::document::Timeline;
 use crate::session::{Action, Key as KeyOf, Session};
 
 #[derive(Clone, Debug)]
-pub(in crate::ui) enum Held {
+pub(in crate::ui) enum TimelineDrag {
     /// The time, and what it was before.
     Playhead { before: f64 },
     /// Keys that are moved.
@@ -40,16 +40,16 @@ pub(in crate::ui) struct BoxDrag {
     pub base: Vec<KeyOf>,
 }
 
-pub(in crate::ui) fn get(ui: &Ui) -> Option<Held> {
+pub(in crate::ui) fn get(ui: &Ui) -> Option<TimelineDrag> {
     ui.data(|data| data.get_temp(id()))
 }
 
-pub(in crate::ui) fn set(ui: &Ui, held: Held) {
+pub(in crate::ui) fn set(ui: &Ui, held: TimelineDrag) {
     ui.data_mut(|data| data.insert_temp(id(), held));
 }
 
 pub(in crate::ui) fn clear(ui: &Ui) {
-    ui.data_mut(|data| data.remove::<Held>(id()));
+    ui.data_mut(|data| data.remove::<TimelineDrag>(id()));
 }
 
 /// Whether the pointer lets go in this frame.
@@ -61,10 +61,10 @@ pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
 pub(in crate::ui) fn follow_playhead(
     ui: &Ui,
     session: &Session,
-    scale: Scale,
+    scale: TimeScale,
     actions: &mut Vec<Action>,
 ) {
-    let Some(Held::Playhead { before }) = get(ui) else {
+    let Some(TimelineDrag::Playhead { before }) = get(ui) else {
         return;
     };
     if ui.input(|input| input.key_pressed(Key::Escape)) {
@@ -82,14 +82,19 @@ pub(in crate::ui) fn follow_playhead(
 
 /// Takes hold of the time; what plays stands.
 pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    set(ui, Held::Playhead { before: session.time() });
+    set(ui, TimelineDrag::Playhead { before: session.time() });
     if session.is_playing() {
         actions.push(Action::Play(false));
     }
 }
 
 /// The frame at the pointer, or with Ctrl the very time, within the timeline and its keys.
-pub(in crate::ui) fn pointed_time(ui: &Ui, session: &Session, scale: Scale, pointer: Pos2) -> f64 {
+pub(in crate::ui) fn pointed_time(
+    ui: &Ui,
+    session: &Session,
+    scale: TimeScale,
+    pointer: Pos2,
+) -> f64 {
     let timeline = session.document().timeline;
     let (first, last) = span(session);
     snapped(ui, timeline, scale.time(pointer.x)).clamp(first, last)

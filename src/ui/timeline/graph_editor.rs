@@ -6,9 +6,9 @@ use egui::{
 use egui::{Rangef, Vec2b, pos2, vec2};
 use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
-use super::areas::{Areas, ROW, take_keyboard};
-use super::drag::{self, Held};
-use super::time_scale::Scale;
+use super::areas::{ROW, TimelineAreas, take_keyboard};
+use super::drag::{self, TimelineDrag};
+use super::time_scale::TimeScale;
 use super::{lane, ruler, text};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::chain_ik::Method;
@@ -27,7 +27,7 @@ const VALUES: f32 = 42.0;
 const BETWEEN_VALUES: f32 = 15.0;
 
 /// The line of one number of a channel.
-struct Curve {
+struct ChannelCurve {
     name: String,
     colour: Color32,
     style: LineStyle,
@@ -38,8 +38,8 @@ struct Curve {
 pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
-    scale: Scale,
-    areas: &Areas,
+    scale: TimeScale,
+    areas: &TimelineAreas,
     ruler: &Response,
     actions: &mut Vec<Action>,
 ) {
@@ -48,7 +48,7 @@ pub(in crate::ui) fn ui(
         text::hint(ui, areas, "No curves: key the rig (K), or select a channel that has keys");
         return;
     }
-    let curves: Vec<Curve> = channels
+    let curves: Vec<ChannelCurve> = channels
         .iter()
         .enumerate()
         .flat_map(|(index, channel)| curves(ui, session, scale, *channel, index))
@@ -66,9 +66,9 @@ pub(in crate::ui) fn ui(
         drag::follow_playhead(ui, session, scale, actions);
     }
     if area.contains_pointer() && ui.input(|input| input.pointer.button_pressed(MIDDLE)) {
-        drag::set(ui, Held::Pan);
+        drag::set(ui, TimelineDrag::Pan);
     }
-    if matches!(drag::get(ui), Some(Held::Pan)) && drag::is_released(ui) {
+    if matches!(drag::get(ui), Some(TimelineDrag::Pan)) && drag::is_released(ui) {
         drag::clear(ui);
     }
 }
@@ -106,7 +106,13 @@ fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     (colours.into_iter().map(style::colour).collect(), style)
 }
 
-fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usize) -> Vec<Curve> {
+fn curves(
+    ui: &Ui,
+    session: &Session,
+    scale: TimeScale,
+    channel: Channel,
+    index: usize,
+) -> Vec<ChannelCurve> {
     let keys = &session.document().keys;
     let Some(track) = keys.track(channel) else {
         return Vec::new();
@@ -120,7 +126,7 @@ fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usi
     let times = times(scale);
     let values: Vec<_> =
         times.iter().filter_map(|time| Some((*time, keys.value(channel, *time)?))).collect();
-    let curve = |(axis, colour): (usize, Color32)| Curve {
+    let curve = |(axis, colour): (usize, Color32)| ChannelCurve {
         name: format!("{name} {axis}"),
         colour,
         style,
@@ -135,14 +141,14 @@ fn curves(ui: &Ui, session: &Session, scale: Scale, channel: Channel, index: usi
 }
 
 /// Close enough to each other for a smooth curve.
-fn times(scale: Scale) -> Vec<f64> {
+fn times(scale: TimeScale) -> Vec<f64> {
     let (from, to) = scale.range();
     let step = f64::from(GRAIN) / scale.points_per_second();
     let count = ((to - from) / step).ceil().clamp(2.0, 10_000.0) as usize;
     (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
 }
 
-fn plot(ui: &mut Ui, scale: Scale, areas: &Areas, curves: &[Curve]) {
+fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelCurve]) {
     let (from, to) = scale.range();
     let values = curves.iter().flat_map(|curve| &curve.line).map(|point| point[1]);
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -196,7 +202,7 @@ fn round_step(step: f64) -> f64 {
 }
 
 /// Which line is which.
-fn legend(ui: &mut Ui, session: &Session, areas: &Areas, channels: &[Channel]) {
+fn legend(ui: &mut Ui, session: &Session, areas: &TimelineAreas, channels: &[Channel]) {
     let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
     let rect = Rect::from_min_max(areas.names.min, right);
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
@@ -214,7 +220,8 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
     let size = vec2(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let name = labels::channel(session, channel);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Curve of {name}")));
+    response
+        .widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("ChannelCurve of {name}")));
     let (colours, _) = look(ui, channel, index);
     let width = SWATCH * colours.len() as f32;
     for (place, colour) in colours.iter().enumerate() {

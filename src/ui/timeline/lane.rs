@@ -7,7 +7,7 @@ use crate::session::{Key, Session};
 
 /// A lane: all keys at a time together, or those of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::ui) enum Lane {
+pub(in crate::ui) enum TimelineLane {
     All,
     Channel(Channel),
 }
@@ -21,7 +21,7 @@ pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
     first
 }
 
-impl Lane {
+impl TimelineLane {
     /// When it has keys, of those from one time to another; in order.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
         let keys = &session.document().keys;
@@ -71,12 +71,12 @@ fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// The selected keys, to be asked for quickly.
-pub(in crate::ui) struct Picked {
+pub(in crate::ui) struct SelectedKeys {
     keys: HashSet<(Channel, u64)>,
     times: HashSet<u64>,
 }
 
-impl Picked {
+impl SelectedKeys {
     pub fn new(session: &Session) -> Self {
         Self::of(session.selected_keys())
     }
@@ -91,11 +91,11 @@ impl Picked {
     }
 
     /// Whether any of a lane's keys at a time is selected.
-    pub fn has(&self, lane: Lane, time: f64) -> bool {
+    pub fn has(&self, lane: TimelineLane, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
         match lane {
-            Lane::All => self.times.contains(&bits),
-            Lane::Channel(channel) => self.keys.contains(&(channel, bits)),
+            TimelineLane::All => self.times.contains(&bits),
+            TimelineLane::Channel(channel) => self.keys.contains(&(channel, bits)),
         }
     }
 }

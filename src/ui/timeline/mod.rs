@@ -15,9 +15,9 @@ mod transport_bar;
 
 use egui::{Rect, Ui};
 
-use areas::Areas;
-use drag::Held;
-use time_scale::Scale;
+use areas::TimelineAreas;
+use drag::TimelineDrag;
+use time_scale::TimeScale;
 
 use crate::session::{Action, Session};
 
@@ -25,11 +25,11 @@ pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     transport_bar::ui(ui, session, actions);
-    let areas = Areas::new(ui.available_rect_before_wrap());
+    let areas = TimelineAreas::new(ui.available_rect_before_wrap());
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
-    let mut scale = Scale::load(ui, timeline, areas.lanes.x_range());
-    let is_panning = matches!(drag::get(ui), Some(Held::Pan));
+    let mut scale = TimeScale::load(ui, timeline, areas.lanes.x_range());
+    let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
     let wheeled = Rect::from_min_max(areas.ruler.min, areas.lanes.max);
     scale.follow_input(ui, session, wheeled, is_panning);
 

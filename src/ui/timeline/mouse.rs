@@ -3,9 +3,9 @@
 use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
 
 use super::areas::{ROW, take_keyboard};
-use super::drag::{self, BoxDrag, Held, KeyDrag};
-use super::lane::{Lane, Picked};
-use super::time_scale::Scale;
+use super::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
+use super::lane::{SelectedKeys, TimelineLane};
+use super::time_scale::TimeScale;
 use crate::document::Channel;
 use crate::session::{Action, Key, Session};
 use crate::ui::{labels, style};
@@ -16,28 +16,28 @@ const REACH: f32 = 7.0;
 const SLACK: f32 = 3.0;
 
 /// The lanes as they are on screen.
-pub(in crate::ui) struct Lanes<'a> {
+pub(in crate::ui) struct LaneView<'a> {
     pub session: &'a Session,
-    pub scale: Scale,
+    pub scale: TimeScale,
     pub channels: &'a [Channel],
     pub area: Rect,
     /// How far the channels' lanes are scrolled.
     pub offset: f32,
 }
 
-impl Lanes<'_> {
+impl LaneView<'_> {
     /// The lane at a place on screen.
-    pub fn lane(&self, at: Pos2) -> Option<Lane> {
+    pub fn lane(&self, at: Pos2) -> Option<TimelineLane> {
         let y = at.y - self.area.top();
         if y < ROW {
-            return Some(Lane::All);
+            return Some(TimelineLane::All);
         }
         let row = ((y - ROW + self.offset) / ROW).floor().max(0.0) as usize;
-        self.channels.get(row).map(|channel| Lane::Channel(*channel))
+        self.channels.get(row).map(|channel| TimelineLane::Channel(*channel))
     }
 
     /// The lane and the time of the key that is nearest to a place.
-    pub fn key(&self, at: Pos2) -> Option<(Lane, f64)> {
+    pub fn key(&self, at: Pos2) -> Option<(TimelineLane, f64)> {
         let lane = self.lane(at)?;
         let (from, to) = (self.scale.time(at.x - REACH), self.scale.time(at.x + REACH));
         let off = |time: &f64| (self.scale.x(*time) - at.x).abs();
@@ -57,7 +57,7 @@ impl Lanes<'_> {
         let rows = self.channels.iter().enumerate();
         let inside = rows.filter(|(row, _)| (ys.0..=ys.1).contains(&centre(*row)));
         let keys = inside.flat_map(|(_, channel)| {
-            let found = Lane::Channel(*channel).times(self.session, times.0, times.1);
+            let found = TimelineLane::Channel(*channel).times(self.session, times.0, times.1);
             found.into_iter().map(|time| (*channel, time))
         });
         keys.collect()
@@ -67,7 +67,7 @@ impl Lanes<'_> {
 /// Takes hold of what is under the pointer.
 pub(in crate::ui) fn press(
     ui: &Ui,
-    lanes: &Lanes<'_>,
+    lanes: &LaneView<'_>,
     body: &Response,
     ruler: &Response,
     actions: &mut Vec<Action>,
@@ -91,10 +91,10 @@ pub(in crate::ui) fn press(
                     None => press_lane(ui, lanes, pos, adds),
                 }
             }
-            PointerButton::Middle => drag::set(ui, Held::Pan),
+            PointerButton::Middle => drag::set(ui, TimelineDrag::Pan),
             PointerButton::Secondary => {
                 if let Some((lane, time)) = lanes.key(pos)
-                    && !Picked::new(lanes.session).has(lane, time)
+                    && !SelectedKeys::new(lanes.session).has(lane, time)
                 {
                     actions.push(Action::SelectKeys(lane.keys(lanes.session, time)));
                 }
@@ -114,8 +114,8 @@ pub(in crate::ui) fn press(
 
 fn press_key(
     ui: &Ui,
-    lanes: &Lanes<'_>,
-    lane: Lane,
+    lanes: &LaneView<'_>,
+    lane: TimelineLane,
     time: f64,
     pressed: Pos2,
     adds: bool,
@@ -125,8 +125,8 @@ fn press_key(
     let pointed = lane.keys(session, time);
     let selected = session.selected_keys();
     let picked = |of: &[Key]| {
-        let of = Picked::of(of);
-        move |key: &&Key| of.has(Lane::Channel(key.0), key.1)
+        let of = SelectedKeys::of(of);
+        move |key: &&Key| of.has(TimelineLane::Channel(key.0), key.1)
     };
     let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
     let all_selected = pointed.iter().all(|key| is_selected(&key));
@@ -147,31 +147,31 @@ fn press_key(
     if keys != selected {
         actions.push(Action::SelectKeys(keys.clone()));
     }
-    drag::set(ui, Held::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
+    drag::set(ui, TimelineDrag::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
 }
 
-fn press_lane(ui: &Ui, lanes: &Lanes<'_>, at: Pos2, adds: bool) {
+fn press_lane(ui: &Ui, lanes: &LaneView<'_>, at: Pos2, adds: bool) {
     let base = if adds { lanes.session.selected_keys().to_vec() } else { Vec::new() };
     let drag = BoxDrag { time: lanes.scale.time(at.x), y: lanes.content_y(at), base };
-    drag::set(ui, Held::Box(drag));
+    drag::set(ui, TimelineDrag::Box(drag));
 }
 
 /// What is held follows the pointer, until it is let go or taken back.
-pub(in crate::ui) fn follow(ui: &Ui, lanes: &Lanes<'_>, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn follow(ui: &Ui, lanes: &LaneView<'_>, actions: &mut Vec<Action>) {
     let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
         return;
     };
     match drag::get(ui) {
-        Some(Held::Keys(drag)) => move_keys(ui, lanes, drag, pointer, actions),
-        Some(Held::Box(drag)) => draw_box(ui, lanes, &drag, pointer, actions),
-        Some(Held::Pan) if drag::is_released(ui) => drag::clear(ui),
-        Some(Held::Pan | Held::Playhead { .. }) | None => {}
+        Some(TimelineDrag::Keys(drag)) => move_keys(ui, lanes, drag, pointer, actions),
+        Some(TimelineDrag::Box(drag)) => draw_box(ui, lanes, &drag, pointer, actions),
+        Some(TimelineDrag::Pan) if drag::is_released(ui) => drag::clear(ui),
+        Some(TimelineDrag::Pan | TimelineDrag::Playhead { .. }) | None => {}
     }
 }
 
 fn move_keys(
     ui: &Ui,
-    lanes: &Lanes<'_>,
+    lanes: &LaneView<'_>,
     mut drag: KeyDrag,
     pointer: Pos2,
     actions: &mut Vec<Action>,
@@ -186,7 +186,7 @@ fn move_keys(
     if !drag.moved && (pointer - drag.pressed).length() > SLACK {
         actions.push(Action::BeginEdit);
         drag.moved = true;
-        drag::set(ui, Held::Keys(drag.clone()));
+        drag::set(ui, TimelineDrag::Keys(drag.clone()));
     }
     if drag.moved {
         let way = f64::from(pointer.x - drag.pressed.x) / lanes.scale.points_per_second();
@@ -205,7 +205,13 @@ fn move_keys(
     }
 }
 
-fn draw_box(ui: &Ui, lanes: &Lanes<'_>, drag: &BoxDrag, pointer: Pos2, actions: &mut Vec<Action>) {
+fn draw_box(
+    ui: &Ui,
+    lanes: &LaneView<'_>,
+    drag: &BoxDrag,
+    pointer: Pos2,
+    actions: &mut Vec<Action>,
+) {
     if ui.input(|input| input.key_pressed(Button::Escape)) {
         actions.push(Action::SelectKeys(drag.base.clone()));
         drag::clear(ui);
@@ -218,8 +224,10 @@ fn draw_box(ui: &Ui, lanes: &Lanes<'_>, drag: &BoxDrag, pointer: Pos2, actions: 
         let (time, y) = (lanes.scale.time(pointer.x), lanes.content_y(pointer));
         let times = (drag.time.min(time), drag.time.max(time));
         let inside = lanes.keys_in(times, (drag.y.min(y), drag.y.max(y)));
-        let picked = Picked::of(&keys);
-        keys.extend(inside.into_iter().filter(|(it, at)| !picked.has(Lane::Channel(*it), *at)));
+        let picked = SelectedKeys::of(&keys);
+        keys.extend(
+            inside.into_iter().filter(|(it, at)| !picked.has(TimelineLane::Channel(*it), *at)),
+        );
     }
     if keys != lanes.session.selected_keys() {
         actions.push(Action::SelectKeys(keys));
@@ -229,14 +237,14 @@ fn draw_box(ui: &Ui, lanes: &Lanes<'_>, drag: &BoxDrag, pointer: Pos2, actions: 
     }
 }
 
-fn place(lanes: &Lanes<'_>, drag: &BoxDrag) -> Pos2 {
+fn place(lanes: &LaneView<'_>, drag: &BoxDrag) -> Pos2 {
     let y = drag.y - lanes.offset + ROW + lanes.area.top();
     pos2(lanes.scale.x(drag.time), y)
 }
 
 /// The box that selects.
-pub(in crate::ui) fn paint_box(ui: &Ui, lanes: &Lanes<'_>) {
-    let (Some(Held::Box(drag)), Some(pointer)) =
+pub(in crate::ui) fn paint_box(ui: &Ui, lanes: &LaneView<'_>) {
+    let (Some(TimelineDrag::Box(drag)), Some(pointer)) =
         (drag::get(ui), ui.input(|input| input.pointer.latest_pos()))
     else {
         return;

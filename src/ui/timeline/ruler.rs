@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::drag;
-use super::time_scale::Scale;
+use super::time_scale::TimeScale;
 use crate::document::Timeline;
 use crate::session::{Action, Session};
 use crate::ui::style;
@@ -25,7 +25,7 @@ pub(in crate::ui) fn id() -> Id {
 pub(in crate::ui) fn ui(
     ui: &Ui,
     session: &Session,
-    scale: Scale,
+    scale: TimeScale,
     rect: Rect,
     actions: &mut Vec<Action>,
 ) -> Response {
@@ -47,7 +47,7 @@ pub(in crate::ui) fn ui(
         ui.painter().rect_stroke(rect.shrink(0.5), 2.0, stroke, egui::StrokeKind::Inside);
     }
     if response.double_clicked() {
-        Scale::fit(ui);
+        TimeScale::fit(ui);
         ui.request_repaint();
     } else if is_pressed(ui, &response) {
         response.request_focus();
@@ -92,12 +92,12 @@ fn asked(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     actions.extend(values.into_iter().map(Action::SetTime));
 }
 
-fn paint(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
+fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let visuals = ui.visuals();
     let (strong, weak) = (visuals.text_color(), visuals.weak_text_color());
     let font = TextStyle::Small.resolve(ui.style());
-    let ticks = Ticks::new(scale, timeline);
+    let ticks = RulerTicks::new(scale, timeline);
     for (x, _) in ticks.lines(scale, timeline, ticks.minor) {
         painter.vline(x, rect.bottom() - 4.0..=rect.bottom(), Stroke::new(1.0, weak));
     }
@@ -114,24 +114,30 @@ fn paint(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
 }
 
 /// Where the ruler's times that are written go on downwards.
-pub(in crate::ui) fn grid(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
+pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
-    let ticks = Ticks::new(scale, timeline);
+    let ticks = RulerTicks::new(scale, timeline);
     for (x, _) in ticks.lines(scale, timeline, ticks.major) {
         painter.vline(x, rect.y_range(), Stroke::new(1.0, line.color.gamma_multiply(0.5)));
     }
 }
 
 /// What lies between start and end stands out from what does not.
-pub(in crate::ui) fn ground(ui: &Ui, scale: Scale, timeline: Timeline, rect: Rect) {
+pub(in crate::ui) fn ground(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let x = |time| scale.x(time).clamp(rect.left(), rect.right());
     let played = Rect::from_x_y_ranges(x(timeline.start)..=x(timeline.end), rect.y_range());
     ui.painter().rect_filled(played, 0.0, ui.visuals().extreme_bg_color);
 }
 
 /// Where the time is: a line through all lanes with a handle in the ruler.
-pub(in crate::ui) fn playhead(ui: &Ui, session: &Session, scale: Scale, ruler: Rect, bottom: f32) {
+pub(in crate::ui) fn playhead(
+    ui: &Ui,
+    session: &Session,
+    scale: TimeScale,
+    ruler: Rect,
+    bottom: f32,
+) {
     let whole = Rect::from_min_max(ruler.min, pos2(ruler.right(), bottom));
     let painter = ui.painter().with_clip_rect(whole);
     let (x, accent) = (scale.x(session.time()), style::accent(ui));
@@ -144,15 +150,15 @@ pub(in crate::ui) fn playhead(ui: &Ui, session: &Session, scale: Scale, ruler: R
 }
 
 /// Which frames have a line.
-struct Ticks {
+struct RulerTicks {
     /// Frames from a written time to the next.
     major: i64,
     /// Frames from a line to the next.
     minor: i64,
 }
 
-impl Ticks {
-    fn new(scale: Scale, timeline: Timeline) -> Self {
+impl RulerTicks {
+    fn new(scale: TimeScale, timeline: Timeline) -> Self {
         const SECONDS: [i64; 16] =
             [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200, 86_400];
         let rate = i64::from(timeline.frame_rate.max(1));
@@ -169,7 +175,7 @@ impl Ticks {
     /// Where every `step`th frame that is seen is, with its number.
     fn lines(
         &self,
-        scale: Scale,
+        scale: TimeScale,
         timeline: Timeline,
         step: i64,
     ) -> impl Iterator<Item = (f32, i64)> + use<> {
@@ -195,8 +201,8 @@ mod tests {
         for frame_rate in [1, 7, 24, 30, 60, 1000] {
             for end in [0.01, 0.5, 1.0, 8.0, 100.0, 3600.0, 86_400.0] {
                 let timeline = Timeline { start: 0.0, end, frame_rate };
-                let scale = Scale::showing(Rangef::new(0.0, 800.0), 0.0, end);
-                let ticks = Ticks::new(scale, timeline);
+                let scale = TimeScale::showing(Rangef::new(0.0, 800.0), 0.0, end);
+                let ticks = RulerTicks::new(scale, timeline);
                 for (step, least) in [(ticks.major, LABEL), (ticks.minor, LINE)] {
                     let xs: Vec<f32> = ticks.lines(scale, timeline, step).map(|it| it.0).collect();
                     for pair in xs.windows(2) {

@@ -2,10 +2,10 @@
 
 use egui::{Color32, FontId, Rect, TextStyle, Ui, UiBuilder, pos2, vec2};
 
-use super::areas::{Areas, ROW};
+use super::areas::{ROW, TimelineAreas};
 
 /// A quiet sentence where nothing else is.
-pub(in crate::ui) fn hint(ui: &mut Ui, areas: &Areas, sentence: &str) {
+pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     let rect = Rect::from_center_size(
         areas.lanes.center(),
         vec2(areas.lanes.width(), ROW).min(areas.lanes.size()),

@@ -15,7 +15,7 @@ const LEAST_FRAMES: f64 = 4.0;
 
 /// Takes times to places on screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::ui) struct Scale {
+pub(in crate::ui) struct TimeScale {
     /// The whole width, in points.
     seen: Rangef,
     /// When it is a margin right of the left end, in seconds.
@@ -26,17 +26,17 @@ pub(in crate::ui) struct Scale {
 
 /// What is kept from frame to frame: what is seen once it is not the whole timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Zoom {
+struct StoredRange {
     of: (f64, f64),
     from: f64,
     to: f64,
 }
 
-impl Scale {
+impl TimeScale {
     /// What is seen in such a width; all of the timeline if it is another one than before.
     pub fn load(ui: &Ui, timeline: Timeline, seen: Rangef) -> Self {
         let of = (timeline.start, timeline.end);
-        let zoom = ui.data(|data| data.get_temp::<Zoom>(id())).filter(|zoom| zoom.of == of);
+        let zoom = ui.data(|data| data.get_temp::<StoredRange>(id())).filter(|zoom| zoom.of == of);
         let (from, to) = zoom.map_or(of, |zoom| (zoom.from, zoom.to));
         Self { seen, from, to }
     }
@@ -47,13 +47,13 @@ impl Scale {
     }
 
     fn keep(self, ui: &Ui, timeline: Timeline) {
-        let zoom = Zoom { of: (timeline.start, timeline.end), from: self.from, to: self.to };
+        let zoom = StoredRange { of: (timeline.start, timeline.end), from: self.from, to: self.to };
         ui.data_mut(|data| data.insert_temp(id(), zoom));
     }
 
     /// Shows all of the timeline again.
     pub fn fit(ui: &Ui) {
-        ui.data_mut(|data| data.remove::<Zoom>(id()));
+        ui.data_mut(|data| data.remove::<StoredRange>(id()));
     }
 
     fn width(self) -> f64 {

@@ -6,7 +6,7 @@ use super::keyboard;
 use crate::document::Timeline;
 use crate::session::{Action, Session};
 use crate::ui::style;
-use crate::ui::widgets::{self, Icon, IconButton, Number, format};
+use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 
 /// In a narrower window numbers stand without their names.
 const ROOMY: f32 = 1180.0;
@@ -76,7 +76,7 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 /// A number of the timeline.
-struct Figure<'a> {
+struct TimeField<'a> {
     name: &'a str,
     /// What stands before it where there is room.
     label: &'a str,
@@ -88,7 +88,7 @@ struct Figure<'a> {
     tooltip: &'a str,
 }
 
-impl Figure<'_> {
+impl TimeField<'_> {
     fn show(
         self,
         ui: &mut Ui,
@@ -102,7 +102,7 @@ impl Figure<'_> {
         }
         let Self { name, value, unit, speed, width, digits, .. } = self;
         let format = &|value| format::fixed(value, digits);
-        let number = Number { name, value, unit, speed, width, format };
+        let number = DragNumber { name, value, unit, speed, width, format };
         number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
     }
 
@@ -126,7 +126,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
     let rate = f64::from(timeline.frame_rate);
     let is_dragged = ui.input(|input| input.pointer.any_down());
     let set = |time| Action::SetTime(if is_dragged { timeline.snapped(time) } else { time });
-    let seconds = Figure {
+    let seconds = TimeField {
         name: "Time",
         label: "",
         value: session.time(),
@@ -138,7 +138,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
                   the timeline",
     };
     seconds.show_free(ui, roomy, actions, set);
-    let frame = Figure {
+    let frame = TimeField {
         name: "Frame",
         label: "Frame",
         value: (session.time() * rate).round() + 0.0,
@@ -183,7 +183,7 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
-    let speed = Figure {
+    let speed = TimeField {
         name: "Speed",
         label: "Speed",
         value: session.speed(),
@@ -224,7 +224,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
     let timeline = session.document().timeline;
-    let figure = |name, value, tooltip| Figure {
+    let figure = |name, value, tooltip| TimeField {
         name,
         label: name,
         value,

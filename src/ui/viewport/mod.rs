@@ -1,9 +1,9 @@
 //! The view of the scene: what the pointer does in it.
 
 mod navigation;
-mod projection;
+pub(in crate::ui) mod projection;
 
-pub(in crate::ui) use projection::Picture;
+use projection::ScreenProjection;
 
 use egui::{
     Event, EventFilter, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense,
@@ -12,7 +12,7 @@ use egui::{
 
 use crate::document::{Camera, RigKind};
 use crate::session::{Action, Drag, DragInput, Grip, Motion, Session};
-use crate::ui::gizmo::{Grips, view_axes};
+use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, pose_summary};
 use navigation::{motion, show_cursor, wheel};
@@ -35,8 +35,8 @@ pub(in crate::ui) fn ui(
     }
     advance(ui, &response, session, actions);
 
-    let picture = Picture::new(rect, session.camera());
-    let grips = Grips::new(&picture, session);
+    let picture = ScreenProjection::new(rect, session.camera());
+    let grips = Gizmo::new(&picture, session);
     let pointer = ui.input(|input| input.pointer.latest_pos());
     let held_grip = session.drag().map(Drag::grip);
 
@@ -58,7 +58,7 @@ pub(in crate::ui) fn ui(
     if response.contains_pointer() {
         wheel(ui, session, &picture, pointer, actions);
     }
-    if over && matches!(held, Held::Nothing) {
+    if over && matches!(held, ViewportDrag::Nothing) {
         point(session, grips.joint_at(pointer), actions);
     }
     if has_joints(session) && response.clicked() && !on_compass {
@@ -104,8 +104,8 @@ fn point(session: &Session, joint: Option<usize>, actions: &mut Vec<Action>) {
 fn select(
     ui: &Ui,
     session: &Session,
-    picture: &Picture,
-    grips: &Grips,
+    picture: &ScreenProjection,
+    grips: &Gizmo,
     pointer: Pos2,
     actions: &mut Vec<Action>,
 ) {
@@ -163,7 +163,7 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Ac
 
 /// What the pointer holds.
 #[derive(Clone, Copy)]
-enum Held {
+enum ViewportDrag {
     Nothing,
     Grip,
     View,
@@ -174,14 +174,14 @@ fn press(
     ui: &Ui,
     response: &Response,
     session: &Session,
-    picture: &Picture,
-    grips: &Grips,
+    picture: &ScreenProjection,
+    grips: &Gizmo,
     actions: &mut Vec<Action>,
-) -> Held {
+) -> ViewportDrag {
     let mut held = match (session.drag(), session.view_drag()) {
-        (Some(_), _) => Held::Grip,
-        (None, Some(_)) => Held::View,
-        (None, None) => Held::Nothing,
+        (Some(_), _) => ViewportDrag::Grip,
+        (None, Some(_)) => ViewportDrag::View,
+        (None, None) => ViewportDrag::Nothing,
     };
     for event in ui.input(|input| input.events.clone()) {
         let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
@@ -195,7 +195,7 @@ fn press(
             continue;
         }
         response.request_focus();
-        if session.is_editing() || !matches!(held, Held::Nothing) {
+        if session.is_editing() || !matches!(held, ViewportDrag::Nothing) {
             continue;
         }
         let on_compass = view_axes::covers(picture.rect, pos);
@@ -210,27 +210,33 @@ fn press(
         if let Some(grip) = grip {
             let (ray, forward) = (picture.ray(pos), picture.projection.forward);
             actions.push(Action::Grab { grip, ray, forward });
-            held = Held::Grip;
+            held = ViewportDrag::Grip;
         } else if let Some(motion) = motion {
             actions.push(Action::GrabView(motion, picture.normalised(pos)));
-            held = Held::View;
+            held = ViewportDrag::View;
         }
     }
     held
 }
 
 /// What is held follows the pointer, and is dropped where the button is let go.
-fn follow(ui: &Ui, held: Held, picture: &Picture, pointer: Pos2, actions: &mut Vec<Action>) {
+fn follow(
+    ui: &Ui,
+    held: ViewportDrag,
+    picture: &ScreenProjection,
+    pointer: Pos2,
+    actions: &mut Vec<Action>,
+) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
     let released = !down || ui.input(|input| input.pointer.any_released());
     let (moved, dropped) = match held {
-        Held::Nothing => return,
-        Held::Grip => {
+        ViewportDrag::Nothing => return,
+        ViewportDrag::Grip => {
             let ray = picture.ray(pointer);
             let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
             (Action::Drag(input), Action::CommitEdit)
         }
-        Held::View => {
+        ViewportDrag::View => {
             let (to, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
             (Action::DragView { to, aspect }, Action::DropView)
         }

@@ -2,7 +2,7 @@
 
 use egui::{CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Ui, Vec2};
 
-use super::projection::Picture;
+use super::projection::ScreenProjection;
 use crate::document::Camera;
 use crate::session::{Action, Grip, Motion, Navigation, Session};
 
@@ -40,7 +40,7 @@ pub(super) fn motion(
 pub(super) fn wheel(
     ui: &Ui,
     session: &Session,
-    picture: &Picture,
+    picture: &ScreenProjection,
     pointer: Pos2,
     actions: &mut Vec<Action>,
 ) {

@@ -6,12 +6,12 @@ use glam::Vec3;
 use crate::document::{Camera, Projection, Ray};
 
 /// The picture on screen: takes points of the world to points of the screen and back.
-pub(in crate::ui) struct Picture {
+pub(in crate::ui) struct ScreenProjection {
     pub rect: Rect,
     pub projection: Projection,
 }
 
-impl Picture {
+impl ScreenProjection {
     pub fn new(rect: Rect, camera: &Camera) -> Self {
         Self { rect, projection: camera.projection(rect.aspect_ratio()) }
     }

@@ -3,14 +3,14 @@
 use egui::{Response, Ui};
 
 use super::format;
-use super::number::Number;
+use super::number::DragNumber;
 use crate::session::{Action, Session};
 
 /// Three of them stand beside a name in the narrowest panel.
 const FIELD_WIDTH: f32 = 52.0;
 
 /// A number that is dragged or typed, without a rail.
-pub(in crate::ui) struct Field<'a> {
+pub(in crate::ui) struct NumberField<'a> {
     /// What it is called where there is nothing else to see: "Bone x".
     pub name: &'a str,
     pub value: f32,
@@ -22,7 +22,7 @@ pub(in crate::ui) struct Field<'a> {
     pub tooltip: &'a str,
 }
 
-impl Field<'_> {
+impl NumberField<'_> {
     pub fn show(
         self,
         ui: &mut Ui,
@@ -45,7 +45,7 @@ impl Field<'_> {
         set: impl Fn(f32) -> Action,
     ) -> Response {
         let Self { name, value, unit, .. } = self;
-        let number = Number { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };
+        let number = DragNumber { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };
         let response = number.show(ui, session.is_editing(), actions, set);
         response.on_hover_text(self.tooltip)
     }

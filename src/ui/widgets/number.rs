@@ -8,7 +8,7 @@ use crate::session::Action;
 const HEIGHT: f32 = 22.0;
 
 /// A number that is dragged or typed.
-pub(in crate::ui) struct Number<'a, N = f32> {
+pub(in crate::ui) struct DragNumber<'a, N = f32> {
     /// What it is called where there is nothing else to see.
     pub name: &'a str,
     pub value: N,
@@ -19,7 +19,7 @@ pub(in crate::ui) struct Number<'a, N = f32> {
     pub format: &'a dyn Fn(f64) -> String,
 }
 
-impl<N: Numeric> Number<'_, N> {
+impl<N: Numeric> DragNumber<'_, N> {
     /// Shows it, always as wide. Pushes what `set` makes of a new value; a drag begins and commits
     /// an edit, and goes on only while there is one, so that it can be taken back.
     pub fn show(
@@ -50,9 +50,9 @@ impl<N: Numeric> Number<'_, N> {
             actions.push(Action::BeginEdit);
         }
         // egui enters what was typed in the pass after the one in which Esc left it.
-        let was_left = ui.data_mut(|data| data.remove_temp::<Left>(response.id)).is_some();
+        let was_left = ui.data_mut(|data| data.remove_temp::<LeftByEscape>(response.id)).is_some();
         if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-            ui.data_mut(|data| data.insert_temp(response.id, Left));
+            ui.data_mut(|data| data.insert_temp(response.id, LeftByEscape));
             ui.request_repaint();
         }
         let dropped = response.dragged() && !response.drag_started() && !is_editing;
@@ -82,4 +82,4 @@ impl<N: Numeric> Number<'_, N> {
 
 /// Marks a number that Esc has just left.
 #[derive(Clone, Copy, Default)]
-struct Left;
+struct LeftByEscape;

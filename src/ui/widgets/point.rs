@@ -9,7 +9,7 @@ pub(in crate::ui) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A point that is shown and set by three sliders, each of which leaves the other two coordinates as
 /// they are.
-pub(in crate::ui) struct Point<'a> {
+pub(in crate::ui) struct PointSliders<'a> {
     /// What it is called where there is nothing else to see: "Hand", of which the first is "Hand x".
     pub name: &'a str,
     /// What stands before the rails.
@@ -24,7 +24,7 @@ pub(in crate::ui) struct Point<'a> {
     pub disabled: Option<&'a str>,
 }
 
-impl Point<'_> {
+impl PointSliders<'_> {
     pub fn show(
         &self,
         ui: &mut Ui,

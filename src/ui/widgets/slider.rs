@@ -4,7 +4,7 @@ use egui::{
 };
 
 use super::format;
-use super::number::Number;
+use super::number::DragNumber;
 use super::symbol;
 use crate::session::{Action, Session};
 use crate::ui::keyboard::focus;
@@ -244,7 +244,7 @@ impl Slider<'_> {
         actions: &mut Vec<Action>,
         set: &impl Fn(f32) -> Action,
     ) {
-        let number = Number {
+        let number = DragNumber {
             name: &format!("{} value", self.name),
             value: self.value,
             unit: self.unit,

@@ -13,7 +13,7 @@ use glam::Vec3;
 use crate::document::{Arm, Cursor};
 use crate::session::{Action, Session};
 use crate::ui::style;
-use crate::ui::widgets::{self, AXES, Point, Slider};
+use crate::ui::widgets::{self, AXES, PointSliders, Slider};
 use disabled::ANGLES_LEAD;
 
 /// Of an arm like the seed's.
@@ -43,7 +43,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (arm, seed) = (session.arm(), Arm::default().cursor());
     let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
-    let hand = Point {
+    let hand = PointSliders {
         name: "Hand",
         labels: AXES,
         value: arm.cursor(),
@@ -56,7 +56,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     match arm.goal {
         Cursor::Root(_) => hand.show(ui, session, actions, Action::SetHand),
         Cursor::World(pin) => {
-            let pinned = Point {
+            let pinned = PointSliders {
                 value: pin,
                 default: arm.root + seed,
                 range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
@@ -80,7 +80,7 @@ fn pin(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let root = Point {
+    let root = PointSliders {
         name: "Root",
         labels: AXES,
         value: session.arm().root,

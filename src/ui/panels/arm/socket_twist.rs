@@ -8,7 +8,7 @@ use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Action, Session};
 use crate::ui::labels;
-use crate::ui::widgets::{Point, Slider};
+use crate::ui::widgets::{PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let arm = session.arm();
@@ -55,7 +55,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec
 
 fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let arm = session.arm();
-    let pole = Point {
+    let pole = PointSliders {
         name: "Pole",
         labels: ["Pole x", "Pole y", "Pole z"],
         value: arm.pole,

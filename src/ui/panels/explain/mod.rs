@@ -16,7 +16,7 @@ use crate::ui::{pose_summary, style};
 const FORMULA_SIZE: f32 = 13.5;
 
 /// A quantity of the paper: its symbol, how it is computed, its value, what it means.
-struct Quantity {
+struct FormulaRow {
     symbol: &'static str,
     formula: &'static str,
     value: String,
@@ -49,32 +49,32 @@ fn sentence(ui: &mut Ui, session: &Session) {
     });
 }
 
-fn pointer(session: &Session) -> [Quantity; 4] {
+fn pointer(session: &Session) -> [FormulaRow; 4] {
     let (arm, pose) = (session.arm(), session.pose());
     let cursor = if arm.is_led_by_hand() { arm.cursor() } else { pose.hand };
     [
-        Quantity {
+        FormulaRow {
             symbol: "θ_z",
             formula: "atan2(z_c, x_c)",
             value: degrees(pose.yaw()),
             meaning: "How far the Pointer is turned about the vertical, from x towards z",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "h_c",
             formula: "hypot(x_c, z_c)",
             value: length(arm, cursor.x.hypot(cursor.z)),
             meaning: "How far the cursor is from the vertical through the root",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "θ_y",
             formula: "atan2(y_c, h_c)",
             value: degrees(pose.pitch()),
             meaning: "How far the Pointer rises above the xz-plane",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "D",
             formula: match arm.soft_reach.is_hard() {
                 true => "|c| within limits",
@@ -87,26 +87,26 @@ fn pointer(session: &Session) -> [Quantity; 4] {
     ]
 }
 
-fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
+fn elbow(ui: &Ui, session: &Session) -> [FormulaRow; 6] {
     let (arm, pose) = (session.arm(), session.pose());
     let bones = arm.bones;
     let palette = style::palette(ui);
     [
-        Quantity {
+        FormulaRow {
             symbol: "d_1",
             formula: "",
             value: length(arm, bones.upper() * pose.stretch),
             meaning: "Length of the Upper Limb",
             colour: Some(style::colour(palette.upper)),
         },
-        Quantity {
+        FormulaRow {
             symbol: "d_2",
             formula: "",
             value: length(arm, bones.lower() * pose.stretch),
             meaning: "Length of the Lower Limb",
             colour: Some(style::colour(palette.lower)),
         },
-        Quantity {
+        FormulaRow {
             symbol: "h_e",
             formula: "(D + δ L / D) / 2",
             value: length(arm, pose.along),
@@ -114,21 +114,21 @@ fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
                       difference",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "o_e",
             formula: "Heron's formula",
             value: length(arm, pose.out),
             meaning: "How far out from the Pointer the elbow is: twice the triangle's area over D",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "θ_e",
             formula: "atan2(o_e, h_e)",
             value: degrees(pose.shoulder_angle()),
             meaning: "At the shoulder, between Pointer and Upper Limb",
             colour: None,
         },
-        Quantity {
+        FormulaRow {
             symbol: "φ",
             formula: "at the elbow",
             value: degrees(pose.elbow_angle()),
@@ -138,7 +138,7 @@ fn elbow(ui: &Ui, session: &Session) -> [Quantity; 6] {
     ]
 }
 
-fn table(ui: &mut Ui, id: &str, quantities: &[Quantity]) {
+fn table(ui: &mut Ui, id: &str, quantities: &[FormulaRow]) {
     let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
     Grid::new(id).num_columns(3).min_col_width(24.0).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         for quantity in quantities {

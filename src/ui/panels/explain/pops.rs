@@ -151,7 +151,7 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
     let room = places.last().map_or(0.0, |last| *last).max(60.0);
     let logs = SHOWN.0.log10()..=SHOWN.1.log10();
     let bounds = PlotBounds::from_min_max([-0.02 * room, *logs.start()], [1.03 * room, 2.25]);
-    let colours = Colours::new(ui);
+    let colours = PopColours::new(ui);
     let response = plot::still("pops", HEIGHT)
         .label_formatter(|_| None)
         .show_grid(egui::Vec2b::new(false, true))
@@ -181,14 +181,14 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
 }
 
 #[derive(Clone, Copy)]
-struct Colours {
+struct PopColours {
     line: Color32,
     limit: Color32,
     spike: Color32,
     change: Color32,
 }
 
-impl Colours {
+impl PopColours {
     fn new(ui: &Ui) -> Self {
         let visuals = ui.visuals();
         let weak = visuals.weak_text_color();
@@ -203,7 +203,7 @@ impl Colours {
 
 /// One run's steps: place and logarithm of ratio and limit.
 #[derive(Default)]
-struct Run {
+struct PlottedRun {
     ratios: Vec<[f64; 2]>,
     limits: Vec<[f64; 2]>,
 }
@@ -220,8 +220,8 @@ fn places(pops: &Pops) -> Vec<f64> {
     pops.samples().map(place).collect()
 }
 
-fn runs(pops: &Pops, places: &[f64]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+fn runs(pops: &Pops, places: &[f64]) -> Vec<PlottedRun> {
+    let mut runs: Vec<PlottedRun> = Vec::new();
     let mut last = None;
     for (sample, at) in pops.samples().zip(places) {
         let What::Step(step) = sample.what else {
@@ -229,7 +229,7 @@ fn runs(pops: &Pops, places: &[f64]) -> Vec<Run> {
             continue;
         };
         if last != Some(sample.run) {
-            runs.push(Run::default());
+            runs.push(PlottedRun::default());
         }
         last = Some(sample.run);
         if let Some(run) = runs.last_mut() {
@@ -240,7 +240,7 @@ fn runs(pops: &Pops, places: &[f64]) -> Vec<Run> {
     runs
 }
 
-fn draw_run(plot: &mut PlotUi<'_>, run: &Run, colours: Colours) {
+fn draw_run(plot: &mut PlotUi<'_>, run: &PlottedRun, colours: PopColours) {
     let dashed = LineStyle::dashed_dense();
     let limits = Line::new("limit", PlotPoints::from(run.limits.clone()));
     plot.line(limits.color(colours.limit).width(1.0).style(dashed));
@@ -251,7 +251,7 @@ fn draw_run(plot: &mut PlotUi<'_>, run: &Run, colours: Colours) {
     }
 }
 
-fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: Colours) {
+fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: PopColours) {
     let dotted = LineStyle::Dotted { spacing: 4.0 };
     for (sample, at) in pops.samples().zip(places) {
         if let What::Change(change) = sample.what {
@@ -268,7 +268,7 @@ fn draw_spikes(
     spikes: &[Spike],
     places: &[f64],
     room: f64,
-    colours: Colours,
+    colours: PopColours,
 ) {
     const APART: f64 = 0.28;
     let mut named: Vec<f64> = Vec::new();

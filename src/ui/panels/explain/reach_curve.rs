@@ -20,7 +20,7 @@ const EXAMPLE_STRETCH: f32 = 1.5;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let arm = session.arm();
-    let curves = Curve::all(ui, arm);
+    let curves = ReachCurve::all(ui, arm);
     ui.weak("Actual reach / asked reach");
     let shown = show(ui, arm, &curves);
     let said = reading(arm, arm.cursor().length());
@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
 }
 
 /// The hand's distance over the cursor's, in parts of L.
-struct Curve {
+struct ReachCurve {
     name: String,
     soft_reach: SoftReach,
     is_own: bool,
@@ -48,7 +48,7 @@ struct Curve {
     style: LineStyle,
 }
 
-impl Curve {
+impl ReachCurve {
     /// None, soft and stretched: with what the arm has of each, else an example.
     fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
         let own = arm.soft_reach;
@@ -88,7 +88,7 @@ fn outer(arm: &Arm) -> f64 {
     f64::from(arm.bones.upper()) + f64::from(arm.bones.lower())
 }
 
-fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
+fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let outer = outer(arm);
     let least = f64::from(arm.soft_reach.least_distance(arm.bones)) / outer;
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
@@ -102,7 +102,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
     // The arm's own is the widest, and beneath the others.
     let (own, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_own);
     let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(arm, most)).collect();
-    let dot = Dot::new(arm, most);
+    let dot = ReachMarker::new(arm, most);
     let text = ui.visuals().strong_text_color();
     plot::still("reach curve", HEIGHT)
         .label_formatter(|_| None)
@@ -123,7 +123,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[Curve]) -> PlotResponse<()> {
         })
 }
 
-impl Curve {
+impl ReachCurve {
     fn line(&self, arm: &Arm, most: f64) -> Line<'static> {
         let outer = outer(arm);
         let point = |step| {
@@ -137,12 +137,12 @@ impl Curve {
 }
 
 /// Where the arm is on its curve.
-struct Dot {
+struct ReachMarker {
     at: [f64; 2],
     shape: MarkerShape,
 }
 
-impl Dot {
+impl ReachMarker {
     /// A cursor farther away than what is shown is an arrow at the edge.
     fn new(arm: &Arm, most: f64) -> Self {
         let asked = arm.cursor().length().min(f32::MAX);
@@ -159,7 +159,7 @@ impl Dot {
 }
 
 /// A piece of the line, and its name.
-fn legend(ui: &mut Ui, curve: &Curve) {
+fn legend(ui: &mut Ui, curve: &ReachCurve) {
     ui.spacing_mut().item_spacing.x = 5.0;
     let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
     let ends = [rect.left_center(), rect.right_center()];

@@ -30,12 +30,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     });
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 6.0, ui.visuals().extreme_bg_color);
-    Figure::new(ui, rect, arm, pose).paint(&painter, ui);
+    TriangleDrawing::new(ui, rect, arm, pose).paint(&painter, ui);
     response.on_hover_text("The arm seen straight onto its own plane, to scale");
 }
 
 /// Where everything is on screen.
-struct Figure {
+struct TriangleDrawing {
     shoulder: Pos2,
     elbow: Pos2,
     hand: Pos2,
@@ -48,7 +48,7 @@ struct Figure {
     accent: Color32,
 }
 
-impl Figure {
+impl TriangleDrawing {
     fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink(MARGIN);

@@ -8,7 +8,7 @@ use glam::Vec3;
 use crate::kinematics::skeleton::{Joint, Limit};
 use crate::session::{Action, Session};
 use crate::ui::style;
-use crate::ui::widgets::{self, AXES, Field, Slider, format};
+use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 
 const STIFF: &str = "The limit leaves no room";
 const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
@@ -107,7 +107,7 @@ fn angle(
     set: &dyn Fn(f32) -> Action,
 ) {
     let tooltip = "How far the angle can go";
-    Field { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
+    NumberField { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
         ui,
         session,
         actions,
@@ -122,18 +122,25 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
         for axis in (0..3).rev() {
             let name = format!("Bone {}", AXES[axis]);
             let value = joint.axis[axis];
-            Field { name: &name, value, unit: "", step, digits: format::decimals(step), tooltip }
-                .show(ui, session, actions, |value| {
-                    let mut bone = joint.axis;
-                    bone[axis] = value;
-                    Action::SetAxis { joint: index, axis: bone }
-                });
+            NumberField {
+                name: &name,
+                value,
+                unit: "",
+                step,
+                digits: format::decimals(step),
+                tooltip,
+            }
+            .show(ui, session, actions, |value| {
+                let mut bone = joint.axis;
+                bone[axis] = value;
+                Action::SetAxis { joint: index, axis: bone }
+            });
         }
     });
     let length = joint.axis.length();
     widgets::pair(ui, "Length", |ui| {
         let tooltip = "How long the bone is; its direction stays";
-        Field {
+        NumberField {
             name: "Length",
             value: length,
             unit: "",

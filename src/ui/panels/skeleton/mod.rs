@@ -5,7 +5,7 @@ mod joint;
 mod outliner;
 mod targets;
 
-use crate::ui::widgets::{self, AXES, Point};
+use crate::ui::widgets::{self, AXES, PointSliders};
 use egui::Ui;
 use glam::Vec3;
 
@@ -34,7 +34,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let rig = session.skeleton_rig();
-    let place = Point {
+    let place = PointSliders {
         name: "Skeleton",
         labels: AXES,
         value: rig.skeleton.transform().translation.into(),

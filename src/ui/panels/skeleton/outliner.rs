@@ -22,10 +22,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
 
 /// Marks whether a joint of the tree has the keyboard.
 #[derive(Clone, Copy, Default)]
-struct Focused(bool);
+struct OutlinerFocus(bool);
 
 /// A joint's place in the tree.
-struct Row {
+struct OutlinerRow {
     joint: usize,
     depth: usize,
 }
@@ -37,7 +37,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let mut pointed = None;
     area.id_salt("joints").show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let mut focused = Focused(false);
+        let mut focused = OutlinerFocus(false);
         for row in &rows {
             let response = show(ui, session, row);
             if response.hovered() {
@@ -60,26 +60,26 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 /// Depth first, so that what hangs from a joint stands below it.
-fn rows(session: &Session) -> Vec<Row> {
+fn rows(session: &Session) -> Vec<OutlinerRow> {
     let joints = session.skeleton().joints();
     let mut children = vec![Vec::new(); joints.len()];
     let mut open = Vec::new();
     for (joint, it) in joints.iter().enumerate().rev() {
         match it.parent {
             Some(parent) => children[parent].push(joint),
-            None => open.push(Row { joint, depth: 0 }),
+            None => open.push(OutlinerRow { joint, depth: 0 }),
         }
     }
     let mut rows = Vec::with_capacity(joints.len());
     while let Some(row) = open.pop() {
         let depth = row.depth + 1;
-        open.extend(children[row.joint].iter().map(|&joint| Row { joint, depth }));
+        open.extend(children[row.joint].iter().map(|&joint| OutlinerRow { joint, depth }));
         rows.push(row);
     }
     rows
 }
 
-fn show(ui: &mut Ui, session: &Session, row: &Row) -> Response {
+fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     let rig = session.skeleton_rig();
     let joint = &rig.skeleton.joints()[row.joint];
     let selected = session.selection().contains(&row.joint);
@@ -140,13 +140,15 @@ fn show(ui: &mut Ui, session: &Session, row: &Row) -> Response {
 
 /// Brings a joint into sight, clear of the tree's edges, when it has just been selected elsewhere; a
 /// tree that has the keyboard hands it on.
-fn reveal(ui: &Ui, session: &Session, row: &Row, response: &Response) {
+fn reveal(ui: &Ui, session: &Session, row: &OutlinerRow, response: &Response) {
     let seen = response.id.with("selected");
     let is_new = session.selected() == Some(row.joint);
     let was = ui.data(|data| data.get_temp::<bool>(seen)).unwrap_or(false);
     if is_new && !was {
         ui.scroll_to_rect(response.rect.expand2(vec2(0.0, ROW)), None);
-        if ui.data(|data| data.get_temp::<Focused>(ui.scope_id())).is_some_and(|focused| focused.0)
+        if ui
+            .data(|data| data.get_temp::<OutlinerFocus>(ui.scope_id()))
+            .is_some_and(|focused| focused.0)
         {
             response.request_focus();
         }
@@ -157,8 +159,8 @@ fn reveal(ui: &Ui, session: &Session, row: &Row, response: &Response) {
 fn respond(
     ui: &Ui,
     session: &Session,
-    rows: &[Row],
-    row: &Row,
+    rows: &[OutlinerRow],
+    row: &OutlinerRow,
     response: &Response,
     actions: &mut Vec<Action>,
 ) {

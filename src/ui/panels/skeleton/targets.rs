@@ -4,7 +4,7 @@ use egui::{ComboBox, RichText, Ui};
 
 use crate::document::{Target, TargetMotion, TargetPath};
 use crate::session::{Action, Session};
-use crate::ui::widgets::{self, AXES, Field, Point, format};
+use crate::ui::widgets::{self, AXES, NumberField, PointSliders, format};
 
 const PATHS: [(TargetPath, &str); 3] = [
     (TargetPath::Still, "Still"),
@@ -57,8 +57,14 @@ pub(in crate::ui) fn selected(
     place(ui, session, target, step, actions);
     widgets::pair(ui, "Weight", |ui| {
         let tooltip = "How much it counts beside other targets";
-        let field =
-            Field { name: "Weight", value: target.weight, unit: "", step: 0.1, digits: 2, tooltip };
+        let field = NumberField {
+            name: "Weight",
+            value: target.weight,
+            unit: "",
+            step: 0.1,
+            digits: 2,
+            tooltip,
+        };
         field.show(ui, session, actions, |weight| Action::SetTarget(Target { weight, ..target }));
     });
     moves(ui, target, actions);
@@ -68,7 +74,7 @@ pub(in crate::ui) fn selected(
 }
 
 fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
-    let place = Point {
+    let place = PointSliders {
         name: "Target",
         labels: AXES,
         value: target.home,
@@ -104,12 +110,19 @@ fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &m
     let set = |motion| Action::SetTarget(Target { motion, ..target });
     widgets::pair(ui, "Radius", |ui| {
         let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
-        Field { name: "Radius", value, unit: "", step, digits: format::decimals(step), tooltip }
-            .show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
+        NumberField {
+            name: "Radius",
+            value,
+            unit: "",
+            step,
+            digits: format::decimals(step),
+            tooltip,
+        }
+        .show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
     });
     widgets::pair(ui, "Period", |ui| {
         let (value, tooltip) = (target.motion.period, "How long once around takes");
-        Field { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
+        NumberField { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
             ui,
             session,
             actions,

@@ -9,7 +9,7 @@ use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Action, Session};
 use crate::ui::labels;
-use crate::ui::widgets::{self, Field, format};
+use crate::ui::widgets::{self, NumberField, format};
 use can_solve::why_not;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -55,23 +55,26 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     widgets::pair(ui, "Iterations per frame", |ui| {
         let value = rig.iterations_per_frame as f32;
         let tooltip = "How many iterations a running solver makes between two pictures";
-        Field { name: "Iterations per frame", value, unit: "", step: 1.0, digits: 0, tooltip }
-            .show(ui, session, actions, |value| {
-                Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
-            });
+        NumberField {
+            name: "Iterations per frame",
+            value,
+            unit: "",
+            step: 1.0,
+            digits: 0,
+            tooltip,
+        }
+        .show(ui, session, actions, |value| {
+            Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
+        });
     });
     widgets::pair(ui, "Iterations at most", |ui| {
         let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
         let tooltip = "After so many a solver gives up";
-        Field { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }.show(
-            ui,
-            session,
-            actions,
-            |value| {
+        NumberField { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }
+            .show(ui, session, actions, |value| {
                 let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
                 set(SolverOptions { iterations, ..options })
-            },
-        );
+            });
     });
     tolerance(ui, session, actions);
     match options.method {
@@ -79,18 +82,16 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             widgets::pair(ui, "Damping", |ui| {
                 let tooltip = "λ, in chain lengths: more is calmer and slower";
                 let value = options.damping;
-                Field { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
-                    ui,
-                    session,
-                    actions,
-                    |damping| set(SolverOptions { damping, ..options }),
-                );
+                NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }
+                    .show(ui, session, actions, |damping| {
+                        set(SolverOptions { damping, ..options })
+                    });
             });
         }
         Method::TransposeFixed => {
             widgets::pair(ui, "Step", |ui| {
                 let tooltip = "The step's length, in parts of the one that is always stable";
-                Field {
+                NumberField {
                     name: "Step length",
                     value: options.step,
                     unit: "",
@@ -124,7 +125,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let tooltip = "How near every tip must come, in the world";
             let step = 0.05 * tolerance;
             let short = |value: f64| format::short(value as f32);
-            Field { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
+            NumberField { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
                 .show_as(ui, session, actions, &short, |tolerance| {
                     Action::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
                 });
