@@ -25,7 +25,7 @@ fn open(text: &str) -> Opened {
 }
 
 fn with(fields: &str) -> String {
-    format!("{{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"skeleton\",\n{fields}}}")
+    format!("{{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"skeleton\",\n{fields}}}")
 }
 
 fn refusal(text: &str) -> String {
@@ -73,7 +73,7 @@ fn a_document_with_a_number_that_is_not_finite_is_not_written() {
 fn a_file_is_laid_out_for_people() {
     let json = io::to_json(&Document::default()).expect("written");
     assert!(
-        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 1,\n  \"rig\": \"arm\",\n")
+        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 2,\n  \"rig\": \"arm\",\n")
     );
     assert!(json.contains("\n    \"cursor\": [250.0, 120.0, 60.0],\n"), "{json}");
     assert!(json.contains("\n    \"joints\": [{\n      \"name\": \"root\",\n"), "{json}");
@@ -228,7 +228,7 @@ fn random_skeleton(random: &mut Random) -> Skeleton {
 
 #[test]
 fn what_a_file_leaves_out_is_as_at_first() {
-    let small = "{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"arm\"}";
+    let small = "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"arm\"}";
     assert_eq!(open(small).document, Document::default());
 }
 
@@ -269,15 +269,14 @@ fn unknown_fields_and_angles_beyond_limits_are_remarked_on_and_do_no_harm() {
         " \"camera\":{\"fov\":  90}"
     )));
     let remarks: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
-    let unknown = "no such field is known; it is ignored";
+    let unknown = "unknown field, ignored";
     assert_eq!(
         remarks,
         [
             format!("line 2, column 10: colour: {unknown}"),
             format!("line 4, column 29: skeleton.joints[0].limits.w: {unknown}"),
             format!("line 5, column 20: camera.fov: {unknown}"),
-            "line 3, column 46: skeleton.joints[0].rotation: is beyond the joint's limits; it is \
-             brought within"
+            "line 3, column 46: skeleton.joints[0].rotation: is beyond the joint's limits; clamped"
                 .to_owned(),
         ]
     );
@@ -308,16 +307,16 @@ fn what_is_no_document_is_told_apart() {
              \"scene\", as in a .js3d file of Scotty3D, nor \"asset\", as in glTF",
         ),
         (
-            "{\n\"format\":\"png\",\"version\":1}",
-            "line 2, column 10: format: \"png\" is not a format that is known; it must be \"ik-arm\"",
+            "{\n\"format\":\"png\",\"version\":2}",
+            "line 2, column 10: format: must be \"ik-arm\", got \"png\"",
         ),
         (
-            "{\"format\":\"ik-arm\",\n \"version\": 2, \"rig\": {}}",
-            "line 2, column 13: version: version 2 needs a newer ik-arm; this one reads version 1",
+            "{\"format\":\"ik-arm\",\n \"version\": 3, \"rig\": {}}",
+            "line 2, column 13: version: version 3 needs a newer ik-arm; this one reads up to 2",
         ),
         (
             "{\"format\":\"ik-arm\",\"version\":0}",
-            "line 1, column 30: version: there is no version 0; it must be 1",
+            "line 1, column 30: version: must be from 1 to 2, got 0",
         ),
         ("{\"format\":\"ik-arm\"}", "line 1, column 1: missing field `version`"),
         (
@@ -325,9 +324,9 @@ fn what_is_no_document_is_told_apart() {
             "line 1, column 30: version: invalid type: string \"1\", expected a whole number from 0 to \
              4294967295",
         ),
-        ("{\"format\":\"ik-arm\",\"version\":1}", "line 1, column 1: missing field `rig`"),
+        ("{\"format\":\"ik-arm\",\"version\":2}", "line 1, column 1: missing field `rig`"),
         (
-            "{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"leg\"}",
+            "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"leg\"}",
             "line 1, column 38: rig: unknown variant `leg`, expected `arm` or `skeleton`",
         ),
     ] {
@@ -389,10 +388,11 @@ fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
             "line 2, column 25: skeleton.transform: found 3 numbers, expected 12: […]",
         ),
         (
-            "\"display\":[\"cursor\",\"elbow\"]",
-            "line 2, column 21: display[1]: unknown variant `elbow`, expected one of `cursor`, \
+            "\"overlays\":[\"cursor\",\"elbow\"]",
+            "line 2, column 22: overlays[1]: unknown variant `elbow`, expected one of `cursor`, \
              `pointer`, `inner_limit`, `outer_limit`, `grid_xy`, `grid_xz`, `grid_yz`, `ground`, \
-             `axes`, `labels`, `shadow`, `trail`, `onion_skins`, `globe`, `references`, `hand`",
+             `axes`, `labels`, `shadow`, `trail`, `onion_skins`, `singularity_globe`, \
+             `twist_references`, `hand`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {
@@ -437,78 +437,78 @@ fn a_value_that_cannot_be_is_named_with_what_would_be_right() {
         ),
         (
             aimed("{\"joint\":1,\"home\":[0,0,0]}"),
-            "line 4, column 21: targets[0].joint: there is no joint 1; there is only joint 0",
+            "line 4, column 21: targets[0].joint: must be 0, the only joint, got 1",
         ),
         (
             aimed("{\"joint\":0,\"home\":[0,0,0]},{\"home\":[1,1,1],\"joint\":0}"),
-            "line 4, column 63: targets[1].joint: joint 0 has a target already",
+            "line 4, column 63: targets[1].joint: must have one target, got a second for joint 0",
         ),
         (
             aimed("{\"joint\":0,\"home\":[0,0,0],\"weight\":0}"),
-            "line 4, column 47: targets[0].weight: is 0; it must be above 0",
+            "line 4, column 47: targets[0].weight: must be above 0, got 0",
         ),
         (
             aimed("{\"joint\":0,\"home\":[0,0,0],\"motion\":{\"path\":\"circle\",\"period\":-1}}"),
-            "line 4, column 73: targets[0].motion.period: is -1; it must be above 0",
+            "line 4, column 73: targets[0].motion.period: must be above 0, got -1",
         ),
         (
             "\"arm\":{\"lower\":-3}".to_owned(),
-            "line 2, column 16: arm.lower: lower length is -3; it must be a finite number above 0",
+            "line 2, column 16: arm.lower: must be finite and above 0, got -3",
         ),
         (
             "\"arm\":{\"facing\":{\"direction\":[1,0,0],\"heading\":[0,1]}}".to_owned(),
             "line 2, column 48: arm.facing.heading: must be `direction` as seen from above",
         ),
         (
-            "\"arm\":{\"swivel\":{\"carried\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
+            "\"arm\":{\"twist_reference\":{\"transported\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
                 .to_owned(),
-            "line 2, column 59: arm.swivel.carried.outward: must be perpendicular to `direction`",
+            "line 2, column 72: arm.twist_reference.transported.outward: must be perpendicular to `direction`",
         ),
         (
-            "\"arm\":{\"softening\":{\"softness\":1}}".to_owned(),
-            "line 2, column 32: arm.softening.softness: is 1; it must be from 0 to less than 1",
+            "\"arm\":{\"soft_reach\":{\"softness\":1}}".to_owned(),
+            "line 2, column 33: arm.soft_reach.softness: must be from 0 to less than 1, got 1",
         ),
         (
-            "\"arm\":{\"weight\":1.5}".to_owned(),
-            "line 2, column 17: arm.weight: is 1.5; it must be from 0 to 1",
+            "\"arm\":{\"influence\":1.5}".to_owned(),
+            "line 2, column 20: arm.influence: must be from 0 to 1, got 1.5",
         ),
         (
             "\"arm\":{\"fk\":{\"stretch\":0}}".to_owned(),
-            "line 2, column 24: arm.fk.stretch: is 0; it must be above 0",
+            "line 2, column 24: arm.fk.stretch: must be above 0, got 0",
         ),
         (
             "\"arm\":{\"facing\":{\"direction\":[2,0,0],\"heading\":[1,0]}}".to_owned(),
-            "line 2, column 30: arm.facing.direction: its length is 2, not 1",
+            "line 2, column 30: arm.facing.direction: must have length 1, got 2",
         ),
         (
             "\"solver\":{\"method\":\"newton\"}".to_owned(),
-            "line 2, column 20: solver.method: \"newton\" is not a method; they are transpose-fixed, \
-             transpose, dls, ccd, fabrik, two-bone",
+            "line 2, column 20: solver.method: must be one of transpose-fixed, transpose, dls, \
+             ccd, fabrik, two-bone, got \"newton\"",
         ),
         (
             "\"solver\":{\"iterations\":0}".to_owned(),
-            "line 2, column 24: solver.iterations: is 0; it must be 1 or more, or null for the \
-             method's own",
+            "line 2, column 24: solver.iterations: must be 1 or more, or null for the \
+             method's default, got 0",
         ),
         (
             "\"solver\":{\"iterations_per_frame\":1001}".to_owned(),
-            "line 2, column 34: solver.iterations_per_frame: is 1001; it must be from 1 to 1000",
+            "line 2, column 34: solver.iterations_per_frame: must be from 1 to 1000, got 1001",
         ),
         (
             "\"solver\":{\"damping\":0}".to_owned(),
-            "line 2, column 21: solver.damping: is 0; it must be above 0",
+            "line 2, column 21: solver.damping: must be above 0, got 0",
         ),
         (
-            "\"slither\":{\"radius\":1,\"amplitude\":1,\"waves\":3,\"period\":0}".to_owned(),
-            "line 2, column 56: slither.period: is 0; it must be above 0",
+            "\"follow_path\":{\"radius\":1,\"amplitude\":1,\"waves\":3,\"period\":0}".to_owned(),
+            "line 2, column 60: follow_path.period: must be above 0, got 0",
         ),
         (
             "\"camera\":{\"pitch\":2}".to_owned(),
-            "line 2, column 19: camera.pitch: is 2; it must be from -1.5707964 to 1.5707964",
+            "line 2, column 19: camera.pitch: must be from -1.5707964 to 1.5707964, got 2",
         ),
         (
             "\"camera\":{\"distance\":0}".to_owned(),
-            "line 2, column 22: camera.distance: is 0; it must be above 0",
+            "line 2, column 22: camera.distance: must be above 0, got 0",
         ),
     ] {
         assert_eq!(refusal(&with(&fields)), format!("test.json, {expected}"), "{fields}");
@@ -557,9 +557,12 @@ fn a_file_that_cannot_be_read_is_named() {
     let huge = folder.path().join("huge.json");
     fs::File::create(&huge).and_then(|file| file.set_len((64 << 20) + 1)).expect("made");
     let error = io::open(&huge, None).expect_err("refused").to_string();
-    assert_eq!(error, format!("{} is larger than 64 MB, and no document is", huge.display()));
+    assert_eq!(
+        error,
+        format!("{} is larger than 64 MB, the largest size that is read", huge.display())
+    );
     let endless = io::read("endless", std::io::repeat(b' '), None).expect_err("refused");
-    assert_eq!(endless.to_string(), "endless is larger than 64 MB, and no document is");
+    assert_eq!(endless.to_string(), "endless is larger than 64 MB, the largest size that is read");
 }
 
 #[test]
@@ -699,12 +702,12 @@ fn the_snake_lies_in_an_s() {
 fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
     let opened = open(&with(
         r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"targets":[{"joint":0,"home":[0,1,0]}],
-           "keys":[{"channel":"hand","knots":[[0,1,2,3],[1.5,4,5,6]]},
-                   {"channel":"elbow_spin","knots":[[0.1,7]]},
-                   {"channel":"rotation","joint":0,"knots":[[2,0,0,1],[1,0,0,3]]},
-                   {"channel":"enabled","joint":0,"knots":[[1,0]]},
-                   {"channel":"layer","layer":"cursor","knots":[[1,1]]},
-                   {"channel":"root","knots":[]}],
+           "channels":[{"channel":"hand","keys":[[0,1,2,3],[1.5,4,5,6]]},
+                   {"channel":"twist","keys":[[0.1,7]]},
+                   {"channel":"rotation","joint":0,"keys":[[2,0,0,1],[1,0,0,3]]},
+                   {"channel":"enabled","joint":0,"keys":[[1,0]]},
+                   {"channel":"overlay","overlay":"cursor","keys":[[1,1]]},
+                   {"channel":"root","keys":[]}],
            "timeline":{"start":1,"frame_rate":24},"metres_per_unit":0.01"#,
     ));
     assert_eq!(opened.warnings, []);
@@ -723,33 +726,40 @@ fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
 
 #[test]
 fn keys_that_are_wrong_are_named() {
-    let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"keys":"#;
+    let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"channels":"#;
     for (keys, reason) in [
         (
-            r#"[{"channel":"foot","knots":[]}]"#,
-            "line 2, column 57: keys[0].channel: unknown variant",
+            r#"[{"channel":"foot","keys":[]}]"#,
+            "line 2, column 61: channels[0].channel: unknown variant",
         ),
         (
-            r#"[{"channel":"hand","knots":[[0,1,2]]}]"#,
-            "keys[0].knots[0]: found 2 after the time, \
-          expected three numbers",
+            r#"[{"channel":"hand","keys":[[0,1,2]]}]"#,
+            "channels[0].keys[0]: must have three numbers after the time, got 2",
         ),
-        (r#"[{"channel":"upper","knots":[[0,1],[1,0]]}]"#, "keys[0].knots[1]: length 0 must be"),
-        (r#"[{"channel":"layer","layer":"axes","knots":[[0,0.5]]}]"#, "0.5 is no switch"),
-        (r#"[{"channel":"layer","knots":[]}]"#, "keys[0]: this channel is a layer's"),
-        (r#"[{"channel":"rotation","knots":[]}]"#, "keys[0]: this channel is a joint's"),
         (
-            r#"[{"channel":"offset","joint":1,"knots":[]}]"#,
-            "keys[0].joint: there is no joint 1; \
-          there is only joint 0",
+            r#"[{"channel":"upper","keys":[[0,1],[1,0]]}]"#,
+            "channels[0].keys[1]: length must be above 0, got 0",
         ),
-        (r#"[{"channel":"target","joint":0,"knots":[]}]"#, "keys[0].joint: joint 0 has no target"),
         (
-            r#"[{"channel":"hand","knots":[[0,1,2,3]]},{"channel":"hand","knots":[[0,1,2,3]]}]"#,
-            "keys[1]: another entry has keys of the same channel",
+            r#"[{"channel":"overlay","overlay":"axes","keys":[[0,0.5]]}]"#,
+            "switch must be 0 or 1, got 0.5",
         ),
-        (r#"[{"channel":"hand","knots":[[]]}]"#, "keys[0].knots[0]: invalid length 0"),
-        (r#"[{"channel":"hand","knots":[[1e999,0,0,0]]}]"#, "keys[0].knots[0][0]: number out of"),
+        (r#"[{"channel":"overlay","keys":[]}]"#, "channels[0]: `overlay` is missing"),
+        (r#"[{"channel":"rotation","keys":[]}]"#, "channels[0]: `joint` is missing"),
+        (
+            r#"[{"channel":"offset","joint":1,"keys":[]}]"#,
+            "channels[0].joint: must be 0, the only joint, got 1",
+        ),
+        (
+            r#"[{"channel":"target","joint":0,"keys":[]}]"#,
+            "channels[0].joint: must be a joint with a target, got 0",
+        ),
+        (
+            r#"[{"channel":"hand","keys":[[0,1,2,3]]},{"channel":"hand","keys":[[0,1,2,3]]}]"#,
+            "channels[1]: another entry has the keys of this channel",
+        ),
+        (r#"[{"channel":"hand","keys":[[]]}]"#, "channels[0].keys[0]: invalid length 0"),
+        (r#"[{"channel":"hand","keys":[[1e999,0,0,0]]}]"#, "channels[0].keys[0][0]: number out of"),
     ] {
         let said = refusal(&with(&format!("{skeleton}{keys}")));
         assert!(said.contains(reason), "{keys}: {said}");
@@ -758,5 +768,7 @@ fn keys_that_are_wrong_are_named() {
         let said = refusal(&with(&format!("\"timeline\":{{{timeline}}}")));
         assert!(said.contains("timeline: must start before it ends"), "{said}");
     }
-    assert!(refusal(&with("\"metres_per_unit\":0")).contains("metres_per_unit: is 0"));
+    assert!(
+        refusal(&with("\"metres_per_unit\":0")).contains("metres_per_unit: must be above 0, got 0")
+    );
 }

@@ -29,8 +29,10 @@ pub enum Overlay {
     /// The rig as it stands somewhat before and after.
     OnionSkins,
     /// The Outer Limit coloured by how fast the elbow turns there.
+    #[serde(rename = "singularity_globe")]
     Globe,
     /// The arm as every swivel reference would have it.
+    #[serde(rename = "twist_references")]
     References,
     /// The arm's hand, and stripes along its forearm.
     Hand,

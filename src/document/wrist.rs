@@ -22,6 +22,7 @@ pub struct Wrist {
 pub enum HandSpace {
     /// The lower limb: the hand follows it.
     #[default]
+    #[serde(rename = "lower_limb")]
     Lower,
     /// The world: the hand keeps its orientation.
     World,

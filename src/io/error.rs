@@ -3,19 +3,22 @@ use std::io;
 
 use thiserror::Error;
 
-use super::source::Source;
-
 /// Why a file is not open.
 #[derive(Debug, Error)]
 pub enum OpenError {
     #[error("{file} cannot be read: {source}")]
     Read { file: String, source: io::Error },
-    #[error("{file} is larger than {} MB, and no document is", Source::LONGEST >> 20)]
+    #[error("{file} is larger than {} MB, the largest size that is read", OpenError::MAX_BYTES >> 20)]
     TooLarge { file: String },
     #[error("{file}, {remark}")]
     Content { file: String, remark: Remark },
     #[error("{file} has no skeleton called {name:?}; {}", list(names))]
     NoSkeleton { file: String, name: String, names: Vec<String> },
+}
+
+impl OpenError {
+    /// The size of the largest file that is read.
+    pub const MAX_BYTES: u64 = 64 << 20;
 }
 
 /// What there is to say about a place in a file.

@@ -1,5 +1,6 @@
 use super::OpenError;
-use super::open::{Opened, parse};
+use super::open::parse;
+use super::opened::Opened;
 use crate::document::Document;
 
 /// A scene that comes with the program.

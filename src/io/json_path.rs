@@ -34,6 +34,14 @@ impl JsonPath {
         self
     }
 
+    /// The names of all fields on the path.
+    pub fn keys(&self) -> impl DoubleEndedIterator<Item = &str> {
+        self.0.iter().filter_map(|segment| match segment {
+            Segment::Key(key) => Some(key.as_str()),
+            Segment::Index(_) => None,
+        })
+    }
+
     /// The byte at which the value begins, or the nearest value around it that is there.
     pub fn find(&self, text: &str) -> usize {
         let inside = (1..=self.0.len()).rev();

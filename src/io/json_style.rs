@@ -3,27 +3,27 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
-/// JSON as a person would lay it out: a line for each field, rows of numbers in one.
-pub fn laid_out(value: &impl Serialize) -> Result<String, serde_json::Error> {
+/// JSON for people: one line per field, rows of numbers on one line.
+pub fn to_styled_json(value: &impl Serialize) -> Result<String, serde_json::Error> {
     let mut bytes = Vec::new();
-    let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, Layout::default());
+    let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, JsonStyle::default());
     value.serialize(&mut serializer)?;
     bytes.push(b'\n');
     String::from_utf8(bytes).map_err(|error| serde::ser::Error::custom(error.to_string()))
 }
 
 #[derive(Default)]
-struct Layout {
+struct JsonStyle {
     depth: usize,
 }
 
-impl Layout {
+impl JsonStyle {
     fn line<W: ?Sized + Write>(&self, writer: &mut W) -> io::Result<()> {
         write!(writer, "\n{:1$}", "", 2 * self.depth)
     }
 }
 
-impl Formatter for Layout {
+impl Formatter for JsonStyle {
     fn begin_array_value<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
         if first { Ok(()) } else { out.write_all(b", ") }
     }

@@ -5,25 +5,13 @@ use std::path::Path;
 
 use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
 
-use super::error::{OpenError, Remark};
+use super::error::OpenError;
+use super::field_error::FieldError;
 use super::json_path::JsonPath;
-use super::source::{Source, Wrong};
+use super::opened::Opened;
+use super::source::Source;
 use super::value::Whole;
 use super::{bvh, format, gltf, js3d};
-use crate::document::Document;
-
-/// A document from a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Opened {
-    pub document: Document,
-    /// What is odd in the file, yet did not keep it from being opened.
-    pub warnings: Vec<Remark>,
-    /// For every joint in the file's order, which joint of the document's skeleton it is.
-    pub order: Vec<usize>,
-    /// The names of the file's skeletons, one of which is the document's; none where skeletons have
-    /// no names.
-    pub skeletons: Vec<String>,
-}
 
 /// Opens a document, a scene of Scotty3D, glTF (text or binary) or a motion in BVH, whichever the file
 /// has; of a scene and of glTF the skeleton of that name, or the first.
@@ -88,11 +76,11 @@ fn kind(source: &Source) -> Result<Kind, OpenError> {
     let read = json.deserialize_map(KindVisitor(&mut kind)).and_then(|()| json.end());
     match (kind, read) {
         (Some(kind), _) => Ok(kind),
-        (None, Err(error)) => Err(source.not_read(&JsonPath::root(), &error)),
+        (None, Err(error)) => Err(source.parse_error(&JsonPath::root(), &error)),
         (None, Ok(())) => {
             let reason = "neither \"format\" is there, as in a document of ik-arm, nor \"scene\", \
                           as in a .js3d file of Scotty3D, nor \"asset\", as in glTF";
-            Err(source.wrong(&Wrong::new(JsonPath::root(), reason)))
+            Err(source.error(&FieldError::new(JsonPath::root(), reason)))
         }
     }
 }

@@ -5,60 +5,31 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 
 use super::error::{OpenError, Remark, shortened};
+use super::field_error::{FieldError, FieldWarnings};
 use super::gltf::chunks::{self, Chunks};
 use super::json_path::{JsonPath, byte_at, line_and_column};
+use super::translation::Translation;
 
-/// A file's text, and what the file is called.
+/// The text of a file, and the file's name for errors.
 pub struct Source {
     name: String,
     text: String,
-    /// What a binary file has beside its text.
+    /// The text in the file, where `text` is a translation of it.
+    translated: Option<(String, Translation)>,
+    /// The binary chunk of a GLB file.
     binary: Option<Vec<u8>>,
-    /// Where other files that it tells of are.
+    /// The folder of the file, in which other files that it names are looked for.
     folder: Option<PathBuf>,
 }
 
-/// What is wrong or odd with a field.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wrong {
-    pub field: JsonPath,
-    pub reason: String,
-}
-
-impl Wrong {
-    pub fn new(field: JsonPath, reason: impl Into<String>) -> Self {
-        Self { field, reason: reason.into() }
-    }
-}
-
-/// What is odd and no error. Only the first few are kept: to look up where each is takes a way
-/// through the text.
-#[derive(Debug, Default)]
-pub struct Odd {
-    first: Vec<Wrong>,
-    more: usize,
-}
-
-impl Odd {
-    pub fn push(&mut self, field: JsonPath, reason: impl Into<String>) {
-        const MOST: usize = 20;
-        if self.first.len() < MOST {
-            self.first.push(Wrong::new(field, reason));
-        } else {
-            self.more += 1;
-        }
-    }
-}
-
 impl Source {
-    /// In bytes.
-    pub const LONGEST: u64 = 64 << 20;
-
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let name = path.display().to_string();
         let opened = File::open(path).and_then(|file| Ok((file.metadata()?.len(), file)));
         match opened {
-            Ok((length, _)) if length > Self::LONGEST => Err(OpenError::TooLarge { file: name }),
+            Ok((length, _)) if length > OpenError::MAX_BYTES => {
+                Err(OpenError::TooLarge { file: name })
+            }
             Ok((_, file)) => {
                 let folder = path.parent().map(Path::to_owned);
                 Ok(Self { folder, ..Self::read(&name, file)? })
@@ -70,16 +41,16 @@ impl Source {
     pub fn read(name: &str, input: impl Read) -> Result<Self, OpenError> {
         let file = name.to_owned();
         let mut bytes = Vec::new();
-        let read = input.take(Self::LONGEST + 1).read_to_end(&mut bytes);
+        let read = input.take(OpenError::MAX_BYTES + 1).read_to_end(&mut bytes);
         if let Err(source) = read {
             return Err(OpenError::Read { file, source });
         }
-        if bytes.len() as u64 > Self::LONGEST {
+        if bytes.len() as u64 > OpenError::MAX_BYTES {
             return Err(OpenError::TooLarge { file });
         }
         if bytes.starts_with(chunks::MAGIC) {
             let Chunks { json, binary } =
-                chunks::split(&bytes).map_err(|reason| not_whole(file, reason))?;
+                chunks::split(&bytes).map_err(|reason| invalid_chunks(file, reason))?;
             return Ok(Self { binary: Some(binary), ..Self::new(name, &json) });
         }
         match String::from_utf8(bytes) {
@@ -90,7 +61,19 @@ impl Source {
 
     pub fn new(name: &str, text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        Self { name: name.to_owned(), text: text.to_owned(), binary: None, folder: None }
+        Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            translated: None,
+            binary: None,
+            folder: None,
+        }
+    }
+
+    /// The same file with a translation of its text. Errors have the positions of the file's text.
+    pub fn translated(&self, translation: Translation) -> Self {
+        let translated = Self::new(&self.name, &translation.text);
+        Self { translated: Some((self.text.clone(), translation)), ..translated }
     }
 
     pub fn name(&self) -> &str {
@@ -101,17 +84,17 @@ impl Source {
         &self.text
     }
 
-    /// What a binary file has beside its text; none for other files.
+    /// The binary chunk of a GLB file; `None` for other files.
     pub fn binary(&self) -> Option<&[u8]> {
         self.binary.as_deref()
     }
 
-    /// Where other files that it tells of are, if that is known.
+    /// The folder of the file, if it was opened by its path.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
-    /// Reads the whole text; unknown fields are named to `ignored`.
+    /// Parses the whole text, and calls `ignored` with each unknown field.
     pub fn parse<T: DeserializeOwned>(
         &self,
         mut ignored: impl FnMut(JsonPath),
@@ -121,29 +104,29 @@ impl Source {
         let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
         let parsed = serde_ignored::deserialize(tracked, |path| ignored(JsonPath::from(&path)));
         let value =
-            parsed.map_err(|error| self.not_read(&JsonPath::from(&track.path()), &error))?;
-        json.end().map_err(|error| self.not_read(&JsonPath::root(), &error))?;
+            parsed.map_err(|error| self.parse_error(&JsonPath::from(&track.path()), &error))?;
+        json.end().map_err(|error| self.parse_error(&JsonPath::root(), &error))?;
         Ok(value)
     }
 
-    pub fn wrong(&self, wrong: &Wrong) -> OpenError {
-        OpenError::Content { file: self.name.clone(), remark: self.remark(wrong) }
+    pub fn error(&self, error: &FieldError) -> OpenError {
+        OpenError::Content { file: self.name.clone(), remark: self.remark(error) }
     }
 
-    pub fn remarks(&self, odd: &Odd) -> Vec<Remark> {
-        let mut remarks: Vec<_> = odd.first.iter().map(|wrong| self.remark(wrong)).collect();
-        if let Some(last) = remarks.last().filter(|_| odd.more > 0).cloned() {
-            let reason = format!("and {} more like this", odd.more);
+    pub fn warnings(&self, warnings: &FieldWarnings) -> Vec<Remark> {
+        let mut remarks: Vec<_> = warnings.first.iter().map(|error| self.remark(error)).collect();
+        if let Some(last) = remarks.last().filter(|_| warnings.more > 0).cloned() {
+            let reason = format!("and {} more like this", warnings.more);
             remarks.push(Remark { field: String::new(), reason, ..last });
         }
         remarks
     }
 
-    /// What the parser says, at the place of the value that it is about.
-    pub fn not_read(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
+    /// An error of the parser, at the position of the value that it is about.
+    pub fn parse_error(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
         let reason = without_position(error);
         if self.text.trim_ascii().is_empty() {
-            return self.wrong(&Wrong::new(JsonPath::root(), "the file is empty"));
+            return self.error(&FieldError::new(JsonPath::root(), "the file is empty"));
         }
         let is_about_value =
             error.is_data() && !reason.starts_with("duplicate") || reason == OUT_OF_RANGE;
@@ -153,36 +136,40 @@ impl Source {
             _ => format!("not JSON: {reason}"),
         };
         if is_about_value {
-            return self.wrong(&Wrong::new(field.clone(), reason));
+            return self.error(&FieldError::new(field.clone(), reason));
         }
         let byte = byte_at(&self.text, error.line(), error.column());
         let remark = self.remark_at(byte, field, &reason);
         OpenError::Content { file: self.name.clone(), remark }
     }
 
-    /// What there is to say about a byte, and about which of the things there; empty for none.
+    /// A remark about the text at a byte, and about a thing there by name; the name may be empty.
     pub fn remark_about(&self, byte: usize, thing: &str, reason: &str) -> Remark {
         let field = if thing.is_empty() { JsonPath::root() } else { JsonPath::root().key(thing) };
         self.remark_at(byte, &field, reason)
     }
 
-    fn remark(&self, Wrong { field, reason }: &Wrong) -> Remark {
+    fn remark(&self, FieldError { field, reason }: &FieldError) -> Remark {
         self.remark_at(field.find(&self.text), field, reason)
     }
 
     fn remark_at(&self, byte: usize, field: &JsonPath, reason: &str) -> Remark {
         let has_lines = self.binary.is_none();
-        let (line, column) = if has_lines { line_and_column(&self.text, byte) } else { (0, 0) };
+        let (line, column) = match &self.translated {
+            _ if !has_lines => (0, 0),
+            None => line_and_column(&self.text, byte),
+            Some((text, translation)) => line_and_column(text, translation.byte_before(byte)),
+        };
         let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));
         Remark { line, column, field, reason }
     }
 }
 
-/// serde_json has no other way to tell this error from the rest.
+/// serde_json identifies this error by its text alone.
 const OUT_OF_RANGE: &str = "number out of range";
 
-/// A binary file of which nothing can be read.
-fn not_whole(file: String, reason: String) -> OpenError {
+/// An error of a binary file as a whole.
+fn invalid_chunks(file: String, reason: String) -> OpenError {
     OpenError::Content { file, remark: Remark { line: 0, column: 0, field: String::new(), reason } }
 }
 

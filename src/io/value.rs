@@ -97,37 +97,37 @@ impl Serialize for Seconds {
 
 /// A time and the numbers at it, in a row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Knot {
+pub struct KeyRow {
     pub time: Seconds,
     pub values: Vec<Number>,
 }
 
-impl<'de> Deserialize<'de> for Knot {
+impl<'de> Deserialize<'de> for KeyRow {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct KnotVisitor;
+        struct KeyRowVisitor;
 
-        impl<'de> Visitor<'de> for KnotVisitor {
-            type Value = Knot;
+        impl<'de> Visitor<'de> for KeyRowVisitor {
+            type Value = KeyRow;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a time and the value at it: [seconds, x, …]")
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<Knot, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<KeyRow, A::Error> {
                 let time = row.next_element()?.ok_or_else(|| A::Error::invalid_length(0, &self))?;
                 let mut values = Vec::with_capacity(3);
                 while let Some(number) = row.next_element()? {
                     values.push(number);
                 }
-                Ok(Knot { time, values })
+                Ok(KeyRow { time, values })
             }
         }
 
-        deserializer.deserialize_seq(KnotVisitor)
+        deserializer.deserialize_seq(KeyRowVisitor)
     }
 }
 
-impl Serialize for Knot {
+impl Serialize for KeyRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut row = serializer.serialize_seq(Some(1 + self.values.len()))?;
         row.serialize_element(&self.time)?;

@@ -7,7 +7,7 @@ use super::text::{Fault, Text};
 use super::{METRES, angles};
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
-use crate::io::open::Opened;
+use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, Skeleton};
 

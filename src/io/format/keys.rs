@@ -1,83 +1,85 @@
-//! Keys and timeline as they stand in a file, and from there to a document and back.
+//! Fields of keyed channels and of the timeline, and conversions from and to a document's.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::check::counted;
-use crate::document::{self, Channel, Document, Keys, Overlay, Quantity};
+use super::check;
+use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
-use crate::io::value::{Knot, Number, Object, Seconds, Whole};
+use crate::io::value::{KeyRow, Number, Object, Seconds, Whole};
 use crate::kinematics::spline::Spline;
 
+/// One channel and its keys.
 #[derive(Serialize, Deserialize)]
-pub struct Track {
-    channel: Name,
+pub struct ChannelFields {
+    channel: ChannelName,
     #[serde(skip_serializing_if = "Option::is_none")]
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    layer: Option<Overlay>,
-    knots: Vec<Knot>,
+    overlay: Option<Overlay>,
+    keys: Vec<KeyRow>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// A [`Channel`] without its joint or overlay.
+#[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Name {
+enum ChannelName {
     Hand,
-    ElbowSpin,
+    Twist,
     Root,
     Upper,
     Lower,
     Pin,
     Pole,
-    Weight,
+    Influence,
     Shoulder,
     Bend,
     Stretch,
-    Wrist,
+    HandOrientation,
     Translation,
     Rotation,
     Offset,
     Target,
     Enabled,
-    Layer,
+    Overlay,
 }
 
 #[derive(Serialize, Deserialize)]
-pub struct Timeline {
+pub struct TimelineFields {
     start: Option<Seconds>,
     end: Option<Seconds>,
     frame_rate: Option<Whole>,
 }
 
-pub fn tracks(keys: &Keys) -> Vec<Object<Track>> {
-    keys.tracks().map(|(channel, track)| Object(Track::new(channel, track))).collect()
-}
+impl ChannelFields {
+    pub fn all(keys: &Keys) -> Vec<Object<Self>> {
+        keys.tracks().map(|(channel, track)| Object(Self::new(channel, track))).collect()
+    }
 
-impl Track {
     fn new(channel: Channel, track: &Spline<Vec3>) -> Self {
-        let (name, layer) = match channel {
-            Channel::Hand => (Name::Hand, None),
-            Channel::Twist => (Name::ElbowSpin, None),
-            Channel::Root => (Name::Root, None),
-            Channel::Upper => (Name::Upper, None),
-            Channel::Lower => (Name::Lower, None),
-            Channel::Pin => (Name::Pin, None),
-            Channel::Pole => (Name::Pole, None),
-            Channel::Influence => (Name::Weight, None),
-            Channel::Shoulder => (Name::Shoulder, None),
-            Channel::Bend => (Name::Bend, None),
-            Channel::Stretch => (Name::Stretch, None),
-            Channel::Wrist => (Name::Wrist, None),
-            Channel::Translation => (Name::Translation, None),
-            Channel::Rotation(_) => (Name::Rotation, None),
-            Channel::Offset(_) => (Name::Offset, None),
-            Channel::Target(_) => (Name::Target, None),
-            Channel::Enabled(_) => (Name::Enabled, None),
-            Channel::Overlay(layer) => (Name::Layer, Some(layer)),
+        let (name, overlay) = match channel {
+            Channel::Hand => (ChannelName::Hand, None),
+            Channel::Twist => (ChannelName::Twist, None),
+            Channel::Root => (ChannelName::Root, None),
+            Channel::Upper => (ChannelName::Upper, None),
+            Channel::Lower => (ChannelName::Lower, None),
+            Channel::Pin => (ChannelName::Pin, None),
+            Channel::Pole => (ChannelName::Pole, None),
+            Channel::Influence => (ChannelName::Influence, None),
+            Channel::Shoulder => (ChannelName::Shoulder, None),
+            Channel::Bend => (ChannelName::Bend, None),
+            Channel::Stretch => (ChannelName::Stretch, None),
+            Channel::Wrist => (ChannelName::HandOrientation, None),
+            Channel::Translation => (ChannelName::Translation, None),
+            Channel::Rotation(_) => (ChannelName::Rotation, None),
+            Channel::Offset(_) => (ChannelName::Offset, None),
+            Channel::Target(_) => (ChannelName::Target, None),
+            Channel::Enabled(_) => (ChannelName::Enabled, None),
+            Channel::Overlay(overlay) => (ChannelName::Overlay, Some(overlay)),
         };
         let width = channel.quantity().width();
-        let knot = |time, value: Vec3| Knot {
+        let row = |time, value: Vec3| KeyRow {
             time: Seconds(time),
             values: value.to_array().into_iter().take(width).map(Number).collect(),
         };
@@ -85,120 +87,120 @@ impl Track {
         Self {
             channel: name,
             joint: joint.map(Whole),
-            layer,
-            knots: track.knots().iter().map(|it| knot(it.time, it.value)).collect(),
+            overlay,
+            keys: track.knots().iter().map(|it| row(it.time, it.value)).collect(),
         }
     }
 
-    fn channel(&self, at: &JsonPath, document: &Document) -> Result<Channel, Wrong> {
+    fn channel(&self, at: &JsonPath, document: &Document) -> Result<Channel, FieldError> {
         let joint = || {
             let missing =
-                || Wrong::new(at.clone(), "this channel is a joint's: `joint` is missing");
-            let joint = self.joint.ok_or_else(missing)?.0 as usize;
+                || FieldError::new(at.clone(), "`joint` is missing: each joint has this channel");
+            let joint = self.joint.ok_or_else(missing)?;
             let joints = document.skeleton().joints().len();
-            if joint < joints {
-                return Ok(joint);
-            }
-            let reason = format!("there is no joint {joint}; {}", counted(joints));
-            Err(Wrong::new(at.clone().key("joint"), reason))
+            check::joint(at.clone().key("joint"), joint, joints)
         };
         let target = || {
             let joint = joint()?;
-            let none = || format!("joint {joint} has no target");
-            let target = document.skeleton_rig.target(joint);
-            target.ok_or_else(|| Wrong::new(at.clone().key("joint"), none()))?;
-            Ok(joint)
+            match document.skeleton_rig.target(joint) {
+                Some(_) => Ok(joint),
+                None => {
+                    let reason = format!("must be a joint with a target, got {joint}");
+                    Err(FieldError::new(at.clone().key("joint"), reason))
+                }
+            }
         };
         Ok(match self.channel {
-            Name::Hand => Channel::Hand,
-            Name::ElbowSpin => Channel::Twist,
-            Name::Root => Channel::Root,
-            Name::Upper => Channel::Upper,
-            Name::Lower => Channel::Lower,
-            Name::Pin => Channel::Pin,
-            Name::Pole => Channel::Pole,
-            Name::Weight => Channel::Influence,
-            Name::Shoulder => Channel::Shoulder,
-            Name::Bend => Channel::Bend,
-            Name::Stretch => Channel::Stretch,
-            Name::Wrist => Channel::Wrist,
-            Name::Translation => Channel::Translation,
-            Name::Rotation => Channel::Rotation(joint()?),
-            Name::Offset => Channel::Offset(joint()?),
-            Name::Target => Channel::Target(target()?),
-            Name::Enabled => Channel::Enabled(target()?),
-            Name::Layer => Channel::Overlay(self.layer.ok_or_else(|| {
-                Wrong::new(at.clone(), "this channel is a layer's: `layer` is missing")
+            ChannelName::Hand => Channel::Hand,
+            ChannelName::Twist => Channel::Twist,
+            ChannelName::Root => Channel::Root,
+            ChannelName::Upper => Channel::Upper,
+            ChannelName::Lower => Channel::Lower,
+            ChannelName::Pin => Channel::Pin,
+            ChannelName::Pole => Channel::Pole,
+            ChannelName::Influence => Channel::Influence,
+            ChannelName::Shoulder => Channel::Shoulder,
+            ChannelName::Bend => Channel::Bend,
+            ChannelName::Stretch => Channel::Stretch,
+            ChannelName::HandOrientation => Channel::Wrist,
+            ChannelName::Translation => Channel::Translation,
+            ChannelName::Rotation => Channel::Rotation(joint()?),
+            ChannelName::Offset => Channel::Offset(joint()?),
+            ChannelName::Target => Channel::Target(target()?),
+            ChannelName::Enabled => Channel::Enabled(target()?),
+            ChannelName::Overlay => Channel::Overlay(self.overlay.ok_or_else(|| {
+                FieldError::new(at.clone(), "`overlay` is missing: each overlay has this channel")
             })?),
         })
     }
 }
 
-impl Timeline {
-    pub fn new(timeline: document::Timeline) -> Self {
+/// Converts the keys of a document that has everything else already.
+pub fn keys(channels: Vec<Object<ChannelFields>>, document: &Document) -> Result<Keys, FieldError> {
+    let mut keys = Keys::default();
+    for (index, Object(fields)) in channels.into_iter().enumerate() {
+        let at = JsonPath::root().key("channels").index(index);
+        let channel = fields.channel(&at, document)?;
+        if keys.has(channel) {
+            return Err(FieldError::new(at, "another entry has the keys of this channel"));
+        }
+        for (index, row) in fields.keys.iter().enumerate() {
+            let value = value(channel.quantity(), row)
+                .map_err(|reason| FieldError::new(at.clone().key("keys").index(index), reason))?;
+            keys.insert(channel, row.time.0, value);
+        }
+    }
+    Ok(keys)
+}
+
+fn value(quantity: Quantity, row: &KeyRow) -> Result<Vec3, String> {
+    let width = quantity.width();
+    if row.values.len() != width {
+        let numbers = if width == 1 { "one number" } else { "three numbers" };
+        return Err(format!("must have {numbers} after the time, got {}", row.values.len()));
+    }
+    let mut value = [0.0; 3];
+    for (component, Number(number)) in value.iter_mut().zip(&row.values) {
+        *component = *number;
+    }
+    let x = value[0];
+    match quantity {
+        Quantity::Switch if x != 0.0 && x != 1.0 => Err(format!("switch must be 0 or 1, got {x}")),
+        Quantity::Fraction if !(0.0..=1.0).contains(&x) => {
+            Err(format!("fraction must be from 0 to 1, got {x}"))
+        }
+        Quantity::Length if x <= 0.0 => Err(format!("length must be above 0, got {x}")),
+        _ => Ok(Vec3::from_array(value)),
+    }
+}
+
+impl TimelineFields {
+    pub fn new(timeline: Timeline) -> Self {
         Self {
             start: Some(Seconds(timeline.start)),
             end: Some(Seconds(timeline.end)),
             frame_rate: Some(Whole(timeline.frame_rate)),
         }
     }
-}
 
-/// The keys of a document that has all but them.
-pub fn keys(tracks: Vec<Object<Track>>, document: &Document) -> Result<Keys, Wrong> {
-    let mut keys = Keys::default();
-    for (index, Object(track)) in tracks.into_iter().enumerate() {
-        let at = JsonPath::root().key("keys").index(index);
-        let channel = track.channel(&at, document)?;
-        if keys.has(channel) {
-            return Err(Wrong::new(at, "another entry has keys of the same channel"));
+    pub fn timeline(&self, at: JsonPath) -> Result<Timeline, FieldError> {
+        let default = Timeline::default();
+        let start = self.start.map_or(default.start, |Seconds(start)| start);
+        let timeline = Timeline {
+            start,
+            end: self.end.map_or(start + default.duration(), |Seconds(end)| end),
+            frame_rate: self.frame_rate.map_or(default.frame_rate, |Whole(rate)| rate),
+        };
+        if timeline.is_valid() {
+            return Ok(timeline);
         }
-        for (index, knot) in track.knots.iter().enumerate() {
-            let value = value(channel.quantity(), knot)
-                .map_err(|reason| Wrong::new(at.clone().key("knots").index(index), reason))?;
-            keys.insert(channel, knot.time.0, value);
-        }
+        let Timeline { start, end, frame_rate } = timeline;
+        let reason = format!(
+            "must start before it ends, within ±{} s, at 1 to {} frames a second, got {start} s to \
+             {end} s at {frame_rate}",
+            Timeline::FARTHEST,
+            Timeline::HIGHEST_FRAME_RATE,
+        );
+        Err(FieldError::new(at, reason))
     }
-    Ok(keys)
-}
-
-fn value(quantity: Quantity, knot: &Knot) -> Result<Vec3, String> {
-    let width = quantity.width();
-    if knot.values.len() != width {
-        let numbers = if width == 1 { "one number" } else { "three numbers" };
-        let found = knot.values.len();
-        return Err(format!("found {found} after the time, expected {numbers}"));
-    }
-    let mut value = [0.0; 3];
-    for (place, Number(number)) in value.iter_mut().zip(&knot.values) {
-        *place = *number;
-    }
-    let x = value[0];
-    match quantity {
-        Quantity::Switch if x != 0.0 && x != 1.0 => Err(format!("{x} is no switch; it is 0 or 1")),
-        Quantity::Fraction if !(0.0..=1.0).contains(&x) => {
-            Err(format!("{x} is no part; it is from 0 to 1"))
-        }
-        Quantity::Length if x <= 0.0 => Err(format!("length {x} must be above 0")),
-        _ => Ok(Vec3::from_array(value)),
-    }
-}
-
-pub fn timeline(at: JsonPath, file: &Timeline) -> Result<document::Timeline, Wrong> {
-    let seed = document::Timeline::default();
-    let start = file.start.map_or(seed.start, |Seconds(start)| start);
-    let timeline = document::Timeline {
-        start,
-        end: file.end.map_or(start + seed.duration(), |Seconds(end)| end),
-        frame_rate: file.frame_rate.map_or(seed.frame_rate, |Whole(rate)| rate),
-    };
-    if timeline.is_valid() {
-        return Ok(timeline);
-    }
-    let reason = format!(
-        "must start before it ends, within {} s of 0, and have 1 to {} frames in a second",
-        document::Timeline::FARTHEST,
-        document::Timeline::HIGHEST_FRAME_RATE,
-    );
-    Err(Wrong::new(at, reason))
 }

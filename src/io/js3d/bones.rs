@@ -1,8 +1,8 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use super::file::{Bone, Skeleton as File};
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
 use crate::io::value::{Number, Object, Point};
 use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
 
@@ -12,14 +12,14 @@ pub struct Bones {
     pub order: Vec<usize>,
 }
 
-pub fn read(at: &JsonPath, file: &File) -> Result<Bones, Wrong> {
+pub fn read(at: &JsonPath, file: &File) -> Result<Bones, FieldError> {
     let at_bone = |bone| at.clone().key("bones").index(bone);
     if file.bones.len() > Skeleton::MOST_JOINTS {
-        return Err(Wrong::new(at.clone().key("bones"), SkeletonError::TooMany.to_string()));
+        return Err(FieldError::new(at.clone().key("bones"), SkeletonError::TooMany.to_string()));
     }
     let parents: Vec<_> = file.bones.iter().map(|Object(bone)| bone.parent()).collect();
     let bones = parents_first(&parents)
-        .map_err(|(bone, reason)| Wrong::new(at_bone(bone).key("parent"), reason))?;
+        .map_err(|(bone, reason)| FieldError::new(at_bone(bone).key("parent"), reason))?;
     let mut order = vec![0; bones.len()];
     for (joint, bone) in bones.iter().enumerate() {
         order[*bone] = joint;
@@ -27,15 +27,15 @@ pub fn read(at: &JsonPath, file: &File) -> Result<Bones, Wrong> {
     let root = file.base.0 + file.base_offset.0;
     if !root.is_finite() {
         let reason = "base and base_offset add up to more than 3.4028235e38";
-        return Err(Wrong::new(at.clone().key("base_offset"), reason));
+        return Err(FieldError::new(at.clone().key("base_offset"), reason));
     }
     let joints = bones.iter().map(|&index| joint(file, index, root, &order)).collect();
     let skeleton = Skeleton::from_joints(joints).map_err(|error| match &error {
         SkeletonError::Radius { joint, value } => {
             let reason = format!("is {value}; it must be 0 or more");
-            Wrong::new(at_bone(bones[*joint]).key("radius"), reason)
+            FieldError::new(at_bone(bones[*joint]).key("radius"), reason)
         }
-        _ => Wrong::new(at.clone(), error.to_string()),
+        _ => FieldError::new(at.clone(), error.to_string()),
     })?;
     Ok(Bones { skeleton, order })
 }

@@ -20,9 +20,10 @@ mod place;
 use glam::DAffine3;
 
 use super::error::OpenError;
+use super::field_error::{FieldError, FieldWarnings};
 use super::json_path::JsonPath;
-use super::open::Opened;
-use super::source::{Odd, Source, Wrong};
+use super::opened::Opened;
+use super::source::Source;
 use super::value::Object;
 use crate::document::{Document, RigKind, SkeletonRig, Target};
 use bones::Bones;
@@ -44,11 +45,11 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
                 name: name.to_owned(),
                 names,
             },
-            None => source.wrong(&no_skeleton()),
+            None => source.error(&no_skeleton()),
         });
     };
-    let mut odd = Odd::default();
-    let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.wrong(&w))?;
+    let mut odd = FieldWarnings::default();
+    let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.error(&w))?;
     let camera = rig.first_view();
     Ok(Opened {
         document: Document {
@@ -57,28 +58,31 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
             camera,
             ..Document::default()
         },
-        warnings: source.remarks(&odd),
+        warnings: source.warnings(&odd),
         order,
         skeletons: names,
     })
 }
 
-fn no_skeleton() -> Wrong {
+fn no_skeleton() -> FieldError {
     let field = JsonPath::root().key("scene").key("skinned_meshes");
-    Wrong::new(field, "there is no skeleton; one is under the name of a mesh, as its `skeleton`")
+    FieldError::new(
+        field,
+        "there is no skeleton; one is under the name of a mesh, as its `skeleton`",
+    )
 }
 
 fn rig(
     scene: &Scene,
     name: &str,
     file: &Skeleton,
-    odd: &mut Odd,
-) -> Result<(SkeletonRig, Vec<usize>), Wrong> {
+    odd: &mut FieldWarnings,
+) -> Result<(SkeletonRig, Vec<usize>), FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
     let place = place::of(scene, name, odd)?;
     let Bones { mut skeleton, order } = bones::read(&at, file)?;
     skeleton.set_transform(place.as_affine3a()).map_err(|error| {
-        Wrong::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
+        FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
     let mut rig = SkeletonRig::new(skeleton);
     rig.targets = targets(&at, file, place, &order, rig.circle(), odd)?;
@@ -92,8 +96,8 @@ fn targets(
     place: DAffine3,
     order: &[usize],
     circle: f32,
-    odd: &mut Odd,
-) -> Result<Vec<Target>, Wrong> {
+    odd: &mut FieldWarnings,
+) -> Result<Vec<Target>, FieldError> {
     let at_handle = |handle| at.clone().key("handles").index(handle);
     // Each with its handle, and for every joint which of them is its own.
     let mut targets: Vec<(usize, Target)> = Vec::new();
@@ -122,16 +126,16 @@ fn target(
     place: DAffine3,
     order: &[usize],
     circle: f32,
-) -> Result<Target, Wrong> {
+) -> Result<Target, FieldError> {
     let bone = handle.bone.0 as usize;
     let joint = order.get(bone).copied().ok_or_else(|| {
         let reason = format!("there is no bone {bone}; {}", bones::counted(order.len()));
-        Wrong::new(at.clone().key("bone"), reason)
+        FieldError::new(at.clone().key("bone"), reason)
     })?;
     let home = place.transform_point3(handle.target.0.as_dvec3()).as_vec3();
     if !home.is_finite() {
         let reason = "is beyond 3.4028235e38 in the world; bring it nearer to 0";
-        return Err(Wrong::new(at.clone().key("target"), reason));
+        return Err(FieldError::new(at.clone().key("target"), reason));
     }
     let enabled = handle.enabled.unwrap_or(true);
     Ok(Target { enabled, ..Target::new(joint, home, circle) })

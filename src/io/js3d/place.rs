@@ -3,13 +3,13 @@ use std::collections::{HashMap, HashSet};
 use glam::{DAffine3, DQuat, DVec3, DVec4};
 
 use super::file::{Scene, Transform};
+use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::source::{Odd, Wrong};
 use crate::io::value::{Numbers, Point};
 
 /// Where the first instance of a mesh stands in the world; a mesh without an instance is at the
 /// origin.
-pub fn of(scene: &Scene, mesh: &str, odd: &mut Odd) -> Result<DAffine3, Wrong> {
+pub fn of(scene: &Scene, mesh: &str, odd: &mut FieldWarnings) -> Result<DAffine3, FieldError> {
     let instances = &scene.instances.0.skinned_meshes.0;
     let at = JsonPath::root().key("scene").key("instances").key("skinned_meshes");
     let mut of_mesh =
@@ -28,7 +28,7 @@ pub fn of(scene: &Scene, mesh: &str, odd: &mut Odd) -> Result<DAffine3, Wrong> {
 }
 
 /// The product of a transform and all those above it. `field` is where its name stands.
-fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, Wrong> {
+fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, FieldError> {
     let mut place = DAffine3::IDENTITY;
     let (mut next, mut field) = (Some(name), field);
     let transforms: HashMap<_, _> =
@@ -36,15 +36,15 @@ fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, Wrong> 
     let mut seen = HashSet::new();
     while let Some(name) = next {
         if !seen.insert(name) {
-            return Err(Wrong::new(field, format!("transform {name:?} hangs from itself")));
+            return Err(FieldError::new(field, format!("transform {name:?} hangs from itself")));
         }
         let Some(transform) = transforms.get(name) else {
-            return Err(Wrong::new(field, format!("there is no transform called {name:?}")));
+            return Err(FieldError::new(field, format!("there is no transform called {name:?}")));
         };
         let at = JsonPath::root().key("scene").key("transforms").key(name);
         place = local(&at, transform)? * place;
         if !place.as_affine3a().is_finite() {
-            return Err(Wrong::new(at, "leads beyond 3.4028235e38 in the world"));
+            return Err(FieldError::new(at, "leads beyond 3.4028235e38 in the world"));
         }
         field = at.key("parent");
         next = transform.parent.as_deref();
@@ -52,7 +52,7 @@ fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, Wrong> 
     Ok(place)
 }
 
-fn local(at: &JsonPath, transform: &Transform) -> Result<DAffine3, Wrong> {
+fn local(at: &JsonPath, transform: &Transform) -> Result<DAffine3, FieldError> {
     let Transform { translation, rotation, scale, .. } = transform;
     let or = |point: &Option<Point>, usual: DVec3| point.map_or(usual, |Point(p)| p.as_dvec3());
     let rotation = match rotation {
@@ -60,7 +60,7 @@ fn local(at: &JsonPath, transform: &Transform) -> Result<DAffine3, Wrong> {
             let turn = DVec4::from_array(rotation.map(f64::from)).try_normalize();
             turn.map(DQuat::from_vec4).ok_or_else(|| {
                 let reason = "four zeros turn nothing; no rotation is [0, 0, 0, 1]";
-                Wrong::new(at.clone().key("rotation"), reason)
+                FieldError::new(at.clone().key("rotation"), reason)
             })?
         }
         None => DQuat::IDENTITY,

@@ -5,8 +5,10 @@ use std::path::{Component, Path};
 
 use super::base64;
 use super::file::{Buffer, File};
+use crate::io::error::OpenError;
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::{Source, Wrong};
+use crate::io::source::Source;
 
 /// The bytes that a file tells of: those that are needed.
 pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
@@ -14,20 +16,20 @@ pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 impl<'a> Buffers<'a> {
     /// Reads buffers, which may be in the file, in its text, or in files beside it; together they are
     /// no longer than a file can be.
-    pub fn read(source: &'a Source, file: &File, needed: &[usize]) -> Result<Self, Wrong> {
+    pub fn read(source: &'a Source, file: &File, needed: &[usize]) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
-        let mut left = Source::LONGEST;
+        let mut left = OpenError::MAX_BYTES;
         for &index in needed {
             let at = JsonPath::root().key("buffers").index(index);
             let (Some(buffer), Some(place)) = (file.buffers.0.get(index), buffers.0.get_mut(index))
             else {
-                return Err(Wrong::new(at, "there is no such buffer"));
+                return Err(FieldError::new(at, "there is no such buffer"));
             };
             let length = u64::from(buffer.length.0);
             if length > left {
-                let most = Source::LONGEST >> 20;
+                let most = OpenError::MAX_BYTES >> 20;
                 let reason = format!("makes more than {most} MB with those before it");
-                return Err(Wrong::new(at.key("byteLength"), reason));
+                return Err(FieldError::new(at.key("byteLength"), reason));
             }
             left -= length;
             *place = Some(bytes(source, index, buffer, &at)?);
@@ -45,24 +47,26 @@ fn bytes<'a>(
     index: usize,
     buffer: &Buffer,
     at: &JsonPath,
-) -> Result<Cow<'a, [u8]>, Wrong> {
+) -> Result<Cow<'a, [u8]>, FieldError> {
     let length = buffer.length.0 as usize;
     let at_uri = at.clone().key("uri");
     let mut bytes = match (&buffer.uri, source.binary()) {
         (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
         (None, _) => {
             let reason = "is not there; only the first buffer of a .glb file can be without one";
-            return Err(Wrong::new(at_uri, reason));
+            return Err(FieldError::new(at_uri, reason));
         }
         (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
-            Some(data) => inline(data).map_err(|reason| Wrong::new(at_uri, reason))?,
-            None => beside(source, uri, length).map_err(|reason| Wrong::new(at_uri, reason))?,
+            Some(data) => inline(data).map_err(|reason| FieldError::new(at_uri, reason))?,
+            None => {
+                beside(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?
+            }
         }),
     };
     if bytes.len() < length {
         let there = bytes.len();
         let reason = format!("is {length}, but the buffer has {there} bytes");
-        return Err(Wrong::new(at.clone().key("byteLength"), reason));
+        return Err(FieldError::new(at.clone().key("byteLength"), reason));
     }
     match &mut bytes {
         Cow::Borrowed(bytes) => *bytes = &bytes[..length],

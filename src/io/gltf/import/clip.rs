@@ -1,8 +1,8 @@
 use super::sampler::tolerance;
 use super::tracks::Tracks;
 use crate::document::Timeline;
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
 
 /// Frames in a second that motions usually have, the fewest first.
 const USUAL: [u32; 8] = [24, 25, 30, 48, 50, 60, 100, 120];
@@ -11,7 +11,7 @@ const OTHERWISE: u32 = 60;
 
 /// From when to when a motion goes: from its first key to its last, in as few frames in a second as
 /// there is one at every key. None if that takes no time. `at` is where its animation stands.
-pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, Wrong> {
+pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
     let Some((start, last)) = ends(tracks) else { return Ok(None) };
     let frames_at = |rate: u32| {
         tracks.times().all(|time| {
@@ -28,7 +28,7 @@ pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, 
     if frames > 0.0 && !timeline.is_valid() {
         let most = Timeline::FARTHEST;
         let reason = format!("goes from {start} to {last} s; it must be within ±{most} s");
-        return Err(Wrong::new(at.clone(), reason));
+        return Err(FieldError::new(at.clone(), reason));
     }
     Ok((frames > 0.0).then_some(timeline))
 }

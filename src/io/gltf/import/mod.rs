@@ -14,9 +14,10 @@ mod tracks;
 
 use crate::document::Timeline;
 use crate::io::error::OpenError;
+use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::open::Opened;
-use crate::io::source::{Odd, Source, Wrong};
+use crate::io::opened::Opened;
+use crate::io::source::Source;
 use crate::io::value::Object;
 use crate::kinematics::skeleton::Joint;
 use file::{Animation, File, Skin};
@@ -32,7 +33,7 @@ const MOST_SAMPLES: usize = 4_000_000;
 /// Reads the skeleton of the skin of that name, or of the first.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let Object(file) = source.parse::<Object<File>>(|_| {})?;
-    check(&file).map_err(|wrong| source.wrong(&wrong))?;
+    check(&file).map_err(|wrong| source.error(&wrong))?;
     let names = skins::names(&file);
     let chosen = match name {
         Some(name) => names.iter().position(|other| other == name),
@@ -45,26 +46,26 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
             names,
         });
     };
-    let mut odd = Odd::default();
+    let mut odd = FieldWarnings::default();
     let opened = opened(source, &file, index, skin, &mut odd);
-    let (Built { document, kept }, order) = opened.map_err(|wrong| source.wrong(&wrong))?;
+    let (Built { document, kept }, order) = opened.map_err(|wrong| source.error(&wrong))?;
     Ok(Opened {
         document,
-        warnings: source.remarks(&odd),
+        warnings: source.warnings(&odd),
         order: order.into_iter().filter_map(|joint| kept[joint]).collect(),
         skeletons: names,
     })
 }
 
-fn check(file: &File) -> Result<(), Wrong> {
+fn check(file: &File) -> Result<(), FieldError> {
     let Object(asset) = &file.asset;
     if asset.version.split('.').next() != Some("2") {
         let reason = format!("is {:?}; only glTF 2 is known", asset.version);
-        return Err(Wrong::new(JsonPath::root().key("asset").key("version"), reason));
+        return Err(FieldError::new(JsonPath::root().key("asset").key("version"), reason));
     }
     if file.skins.0.is_empty() {
         let reason = "there is none; joints are those of a skin";
-        return Err(Wrong::new(JsonPath::root().key("skins"), reason));
+        return Err(FieldError::new(JsonPath::root().key("skins"), reason));
     }
     Ok(())
 }
@@ -74,8 +75,8 @@ fn opened(
     file: &File,
     index: usize,
     skin: &Skin,
-    odd: &mut Odd,
-) -> Result<(Built, Vec<usize>), Wrong> {
+    odd: &mut FieldWarnings,
+) -> Result<(Built, Vec<usize>), FieldError> {
     let nodes = Nodes::new(file)?;
     let joints = Joints::new(file, &nodes, index, skin)?;
     let mut stage = Stage::new(&nodes, &joints);
@@ -94,7 +95,7 @@ fn opened(
         }
     };
     let built = rig::build(list, &motions, timeline);
-    let built = built.map_err(|error| Wrong::new(at_skin(index), error.to_string()))?;
+    let built = built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
     Ok((built, joints.order))
 }
 
@@ -106,7 +107,7 @@ fn animate(
     stage: &mut Stage<'_>,
     joints: &mut [Joint],
     rest: &[Placed],
-) -> Result<(Vec<Motion>, Option<Timeline>), Wrong> {
+) -> Result<(Vec<Motion>, Option<Timeline>), FieldError> {
     let chosen = tracks::chosen(animation, at, nodes, &stage.is_needed())?;
     let buffers = tracks::buffers(source, file, &chosen)?;
     let tracks = Tracks::new(file, &buffers, &chosen)?;
@@ -121,7 +122,7 @@ fn animate(
             "moves {nodes} nodes in {frames} frames; at most {} frames are possible",
             MOST_SAMPLES / nodes
         );
-        return Err(Wrong::new(at.clone(), reason));
+        return Err(FieldError::new(at.clone(), reason));
     }
     let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
     let motions = motion::sample(stage, &tracks, sampled, frames, joints, rest)?;

@@ -4,8 +4,8 @@ use super::nodes::{Local, Nodes, at_node};
 use super::skins::Joints;
 use super::tracks::Tracks;
 use crate::document::Timeline;
+use crate::io::field_error::FieldError;
 use crate::io::gltf::frame::frame;
-use crate::io::source::Wrong;
 use crate::kinematics::skeleton::Joint;
 
 /// Where a joint is in the world.
@@ -65,17 +65,17 @@ impl<'a> Stage<'a> {
     }
 
     /// Where the joints are without an animation.
-    pub fn rest(&mut self) -> Result<Vec<Placed>, Wrong> {
+    pub fn rest(&mut self) -> Result<Vec<Placed>, FieldError> {
         self.placed()
     }
 
     /// Where an animation has the joints at a time, in seconds.
-    pub fn at(&mut self, tracks: &Tracks<'_>, time: f64) -> Result<Vec<Placed>, Wrong> {
+    pub fn at(&mut self, tracks: &Tracks<'_>, time: f64) -> Result<Vec<Placed>, FieldError> {
         tracks.pose(time, &mut self.locals);
         self.placed()
     }
 
-    fn placed(&mut self) -> Result<Vec<Placed>, Wrong> {
+    fn placed(&mut self) -> Result<Vec<Placed>, FieldError> {
         for &node in &self.needed {
             let above = self.nodes.parents[node];
             let above = above.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
@@ -85,7 +85,7 @@ impl<'a> Stage<'a> {
             let DAffine3 { matrix3, translation: base } = self.worlds[*node];
             if !base.as_vec3().is_finite() {
                 let reason = "is beyond 3.4028235e38 m in the world; bring it nearer to 0";
-                return Err(Wrong::new(at_node(*node), reason));
+                return Err(FieldError::new(at_node(*node), reason));
             }
             Ok(Placed { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
         };
@@ -101,7 +101,7 @@ pub fn sample(
     frames: usize,
     joints: &mut [Joint],
     rest: &[Placed],
-) -> Result<Vec<Motion>, Wrong> {
+) -> Result<Vec<Motion>, FieldError> {
     let mut motions: Vec<Motion> = joints.iter().map(|_| Motion::default()).collect();
     for frame in 0..frames {
         let placed = stage.at(tracks, timeline.time(frame))?;
@@ -116,7 +116,7 @@ pub fn sample(
             let offset = (above * (placed[index].base - origin)).as_vec3();
             if !offset.is_finite() {
                 let reason = "is beyond 3.4028235e38 m from its parent; bring it nearer";
-                return Err(Wrong::new(at_node(stage.joints.nodes[index]), reason));
+                return Err(FieldError::new(at_node(stage.joints.nodes[index]), reason));
             }
             // The angles nearest to those of the frame before.
             joint.rotation = joint.angles_of(Mat3A::from((above * turns[index]).as_mat3()));

@@ -1,8 +1,8 @@
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
 use super::file::{File, Node};
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
 use crate::io::value::Numbers;
 
 /// The tree of nodes.
@@ -46,7 +46,7 @@ pub fn at_node(index: usize) -> JsonPath {
 }
 
 impl Nodes {
-    pub fn new(file: &File) -> Result<Self, Wrong> {
+    pub fn new(file: &File) -> Result<Self, FieldError> {
         let nodes = &file.nodes.0;
         let parents = parents(nodes)?;
         let order = order(nodes, &parents)?;
@@ -55,11 +55,12 @@ impl Nodes {
     }
 }
 
-fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, Wrong> {
+fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, FieldError> {
     let mut parents = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for (place, child) in node.children.iter().flatten().enumerate() {
-            let wrong = |reason| Wrong::new(at_node(index).key("children").index(place), reason);
+            let wrong =
+                |reason| FieldError::new(at_node(index).key("children").index(place), reason);
             let child = child.0 as usize;
             match parents.get_mut(child) {
                 None => return Err(wrong(format!("there is no node {child}"))),
@@ -75,7 +76,7 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, Wrong> {
 }
 
 /// Every node after its parent, which there is unless nodes hang from each other in a ring.
-fn order(nodes: &[Node], parents: &[Option<usize>]) -> Result<Vec<usize>, Wrong> {
+fn order(nodes: &[Node], parents: &[Option<usize>]) -> Result<Vec<usize>, FieldError> {
     let mut order: Vec<usize> = (0..nodes.len()).filter(|node| parents[*node].is_none()).collect();
     let mut done = 0;
     while let Some(node) = order.get(done).and_then(|node| nodes.get(*node)) {
@@ -86,18 +87,18 @@ fn order(nodes: &[Node], parents: &[Option<usize>]) -> Result<Vec<usize>, Wrong>
         let mut is_placed = vec![false; nodes.len()];
         order.iter().for_each(|node| is_placed[*node] = true);
         let node = is_placed.iter().position(|is_placed| !is_placed).unwrap_or_default();
-        return Err(Wrong::new(at_node(node), "hangs from itself, by way of others or not"));
+        return Err(FieldError::new(at_node(node), "hangs from itself, by way of others or not"));
     }
     Ok(order)
 }
 
-fn local(index: usize, node: &Node) -> Result<Local, Wrong> {
+fn local(index: usize, node: &Node) -> Result<Local, FieldError> {
     if let Some(matrix) = &node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.0.map(f64::from));
         if matrix.row(3) != DVec4::W {
             let reason =
                 "the last number of its first three columns must be 0, that of the fourth 1";
-            return Err(Wrong::new(at_node(index).key("matrix"), reason));
+            return Err(FieldError::new(at_node(index).key("matrix"), reason));
         }
         return Ok(Local::Matrix(DAffine3::from_mat4(matrix)));
     }
@@ -105,7 +106,7 @@ fn local(index: usize, node: &Node) -> Result<Local, Wrong> {
         None => DQuat::IDENTITY,
         Some(Numbers(rotation)) => unit(rotation.map(f64::from)).ok_or_else(|| {
             let reason = "four zeros turn nothing; no rotation is [0, 0, 0, 1]";
-            Wrong::new(at_node(index).key("rotation"), reason)
+            FieldError::new(at_node(index).key("rotation"), reason)
         })?,
     };
     let translation = node.translation.unwrap_or_default().0.as_dvec3();

@@ -1,7 +1,7 @@
 use super::buffers::Buffers;
 use super::file::{Accessor, File, View};
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
 
 /// The numbers of an accessor, row by row, as they stand in a buffer: each was checked to be in it.
 #[derive(Clone, Copy)]
@@ -55,28 +55,29 @@ fn at_view(index: usize) -> JsonPath {
 }
 
 /// An accessor and its buffer view.
-fn found(file: &File, index: usize) -> Result<(&Accessor, &View, usize), Wrong> {
+fn found(file: &File, index: usize) -> Result<(&Accessor, &View, usize), FieldError> {
     let accessor = file.accessors.0.get(index);
     let accessor =
-        accessor.ok_or_else(|| Wrong::new(at_accessor(index), "there is no such accessor"))?;
+        accessor.ok_or_else(|| FieldError::new(at_accessor(index), "there is no such accessor"))?;
     let at = at_accessor(index).key("bufferView");
     let Some(view) = accessor.view.filter(|_| accessor.sparse.is_none()) else {
         let reason = "is sparse or without a buffer view; only plain accessors are known";
-        return Err(Wrong::new(at_accessor(index), reason));
+        return Err(FieldError::new(at_accessor(index), reason));
     };
     let place = view.0 as usize;
     let view = file.views.0.get(place);
-    let view = view.ok_or_else(|| Wrong::new(at, format!("there is no buffer view {place}")))?;
+    let view =
+        view.ok_or_else(|| FieldError::new(at, format!("there is no buffer view {place}")))?;
     Ok((accessor, view, place))
 }
 
 /// Which buffer an accessor reads.
-pub fn buffer_of(file: &File, index: usize) -> Result<usize, Wrong> {
+pub fn buffer_of(file: &File, index: usize) -> Result<usize, FieldError> {
     let (_, View { buffer, .. }, view) = found(file, index)?;
     let buffer = buffer.0 as usize;
     if buffer >= file.buffers.0.len() {
         let reason = format!("there is no buffer {buffer}");
-        return Err(Wrong::new(at_view(view).key("buffer"), reason));
+        return Err(FieldError::new(at_view(view).key("buffer"), reason));
     }
     Ok(buffer)
 }
@@ -88,17 +89,17 @@ impl<'a> Rows<'a> {
         buffers: &'a Buffers<'_>,
         index: usize,
         shape: &str,
-    ) -> Result<Self, Wrong> {
+    ) -> Result<Self, FieldError> {
         let (accessor, view, view_index) = found(file, index)?;
         let at = || at_accessor(index);
         let component = Component::new(accessor.component.0).ok_or_else(|| {
             let code = accessor.component.0;
             let reason = format!("is {code}; it must be 5120 to 5123, 5125 or 5126");
-            Wrong::new(at().key("componentType"), reason)
+            FieldError::new(at().key("componentType"), reason)
         })?;
         if accessor.shape != shape {
             let reason = format!("is {:?}; it must be {shape:?} there", accessor.shape);
-            return Err(Wrong::new(at().key("type"), reason));
+            return Err(FieldError::new(at().key("type"), reason));
         }
         let row = width(shape) * component.size();
         let viewed = viewed(buffers, view, view_index)?;
@@ -118,7 +119,7 @@ impl<'a> Rows<'a> {
                  has only {} bytes",
                 viewed.len()
             );
-            Wrong::new(at().key("count"), reason)
+            FieldError::new(at().key("count"), reason)
         })?;
         let is_normalized = accessor.normalized.unwrap_or(false);
         Ok(Self { bytes, stride, count, component, is_normalized })
@@ -171,7 +172,7 @@ fn width(shape: &str) -> usize {
 }
 
 /// The bytes of a view, if its buffer has them.
-fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a [u8], Wrong> {
+fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a [u8], FieldError> {
     let buffer = buffers.get(view.buffer.0 as usize).unwrap_or_default();
     let offset = view.offset.map_or(0, |offset| offset.0 as usize);
     let length = view.length.0 as usize;
@@ -181,16 +182,16 @@ fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a
             view.buffer.0,
             buffer.len()
         );
-        Wrong::new(at_view(index).key("byteLength"), reason)
+        FieldError::new(at_view(index).key("byteLength"), reason)
     })
 }
 
-fn stride(view: &View, index: usize, row: usize) -> Result<usize, Wrong> {
+fn stride(view: &View, index: usize, row: usize) -> Result<usize, FieldError> {
     let Some(stride) = view.stride else { return Ok(row) };
     let stride = stride.0 as usize;
     if !(4..=252).contains(&stride) || stride < row {
         let reason = format!("is {stride}; it must be 4 to 252, and {row} or more for its values");
-        return Err(Wrong::new(at_view(index).key("byteStride"), reason));
+        return Err(FieldError::new(at_view(index).key("byteStride"), reason));
     }
     Ok(stride)
 }

@@ -5,7 +5,7 @@ use super::file::File;
 use super::nodes::unit;
 use super::rows::{Rows, at_accessor};
 use super::tracks::Part;
-use crate::io::source::Wrong;
+use crate::io::field_error::FieldError;
 
 /// Values at times, and what is between them.
 #[derive(Clone, Copy)]
@@ -56,55 +56,58 @@ impl<'a> Sampler<'a> {
         [input, output]: [usize; 2],
         part: Part,
         interpolation: Interpolation,
-    ) -> Result<Self, Wrong> {
+    ) -> Result<Self, FieldError> {
         let times = Rows::new(file, buffers, input, "SCALAR")?;
         let shape = if part == Part::Rotation { "VEC4" } else { "VEC3" };
         let values = Rows::new(file, buffers, output, shape)?;
         if !times.is_float() {
             let reason = "times must be floats: 5126";
-            return Err(Wrong::new(at_accessor(input).key("componentType"), reason));
+            return Err(FieldError::new(at_accessor(input).key("componentType"), reason));
         }
         if !(values.is_float() || part == Part::Rotation && values.is_normalized()) {
             let reason =
                 "values must be floats, 5126; rotations can be normalized integers as well";
-            return Err(Wrong::new(at_accessor(output).key("componentType"), reason));
+            return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
         }
         if times.len() == 0 {
-            return Err(Wrong::new(at_accessor(input).key("count"), "is 0; there must be a time"));
+            return Err(FieldError::new(
+                at_accessor(input).key("count"),
+                "is 0; there must be a time",
+            ));
         }
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if values.len() != each * times.len() {
             let (count, times) = (values.len(), times.len());
             let reason = format!("is {count}; it must be {each} for each of the {times} times");
-            return Err(Wrong::new(at_accessor(output).key("count"), reason));
+            return Err(FieldError::new(at_accessor(output).key("count"), reason));
         }
         Ok(Self { times, values, part, interpolation })
     }
 
     /// Refuses times that do not follow each other, values that are no numbers, and rotations that
     /// are none.
-    pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), Wrong> {
+    pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), FieldError> {
         for key in 0..self.len() {
             let time = self.time(key);
             let follows = key == 0 || self.time(key - 1) < time;
             if !(time.is_finite() && follows) {
                 let reason =
                     format!("time {key} is {time}; times must be finite and above those before");
-                return Err(Wrong::new(at_accessor(input), reason));
+                return Err(FieldError::new(at_accessor(input), reason));
             }
         }
         for row in 0..self.values.len() {
             let value: [f64; 4] = self.values.row(row);
             if !value.into_iter().take(self.width()).all(f64::is_finite) {
                 let reason = format!("value {row} has a number that is not finite");
-                return Err(Wrong::new(at_accessor(output), reason));
+                return Err(FieldError::new(at_accessor(output), reason));
             }
         }
         if self.part == Part::Rotation {
             for key in 0..self.len() {
                 if unit(self.row(key, VALUE)).is_none() {
                     let reason = format!("rotation {key} is four zeros, which turn nothing");
-                    return Err(Wrong::new(at_accessor(output), reason));
+                    return Err(FieldError::new(at_accessor(output), reason));
                 }
             }
         }

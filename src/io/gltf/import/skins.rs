@@ -2,9 +2,9 @@ use std::collections::HashSet;
 
 use super::file::{File, Skin};
 use super::nodes::Nodes;
+use crate::io::field_error::FieldError;
 use crate::io::gltf::names::Names;
 use crate::io::json_path::JsonPath;
-use crate::io::source::Wrong;
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
 /// The joints of a skin, parents before their children.
@@ -40,19 +40,19 @@ pub fn at_skin(skin: usize) -> JsonPath {
 }
 
 impl Joints {
-    pub fn new(file: &File, nodes: &Nodes, index: usize, skin: &Skin) -> Result<Self, Wrong> {
+    pub fn new(file: &File, nodes: &Nodes, index: usize, skin: &Skin) -> Result<Self, FieldError> {
         let at = at_skin(index).key("joints");
         if skin.joints.is_empty() {
-            return Err(Wrong::new(at, "there is none; a skin needs a joint"));
+            return Err(FieldError::new(at, "there is none; a skin needs a joint"));
         }
         // Each joint may have another one at its tip, which becomes none.
         if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
-            return Err(Wrong::new(at, SkeletonError::TooMany.to_string()));
+            return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
         }
         let mut seen = HashSet::new();
         for (place, joint) in skin.joints.iter().enumerate() {
             let joint = joint.0 as usize;
-            let wrong = |reason| Wrong::new(at.clone().index(place), reason);
+            let wrong = |reason| FieldError::new(at.clone().index(place), reason);
             if joint >= file.nodes.0.len() {
                 return Err(wrong(format!("there is no node {joint}")));
             }

@@ -4,8 +4,9 @@ use super::buffers::Buffers;
 use super::file::{Animation, Channel, File};
 use super::nodes::{Local, Nodes, Parts, at_node};
 use super::sampler::{Interpolation, Sampler};
+use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::source::{Source, Wrong};
+use crate::io::source::Source;
 use crate::io::value::Object;
 
 /// What moves the nodes.
@@ -40,7 +41,7 @@ pub fn chosen<'a>(
     at: &'a JsonPath,
     nodes: &Nodes,
     is_needed: &[bool],
-) -> Result<Vec<Chosen<'a>>, Wrong> {
+) -> Result<Vec<Chosen<'a>>, FieldError> {
     let mut seen = HashSet::new();
     let mut all = Vec::new();
     for (index, channel) in animation.channels.0.iter().enumerate() {
@@ -48,29 +49,29 @@ pub fn chosen<'a>(
         let Some((node, part)) = moved(channel) else { continue };
         let Some(is_needed) = is_needed.get(node) else {
             let reason = format!("there is no node {node}");
-            return Err(Wrong::new(at_channel().key("target").key("node"), reason));
+            return Err(FieldError::new(at_channel().key("target").key("node"), reason));
         };
         if !is_needed {
             continue;
         }
         if let Local::Matrix(_) = nodes.locals[node] {
             let reason = "a node that moves cannot have a matrix";
-            return Err(Wrong::new(at_node(node).key("matrix"), reason));
+            return Err(FieldError::new(at_node(node).key("matrix"), reason));
         }
         if !seen.insert((node, part)) {
             let reason = format!("node {node} is moved so by a channel before");
-            return Err(Wrong::new(at_channel(), reason));
+            return Err(FieldError::new(at_channel(), reason));
         }
         let place = channel.sampler.0 as usize;
         let Some(sampler) = animation.samplers.0.get(place) else {
             let reason = format!("there is no sampler {place}");
-            return Err(Wrong::new(at_channel().key("sampler"), reason));
+            return Err(FieldError::new(at_channel().key("sampler"), reason));
         };
         let at_sampler = || at.clone().key("samplers").index(place);
         let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
         let interpolation = Interpolation::new(name).ok_or_else(|| {
             let reason = format!("is {name:?}; it must be LINEAR, STEP or CUBICSPLINE");
-            Wrong::new(at_sampler().key("interpolation"), reason)
+            FieldError::new(at_sampler().key("interpolation"), reason)
         })?;
         let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
         all.push(Chosen { node, part, interpolation, input, output, at });
@@ -94,10 +95,10 @@ pub fn buffers<'a>(
     source: &'a Source,
     file: &File,
     chosen: &[Chosen<'_>],
-) -> Result<Buffers<'a>, Wrong> {
+) -> Result<Buffers<'a>, FieldError> {
     let accessors: BTreeSet<usize> =
         chosen.iter().flat_map(|chosen| [chosen.input, chosen.output]).collect();
-    let needed: Result<BTreeSet<usize>, Wrong> =
+    let needed: Result<BTreeSet<usize>, FieldError> =
         accessors.into_iter().map(|accessor| super::rows::buffer_of(file, accessor)).collect();
     let needed: Vec<usize> = needed?.into_iter().collect();
     Buffers::read(source, file, &needed)
@@ -108,7 +109,7 @@ impl<'a> Tracks<'a> {
         file: &File,
         buffers: &'a Buffers<'_>,
         chosen: &[Chosen<'_>],
-    ) -> Result<Self, Wrong> {
+    ) -> Result<Self, FieldError> {
         /// So that few bytes that are read again and again do not take hours.
         const MOST_KEYS: usize = 20_000_000;
         let mut tracks = Vec::with_capacity(chosen.len());
@@ -119,7 +120,7 @@ impl<'a> Tracks<'a> {
             keys = keys.saturating_add(sampler.len());
             if keys > MOST_KEYS {
                 let reason = format!("has more than {MOST_KEYS} keys; fewer are possible");
-                return Err(Wrong::new((*at).clone(), reason));
+                return Err(FieldError::new((*at).clone(), reason));
             }
             tracks.push(Track { node, part, sampler });
         }

@@ -1,0 +1,44 @@
+//! Fields of a camera, and conversions from and to a document's camera.
+
+use core::f32::consts::FRAC_PI_2;
+
+use serde::{Deserialize, Serialize};
+
+use super::check::{above_0, number, within};
+use crate::document::Camera;
+use crate::io::field_error::FieldError;
+use crate::io::json_path::JsonPath;
+use crate::io::value::{Number, Point};
+
+#[derive(Serialize, Deserialize)]
+pub struct CameraFields {
+    target: Option<Point>,
+    yaw: Option<Number>,
+    pitch: Option<Number>,
+    distance: Option<Number>,
+    orthographic: Option<bool>,
+}
+
+impl CameraFields {
+    pub fn new(camera: &Camera) -> Self {
+        Self {
+            target: Some(Point(camera.target)),
+            yaw: Some(Number(camera.yaw)),
+            pitch: Some(Number(camera.pitch)),
+            distance: Some(Number(camera.distance)),
+            orthographic: Some(camera.orthographic),
+        }
+    }
+
+    pub fn camera(&self, at: &JsonPath) -> Result<Camera, FieldError> {
+        let default = Camera::default();
+        let at = |key| at.clone().key(key);
+        Ok(Camera {
+            target: self.target.map_or(default.target, |Point(target)| target),
+            yaw: number(self.yaw, default.yaw),
+            pitch: within(at("pitch"), number(self.pitch, default.pitch), FRAC_PI_2)?,
+            distance: above_0(at("distance"), number(self.distance, default.distance))?,
+            orthographic: self.orthographic.unwrap_or(default.orthographic),
+        })
+    }
+}

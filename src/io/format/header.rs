@@ -1,0 +1,37 @@
+//! The first two fields, which tell whether and how the others are read.
+
+use serde::Deserialize;
+
+use crate::io::field_error::FieldError;
+use crate::io::json_path::JsonPath;
+use crate::io::value::Whole;
+
+pub const FORMAT: &str = "ik-arm";
+/// The version that is written. Files from version 1 on are read.
+pub const VERSION: u32 = 2;
+
+#[derive(Deserialize)]
+pub struct Header {
+    format: String,
+    version: Whole,
+}
+
+impl Header {
+    /// The version, if this program reads it.
+    pub fn version(&self) -> Result<u32, FieldError> {
+        if self.format != FORMAT {
+            let reason = format!("must be {FORMAT:?}, got {:?}", self.format);
+            return Err(FieldError::new(JsonPath::root().key("format"), reason));
+        }
+        let version = self.version.0;
+        if (1..=VERSION).contains(&version) {
+            return Ok(version);
+        }
+        let reason = if version > VERSION {
+            format!("version {version} needs a newer ik-arm; this one reads up to {VERSION}")
+        } else {
+            format!("must be from 1 to {VERSION}, got {version}")
+        };
+        Err(FieldError::new(JsonPath::root().key("version"), reason))
+    }
+}

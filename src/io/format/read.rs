@@ -1,0 +1,45 @@
+use super::file::DocumentFields;
+use super::header::{Header, VERSION};
+use super::version_1;
+use crate::io::error::OpenError;
+use crate::io::field_error::FieldWarnings;
+use crate::io::json_path::JsonPath;
+use crate::io::opened::Opened;
+use crate::io::source::Source;
+use crate::io::value::Object;
+
+/// Reads a document of any version.
+pub fn read(source: &Source) -> Result<Opened, OpenError> {
+    match source.parse::<Object<Header>>(|_| {}) {
+        Ok(Object(header)) => match header.version().map_err(|error| source.error(&error))? {
+            1 => read_fields(&source.translated(version_1::translated(source.text()))),
+            _ => read_fields(source),
+        },
+        // Reading all fields reports the reason, and more exactly.
+        Err(_) => read_fields(source),
+    }
+}
+
+fn read_fields(source: &Source) -> Result<Opened, OpenError> {
+    let mut warnings = FieldWarnings::default();
+    let Object(fields) = source.parse::<Object<DocumentFields>>(|field| {
+        let reason = unknown(&field);
+        warnings.push(field, reason);
+    })?;
+    let document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
+    Ok(Opened {
+        order: (0..document.skeleton().joints().len()).collect(),
+        document,
+        warnings: source.warnings(&warnings),
+        skeletons: Vec::new(),
+    })
+}
+
+fn unknown(field: &JsonPath) -> String {
+    let mut keys = field.keys().rev();
+    let (name, around) = (keys.next().unwrap_or_default(), keys.next().unwrap_or_default());
+    match version_1::renamed(around, name) {
+        Some(new) => format!("unknown field, ignored; version {VERSION} calls it `{new}`"),
+        None => "unknown field, ignored".to_owned(),
+    }
+}

@@ -1,0 +1,25 @@
+use std::path::Path;
+
+use super::file::DocumentFields;
+use crate::document::Document;
+use crate::io::error::SaveError;
+use crate::io::json_style::to_styled_json;
+use crate::io::write::write;
+
+/// The text of a document's file. Reading it returns the same document, bit for bit.
+///
+/// # Errors
+///
+/// Fails if a number is not finite.
+pub fn to_json(document: &Document) -> Result<String, serde_json::Error> {
+    to_styled_json(&DocumentFields::new(document))
+}
+
+/// Writes a document to a file, whole or not at all.
+///
+/// # Errors
+///
+/// Fails if the folder or the file cannot be written, or a number is not finite.
+pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
+    Ok(write(path, to_json(document)?.as_bytes())?)
+}

@@ -1,0 +1,148 @@
+//! Fields of the skeleton, and conversions from and to a document's skeleton.
+
+use glam::{Affine3A, Mat3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::io::field_error::{FieldError, FieldWarnings};
+use crate::io::json_path::JsonPath;
+use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
+
+#[derive(Serialize, Deserialize)]
+pub struct SkeletonFields {
+    joints: Option<Vec<Object<JointFields>>>,
+    transform: Option<Numbers<12>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct JointFields {
+    name: String,
+    parent: Option<Whole>,
+    offset: Option<Point>,
+    axis: Option<Point>,
+    rotation: Option<Point>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<Numbers<9>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<Object<LimitsFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    locked: Option<bool>,
+    radius: Option<Number>,
+}
+
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct LimitsFields {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x: Option<Numbers<2>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    y: Option<Numbers<2>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    z: Option<Numbers<2>>,
+}
+
+impl SkeletonFields {
+    pub fn new(skeleton: &Skeleton) -> Self {
+        Self {
+            joints: Some(skeleton.joints().iter().map(JointFields::new).map(Object).collect()),
+            transform: Some(Numbers(skeleton.transform().to_cols_array())),
+        }
+    }
+
+    /// Rotations beyond limits are clamped, with a warning.
+    pub fn skeleton(
+        self,
+        at: &JsonPath,
+        warnings: &mut FieldWarnings,
+    ) -> Result<Skeleton, FieldError> {
+        let at_joints = at.clone().key("joints");
+        let mut joints: Vec<Joint> = Vec::new();
+        for (index, Object(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
+            let joint = fields.joint(&joints);
+            if is_beyond_limits(&joint) {
+                let field = at_joints.clone().index(index).key("rotation");
+                warnings.push(field, "is beyond the joint's limits; clamped");
+            }
+            joints.push(joint);
+        }
+        let names: Vec<_> = joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut skeleton = Skeleton::from_joints(joints).map_err(|error| {
+            FieldError::new(invalid_field(&error, at_joints, &names), error.to_string())
+        })?;
+        if let Some(Numbers(transform)) = self.transform {
+            skeleton
+                .set_transform(Affine3A::from_cols_array(&transform))
+                .map_err(|error| FieldError::new(at.clone().key("transform"), error.to_string()))?;
+        }
+        Ok(skeleton)
+    }
+}
+
+/// The field that an error of a skeleton is about.
+fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -> JsonPath {
+    let at = |joint: usize| at_joints.clone().index(joint);
+    match error {
+        SkeletonError::Parent { joint, .. } => at(*joint).key("parent"),
+        SkeletonError::Radius { joint, .. } => at(*joint).key("radius"),
+        SkeletonError::Frame { joint } => at(*joint).key("frame"),
+        SkeletonError::NotFinite { joint, field, .. } => at(*joint).key(field),
+        SkeletonError::Limit { joint, axis, .. } => at(*joint).key("limits").key(&axis.to_string()),
+        SkeletonError::NoName => {
+            let empty = names.iter().position(|name| name.trim().is_empty());
+            at(empty.unwrap_or_default()).key("name")
+        }
+        SkeletonError::Name(twice) => {
+            let mut same = (0..names.len()).filter(|index| names[*index] == *twice);
+            at(same.nth(1).unwrap_or_default()).key("name")
+        }
+        _ => at_joints,
+    }
+}
+
+impl JointFields {
+    fn new(joint: &Joint) -> Self {
+        let frame = joint.frame.to_cols_array();
+        // Bits, so that −0 is written.
+        let is_identity =
+            frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
+        let [x, y, z] =
+            joint.limits.map(|limit| limit.map(|Limit { min, max }| Numbers([min, max])));
+        Self {
+            name: joint.name.clone(),
+            parent: joint.parent.and_then(|parent| u32::try_from(parent).ok()).map(Whole),
+            offset: Some(Point(joint.offset)),
+            axis: Some(Point(joint.axis)),
+            rotation: Some(Point(joint.rotation)),
+            frame: (!is_identity).then_some(Numbers(frame)),
+            limits: joint.is_limited().then_some(Object(LimitsFields { x, y, z })),
+            locked: joint.locked.then_some(true),
+            radius: Some(Number(joint.radius)),
+        }
+    }
+
+    /// A joint without an offset sits on the tip of its parent, one of `before`.
+    fn joint(self, before: &[Joint]) -> Joint {
+        let parent = self.parent.map(|Whole(parent)| parent as usize);
+        let axis = self.axis.map_or(Vec3::ZERO, |Point(axis)| axis);
+        let parent_tip = parent.and_then(|parent| Some(before.get(parent)?.axis));
+        let default = Joint::new(&self.name, parent, axis);
+        let limits = self.limits.map(|Object(limits)| limits).unwrap_or_default();
+        Joint {
+            offset: self.offset.map_or(parent_tip.unwrap_or_default(), |Point(offset)| offset),
+            rotation: self.rotation.map_or(Vec3::ZERO, |Point(rotation)| rotation),
+            frame: self
+                .frame
+                .map_or(Mat3::IDENTITY, |Numbers(frame)| Mat3::from_cols_array(&frame)),
+            limits: [limits.x, limits.y, limits.z]
+                .map(|limit| limit.map(|Numbers([min, max])| Limit { min, max })),
+            locked: self.locked.unwrap_or(default.locked),
+            radius: self.radius.map_or(default.radius.min(f32::MAX), |Number(radius)| radius),
+            ..default
+        }
+    }
+}
+
+fn is_beyond_limits(joint: &Joint) -> bool {
+    let angles = joint.rotation.to_array().into_iter();
+    let mut limited = angles.zip(joint.limits).filter_map(|(angle, limit)| Some((angle, limit?)));
+    limited.any(|(angle, Limit { min, max })| angle < min || angle > max)
+}

@@ -1,0 +1,192 @@
+//! Fields of targets, of the solver and of path following, and conversions from and to a document's.
+
+use std::collections::HashSet;
+
+use serde::{Deserialize, Serialize};
+
+use super::check::{above_0, from_1_to, joint, number};
+use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath};
+use crate::io::field_error::FieldError;
+use crate::io::json_path::JsonPath;
+use crate::io::value::{Number, Object, Point, Whole};
+use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+
+#[derive(Serialize, Deserialize)]
+pub struct TargetFields {
+    joint: Whole,
+    home: Point,
+    weight: Option<Number>,
+    enabled: Option<bool>,
+    motion: Option<Object<TargetMotionFields>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TargetMotionFields {
+    path: TargetPath,
+    radius: Option<Number>,
+    period: Option<Number>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct SolverFields {
+    method: Option<String>,
+    iterations: Option<Whole>,
+    tolerance: Option<Number>,
+    damping: Option<Number>,
+    step: Option<Number>,
+    root: Option<RootFields>,
+    iterations_per_frame: Option<Whole>,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum RootFields {
+    Fixed,
+    Free,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct FollowPathFields {
+    radius: Number,
+    amplitude: Number,
+    waves: Whole,
+    period: Number,
+}
+
+/// Adds the targets of a file to a rig that has its skeleton.
+pub fn add_targets(
+    rig: &mut SkeletonRig,
+    targets: Vec<Object<TargetFields>>,
+) -> Result<(), FieldError> {
+    let radius = rig.circle();
+    let mut targeted = HashSet::new();
+    for (index, Object(fields)) in targets.into_iter().enumerate() {
+        let at = JsonPath::root().key("targets").index(index);
+        let target = fields.target(&at, rig.skeleton.joints().len(), radius)?;
+        if !targeted.insert(target.joint) {
+            let reason = format!("must have one target, got a second for joint {}", target.joint);
+            return Err(FieldError::new(at.key("joint"), reason));
+        }
+        rig.targets.push(target);
+    }
+    Ok(())
+}
+
+impl TargetFields {
+    pub fn new(target: &Target) -> Self {
+        let TargetMotion { path, radius, period } = target.motion;
+        let motion =
+            TargetMotionFields { path, radius: Some(Number(radius)), period: Some(Number(period)) };
+        Self {
+            joint: Whole(u32::try_from(target.joint).unwrap_or(u32::MAX)),
+            home: Point(target.home),
+            weight: Some(Number(target.weight)),
+            enabled: Some(target.enabled),
+            motion: Some(Object(motion)),
+        }
+    }
+
+    fn target(&self, at: &JsonPath, joints: usize, radius: f32) -> Result<Target, FieldError> {
+        let joint = joint(at.clone().key("joint"), self.joint, joints)?;
+        let default = Target::new(joint, self.home.0, radius);
+        let motion = match &self.motion {
+            Some(Object(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
+            None => default.motion,
+        };
+        Ok(Target {
+            weight: above_0(at.clone().key("weight"), number(self.weight, default.weight))?,
+            enabled: self.enabled.unwrap_or(default.enabled),
+            motion,
+            ..default
+        })
+    }
+}
+
+impl TargetMotionFields {
+    fn motion(&self, at: &JsonPath, default: TargetMotion) -> Result<TargetMotion, FieldError> {
+        Ok(TargetMotion {
+            path: self.path,
+            radius: number(self.radius, default.radius),
+            period: above_0(at.clone().key("period"), number(self.period, default.period))?,
+        })
+    }
+}
+
+impl SolverFields {
+    pub fn new(rig: &SkeletonRig) -> Self {
+        let solver = rig.solver;
+        Self {
+            method: Some(solver.method.name().to_owned()),
+            iterations: solver.iterations.map(Whole),
+            tolerance: solver.tolerance.map(Number),
+            damping: Some(Number(solver.damping)),
+            step: Some(Number(solver.step)),
+            root: Some(match solver.root {
+                Root::Fixed => RootFields::Fixed,
+                Root::Free => RootFields::Free,
+            }),
+            iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
+        }
+    }
+
+    pub fn set(&self, rig: &mut SkeletonRig, at: &JsonPath) -> Result<(), FieldError> {
+        let at = |key| at.clone().key(key);
+        let default = SolverOptions::default();
+        let positive = |key, value, default| above_0(at(key), number(value, default));
+        let iterations = self.iterations.map(|Whole(count)| count);
+        if iterations == Some(0) {
+            let reason = "must be 1 or more, or null for the method's default, got 0";
+            return Err(FieldError::new(at("iterations"), reason));
+        }
+        let tolerance = self.tolerance.map(|Number(number)| above_0(at("tolerance"), number));
+        rig.solver = SolverOptions {
+            method: match &self.method {
+                Some(name) => method(at("method"), name)?,
+                None => default.method,
+            },
+            iterations,
+            tolerance: tolerance.transpose()?,
+            damping: positive("damping", self.damping, default.damping)?,
+            step: positive("step", self.step, default.step)?,
+            root: match self.root {
+                Some(RootFields::Free) => Root::Free,
+                Some(RootFields::Fixed) | None => Root::Fixed,
+            },
+        };
+        if let Some(count) = self.iterations_per_frame {
+            rig.iterations_per_frame = from_1_to(
+                at("iterations_per_frame"),
+                count,
+                SkeletonRig::MOST_ITERATIONS_PER_FRAME,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn method(at: JsonPath, name: &str) -> Result<Method, FieldError> {
+    Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+        let names = Method::ALL.map(Method::name).join(", ");
+        FieldError::new(at, format!("must be one of {names}, got {name:?}"))
+    })
+}
+
+impl FollowPathFields {
+    pub fn new(path: &FollowPath) -> Self {
+        Self {
+            radius: Number(path.radius),
+            amplitude: Number(path.amplitude),
+            waves: Whole(path.waves),
+            period: Number(path.period),
+        }
+    }
+
+    pub fn follow_path(&self, at: &JsonPath) -> Result<FollowPath, FieldError> {
+        Ok(FollowPath {
+            radius: self.radius.0,
+            amplitude: self.amplitude.0,
+            waves: self.waves.0,
+            period: above_0(at.clone().key("period"), self.period.0)?,
+        })
+    }
+}

@@ -1,0 +1,117 @@
+//! Files of version 1 open as files of version 2 with the same content, and are saved as version 2.
+#![cfg(feature = "document")]
+
+mod files;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use files::message;
+use ik_arm::io::{self, Opened};
+
+const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
+
+fn open(path: &Path) -> Opened {
+    io::open(path, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Files of version 1, each with the file of version 2 that has the same content.
+fn versions() -> Vec<(PathBuf, PathBuf)> {
+    let data = Path::new(FOLDER).join("tests/data");
+    let mut files = Vec::new();
+    for folder in ["", "hard"] {
+        for file in fs::read_dir(data.join("version-1").join(folder)).expect("a folder") {
+            let path = file.expect("a file").path();
+            let Some(name) = path.file_name().filter(|_| path.is_file()) else {
+                continue;
+            };
+            let asset = Path::new(FOLDER).join("assets").join(folder).join(name);
+            let saved = data.join("version-2").join(name);
+            files.push((path.clone(), if asset.is_file() { asset } else { saved }));
+        }
+    }
+    files
+}
+
+#[test]
+fn a_file_of_version_1_opens_as_the_same_document_and_is_saved_as_version_2() {
+    let versions = versions();
+    assert_eq!(versions.len(), 18 + 6);
+    for (first, second) in versions {
+        let name = first.display();
+        let text = fs::read_to_string(&first).expect("text");
+        assert!(text.contains("\"version\": 1,"), "{name}");
+        let (first, second) = (open(&first), open(&second));
+        assert_eq!(first, second, "{name}");
+        assert_eq!(first.warnings, [], "{name}");
+        let [first, second] =
+            [first, second].map(|opened| io::to_json(&opened.document).expect("finite numbers"));
+        // Texts, because equal numbers may differ in the sign of 0.
+        assert_eq!(first, second, "{name}");
+        assert!(first.contains("\"version\": 2,"), "{name}");
+    }
+}
+
+#[test]
+fn a_saved_document_of_version_2_is_saved_as_the_same_text() {
+    for (_, path) in versions().into_iter().filter(|(_, path)| !path.starts_with("assets")) {
+        if path.to_string_lossy().contains("version-2") {
+            let text = fs::read_to_string(&path).expect("text");
+            let json = io::to_json(&open(&path).document).expect("finite numbers");
+            assert_eq!(json, text, "{}", path.display());
+        }
+    }
+}
+
+fn version_1(fields: &str) -> String {
+    format!("{{\"format\":\"ik-arm\",\"version\":1,\"rig\":\"arm\",\n{fields}}}")
+}
+
+#[test]
+fn errors_and_warnings_have_the_positions_of_the_file() {
+    for (fields, expected) in [
+        (
+            "\"arm\":{\"elbow_spin\":0,\"softening\":{\"softness\":1}}",
+            "line 2, column 47: arm.soft_reach.softness: must be from 0 to less than 1, got 1",
+        ),
+        (
+            "\"arm\":{\"weight\":\"1\"}",
+            "line 2, column 17: arm.influence: invalid type: string \"1\", expected a number",
+        ),
+        (
+            "\"arm\":{\"swivel\":{\"carried\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}",
+            "line 2, column 59: arm.twist_reference.transported.outward: must be perpendicular to \
+             `direction`",
+        ),
+        (
+            "\"keys\":[{\"channel\":\"elbow_spin\",\"knots\":[[0,1,2]]}]",
+            "line 2, column 42: channels[0].keys[0]: must have one number after the time, got 2",
+        ),
+        ("\"arm\":{\"weight\":1,}", "line 2, column 19: arm: not JSON: trailing comma"),
+    ] {
+        let error = io::parse("1.json", &version_1(fields), None).expect_err("refused");
+        assert_eq!(message(error), format!("1.json, {expected}"), "{fields}");
+    }
+    let text = version_1("\"arm\":{\"weight\":1,\n \"wrist\":{\"roll\":0,\"elbow_spin\":1}}");
+    let warnings = io::parse("1.json", &text, None).expect("opens").warnings;
+    let expected = "line 3, column 33: arm.hand_orientation.elbow_spin: unknown field, ignored";
+    assert_eq!(warnings.iter().map(ToString::to_string).collect::<Vec<_>>(), [expected]);
+}
+
+#[test]
+fn a_name_of_version_1_in_a_file_of_version_2_is_unknown_and_the_warning_has_the_new_name() {
+    let text = "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"arm\",\n\"arm\":{\"elbow_spin\":1,\n\
+                \"twist_reference\":{\"carried\":{}}},\"keys\":[]}";
+    let opened = io::parse("2.json", text, None).expect("opens");
+    assert_eq!(opened.document.arm.twist, 0.0);
+    let warnings: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        warnings,
+        [
+            "line 2, column 21: arm.elbow_spin: unknown field, ignored; version 2 calls it `twist`",
+            "line 3, column 30: arm.twist_reference.carried: unknown field, ignored; version 2 calls \
+             it `transported`",
+            "line 3, column 42: keys: unknown field, ignored; version 2 calls it `channels`",
+        ]
+    );
+}
