@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::{follow, rotation_between};
 
 /// The way of a snake: its head goes around in waves, and its body follows.
@@ -32,42 +32,60 @@ impl FollowPath {
         time / f64::from(self.period)
     }
 
-    /// The skeleton with its first root at the head's place at a time, and the chain of first
-    /// children below it along the way that the head has gone.
+    /// The skeleton at a time: its first root is on the path, and the chain of first children below it
+    /// lies along the path behind.
     pub fn pose(&self, skeleton: &Skeleton, time: f64) -> Skeleton {
-        let mut posed = Skeleton::default();
-        self.write_pose(skeleton, time, &mut posed);
+        let mut posed = skeleton.clone();
+        for (joint, offset, rotation) in self.chain(skeleton, time) {
+            posed.turn(joint, |joint| (joint.offset, joint.rotation) = (offset, rotation));
+        }
         posed
     }
 
-    /// [`FollowPath::pose`] in the memory that another skeleton has.
-    pub fn write_pose(&self, skeleton: &Skeleton, time: f64, posed: &mut Skeleton) {
+    /// Writes the transforms of [`FollowPath::pose`] into a pose, in its memory.
+    pub fn write_pose(&self, skeleton: &Skeleton, time: f64, pose: &mut SkeletonPose) {
+        let mut chain = self.chain(skeleton, time).peekable();
+        skeleton.write_pose_with(pose, |index, joint| {
+            match chain.next_if(|(followed, ..)| *followed == index) {
+                Some((_, offset, rotation)) => Affine3A {
+                    matrix3: joint.rotation_by(rotation),
+                    translation: offset.into(),
+                },
+                None => joint.local(),
+            }
+        });
+    }
+
+    /// Index, offset and Euler angles of each joint on the path, parents first.
+    fn chain(
+        &self,
+        skeleton: &Skeleton,
+        time: f64,
+    ) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
         const STRIDES_PER_WAVE: f64 = 64.0;
-        posed.clone_from(skeleton);
-        let Some(root) = chain(skeleton).next() else {
-            return;
-        };
-        let height = skeleton.joints()[root].offset.y;
-        let lengths = chain(skeleton).map(|joint| skeleton.joints()[joint].axis.length());
+        let joints = skeleton.joints();
+        let lengths = chain(skeleton).map(|joint| joints[joint].axis.length());
         let stride = 1.0 / (STRIDES_PER_WAVE * f64::from(self.waves.max(1)));
         let head = self.head(time);
         let tips = follow::behind(|s| self.path(s), head, stride, lengths);
 
         let mut base = self.path(head);
         let mut above = Mat3A::IDENTITY;
-        for (joint, tip) in chain(skeleton).zip(tips) {
-            let before = &skeleton.joints()[joint];
+        chain(skeleton).zip(tips).map(move |(index, tip)| {
+            let joint = &joints[index];
             let turn =
-                rotation_between(before.axis.into(), above.transpose() * Vec3A::from(tip - base));
-            let rotation = before.clamped(before.angles_of(Mat3A::from_quat(turn)));
-            let offset = if joint == root { base + Vec3::Y * height } else { before.offset };
-            // Where a bone is too long for numbers it stays as it is.
-            if rotation.is_finite() && offset.is_finite() {
-                posed.turn(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+                rotation_between(joint.axis.into(), above.transpose() * Vec3A::from(tip - base));
+            let mut rotation = joint.clamped(joint.angles_of(Mat3A::from_quat(turn)));
+            let is_root = joint.parent.is_none();
+            let mut offset = if is_root { base + Vec3::Y * joint.offset.y } else { joint.offset };
+            // Where a bone is so long that squares of its length overflow, the joint stays.
+            if !(rotation.is_finite() && offset.is_finite()) {
+                (offset, rotation) = (joint.offset, joint.rotation);
             }
-            above *= posed.joints()[joint].local_rotation();
+            above *= joint.rotation_by(rotation);
             base = tip;
-        }
+            (index, offset, rotation)
+        })
     }
 
     /// Points of the world that are around all of the path.

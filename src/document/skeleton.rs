@@ -142,6 +142,14 @@ impl SkeletonRig {
         }
     }
 
+    /// Writes the transforms of all joints at a time into another pose, in its memory.
+    pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
+        match &self.follow_path {
+            None => self.skeleton.write_pose(pose),
+            Some(follow_path) => follow_path.write_pose(&self.skeleton, time, pose),
+        }
+    }
+
     /// Whether anything moves by itself.
     pub fn is_moving(&self) -> bool {
         let moves = |target: &Target| target.enabled && target.motion.path != TargetPath::Still;

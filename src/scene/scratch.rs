@@ -1,11 +1,9 @@
-use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::SkeletonPose;
 
 /// Room for what a scene works out while it is made, and no picture shows: kept, so that it is not
 /// taken anew for every picture. What is left in it makes no two scenes differ.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// A skeleton that a way poses.
-    pub posed: Skeleton,
     pub pose: SkeletonPose,
     /// How far each joint is from its root.
     pub distances: Vec<f32>,

@@ -37,15 +37,9 @@ pub(super) fn stage(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32
 /// Adds the bones, targets with their trails and gaps, ghosts, and the bones' shadows.
 pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, overlays: &Overlays, display: Display) {
     let mut scratch = core::mem::take(&mut scene.scratch);
-    let Scratch { posed, pose, distances, depths, are_leaves, named } = &mut scratch;
-    let skeleton = match &rig.follow_path {
-        None => &*rig.skeleton,
-        Some(follow_path) => {
-            follow_path.write_pose(&rig.skeleton, overlays.time, posed);
-            posed
-        }
-    };
-    skeleton.write_pose(pose);
+    let Scratch { pose, distances, depths, are_leaves, named } = &mut scratch;
+    let skeleton = &*rig.skeleton;
+    rig.write_pose(overlays.time, pose);
     read_tree(skeleton.joints(), depths, are_leaves);
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();

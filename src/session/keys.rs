@@ -85,11 +85,16 @@ impl Session {
     /// Keys channels as they are shown.
     pub(super) fn key(&mut self, channels: &[Channel]) {
         let time = self.playback.time;
-        self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
+        let overrides = self.overrides.len();
         for channel in channels {
             self.overrides.remove(channel);
         }
-        self.refresh();
+        let (are_keyed, keys) = (self.overrides.len() < overrides, self.document.keys.clone());
+        self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
+        if are_keyed && keys == self.document.keys {
+            // No edit has done it: the keys were there already.
+            self.refresh();
+        }
         self.say(match channels {
             [] => "There is nothing to key".to_owned(),
             _ => format!("Keyed at {time:.2} s"),

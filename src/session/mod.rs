@@ -342,7 +342,7 @@ impl Session {
         self.pose = self.shown.arm.pose();
         self.transport_path.go_on(&self.shown.arm);
         self.watch_elbow();
-        self.skeleton_pose = self.shown.skeleton_rig.at(self.playback.time).pose();
+        self.shown.skeleton_rig.write_pose(self.playback.time, &mut self.skeleton_pose);
         let count = self.skeleton_pose.len();
         self.selection.retain(|joint| *joint < count);
         self.pointed = self.pointed.filter(|joint| *joint < count);

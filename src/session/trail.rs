@@ -74,7 +74,7 @@ pub(super) fn write_onion_skins(
         }
         let skin = &mut skins[made];
         skin.arm = posed.arm;
-        posed.skeleton_rig.at(time).write_pose(&mut skin.pose);
+        posed.skeleton_rig.write_pose(time, &mut skin.pose);
         (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
         made += 1;
     }

@@ -87,12 +87,6 @@ impl Session {
             // What is shown or not gets keys only where it has some.
             let switches =
                 after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-            // What has begun to shape the rig, and what no longer does.
-            let all: BTreeSet<Channel> = [&*after, &self.shown]
-                .into_iter()
-                .flat_map(Channel::of_rig)
-                .chain(switches)
-                .collect();
             // A switch between hand and angles is a pose of both.
             let switched = changed(&Channel::Influence);
             let leads = |channel: &Channel| {
@@ -100,7 +94,14 @@ impl Session {
                     Channel::OF_HAND.contains(channel) || Channel::OF_JOINTS.contains(channel);
                 switched && is_leading
             };
-            all.into_iter().filter(|channel| changed(channel) || leads(channel)).collect()
+            // What has begun to shape the rig, and what no longer does.
+            let all: BTreeSet<Channel> = [&*after, &self.shown]
+                .into_iter()
+                .flat_map(Channel::of_rig)
+                .chain(switches)
+                .filter(|channel| changed(channel) || leads(channel))
+                .collect();
+            all.into_iter().collect()
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
@@ -128,6 +129,13 @@ impl Session {
     /// change of the document.
     fn keep_rest(&self, after: &mut Document) {
         let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
+        let skeleton = &mut after.skeleton_rig.skeleton;
+        let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
+        if skeleton.is_same(&self.shown.skeleton_rig.skeleton)
+            && keyed_before.all(|channel| after.keys.has(channel))
+        {
+            *skeleton = self.document.skeleton_rig.skeleton.clone();
+        }
         let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
         for channel in keyed.collect::<Vec<_>>() {
             if let Some(value) = channel.value(&self.document) {
@@ -298,8 +306,7 @@ fn is_transported(document: &Document) -> bool {
 
 /// Whether joints have gone, been hung from others or changed their places.
 fn is_rebuilt(before: &Skeleton, after: &Skeleton) -> bool {
-    let parents = |skeleton: &Skeleton| -> Vec<_> {
-        skeleton.joints().iter().map(|joint| joint.parent).collect()
-    };
-    !parents(after).starts_with(&parents(before))
+    let [before, after] = [before, after].map(Skeleton::joints);
+    let keep_their_parents = before.iter().zip(after).all(|(a, b)| a.parent == b.parent);
+    !keep_their_parents || after.len() < before.len()
 }

@@ -3,7 +3,7 @@ use glam::{Affine3A, Mat3, Mat3A, Vec3};
 use super::{EulerAngles, SkeletonError, nearest_angles};
 
 /// A ball joint and its bone.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// No two joints of a skeleton have the same.
     pub name: String,
@@ -24,19 +24,6 @@ pub struct Joint {
     pub locked: bool,
     /// How thick the bone is drawn.
     pub radius: f32,
-}
-
-/// A copy into another joint takes its name's memory.
-impl Clone for Joint {
-    fn clone(&self) -> Self {
-        Self { name: self.name.clone(), ..*self }
-    }
-
-    fn clone_from(&mut self, source: &Self) {
-        let mut name = core::mem::take(&mut self.name);
-        name.clone_from(&source.name);
-        *self = Self { name, ..*source };
-    }
 }
 
 /// From and to, in radians, both included.
@@ -64,7 +51,12 @@ impl Joint {
 
     /// R, in the space of the joint's base.
     pub fn local_rotation(&self) -> Mat3A {
-        let turned = EulerAngles(self.rotation).matrix();
+        self.rotation_by(self.rotation)
+    }
+
+    /// R by other Euler angles.
+    pub(crate) fn rotation_by(&self, angles: Vec3) -> Mat3A {
+        let turned = EulerAngles(angles).matrix();
         if self.frame == Mat3::IDENTITY {
             return turned;
         }
@@ -81,6 +73,11 @@ impl Joint {
     /// T(offset) · R: from the joint's own space to its parent's.
     pub fn local(&self) -> Affine3A {
         Affine3A { matrix3: self.local_rotation(), translation: self.offset.into() }
+    }
+
+    /// T(offset): [`Joint::local`] without the rotation.
+    pub(super) fn local_in_bind_pose(&self) -> Affine3A {
+        Affine3A::from_translation(self.offset)
     }
 
     /// The angles that turn as `rotation` (in the space of the joint's base) does: of all that do,

@@ -28,7 +28,7 @@ mod euler;
 mod joint;
 mod pose;
 
-use glam::{Affine3A, Mat3A, Vec3};
+use glam::{Affine3A, Vec3};
 
 pub use build::JointRemap;
 pub use error::SkeletonError;
@@ -52,22 +52,10 @@ pub(crate) use joint::within;
 /// assert!(skeleton.tip(shin).distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6);
 /// # Ok::<(), ik_arm::kinematics::skeleton::SkeletonError>(())
 /// ```
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     joints: Vec<Joint>,
     transform: Affine3A,
-}
-
-/// A copy into another skeleton takes its memory.
-impl Clone for Skeleton {
-    fn clone(&self) -> Self {
-        Self { joints: self.joints.clone(), transform: self.transform }
-    }
-
-    fn clone_from(&mut self, source: &Self) {
-        self.joints.clone_from(&source.joints);
-        self.transform = source.transform;
-    }
 }
 
 impl Default for Skeleton {
@@ -184,26 +172,35 @@ impl Skeleton {
 
     /// Every joint as it is turned now, in the world.
     pub fn pose(&self) -> SkeletonPose {
-        SkeletonPose::new(&self.joints, self.transform, Joint::local_rotation)
+        SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local())
     }
 
     /// [`Skeleton::pose`] in the memory that another pose has: for as many joints none is taken.
     pub fn write_pose(&self, pose: &mut SkeletonPose) {
-        pose.refill(&self.joints, self.transform, Joint::local_rotation);
+        self.write_pose_with(pose, |_, joint| joint.local());
+    }
+
+    /// [`Skeleton::write_pose`] with other local transforms, given by index and joint, parents first.
+    pub(crate) fn write_pose_with(
+        &self,
+        pose: &mut SkeletonPose,
+        local: impl FnMut(usize, &Joint) -> Affine3A,
+    ) {
+        pose.refill(&self.joints, self.transform, local);
     }
 
     /// Every joint as it is without rotations, in the world.
     pub fn bind_pose(&self) -> SkeletonPose {
-        SkeletonPose::new(&self.joints, self.transform, |_| Mat3A::IDENTITY)
+        SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local_in_bind_pose())
     }
 
     /// Every joint as it is turned now, in the skeleton's own space.
     pub fn pose_in_skeleton(&self) -> SkeletonPose {
-        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, Joint::local_rotation)
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local())
     }
 
     /// Every joint without rotations, in the skeleton's own space.
     pub fn bind_pose_in_skeleton(&self) -> SkeletonPose {
-        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_| Mat3A::IDENTITY)
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local_in_bind_pose())
     }
 }

@@ -1,4 +1,4 @@
-use glam::{Affine3A, Mat3A, Vec3};
+use glam::{Affine3A, Vec3};
 
 use super::Joint;
 
@@ -18,10 +18,10 @@ impl SkeletonPose {
     pub(super) fn new(
         joints: &[Joint],
         transform: Affine3A,
-        rotation: impl Fn(&Joint) -> Mat3A,
+        local: impl FnMut(usize, &Joint) -> Affine3A,
     ) -> Self {
         let mut pose = Self::default();
-        pose.refill(joints, transform, rotation);
+        pose.refill(joints, transform, local);
         pose
     }
 
@@ -30,15 +30,14 @@ impl SkeletonPose {
         &mut self,
         joints: &[Joint],
         transform: Affine3A,
-        rotation: impl Fn(&Joint) -> Mat3A,
+        mut local: impl FnMut(usize, &Joint) -> Affine3A,
     ) {
         let posed = &mut self.joints;
         posed.clear();
         posed.reserve(joints.len());
-        for joint in joints {
+        for (index, joint) in joints.iter().enumerate() {
             let above = joint.parent.map_or(transform, |parent| posed[parent].full);
-            let local = Affine3A { matrix3: rotation(joint), translation: joint.offset.into() };
-            let mut full = above * local;
+            let mut full = above * local(index, joint);
             let mut tip = full.transform_point3(joint.axis);
             if !(full.is_finite() && tip.is_finite()) {
                 full = Affine3A::from_cols_array(&full.to_cols_array().map(saturated));
