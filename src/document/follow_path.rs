@@ -47,21 +47,16 @@ impl FollowPath {
         let mut chain = self.chain(skeleton, time).peekable();
         skeleton.write_pose_with(pose, |index, joint| {
             match chain.next_if(|(followed, ..)| *followed == index) {
-                Some((_, offset, rotation)) => Affine3A {
-                    matrix3: joint.rotation_by(rotation),
-                    translation: offset.into(),
-                },
+                Some((_, offset, rotation)) => {
+                    Affine3A { matrix3: joint.rotation_by(rotation), translation: offset.into() }
+                }
                 None => joint.local(),
             }
         });
     }
 
     /// Index, offset and Euler angles of each joint on the path, parents first.
-    fn chain(
-        &self,
-        skeleton: &Skeleton,
-        time: f64,
-    ) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
+    fn chain(&self, skeleton: &Skeleton, time: f64) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
         const STRIDES_PER_WAVE: f64 = 64.0;
         let joints = skeleton.joints();
         let lengths = chain(skeleton).map(|joint| joints[joint].axis.length());
