@@ -1,15 +1,16 @@
 //! How long a solve takes by each method, from bind poses to targets that can be reached, and what
 //! one iteration takes.
 
-#[path = "../tests/common/rigs.rs"]
-mod rigs;
+#[path = "../tests/common/mod.rs"]
+mod common;
 
 use core::hint::black_box;
 
+use common::Random;
+use common::skeletons::{chain, reachable};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::Skeleton;
-use rigs::{Random, chain, reachable};
 
 const METHODS: [Method; 5] = [
     Method::TransposeFixed,

@@ -6,14 +6,15 @@
 //!
 //! Everything but the times is the same on every run.
 
-#[path = "../tests/common/rigs.rs"]
-mod rigs;
+#[path = "../tests/common/mod.rs"]
+mod common;
 
 use std::time::Instant;
 
+use common::Random;
+use common::skeletons::{chain, length, reachable, shake, tree};
 use ik_arm::kinematics::chain_ik::{Method, Report, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::Skeleton;
-use rigs::{Random, chain, length, reachable, shake, tree};
 
 /// In the order of columns: one per random case.
 struct Outcome {

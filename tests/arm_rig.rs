@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{
+use common::strategies::{
     Case, EXACT, U, anywhere, bones, config, directions, limb_rotation, limits, power_of_ten,
     within, yaw_and_pitch,
 };
@@ -102,7 +102,7 @@ fn parts_are_in_the_order_of_the_enum_and_parents_come_before_children() {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(10_000, 0x2014_1a4e))]
 
     #[test]
     fn elbow_and_hand_are_where_the_solver_says(arm in standing()) {

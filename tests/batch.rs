@@ -1,15 +1,14 @@
 //! Many arms at once: the bits of one arm solved alone, whatever is beside it.
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
+use common::Random;
 use glam::{DQuat, DVec3, Quat, Vec3};
 use ik_arm::kinematics::batch::{
     Arms, BatchError, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
 };
 use ik_arm::kinematics::fk;
 use ik_arm::kinematics::two_bone::TwoBone;
-use rigs::Random;
 
 /// A structure of arrays, to be asked of and to be filled.
 struct Crowd {

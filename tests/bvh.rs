@@ -1,18 +1,16 @@
 //! BVH: what is written stands where the document stands, and what is read where the file says.
 #![cfg(feature = "document")]
 
-mod files;
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
 use std::collections::HashMap;
 
-use files::{message, mutations};
+use common::damage::{message, mutations};
+use common::{Random, skeletons};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use rigs::Random;
 
 fn export(document: &Document) -> Exported {
     export_in(document, BvhUnit::default())
@@ -94,7 +92,7 @@ fn random_forests_with_random_keys_come_back_where_they_were() {
     let mut random = Random(1);
     for case in 0..60 {
         let joints = 1 + random.below(20);
-        let mut document = shown(rigs::forest(&mut random, joints));
+        let mut document = shown(skeletons::forest(&mut random, joints));
         let transform = even_transform(&mut random);
         document.skeleton_mut().set_transform(transform).expect("finite");
         document.timeline = Timeline { start: -0.25, end: 1.0, frame_rate: 24 };
@@ -113,7 +111,7 @@ fn random_forests_with_random_keys_come_back_where_they_were() {
 #[test]
 fn a_single_roots_offset_moves_in_the_file_too() {
     let mut random = Random(2);
-    let mut document = shown(rigs::chain(&mut random, 5, 1.0));
+    let mut document = shown(skeletons::chain(&mut random, 5, 1.0));
     document.skeleton_mut().set_transform(even_transform(&mut random)).expect("finite");
     for time in [0.0, 0.5, 1.0] {
         document.keys.insert(Channel::Offset(0), time, random.vector(2.0));
@@ -166,7 +164,7 @@ fn the_arm_comes_back_where_it_was() {
 #[test]
 fn a_file_is_written_as_it_was_read() {
     let mut random = Random(4);
-    let mut document = shown(rigs::tree(&mut random, 3, 10.0).0);
+    let mut document = shown(skeletons::tree(&mut random, 3, 10.0).0);
     key_rotations(&mut random, &mut document);
     document.timeline = Timeline { start: 0.0, end: 0.5, frame_rate: 60 };
     let first = open(text(&export(&document))).document;
@@ -235,7 +233,7 @@ fn a_small_skeleton_is_this_text() {
 
 #[test]
 fn units_are_chosen() {
-    let document = shown(rigs::chain(&mut Random(5), 3, 2.0));
+    let document = shown(skeletons::chain(&mut Random(5), 3, 2.0));
     let length = |document: &Document, unit| {
         let read = open(text(&export_in(document, unit))).document;
         read.skeleton().joints()[1].axis.length()
@@ -252,7 +250,7 @@ fn units_are_chosen() {
 
 #[test]
 fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
-    let mut document = shown(rigs::chain(&mut Random(6), 2, 1.0));
+    let mut document = shown(skeletons::chain(&mut Random(6), 2, 1.0));
     let frames = |document: &Document, fps| {
         let exported = io::to_bvh(document, fps, BvhUnit::Metres, &Progress::default());
         let exported = exported.expect("it is written");
@@ -271,7 +269,7 @@ fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
 
 #[test]
 fn angles_go_on_over_full_turns() {
-    let mut document = shown(rigs::chain(&mut Random(7), 3, 1.0));
+    let mut document = shown(skeletons::chain(&mut Random(7), 3, 1.0));
     document.skeleton_mut().set_transform(even_transform(&mut Random(8))).expect("finite");
     for (time, turns) in [(0.0, 0.0), (8.0, 2.0)] {
         let angles = Vec3::new(0.3, -0.2, 1.0) * turns * std::f32::consts::TAU;
@@ -301,7 +299,7 @@ fn angles_go_on_over_full_turns() {
 
 #[test]
 fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
-    let mut document = shown(rigs::chain(&mut Random(9), 3, 1.0));
+    let mut document = shown(skeletons::chain(&mut Random(9), 3, 1.0));
     let offset = document.skeleton().joints()[2].offset;
     document.keys.insert(Channel::Offset(2), 0.0, offset);
     document.keys.insert(Channel::Offset(2), 1.0, offset + Vec3::X);
@@ -337,16 +335,16 @@ fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
 fn an_uneven_or_flat_transform_is_noted_and_written_as_nearly_as_can_be() {
     let mut random = Random(10);
     for scale in [Vec3::new(1.0, 2.0, 1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO] {
-        let mut document = shown(rigs::tree(&mut random, 3, 1.0).0);
-        rigs::shake(&mut random, document.skeleton_mut());
+        let mut document = shown(skeletons::tree(&mut random, 3, 1.0).0);
+        skeletons::shake(&mut random, document.skeleton_mut());
         document.skeleton_mut().set_transform(Affine3A::from_scale(scale)).expect("finite");
         let exported = export(&document);
         assert!(exported.notes[0].contains("unevenly"), "{:?}", exported.notes);
         open(text(&exported));
     }
     // Where it is nearly even, turns are nearly right.
-    let mut document = shown(rigs::chain(&mut random, 4, 1.0));
-    rigs::shake(&mut random, document.skeleton_mut());
+    let mut document = shown(skeletons::chain(&mut random, 4, 1.0));
+    skeletons::shake(&mut random, document.skeleton_mut());
     let nearly = Affine3A::from_scale(Vec3::new(-1.0, 1.00002, 1.0));
     document.skeleton_mut().set_transform(nearly).expect("finite");
     let exported = export(&document);
@@ -695,8 +693,8 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
 
 #[test]
 fn damaged_files_are_documents_or_errors() {
-    let mut random = files::Random(12);
-    let mut document = shown(rigs::tree(&mut Random(13), 3, 1.0).0);
+    let mut random = Random(12);
+    let mut document = shown(skeletons::tree(&mut Random(13), 3, 1.0).0);
     key_rotations(&mut Random(14), &mut document);
     document.timeline.end = 0.5;
     let exported = export(&document);
@@ -705,7 +703,7 @@ fn damaged_files_are_documents_or_errors() {
         ["JOINT x {", "}", "{", "End Site", "MOTION", "1e400", "-", "CHANNELS 6", "NaN", "é"];
     let wrong_words = (0..300).map(|_| {
         let mut lines: Vec<&str> = whole.lines().collect();
-        let at = random.below(lines.len() as u64) as usize;
+        let at = random.below(lines.len());
         lines[at] = random.one_of(&words);
         lines.join("\n").into_bytes()
     });

@@ -1,14 +1,14 @@
 //! Every method against random rigs: reach, limits, rest, roots, edges.
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
+use common::Random;
+use common::skeletons::{chain, forest, length, limit, reachable, shake, transform, tree};
 use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, Report, Root, SolveError, SolverOptions, TipTarget, jacobian, solve,
 };
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
-use rigs::{Random, chain, forest, length, reachable, shake, transform, tree};
 
 const CASES: usize = 1_000;
 
@@ -235,7 +235,7 @@ fn limits_let_targets_be_reached_that_are_within_them() {
         for _ in 0..300 {
             let mut skeleton = chain(&mut random, 5, 1.0);
             for joint in 1..=5 {
-                let limits = [(); 3].map(|()| Some(random.limit()));
+                let limits = [(); 3].map(|()| Some(limit(&mut random)));
                 skeleton.change(joint, |joint| joint.limits = limits).expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &[5]);

@@ -1,15 +1,15 @@
 //! In a binary of its own, whose allocator counts.
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
 use allocation_counter::measure;
+use common::Random;
+use common::skeletons::{limit, reachable, tree};
 use ik_arm::kinematics::batch::{
     Arms, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
 };
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions};
 use ik_arm::kinematics::two_bone::TwoBone;
-use rigs::{Random, reachable, tree};
 
 #[test]
 fn iterations_after_the_first_allocate_nothing() {
@@ -18,7 +18,7 @@ fn iterations_after_the_first_allocate_nothing() {
         for is_limited in [false, true] {
             let (mut skeleton, tips) = tree(&mut random, 3, 1.0);
             for joint in 1..skeleton.joints().len() {
-                let limits = [is_limited.then(|| random.limit()), None, None];
+                let limits = [is_limited.then(|| limit(&mut random)), None, None];
                 skeleton.change(joint, |joint| joint.limits = limits).expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &tips);

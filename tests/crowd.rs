@@ -1,9 +1,9 @@
 //! Many arms after targets of their own, solved here and on a device.
 #![cfg(feature = "render")]
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
+use common::Random;
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -12,7 +12,6 @@ use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Action, Overlays, Session};
 use image::RgbaImage;
-use rigs::Random;
 
 fn crowd(arms: u32) -> Crowd {
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");

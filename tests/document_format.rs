@@ -1,24 +1,17 @@
 //! The program's own files: what is written is read again, and what cannot be read is said where.
 #![cfg(feature = "document")]
 
-mod files;
+mod common;
 
 use std::fs;
 
-use files::{Random, message, mutations};
-use glam::{Affine3A, Mat3, Quat, Vec3};
-use ik_arm::document::{
-    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandSpace, Keys, Overlay,
-    Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
-    Wrist,
-};
+use common::damage::{message, mutations};
+use common::{Random, documents};
+use glam::Vec3;
+use ik_arm::document::{Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
 use ik_arm::io::{self, Example, Group, Opened};
-use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
-use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::kinematics::twist::TransportedFrame;
-use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
+use ik_arm::kinematics::skeleton::Joint;
 
 fn open(text: &str) -> Opened {
     io::parse("test.json", text, None).unwrap_or_else(|error| panic!("{error}"))
@@ -37,7 +30,7 @@ fn refusal(text: &str) -> String {
 #[test]
 fn every_document_is_read_again_bit_for_bit() {
     for seed in 0..500 {
-        let document = random_document(&mut Random(seed));
+        let document = documents::document(&mut Random(seed));
         let json = io::to_json(&document).expect("it is written");
         let opened = open(&json);
         assert_eq!(opened.document, document, "{json}");
@@ -78,150 +71,6 @@ fn a_file_is_laid_out_for_people() {
     assert!(json.contains("\n    \"cursor\": [250.0, 120.0, 60.0],\n"), "{json}");
     assert!(json.contains("\n    \"joints\": [{\n      \"name\": \"root\",\n"), "{json}");
     assert!(json.ends_with("]\n}\n"));
-}
-
-fn random_document(random: &mut Random) -> Document {
-    let arm = random_arm(random);
-    let mut rig = SkeletonRig::new(random_skeleton(random));
-    for joint in 0..rig.skeleton.joints().len() {
-        if random.below(3) == 0 {
-            let paths = [TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight];
-            let motion = TargetMotion {
-                path: random.one_of(&paths),
-                radius: random.any(),
-                period: random.above_0(),
-            };
-            let (home, weight) = (random.point(), random.above_0());
-            rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
-        }
-    }
-    rig.solver = SolverOptions {
-        method: random.one_of(&Method::ALL),
-        iterations: random.coin().then(|| 1 + random.below(1 << 31) as u32),
-        tolerance: random.coin().then(|| random.above_0()),
-        damping: random.above_0(),
-        step: random.above_0(),
-        root: random.one_of(&[Root::Fixed, Root::Free]),
-    };
-    rig.iterations_per_frame = 1 + random.below(1000) as u32;
-    rig.follow_path = random.coin().then(|| FollowPath {
-        radius: random.any(),
-        amplitude: random.any(),
-        waves: random.below(1 << 32) as u32,
-        period: random.above_0(),
-    });
-    let keys = random_keys(random, &rig);
-    let start = f64::from(random.between(-100.0, 100.0));
-    let timeline = Timeline {
-        start,
-        end: start + f64::from(random.between(0.1, 100.0)) / 3.0,
-        frame_rate: 1 + random.below(1000) as u32,
-    };
-    let layers = Overlay::all();
-    Document {
-        rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
-        arm,
-        skeleton_rig: rig,
-        keys,
-        timeline,
-        metres: random.coin().then(|| random.above_0()),
-        camera: Camera {
-            target: random.point(),
-            yaw: random.any(),
-            pitch: random.between(-1.5, 1.5),
-            distance: random.above_0(),
-            orthographic: random.coin(),
-        },
-        other_camera: random.coin().then(Camera::default),
-        display: layers.filter(|_| random.coin()).collect::<Display>(),
-    }
-}
-
-fn random_arm(random: &mut Random) -> Arm {
-    let facing = Facing::towards(random.point(), Facing::default());
-    let soft_reach = SoftReach::new(
-        random.between(0.0, 0.99),
-        1.0 + random.any().abs().min(9.0),
-        random.between(0.0, 3.1),
-    );
-    Arm {
-        goal: match random.coin() {
-            true => Cursor::Root(random.point()),
-            false => Cursor::World(random.point()),
-        },
-        twist: random.any(),
-        root: random.point(),
-        bones: TwoBone::new(random.above_0(), random.above_0()).expect("lengths"),
-        facing: Facing::towards(random.point(), Facing::default()),
-        twist_reference: random.one_of(&TwistReferenceKind::ALL),
-        pole: random.point(),
-        transported: random.coin().then(|| TransportedFrame::new(facing)),
-        soft_reach: soft_reach.expect("a softening"),
-        influence: random.between(0.0, 1.0),
-        fk: Fk { shoulder: random.point(), bend: random.any(), stretch: random.above_0() },
-        wrist: Wrist {
-            space: random.one_of(&[HandSpace::Lower, HandSpace::World]),
-            angles: random.point(),
-            roll: random.any(),
-        },
-    }
-}
-
-fn random_keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
-    let layers = Overlay::all().map(Channel::Overlay);
-    let joints = (0..rig.skeleton.joints().len())
-        .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
-    let targets = rig.targets.iter();
-    let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
-    let all = Channel::OF_ARM.into_iter().chain(layers).chain([Channel::Translation]);
-    let mut keys = Keys::default();
-    for channel in all.chain(joints).chain(targets) {
-        if random.below(3) > 0 {
-            continue;
-        }
-        for _ in 0..1 + random.below(5) {
-            let value = match channel.quantity() {
-                Quantity::Point | Quantity::Angles => random.point(),
-                Quantity::Fraction => Vec3::new(random.between(0.0, 1.0), 0.0, 0.0),
-                Quantity::Angle => Vec3::new(random.any(), 0.0, 0.0),
-                Quantity::Length => Vec3::new(random.above_0(), 0.0, 0.0),
-                Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),
-            };
-            keys.insert(channel, f64::from(random.any()) / 3.0, value);
-        }
-    }
-    keys
-}
-
-fn random_skeleton(random: &mut Random) -> Skeleton {
-    let count = random.below(12) as usize;
-    let joints = (0..count).map(|index| {
-        let parent =
-            (index > 0 && random.below(4) > 0).then(|| random.below(index as u64) as usize);
-        let turn = [(); 4].map(|()| random.between(-1.0, 1.0));
-        Joint {
-            name: format!("{} \"é\\\n{index}", random.below(100)),
-            parent,
-            offset: random.point(),
-            axis: random.point(),
-            rotation: random.point(),
-            frame: match random.below(3) {
-                0 => Mat3::from_quat(Quat::from_array(turn).normalize()),
-                1 => Mat3::from_cols(Vec3::new(1.0, -0.0, 0.0), Vec3::Y, Vec3::Z),
-                _ => Mat3::IDENTITY,
-            },
-            limits: [(); 3].map(|()| {
-                let (a, b) = (random.any(), random.any());
-                random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
-            }),
-            locked: random.coin(),
-            radius: random.any().abs(),
-        }
-    });
-    let mut skeleton = Skeleton::from_joints(joints.collect()).expect("a skeleton");
-    let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.any()));
-    skeleton.set_transform(transform).expect("finite");
-    skeleton
 }
 
 // Files written by hand
@@ -575,7 +424,7 @@ fn a_document_has_no_skeletons_to_choose_from() {
 #[test]
 fn damaged_files_open_or_are_refused_and_never_crash() {
     for seed in 0..30 {
-        let document = random_document(&mut Random(seed));
+        let document = documents::document(&mut Random(seed));
         let json = io::to_json(&document).expect("written");
         for damaged in mutations(&json, &mut Random(seed), 40) {
             let _ = io::read("x", &*damaged, None).map_err(message);
@@ -594,7 +443,7 @@ fn damaged_files_open_or_are_refused_and_never_crash() {
 fn a_saved_document_is_opened_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("arm.json");
-    let document = random_document(&mut Random(3));
+    let document = documents::document(&mut Random(3));
     fs::write(&path, "before").expect("written");
     io::save(&document, &path).expect("saved");
     assert_eq!(io::open(&path, None).expect("opened").document, document);

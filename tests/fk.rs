@@ -1,5 +1,8 @@
 //! The arm's joint angles: the pose that they give, the angles that a pose has, and what is between.
 
+mod common;
+
+use common::strategies::{config, limits, references, uniform_directions};
 use std::f64::consts::PI;
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
@@ -7,19 +10,9 @@ use ik_arm::kinematics::euler;
 use ik_arm::kinematics::fk::{Fk, blended};
 use ik_arm::kinematics::ik::Ik;
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::kinematics::twist::{Stereographic, TwistReference};
+use ik_arm::kinematics::twist::TwistReference;
 use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x000f_ee1f),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
 
 fn arms() -> impl Strategy<Value = TwoBone> {
     let length = || (-2.0..4.0_f32).prop_map(|power| 10_f32.powf(power));
@@ -42,24 +35,8 @@ fn bends() -> impl Strategy<Value = f32> {
     ]
 }
 
-fn directions() -> impl Strategy<Value = DVec3> {
-    (-1.0..1.0_f64, -PI..PI).prop_map(|(y, turn)| {
-        let flat = (1.0 - y * y).sqrt();
-        DVec3::new(flat * turn.cos(), y, flat * turn.sin())
-    })
-}
-
-fn references() -> impl Strategy<Value = TwistReference> {
-    prop_oneof![
-        Just(TwistReference::Limb),
-        directions().prop_map(|pole| TwistReference::Pole(pole.as_vec3())),
-        Just(TwistReference::Stereographic(Stereographic::default())),
-        Just(TwistReference::Transport),
-    ]
-}
-
-fn length(arm: TwoBone) -> f64 {
-    f64::from(arm.upper()) + f64::from(arm.lower())
+fn poles() -> impl Strategy<Value = Vec3> {
+    uniform_directions().prop_map(|pole| pole.as_vec3())
 }
 
 /// Elbow and hand by matrices, in f64.
@@ -87,7 +64,7 @@ fn points(pose: &TwoBonePose) -> (DVec3, DVec3) {
 }
 
 proptest! {
-    #![proptest_config(config(10_000))]
+    #![proptest_config(config(10_000, 0x000f_ee1f))]
 
     #[test]
     fn a_pose_is_what_matrices_make_of_its_angles(
@@ -96,13 +73,13 @@ proptest! {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let pose = fk.pose(bones, Facing::default());
         let (elbow, hand) = apart(&pose, twin(fk, bones));
-        prop_assert!(elbow < 3e-7 * length(bones) && hand < 3e-7 * length(bones));
+        prop_assert!(elbow < 3e-7 * limits(bones).1 && hand < 3e-7 * limits(bones).1);
         // What the hierarchy is made of says the same.
         let w = pose.facing.direction.as_dvec3();
         let out = pose.outward().as_dvec3();
         let again = w * f64::from(pose.along) + out * f64::from(pose.out);
-        prop_assert!(again.distance(pose.elbow.as_dvec3()) < 1e-6 * length(bones));
-        prop_assert!((w * f64::from(pose.distance)).distance(twin(fk, bones).1) < 5e-7 * length(bones));
+        prop_assert!(again.distance(pose.elbow.as_dvec3()) < 1e-6 * limits(bones).1);
+        prop_assert!((w * f64::from(pose.distance)).distance(twin(fk, bones).1) < 5e-7 * limits(bones).1);
     }
 
     #[test]
@@ -112,12 +89,12 @@ proptest! {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let turned = Fk { shoulder: shoulder + Vec3::X * core::f32::consts::PI, bend: -bend, ..fk };
         let (elbow, hand) = apart(&fk.pose(bones, Facing::default()), points(&turned.pose(bones, Facing::default())));
-        prop_assert!(elbow < 1e-6 * length(bones) && hand < 1e-6 * length(bones));
+        prop_assert!(elbow < 1e-6 * limits(bones).1 && hand < 1e-6 * limits(bones).1);
     }
 
     #[test]
     fn from_angles_to_a_hand_and_back_the_pose_stays(
-        bones in arms(), shoulder in angles(), bend in bends(), reference in references()
+        bones in arms(), shoulder in angles(), bend in bends(), reference in references(poles())
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let pose = fk.pose(bones, Facing::default());
@@ -127,7 +104,7 @@ proptest! {
         let again = Fk::matching(&solved, fk).pose(bones, solved.facing);
         for found in [solved, again] {
             let (elbow, hand) = apart(&found, points(&pose));
-            let l = length(bones);
+            let l = limits(bones).1;
             prop_assert!(hand <= 1e-6 * l, "the hand is off by {}", hand / l);
             prop_assert!(elbow <= elbow_tolerance(&pose) * l, "the elbow is off by {}", elbow / l);
         }
@@ -135,8 +112,8 @@ proptest! {
 
     #[test]
     fn from_a_hand_to_angles_and_back_the_pose_stays(
-        bones in arms(), direction in directions(), part in 0.0..1.2_f32, spin in 0.0..6.2_f32,
-        reference in references()
+        bones in arms(), direction in uniform_directions(), part in 0.0..1.2_f32, spin in 0.0..6.2_f32,
+        reference in references(poles())
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let cursor = direction.as_vec3() * part * bones.outer_limit();
@@ -147,7 +124,7 @@ proptest! {
         let again = ik.solve(cursor, spin, posed.facing, Some(solved.transported)).pose;
         for found in [posed, again] {
             let (elbow, hand) = apart(&found, points(&solved.pose));
-            let l = length(bones);
+            let l = limits(bones).1;
             prop_assert!(hand <= 1e-6 * l, "the hand is off by {}", hand / l);
             prop_assert!(elbow <= elbow_tolerance(&solved.pose) * l, "the elbow is off by {}", elbow / l);
         }
@@ -167,14 +144,14 @@ proptest! {
 
     #[test]
     fn between_angles_and_a_solved_pose_the_limbs_keep_their_lengths(
-        bones in arms(), shoulder in angles(), bend in bends(), direction in directions(),
+        bones in arms(), shoulder in angles(), bend in bends(), direction in uniform_directions(),
         part in 0.0..1.2_f32, weight in 0.0..=1.0_f32
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let cursor = direction.as_vec3() * part * bones.outer_limit();
         let solved = bones.solve(cursor, 0.4);
         let pose = blended(fk, &solved, weight, bones, cursor);
-        let l = length(bones);
+        let l = limits(bones).1;
         let (elbow, hand) = points(&pose);
         prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 3e-7 * l);
         prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 4e-7 * l);
@@ -186,7 +163,7 @@ proptest! {
 
     #[test]
     fn half_way_the_upper_limb_has_made_half_its_turn(
-        shoulder in angles(), bend in 0.0..3.1_f32, direction in directions(), part in 0.3..0.9_f32
+        shoulder in angles(), bend in 0.0..3.1_f32, direction in uniform_directions(), part in 0.3..0.9_f32
     ) {
         let bones = TwoBone::new(2.0, 3.0).expect("lengths");
         let cursor = direction.as_vec3() * part * 5.0;
@@ -235,7 +212,7 @@ fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
 }
 
 proptest! {
-    #![proptest_config(config(2_000))]
+    #![proptest_config(config(2_000, 0x000f_ee1f))]
 
     #[test]
     fn many_turns_are_dropped_and_the_pose_stays(

@@ -1,5 +1,8 @@
 //! The arm with a reference and a softening: how far it is the plain arm, and how smooth it is.
 
+mod common;
+
+use common::strategies::{arms_of, config, limits, points, references};
 use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
@@ -8,33 +11,6 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x001c_0de5),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-fn arms() -> impl Strategy<Value = TwoBone> {
-    (1.0..10.0_f32, 1.0..10.0_f32).prop_map(|(a, b)| TwoBone::new(a, b).expect("lengths"))
-}
-
-fn cursors() -> impl Strategy<Value = Vec3> {
-    [-25.0..25.0_f32, -25.0..25.0, -25.0..25.0].prop_map(Vec3::from_array)
-}
-
-fn references() -> impl Strategy<Value = TwistReference> {
-    prop_oneof![
-        Just(TwistReference::Limb),
-        cursors().prop_map(TwistReference::Pole),
-        Just(TwistReference::Stereographic(Stereographic::default())),
-        Just(TwistReference::Transport),
-    ]
-}
 
 fn softenings() -> impl Strategy<Value = SoftReach> {
     (0.0..0.9_f32, 1.0..2.0_f32, 0.0..2.0_f32)
@@ -45,20 +21,16 @@ fn soft(softness: f32, stretch: f32, angle: f32) -> SoftReach {
     SoftReach::new(softness, stretch, angle).expect("a softening")
 }
 
-fn length(arm: TwoBone) -> f64 {
-    f64::from(arm.upper()) + f64::from(arm.lower())
-}
-
 fn bits(v: Vec3) -> [u32; 3] {
     v.to_array().map(f32::to_bits)
 }
 
 proptest! {
-    #![proptest_config(config(10_000))]
+    #![proptest_config(config(10_000, 0x001c_0de5))]
 
     #[test]
     fn with_all_off_it_is_the_plain_arm_bit_for_bit(
-        bones in arms(), cursor in cursors(), spin in -7.0..7.0_f32
+        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in -7.0..7.0_f32
     ) {
         let plain = bones.solve(cursor, spin);
         let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
@@ -70,8 +42,8 @@ proptest! {
 
     #[test]
     fn softening_never_changes_which_way_the_elbow_points(
-        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
-        reference in references(), soft_reach in softenings()
+        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32,
+        reference in references(points(25.0)), soft_reach in softenings()
     ) {
         let hard = Ik { bones, reference, soft_reach: SoftReach::default() };
         let soft = Ik { soft_reach, ..hard };
@@ -82,7 +54,7 @@ proptest! {
 
     #[test]
     fn the_elbow_is_turned_from_the_reference_by_the_spin(
-        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32, reference in references()
+        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32, reference in references(points(25.0))
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let Solved { pose, transported, .. } = ik.solve(cursor, spin, Facing::default(), None);
@@ -91,16 +63,16 @@ proptest! {
         let expected = e * cos + w.cross(e) * sin;
         let elbow = w * f64::from(pose.along) + expected * f64::from(pose.out);
         let error = elbow.distance(pose.elbow.as_dvec3());
-        prop_assert!(error < 2e-6 * length(bones), "off by {}", error);
+        prop_assert!(error < 2e-6 * limits(bones).1, "off by {}", error);
     }
 
     #[test]
     fn a_softened_hand_is_on_the_line_to_the_cursor_and_its_limbs_are_stretched_alike(
-        bones in arms(), cursor in cursors(), reference in references(), soft_reach in softenings()
+        bones in arms_of(1.0..10.0), cursor in points(25.0), reference in references(points(25.0)), soft_reach in softenings()
     ) {
         let ik = Ik { bones, reference, soft_reach };
         let pose = ik.solve(cursor, 0.3, Facing::default(), None).pose;
-        let (l, sigma) = (length(bones), f64::from(pose.stretch));
+        let (l, sigma) = (limits(bones).1, f64::from(pose.stretch));
         let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
         let asked = cursor.as_dvec3();
         let extent = soft_reach.extent(bones, asked.length() as f32);
@@ -122,8 +94,8 @@ proptest! {
 
     #[test]
     fn a_pose_is_found_again_from_its_hand_and_its_elbow(
-        bones in arms(), cursor in cursors(), spin in 0.0..6.0_f32,
-        from in references(), to in references(), soft_reach in softenings()
+        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32,
+        from in references(points(25.0)), to in references(points(25.0)), soft_reach in softenings()
     ) {
         let from = Ik { bones, reference: from, soft_reach };
         let to = Ik { reference: to, ..from };
@@ -131,7 +103,7 @@ proptest! {
         let (cursor, spin) = to.matching(&solved.pose, None);
         prop_assert!((0.0..TAU as f32).contains(&spin));
         let again = to.solve(cursor, spin, solved.pose.facing, None).pose;
-        let l = length(bones);
+        let l = limits(bones).1;
         let hand = again.hand.as_dvec3().distance(solved.pose.hand.as_dvec3());
         let stretched = f64::from(solved.pose.stretch) * l;
         prop_assert!(hand < 1e-6 * stretched, "the hand is off by {}", hand / l);
@@ -226,11 +198,11 @@ fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
 const ROUNDING: f64 = 2e-4;
 
 proptest! {
-    #![proptest_config(config(1_000))]
+    #![proptest_config(config(1_000, 0x001c_0de5))]
 
     #[test]
     fn measured_on_the_map_a_soft_elbow_never_pops(
-        bones in arms(), way in ways(), softness in 0.1..0.8_f32
+        bones in arms_of(1.0..10.0), way in ways(), softness in 0.1..0.8_f32
     ) {
         let map = Stereographic::default();
         let ik =
@@ -242,7 +214,7 @@ proptest! {
 
     #[test]
     fn transported_a_soft_elbow_never_pops(
-        bones in arms(), way in ways(), softness in 0.1..0.8_f32
+        bones in arms_of(1.0..10.0), way in ways(), softness in 0.1..0.8_f32
     ) {
         let ik = Ik { bones, reference: TwistReference::Transport, soft_reach: soft(softness, 1.0, 0.0) };
         let excess = excess(ik, f64::from(softness), &way, None);

@@ -1,11 +1,12 @@
 //! Scotty3D's scenes: their bones stand where Scotty3D's formulas put them.
 #![cfg(feature = "document")]
 
-mod files;
+mod common;
 
 use std::fmt::Write as _;
 
-use files::{Random, message, mutations};
+use common::Random;
+use common::damage::{message, mutations};
 use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
 use ik_arm::document::RigKind;
 use ik_arm::io::{self, Opened};
@@ -172,25 +173,24 @@ struct Scene {
 
 impl Scene {
     fn random(random: &mut Random) -> Self {
-        let point = |random: &mut Random, size| random.point_within(size).as_dvec3();
-        let count = 1 + random.below(12) as usize;
+        let point = |random: &mut Random, size| random.vector(size).as_dvec3();
+        let count = 1 + random.below(12);
         let mut bones: Vec<_> = (0..count)
             .map(|index| Bone {
                 extent: match random.below(8) {
                     0 => DVec3::ZERO,
-                    1 => DVec3::X * f64::from(random.between(-1.0, 1.0)),
-                    2 => DVec3::Y * f64::from(random.between(-1.0, 1.0)),
+                    1 => DVec3::X * f64::from(random.within(-1.0..1.0)),
+                    2 => DVec3::Y * f64::from(random.within(-1.0..1.0)),
                     _ => point(random, 1.0),
                 },
-                roll: f64::from(random.between(-400.0, 400.0)),
-                parent: (index > 0 && random.below(5) > 0)
-                    .then(|| random.below(index as u64) as usize),
+                roll: f64::from(random.within(-400.0..400.0)),
+                parent: (index > 0 && random.below(5) > 0).then(|| random.below(index)),
                 pose: point(random, 360.0),
             })
             .collect();
         shuffle(&mut bones, random);
         let steps = (0..random.below(4)).map(|_| {
-            let turn = [(); 4].map(|()| f64::from(random.between(-1.0, 1.0)));
+            let turn = [(); 4].map(|()| f64::from(random.within(-1.0..1.0)));
             let scale = point(random, 1.5);
             Step {
                 translation: point(random, 3.0),
@@ -278,7 +278,7 @@ fn row(numbers: &[f64]) -> String {
 
 fn shuffle(bones: &mut [Bone], random: &mut Random) {
     for index in (1..bones.len()).rev() {
-        let other = random.below(index as u64 + 1) as usize;
+        let other = random.below(index + 1);
         bones.swap(index, other);
         for bone in &mut *bones {
             bone.parent = bone.parent.map(|parent| match parent {

@@ -1,5 +1,8 @@
 //! When an elbow pops, and why.
 
+mod common;
+
+use common::strategies::config;
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
@@ -10,16 +13,6 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x0009_0909),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
 
 fn map() -> TwistReference {
     TwistReference::Stereographic(Stereographic::default())
@@ -244,7 +237,7 @@ fn is_well_placed(ik: &Ik, cursor: Vec3) -> bool {
 }
 
 proptest! {
-    #![proptest_config(config(4000))]
+    #![proptest_config(config(4000, 0x0009_0909))]
 
     #[test]
     fn the_ratio_is_that_of_the_same_arm_in_f64(

@@ -1,7 +1,7 @@
 //! A saved document is whole, whatever happens while it is saved.
 #![cfg(all(feature = "document", unix))]
 
-mod files;
+mod common;
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use files::Random;
+use common::Random;
 use glam::Vec3;
 use ik_arm::document::{Document, RigKind};
 use ik_arm::io;
@@ -87,7 +87,7 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
             assert!(Instant::now() < given_up, "it does not save");
             sleep(Duration::from_micros(200));
         }
-        sleep(Duration::from_micros(random.below(20_000)));
+        sleep(Duration::from_micros(random.below(20_000) as u64));
         drop(saver);
 
         let text = fs::read_to_string(&path).expect("there");

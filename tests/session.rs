@@ -1,6 +1,9 @@
 //! Whatever is done to a session, it stays one.
 #![cfg(feature = "document")]
 
+mod common;
+
+use common::strategies::config;
 use glam::Vec3;
 use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
@@ -14,16 +17,6 @@ use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, PoseMode, Session};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x5ce1_e70e),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
 
 fn numbers() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
@@ -281,7 +274,7 @@ fn content(document: &Document) -> Document {
 }
 
 proptest! {
-    #![proptest_config(config(200))]
+    #![proptest_config(config(200, 0x5ce1_e70e))]
 
     #[test]
     fn any_actions_leave_a_session_that_is_one(actions in actions()) {

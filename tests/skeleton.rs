@@ -1,13 +1,13 @@
 //! Forward kinematics against an f64 twin, and building.
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
 use std::f32::consts::FRAC_PI_2;
 
+use common::Random;
+use common::skeletons::{forest, limit, transform};
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
-use rigs::{Random, forest, transform};
 
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.
@@ -161,7 +161,7 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
         2 => skeleton.rename(joint, &name).is_ok(),
         3 => skeleton.set_rotation(joint, random.angles()).is_ok(),
         4 => {
-            let limits = [(); 3].map(|()| random.chance(0.5).then(|| random.limit()));
+            let limits = [(); 3].map(|()| random.chance(0.5).then(|| limit(random)));
             skeleton.change(joint, |joint| joint.limits = limits).is_ok()
         }
         5 if random.chance(0.3) => {

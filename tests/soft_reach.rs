@@ -1,23 +1,11 @@
 //! How far the hand goes: the curve of soft limits and stretch against a twin in f64.
 
+mod common;
+
+use common::strategies::{arms_of, config};
 use ik_arm::kinematics::soft_reach::{Extent, SoftReach};
 use ik_arm::kinematics::two_bone::TwoBone;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 2000,
-        rng_seed: RngSeed::Fixed(0x50f7),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-fn arms() -> impl Strategy<Value = TwoBone> {
-    (1.0..1000.0_f32, 1.0..1000.0_f32)
-        .prop_map(|(upper, lower)| TwoBone::new(upper, lower).expect("lengths"))
-}
 
 fn soft(softness: f32) -> SoftReach {
     SoftReach::new(softness, 1.0, 0.0).expect("possible")
@@ -86,11 +74,11 @@ fn is_near(found: f32, expected: f64, longest: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(2000, 0x50f7))]
 
     #[test]
     fn the_distance_is_the_published_curve(
-        arm in arms(), softness in 0.0..0.99_f32, angle in 0.0..3.0_f32, part in 0.0..2.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.0..0.99_f32, angle in 0.0..3.0_f32, part in 0.0..2.0_f64
     ) {
         let soft_reach = SoftReach::new(softness, 1.0, angle).expect("possible");
         let twin = Twin::new(soft_reach, arm);
@@ -102,7 +90,7 @@ proptest! {
 
     #[test]
     fn the_slope_is_the_curves(
-        arm in arms(), softness in 0.01..0.99_f32, stretch in 1.0..3.0_f32, part in 0.0..2.5_f64
+        arm in arms_of(1.0..1000.0), softness in 0.01..0.99_f32, stretch in 1.0..3.0_f32, part in 0.0..2.5_f64
     ) {
         let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("possible");
         let twin = Twin::new(soft_reach, arm);
@@ -117,7 +105,7 @@ proptest! {
 
     #[test]
     fn the_slope_is_how_fast_the_distance_grows(
-        arm in arms(), softness in 0.3..0.99_f32, widths in -1.0..3.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.3..0.99_f32, widths in -1.0..3.0_f64
     ) {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
@@ -139,7 +127,7 @@ proptest! {
 
     #[test]
     fn both_joins_have_slope_1_and_between_them_nothing_changes(
-        arm in arms(), softness in 0.05..0.95_f32, part in 0.0..1.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.05..0.95_f32, part in 0.0..1.0_f64
     ) {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
@@ -162,7 +150,7 @@ proptest! {
 
     #[test]
     fn it_grows_with_the_cursor_and_never_overshoots(
-        arm in arms(), softness in 0.0..0.99_f32, a in 0.0..2.0_f64, b in 0.0..2.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.0..0.99_f32, a in 0.0..2.0_f64, b in 0.0..2.0_f64
     ) {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
@@ -188,7 +176,7 @@ proptest! {
 
     #[test]
     fn it_stays_short_of_straight_within_twelve_widths(
-        arm in arms(), softness in 0.05..0.99_f32, widths in 0.0..12.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.05..0.99_f32, widths in 0.0..12.0_f64
     ) {
         let twin = Twin::new(soft(softness), arm);
         // Of a narrower zone even that is less than f32 can tell from L.
@@ -205,7 +193,7 @@ proptest! {
 
     #[test]
     fn stretching_brings_the_hand_to_the_cursor_as_far_as_it_may(
-        arm in arms(), softness in 0.0..0.9_f32, max_stretch in 1.0..3.0_f32, part in 0.0..4.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.0..0.9_f32, max_stretch in 1.0..3.0_f32, part in 0.0..4.0_f64
     ) {
         let soft_reach = SoftReach::new(softness, max_stretch, 0.0).expect("possible");
         let twin = Twin::new(soft_reach, arm);
@@ -223,7 +211,7 @@ proptest! {
 
     #[test]
     fn the_elbow_is_never_less_open_than_it_may_be(
-        arm in arms(), angle in 0.05..3.0_f32, part in 0.0..1.2_f64
+        arm in arms_of(1.0..1000.0), angle in 0.05..3.0_f32, part in 0.0..1.2_f64
     ) {
         let soft_reach = SoftReach::new(0.0, 1.0, angle).expect("possible");
         let twin = Twin::new(soft_reach, arm);
@@ -244,7 +232,7 @@ proptest! {
     }
 
     #[test]
-    fn without_softening_it_is_the_solvers_own_clamp(arm in arms(), part in 0.0..3.0_f32) {
+    fn without_softening_it_is_the_solvers_own_clamp(arm in arms_of(1.0..1000.0), part in 0.0..3.0_f32) {
         let d = arm.outer_limit() * part;
         let extent = SoftReach::default().extent(arm, d);
         let clamped = d.clamp(arm.inner_limit(), arm.outer_limit());
@@ -255,7 +243,7 @@ proptest! {
 
     #[test]
     fn the_cursor_distance_is_the_inverse(
-        arm in arms(), softness in 0.0..0.9_f32, max_stretch in 1.0..3.0_f32, part in 0.0..1.0_f64
+        arm in arms_of(1.0..1000.0), softness in 0.0..0.9_f32, max_stretch in 1.0..3.0_f32, part in 0.0..1.0_f64
     ) {
         let soft_reach = SoftReach::new(softness, max_stretch, 0.0).expect("possible");
         let twin = Twin::new(soft_reach, arm);

@@ -1,10 +1,12 @@
 //! Splines through knots at uneven times.
 
+mod common;
+
+use common::strategies::config;
 use glam::Vec3;
 use ik_arm::kinematics::spline::{Knot, Spline};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 fn spline(knots: &[(f64, f32)]) -> Spline<f32> {
     knots.iter().map(|&(time, value)| Knot { time, value }).collect()
@@ -36,15 +38,6 @@ fn twin(knots: &[(f64, f32)], time: f64) -> f64 {
     k[i].1 + s * (a + s * (3.0 * dp - 2.0 * a - b + s * (a + b - 2.0 * dp)))
 }
 
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 500,
-        rng_seed: RngSeed::Fixed(0x5b11_4e00),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
 /// At least two knots, at uneven times.
 fn knots() -> impl Strategy<Value = Vec<(f64, f32)>> {
     vec((0.01..3.0_f64, -100.0..100.0_f32), 2..12).prop_map(|steps| {
@@ -60,7 +53,7 @@ fn knots() -> impl Strategy<Value = Vec<(f64, f32)>> {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(500, 0x5b11_4e00))]
 
     #[test]
     fn it_passes_through_every_knot_bit_for_bit(knots in knots()) {

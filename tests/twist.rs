@@ -1,5 +1,8 @@
 //! Which way the elbow points.
 
+mod common;
+
+use common::strategies::{config, uniform_directions};
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
@@ -8,23 +11,6 @@ use ik_arm::kinematics::twist::{
 };
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 2000,
-        rng_seed: RngSeed::Fixed(0x0051_1e1e),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-fn directions() -> impl Strategy<Value = DVec3> + Clone {
-    (-1.0..1.0_f64, -PI..PI).prop_map(|(y, turn)| {
-        let flat = (1.0 - y * y).sqrt();
-        DVec3::new(flat * turn.cos(), y, flat * turn.sin())
-    })
-}
 
 fn facing(w: DVec3) -> Facing {
     Facing::towards(w.as_vec3(), Facing::default())
@@ -74,10 +60,10 @@ fn transported(e: DVec3, from: DVec3, to: DVec3) -> DVec3 {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(2000, 0x0051_1e1e))]
 
     #[test]
-    fn every_reference_is_a_unit_vector_at_right_angles_to_the_pointer(w in directions()) {
+    fn every_reference_is_a_unit_vector_at_right_angles_to_the_pointer(w in uniform_directions()) {
         let facing = facing(w);
         let last = TransportedFrame::new(facing);
         for reference in stateless().into_iter().chain([TwistReference::Transport]) {
@@ -88,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn every_reference_is_what_its_formula_says(w in directions()) {
+    fn every_reference_is_what_its_formula_says(w in uniform_directions()) {
         let facing = facing(w);
         for reference in stateless() {
             if reference.gain(facing) < 1e3 {
@@ -100,7 +86,7 @@ proptest! {
     }
 
     #[test]
-    fn the_gain_is_the_worst_turn_against_transport_for_a_turn_of_the_pointer(w in directions()) {
+    fn the_gain_is_the_worst_turn_against_transport_for_a_turn_of_the_pointer(w in uniform_directions()) {
         const STEP: f64 = 1e-5;
         for reference in stateless() {
             let gain = f64::from(reference.gain(facing(w)));
@@ -122,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn transport_is_the_least_turn(w in directions(), to in directions()) {
+    fn transport_is_the_least_turn(w in uniform_directions(), to in uniform_directions()) {
         let from = TransportedFrame::new(facing(w));
         let transported = from.to(to.as_vec3());
         if w.dot(to) > -0.999 {
@@ -135,7 +121,7 @@ proptest! {
 
     #[test]
     fn a_closed_loop_turns_what_is_carried_by_its_solid_angle(
-        a in directions(), b in directions(), c in directions()
+        a in uniform_directions(), b in uniform_directions(), c in uniform_directions()
     ) {
         // Not near half turns, where the least turn is not defined.
         prop_assume!(a.dot(b) > -0.9 && b.dot(c) > -0.9 && c.dot(a) > -0.9);
@@ -150,7 +136,7 @@ proptest! {
 
     #[test]
     fn another_reference_leaves_the_elbow_where_it_is(
-        w in directions(), spin in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
+        w in uniform_directions(), spin in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
     ) {
         let (arm, facing) = (TwoBone::new(200.0, 300.0).expect("lengths"), facing(w));
         let cursor = (w * length).as_vec3();

@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use common::{
+use common::strategies::{
     Case, EXACT, U, anywhere, arms, bones, config, directions, either_sign, in_reach,
     limb_rotation, limits, out_of_reach, within, yaw_and_pitch,
 };
@@ -84,7 +84,7 @@ fn reach(arm: TwoBone, cursor: Vec3) -> Reach {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(10_000, 0x2014_1a4e))]
 
     #[test]
     fn between_the_limits_the_hand_is_the_cursor_bit_for_bit(case in in_reach()) {

@@ -1,11 +1,10 @@
 //! How exactly hands and limb lengths hold, over random arms of every kind.
 
-#[path = "common/rigs.rs"]
-mod rigs;
+mod common;
 
+use common::Random;
 use glam::{DVec3, Vec3};
 use ik_arm::kinematics::two_bone::TwoBone;
-use rigs::Random;
 
 /// Allowed error of a hand and of a limb's length, in arm lengths: below the promised 3e-7.
 const BOUND: f64 = 2.8e-7;
@@ -27,7 +26,7 @@ struct Worst {
 impl Case {
     /// Lengths 1e-2 to 1e4; bones 30 : 1, less uneven, nearly equal and equal.
     fn random(random: &mut Random) -> Self {
-        let longer = power_of_ten(random, -2.0, 4.0);
+        let longer = random.power_of_ten(-2.0..4.0);
         let ratio = match random.below(8) {
             0..4 => 30.0,
             4 | 5 => 30_f64.powf(random.within(0.0..1.0).into()),
@@ -81,7 +80,7 @@ fn direction(random: &mut Random) -> DVec3 {
         return random.direction().as_dvec3();
     }
     let mut coordinate = || {
-        let size = power_of_ten(random, -8.0, 0.0);
+        let size = random.power_of_ten(-8.0..0.0);
         if random.chance(0.5) { size } else { -size }
     };
     DVec3::new(coordinate(), coordinate(), coordinate()).normalize()
@@ -92,16 +91,11 @@ fn radius(random: &mut Random, arm: TwoBone) -> f64 {
     let (inner, outer) = (f64::from(arm.inner_limit()), f64::from(arm.outer_limit()));
     let share = match random.below(4) {
         0 => random.within(0.0..1.0).into(),
-        1 => power_of_ten(random, -8.0, 0.0),
-        2 => 1.0 - power_of_ten(random, -8.0, 0.0),
+        1 => random.power_of_ten(-8.0..0.0),
+        2 => 1.0 - random.power_of_ten(-8.0..0.0),
         _ => return outer * f64::from(random.within(1e-3..1.3)),
     };
     inner + share * (outer - inner)
-}
-
-/// Every magnitude alike.
-fn power_of_ten(random: &mut Random, least: f32, most: f32) -> f64 {
-    10_f64.powf(random.within(least..most).into())
 }
 
 #[test]

@@ -2,6 +2,9 @@
 
 #![cfg(feature = "app")]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod reach;
 mod twist;
 
@@ -13,10 +16,11 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use common::Random;
+use common::strategies::config;
 use glam::Vec3;
 use ik_arm::kinematics::two_bone::{Reach, TwoBone};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -209,18 +213,17 @@ struct Asked {
 
 impl Asked {
     fn random(random: &mut Random) -> Self {
-        let upper = random.length();
-        let lower = random.length();
+        let [upper, lower] = [(); 2].map(|()| random.power_of_ten(-2.0..4.0) as f32);
         if random.below(8) == 0 {
-            let [hand, root] = [(); 2].map(|()| Vec3::from_array([(); 3].map(|()| random.any())));
-            return Self { hand, upper, lower, root, spin_deg: random.any() };
+            let [hand, root] = [(); 2].map(|()| random.finite_vector());
+            return Self { hand, upper, lower, root, spin_deg: random.finite() };
         }
         Self {
-            hand: random.point() * (upper + lower),
+            hand: random.vector(0.8) * (upper + lower),
             upper,
             lower,
-            root: random.point() * 1000.0,
-            spin_deg: random.between(-1000.0, 1000.0),
+            root: random.vector(0.8) * 1000.0,
+            spin_deg: random.within(-1000.0..1000.0),
         }
     }
 
@@ -239,7 +242,7 @@ impl Asked {
             r#","swivel":"limb""#,
             r#","softness":0,"max_stretch":1"#,
             r#","min_elbow_deg":0,"swivel":"limb","softness":-0.0,"max_stretch":1.0"#,
-        ][random.below(4) as usize];
+        ][random.below(4)];
         format!(
             r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"elbow_spin_deg":{spin}{as_before}}}"#
         )
@@ -293,44 +296,6 @@ fn digits(number: &str) -> usize {
     let mantissa = number.split('e').next().unwrap_or_default();
     let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
     digits.trim_matches('0').len()
-}
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: u64) -> u64 {
-        self.next() % end
-    }
-
-    fn between(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * (self.next() >> 40) as f32 / 16_777_216.0
-    }
-
-    fn length(&mut self) -> f32 {
-        10.0_f32.powf(self.between(-2.0, 4.0))
-    }
-
-    fn point(&mut self) -> Vec3 {
-        Vec3::from_array([(); 3].map(|()| self.between(-0.8, 0.8)))
-    }
-
-    /// Any finite number, of any magnitude.
-    fn any(&mut self) -> f32 {
-        loop {
-            let value = f32::from_bits(self.next() as u32);
-            if value.is_finite() {
-                return value;
-            }
-        }
-    }
 }
 
 // Bad lines
@@ -701,12 +666,7 @@ fn a_full_disk_is_a_failure_with_a_message() {
 // Anything at all
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 150,
-        rng_seed: RngSeed::Fixed(2026),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(config(150, 2026))]
 
     #[test]
     fn whatever_the_bytes_every_line_that_is_not_blank_has_one_answer(input in any_input()) {

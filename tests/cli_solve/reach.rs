@@ -1,8 +1,11 @@
 //! Soft limits, stretching limbs and the smallest elbow angle.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
-use super::{Answer, Random, pose, poses, refusal};
+use super::{Answer, pose, poses, refusal};
+use crate::common::Random;
 
 /// A line whose hand meets its limits in its own way.
 #[derive(Debug)]
@@ -102,39 +105,28 @@ impl Asked {
     }
 }
 
-impl Random {
-    fn unit(&mut self) -> DVec3 {
-        loop {
-            if let Some(unit) = self.point().as_dvec3().try_normalize() {
-                return unit;
-            }
-        }
-    }
+/// One of the two: what matters is often at the edge.
+fn edge_or(random: &mut Random, edge: f32, range: Range<f32>) -> f32 {
+    if random.below(3) == 0 { edge } else { random.within(range) }
+}
 
-    /// One of the two: what matters is often at the edge.
-    fn edge_or(&mut self, edge: f32, low: f32, high: f32) -> f32 {
-        if self.below(3) == 0 { edge } else { self.between(low, high) }
-    }
-
-    fn reaching(&mut self) -> Asked {
-        let (upper, lower) = (self.between(20.0, 400.0), self.between(20.0, 400.0));
-        let distance = f64::from((upper + lower) * self.edge_or(0.0, 0.0, 2.5));
-        Asked {
-            hand: (self.unit() * distance).as_vec3(),
-            root: self.point() * [0.0, 1000.0][self.below(2) as usize],
-            upper,
-            lower,
-            softness: self.edge_or(0.0, 0.0, 0.999),
-            max_stretch: self.edge_or(1.0, 1.0, 2.0),
-            min_elbow_deg: self.edge_or(0.0, 0.0, 179.0),
-        }
+fn reaching(random: &mut Random) -> Asked {
+    let [upper, lower] = [(); 2].map(|()| random.within(20.0..400.0));
+    Asked {
+        hand: random.direction() * (upper + lower) * edge_or(random, 0.0, 0.0..2.5),
+        root: random.vector(0.8) * [0.0, 1000.0][random.below(2)],
+        upper,
+        lower,
+        softness: edge_or(random, 0.0, 0.0..0.999),
+        max_stretch: edge_or(random, 1.0, 1.0..2.0),
+        min_elbow_deg: edge_or(random, 0.0, 0.0..179.0),
     }
 }
 
 #[test]
 fn the_hand_meets_its_limits_as_the_formulas_say() {
     let mut random = Random(2);
-    let asked: Vec<Asked> = (0..4000).map(|_| random.reaching()).collect();
+    let asked: Vec<Asked> = (0..4000).map(|_| reaching(&mut random)).collect();
     let lines: Vec<String> = asked.iter().map(Asked::line).collect();
     for (asked, answer) in asked.iter().zip(poses(&lines)) {
         asked.check(&answer);

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::{Answer, Random, answers, errors, pose, poses, refusal, solve};
+use super::{Answer, answers, errors, pose, poses, refusal, solve};
+use crate::common::Random;
 
 /// The seed's arm.
 const LONGEST: f64 = 500.0;
@@ -46,14 +47,12 @@ fn on_map(w: DVec3) -> DVec3 {
     (w - DVec3::NEG_X).cross(DVec3::Y).cross(w).normalize()
 }
 
-impl Random {
-    /// Neither too near nor too far for the seed's arm, and nowhere near straight or folded.
-    fn hand(&mut self) -> Vec3 {
-        loop {
-            let hand = self.point() * 600.0;
-            if (150.0..450.0).contains(&hand.length()) {
-                return hand;
-            }
+/// A hand in reach of the default arm, and nowhere near straight or folded.
+fn hand(random: &mut Random) -> Vec3 {
+    loop {
+        let hand = random.vector(480.0);
+        if (150.0..450.0).contains(&hand.length()) {
+            return hand;
         }
     }
 }
@@ -91,8 +90,8 @@ fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
     let mut asked = Vec::new();
     let mut lines = Vec::new();
     for _ in 0..1000 {
-        let (hand, at) = (random.hand(), random.point() * 300.0);
-        let spin = random.between(-360.0, 360.0);
+        let (hand, at) = (hand(&mut random), random.vector(0.8) * 300.0);
+        let spin = random.within(-360.0..360.0);
         for formula in formulas(at) {
             let Vec3 { x, y, z } = hand;
             let twist_reference = &formula.twist_reference;
@@ -193,7 +192,7 @@ fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
     const STEPS: usize = 90;
     let mut random = Random(5);
     for half_angle in [0.3, 0.8, 1.2, 1.5] {
-        let axis = random.hand().as_dvec3().normalize();
+        let axis = hand(&mut random).as_dvec3().normalize();
         let hands = around(axis, half_angle, STEPS);
         let lines: Vec<String> = hands.iter().map(|hand| transported(*hand)).collect();
 
@@ -314,9 +313,9 @@ fn without_transport_no_line_knows_of_another() {
             let hand = match random.below(4) {
                 0 => Vec3::ZERO,
                 1 => Vec3::new(0.0, -250.0, 0.0),
-                _ => random.hand(),
+                _ => hand(&mut random),
             };
-            let at = random.point();
+            let at = random.vector(0.8);
             formulas(at).map(|formula| line(hand, &formula.twist_reference))
         })
         .collect();

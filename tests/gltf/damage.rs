@@ -2,9 +2,9 @@
 
 use ik_arm::io;
 
+use crate::common::Random;
+use crate::common::damage::{message, mutations};
 use crate::documents::{example, glb, keyed_arm};
-use crate::files::{Random, message, mutations};
-use crate::rigs;
 use crate::text;
 
 fn open(bytes: &[u8]) {
@@ -30,15 +30,14 @@ fn end_of_json(bytes: &[u8]) -> usize {
 #[test]
 fn five_hundred_cut_and_flipped_binary_files_are_errors_or_documents() {
     let mut random = Random(3);
-    let files =
-        [glb(&keyed_arm(&mut rigs::Random(1))), glb(&example("human")), glb(&example("snake"))];
+    let files = [glb(&keyed_arm(&mut Random(1))), glb(&example("human")), glb(&example("snake"))];
     for round in 0..500 {
         let mut bytes = files[round % files.len()].clone();
-        let length = bytes.len() as u64;
-        let json = end_of_json(&bytes) as u64;
+        let length = bytes.len();
+        let json = end_of_json(&bytes);
         let places = match round % 4 {
             0 => {
-                bytes.truncate(random.below(length) as usize);
+                bytes.truncate(random.below(length));
                 0..0
             }
             1 => 0..20,
@@ -48,7 +47,7 @@ fn five_hundred_cut_and_flipped_binary_files_are_errors_or_documents() {
         for _ in 0..=random.below(4) {
             if !places.is_empty() {
                 let at = places.start + random.below(places.end - places.start);
-                bytes[at as usize] = random.next() as u8;
+                bytes[at] = random.next() as u8;
             }
         }
         open(&bytes);
@@ -58,7 +57,7 @@ fn five_hundred_cut_and_flipped_binary_files_are_errors_or_documents() {
 #[test]
 fn five_hundred_binary_files_with_other_values_are_errors_or_documents() {
     let mut random = Random(4);
-    for whole in [glb(&keyed_arm(&mut rigs::Random(1))), glb(&example("two-targets"))] {
+    for whole in [glb(&keyed_arm(&mut Random(1))), glb(&example("two-targets"))] {
         let end = end_of_json(&whole);
         let json = String::from_utf8(whole[20..end].to_vec()).expect("UTF-8");
         for mutated in mutations(&json, &mut random, 250) {

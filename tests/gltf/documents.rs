@@ -6,7 +6,8 @@ use ik_arm::io::{self, Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 
-use crate::rigs::{Random, transform};
+use crate::common::Random;
+use crate::common::skeletons::transform;
 
 pub fn example(name: &str) -> Document {
     Example::find(name).expect("an example").open().expect("it opens").document

@@ -10,9 +10,9 @@ use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::scene::Palette;
 use serde_json::Value;
 
+use crate::common::Random;
 use crate::documents::{all, example, glb, keyed_arm};
 use crate::glb::{Glb, floats, index};
-use crate::rigs::Random;
 
 fn each(check: impl Fn(&str, &Document, &Glb)) {
     for (name, document) in all() {

@@ -8,7 +8,7 @@ use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::Skeleton;
 use serde_json::{Value, json};
 
-use crate::files::message;
+use crate::common::damage::message;
 use crate::text::{Text, base64, glb};
 
 fn open(text: &Text) -> Opened {

@@ -1,10 +1,8 @@
 //! glTF: what is written is what the document shows, and reads back; what is wrong is refused.
 #![cfg(feature = "document")]
 
-#[path = "../files/mod.rs"]
-mod files;
-#[path = "../common/rigs.rs"]
-mod rigs;
+#[path = "../common/mod.rs"]
+mod common;
 
 mod damage;
 mod documents;

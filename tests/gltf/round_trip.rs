@@ -6,8 +6,8 @@ use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::rig::Part;
 
+use crate::common::Random;
 use crate::documents::{all, example, glb, keyed_arm};
-use crate::rigs::Random;
 
 fn reopened(document: &Document) -> Opened {
     let bytes = glb(document);

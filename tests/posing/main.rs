@@ -1,6 +1,9 @@
 //! An arm in a session: pinned, measured from elsewhere, led by its angles, its hand turned, in time.
 #![cfg(feature = "document")]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod always;
 mod cases;
 mod keyed;
@@ -10,22 +13,8 @@ use ik_arm::document::TwistReferenceKind;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{Action, Session};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
-pub fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x0b0d_01e5),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-pub fn points(size: f32) -> impl Strategy<Value = Vec3> {
-    [-size..size, -size..size, -size..size].prop_map(Vec3::from_array)
-}
-
-pub fn swivels() -> impl Strategy<Value = TwistReferenceKind> {
+pub fn references() -> impl Strategy<Value = TwistReferenceKind> {
     (0..TwistReferenceKind::ALL.len()).prop_map(|index| TwistReferenceKind::ALL[index])
 }
 

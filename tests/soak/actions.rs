@@ -4,8 +4,8 @@
 use ik_arm::document::Channel;
 use ik_arm::session::{Action, Session};
 
+use crate::common::Random;
 use crate::kinds::{KINDS, Kind, Sort};
-use crate::rigs::Random;
 use crate::values::Values;
 
 pub struct Actions {

@@ -2,12 +2,12 @@
 #![cfg(feature = "document")]
 
 mod actions;
+#[path = "../common/mod.rs"]
+mod common;
 mod kinds;
 mod past;
 mod pictured;
 mod posed;
-#[path = "../common/rigs.rs"]
-mod rigs;
 mod run;
 mod sound;
 mod values;

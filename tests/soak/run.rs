@@ -7,8 +7,8 @@ use ik_arm::document::Document;
 use ik_arm::session::Action;
 
 use crate::actions::Actions;
+use crate::common::Random;
 use crate::kinds::{KINDS, Kind, kind};
-use crate::rigs::Random;
 use crate::watch::{Care, Watch};
 
 pub struct Run {

@@ -4,7 +4,7 @@ use glam::Vec3;
 use ik_arm::kinematics::job::TwoBoneJob;
 use ik_arm::kinematics::two_bone::Reach;
 
-use crate::rigs::Random;
+use crate::common::Random;
 use crate::skeleton::*;
 
 #[test]

@@ -6,7 +6,7 @@ use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
 use ik_arm::kinematics::job::{Correction, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
-use crate::rigs::Random;
+use crate::common::Random;
 use crate::skeleton::*;
 
 /// The chain by its matrices alone, in start joint space.

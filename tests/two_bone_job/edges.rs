@@ -4,7 +4,7 @@ use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3, Quat, Vec3};
 use ik_arm::kinematics::job::{JobError, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
-use crate::rigs::Random;
+use crate::common::Random;
 use crate::skeleton::*;
 
 #[test]

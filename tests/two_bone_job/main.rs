@@ -3,8 +3,8 @@
 mod accuracy;
 mod any_start;
 mod cases;
+#[path = "../common/mod.rs"]
+mod common;
 mod edges;
 mod properties;
-#[path = "../common/rigs.rs"]
-mod rigs;
 mod skeleton;

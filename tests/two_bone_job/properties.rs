@@ -7,11 +7,12 @@ use ik_arm::kinematics::job::{Correction, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 use proptest::prelude::*;
 
-use crate::rigs::Random;
+use crate::common::Random;
+use crate::common::strategies::config;
 use crate::skeleton::*;
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(4_000, 0x0221))]
 
     #[test]
     fn under_every_parent_the_hand_is_where_it_can_be(

@@ -4,21 +4,12 @@ use glam::{Affine3A, DAffine3, DQuat, DVec3, Quat};
 use ik_arm::kinematics::job::{Correction, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 use proptest::prelude::*;
-use proptest::test_runner::{RngSeed, TestCaseResult};
+use proptest::test_runner::TestCaseResult;
 
-use crate::rigs::Random;
+use crate::common::Random;
 
 /// Error of a hand in units of the chain's length.
 pub const EXACT: f64 = 1e-6;
-
-pub fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 4_000,
-        rng_seed: RngSeed::Fixed(0x0221),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
 
 /// What a skeleton stores: translation, then rotation, then scale.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use ik_arm::kinematics::skeleton::{Joint, Skeleton};
 use ik_arm::session::{Action, Dialog, Export, Job};
 
 use super::Values;
-use crate::rigs;
+use crate::common::skeletons;
 
 impl Values<'_> {
     pub fn path(&mut self) -> PathBuf {
@@ -43,9 +43,9 @@ impl Values<'_> {
             34 if self.chance(0.005) => skeleton(long_chain()),
             _ => {
                 let joints = 1 + self.random.below(20);
-                let mut forest = rigs::forest(self.random, joints);
+                let mut forest = skeletons::forest(self.random, joints);
                 if self.coin() {
-                    let transform = rigs::transform(self.random);
+                    let transform = skeletons::transform(self.random);
                     forest.set_transform(transform).expect("finite");
                 }
                 skeleton(forest)

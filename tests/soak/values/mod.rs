@@ -12,7 +12,7 @@ use ik_arm::document::RigKind;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::Session;
 
-use crate::rigs::Random;
+use crate::common::Random;
 
 /// Makes values for a session as that stands.
 pub struct Values<'a> {

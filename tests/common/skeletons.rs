@@ -1,71 +1,12 @@
 //! Random skeletons and targets, the same on every run.
 
-// Each test, example and bench takes what it needs.
-#![allow(dead_code)]
-
-use std::f32::consts::PI;
-use std::ops::Range;
-
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{Affine3A, Mat3, Vec3};
 use ik_arm::kinematics::chain_ik::TipTarget;
 use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
 
-/// SplitMix64.
-pub struct Random(pub u64);
+use super::Random;
 
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn within(&mut self, range: Range<f32>) -> f32 {
-        let share = (self.next() >> 40) as f32 / (1_u64 << 24) as f32;
-        range.start + (range.end - range.start) * share
-    }
-
-    pub fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-
-    pub fn chance(&mut self, share: f32) -> bool {
-        self.within(0.0..1.0) < share
-    }
-
-    pub fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::from_array([(); 3].map(|()| self.within(-size..size)))
-    }
-
-    /// Uniform on the sphere.
-    pub fn direction(&mut self) -> Vec3 {
-        loop {
-            let v = self.vector(1.0);
-            if (0.01..1.0).contains(&v.length_squared()) {
-                return v.normalize();
-            }
-        }
-    }
-
-    pub fn angles(&mut self) -> Vec3 {
-        self.vector(PI)
-    }
-
-    pub fn rotation(&mut self) -> Mat3 {
-        let Vec3 { x, y, z } = self.angles();
-        Mat3::from_quat(Quat::from_euler(glam::EulerRot::ZYX, z, y, x))
-    }
-
-    pub fn limit(&mut self) -> Limit {
-        let (min, max) = (self.within(-2.5..0.5), self.within(0.0..2.5));
-        Limit { min, max: max.max(min) }
-    }
-}
-
-/// A locked root and `joints` after each other, bones half to one and a half units long; straight
-/// or crooked.
+/// A locked root and a chain of `joints`, straight or crooked, with bones 0.5 to 1.5 units long.
 pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
     let is_straight = random.chance(0.5);
     let mut skeleton = Skeleton::with_root("root");
@@ -80,8 +21,8 @@ pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
     skeleton
 }
 
-/// A trunk that forks into `ends` branches of two to five joints, one after the other from any joint
-/// before; one in five sits beside its parent's tip.
+/// A trunk and `ends` branches of two to five joints, each from any joint before it; one joint in five
+/// is away from its parent's tip. Returns the skeleton and the last joint of each branch.
 pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<usize>) {
     let mut skeleton = chain(random, 2, unit);
     let mut tips = Vec::new();
@@ -103,7 +44,7 @@ fn sprout(random: &mut Random, skeleton: &mut Skeleton, parent: usize, unit: f32
     skeleton.add(Joint { offset, ..Joint::new(&name, Some(parent), axis) }).expect("joint")
 }
 
-/// Any forest that there can be: offsets, frames, limits, locked joints, points, several roots.
+/// Several trees with offsets, frames, limits, locked joints and bones of no length.
 pub fn forest(random: &mut Random, joints: usize) -> Skeleton {
     let mut list = Vec::new();
     for index in 0..joints {
@@ -116,15 +57,20 @@ pub fn forest(random: &mut Random, joints: usize) -> Skeleton {
         if random.chance(0.5) {
             joint.frame = random.rotation();
         }
-        for limit in &mut joint.limits {
-            *limit = random.chance(0.2).then(|| random.limit());
+        for each in &mut joint.limits {
+            *each = random.chance(0.2).then(|| limit(random));
         }
         list.push(joint);
     }
     Skeleton::from_joints(list).expect("forest")
 }
 
-/// Every joint that is not locked anywhere.
+pub fn limit(random: &mut Random) -> Limit {
+    let (min, max) = (random.within(-2.5..0.5), random.within(0.0..2.5));
+    Limit { min, max: max.max(min) }
+}
+
+/// Gives every joint that is not locked a random rotation.
 pub fn shake(random: &mut Random, skeleton: &mut Skeleton) {
     for joint in 0..skeleton.joints().len() {
         if !skeleton.joints()[joint].locked {
@@ -133,7 +79,7 @@ pub fn shake(random: &mut Random, skeleton: &mut Skeleton) {
     }
 }
 
-/// Where the tips are in some pose: together in reach.
+/// Targets that can all be reached at once: the tips of a random pose.
 pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[usize]) -> Vec<TipTarget> {
     let mut posed = skeleton.clone();
     shake(random, &mut posed);
@@ -141,7 +87,7 @@ pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[usize]) -> Ve
     tips.iter().map(target).collect()
 }
 
-/// Of bones and offsets, the root's own left out; the longest of these.
+/// Length of the longest chain from a root to one of the tips, without the root's own offset.
 pub fn length(skeleton: &Skeleton, tips: &[usize]) -> f32 {
     let joints = skeleton.joints();
     let path = |tip: &usize| {
@@ -155,7 +101,7 @@ pub fn length(skeleton: &Skeleton, tips: &[usize]) -> f32 {
     tips.iter().map(path).fold(0.0, f32::max)
 }
 
-/// Turned, moved, and scaled alike, unlike, or mirrored.
+/// A rotation and a translation with no scale, an even, an uneven or a mirroring one.
 pub fn transform(random: &mut Random) -> Affine3A {
     let scale = match random.below(4) {
         0 => Vec3::ONE,

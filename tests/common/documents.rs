@@ -1,0 +1,163 @@
+//! Random documents.
+
+use glam::{Affine3A, Mat3, Quat, Vec3};
+use ik_arm::document::{
+    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandSpace, Keys, Overlay,
+    Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
+    Wrist,
+};
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
+use ik_arm::kinematics::fk::Fk;
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::TransportedFrame;
+use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+
+use super::Random;
+
+/// A document with any finite numbers.
+pub fn document(random: &mut Random) -> Document {
+    let arm = arm(random);
+    let mut rig = SkeletonRig::new(skeleton(random));
+    for joint in 0..rig.skeleton.joints().len() {
+        if random.below(3) == 0 {
+            let paths = [TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight];
+            let motion = TargetMotion {
+                path: random.one_of(&paths),
+                radius: random.finite(),
+                period: random.positive(),
+            };
+            let (home, weight) = (random.finite_vector(), random.positive());
+            rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
+        }
+    }
+    rig.solver = SolverOptions {
+        method: random.one_of(&Method::ALL),
+        iterations: random.coin().then(|| 1 + random.below(1 << 31) as u32),
+        tolerance: random.coin().then(|| random.positive()),
+        damping: random.positive(),
+        step: random.positive(),
+        root: random.one_of(&[Root::Fixed, Root::Free]),
+    };
+    rig.iterations_per_frame = 1 + random.below(1000) as u32;
+    rig.follow_path = random.coin().then(|| FollowPath {
+        radius: random.finite(),
+        amplitude: random.finite(),
+        waves: random.below(1 << 32) as u32,
+        period: random.positive(),
+    });
+    let keys = keys(random, &rig);
+    let start = f64::from(random.within(-100.0..100.0));
+    let timeline = Timeline {
+        start,
+        end: start + f64::from(random.within(0.1..100.0)) / 3.0,
+        frame_rate: 1 + random.below(1000) as u32,
+    };
+    Document {
+        rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
+        arm,
+        skeleton_rig: rig,
+        keys,
+        timeline,
+        metres: random.coin().then(|| random.positive()),
+        camera: Camera {
+            target: random.finite_vector(),
+            yaw: random.finite(),
+            pitch: random.within(-1.5..1.5),
+            distance: random.positive(),
+            orthographic: random.coin(),
+        },
+        other_camera: random.coin().then(Camera::default),
+        display: Overlay::all().filter(|_| random.coin()).collect::<Display>(),
+    }
+}
+
+fn arm(random: &mut Random) -> Arm {
+    let facing = Facing::towards(random.finite_vector(), Facing::default());
+    let soft_reach = SoftReach::new(
+        random.within(0.0..0.99),
+        1.0 + random.finite().abs().min(9.0),
+        random.within(0.0..3.1),
+    );
+    Arm {
+        goal: match random.coin() {
+            true => Cursor::Root(random.finite_vector()),
+            false => Cursor::World(random.finite_vector()),
+        },
+        twist: random.finite(),
+        root: random.finite_vector(),
+        bones: TwoBone::new(random.positive(), random.positive()).expect("lengths"),
+        facing: Facing::towards(random.finite_vector(), Facing::default()),
+        twist_reference: random.one_of(&TwistReferenceKind::ALL),
+        pole: random.finite_vector(),
+        transported: random.coin().then(|| TransportedFrame::new(facing)),
+        soft_reach: soft_reach.expect("a softening"),
+        influence: random.within(0.0..1.0),
+        fk: Fk {
+            shoulder: random.finite_vector(),
+            bend: random.finite(),
+            stretch: random.positive(),
+        },
+        wrist: Wrist {
+            space: random.one_of(&[HandSpace::Lower, HandSpace::World]),
+            angles: random.finite_vector(),
+            roll: random.finite(),
+        },
+    }
+}
+
+fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
+    let overlays = Overlay::all().map(Channel::Overlay);
+    let joints = (0..rig.skeleton.joints().len())
+        .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
+    let targets = rig.targets.iter();
+    let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
+    let all = Channel::OF_ARM.into_iter().chain(overlays).chain([Channel::Translation]);
+    let mut keys = Keys::default();
+    for channel in all.chain(joints).chain(targets) {
+        if random.below(3) > 0 {
+            continue;
+        }
+        for _ in 0..1 + random.below(5) {
+            let value = match channel.quantity() {
+                Quantity::Point | Quantity::Angles => random.finite_vector(),
+                Quantity::Fraction => Vec3::new(random.within(0.0..1.0), 0.0, 0.0),
+                Quantity::Angle => Vec3::new(random.finite(), 0.0, 0.0),
+                Quantity::Length => Vec3::new(random.positive(), 0.0, 0.0),
+                Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),
+            };
+            keys.insert(channel, f64::from(random.finite()) / 3.0, value);
+        }
+    }
+    keys
+}
+
+fn skeleton(random: &mut Random) -> Skeleton {
+    let count = random.below(12);
+    let joints = (0..count).map(|index| {
+        let parent = (index > 0 && random.below(4) > 0).then(|| random.below(index));
+        let turn = [(); 4].map(|()| random.within(-1.0..1.0));
+        Joint {
+            name: format!("{} \"é\\\n{index}", random.below(100)),
+            parent,
+            offset: random.finite_vector(),
+            axis: random.finite_vector(),
+            rotation: random.finite_vector(),
+            frame: match random.below(3) {
+                0 => Mat3::from_quat(Quat::from_array(turn).normalize()),
+                1 => Mat3::from_cols(Vec3::new(1.0, -0.0, 0.0), Vec3::Y, Vec3::Z),
+                _ => Mat3::IDENTITY,
+            },
+            limits: [(); 3].map(|()| {
+                let (a, b) = (random.finite(), random.finite());
+                random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
+            }),
+            locked: random.coin(),
+            radius: random.finite().abs(),
+        }
+    });
+    let mut skeleton = Skeleton::from_joints(joints.collect()).expect("a skeleton");
+    let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.finite()));
+    skeleton.set_transform(transform).expect("finite");
+    skeleton
+}
