@@ -160,7 +160,7 @@ fn bound(arm: TwoBone, softness: f64, cursor: DVec3, gain: f64) -> f64 {
 /// near the shoulder, or nearer to a direction than 30°, are left out.
 fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
     const STEPS: usize = 6000;
-    let l = length(ik.bones);
+    let l = limits(ik.bones).1;
     let counts = |cursor: DVec3| {
         let near = avoided.is_some_and(|avoided| cursor.normalize().dot(avoided) > 0.866);
         cursor.length() > 0.05 * l && !near
