@@ -1,12 +1,12 @@
 //! Files of version 1 open as files of version 2 with the same content, and are saved as version 2.
 #![cfg(feature = "document")]
 
-mod files;
+mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use files::message;
+use common::damage::message;
 use ik_arm::io::{self, Opened};
 
 const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
