@@ -10,7 +10,7 @@ use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{Gpu, Picture, Solver};
 use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 use ik_arm::scene::Scene;
-use ik_arm::session::{Action, Overlays, Session};
+use ik_arm::session::{Overlays, PlaybackAction, Session, ViewAction};
 use image::RgbaImage;
 
 fn crowd(arms: u32) -> Crowd {
@@ -195,25 +195,25 @@ fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
     let mut session = Session::default();
     let before = session.document().clone();
     assert_eq!(session.crowd(), None);
-    session.apply(Action::ShowCrowd(true));
-    session.apply(Action::SetCrowd(0));
+    session.apply(ViewAction::ShowCrowd(true));
+    session.apply(ViewAction::SetCrowdSize(0));
     assert_eq!(session.crowd().map(|crowd| crowd.arms), Some(1));
-    session.apply(Action::SetCrowd(u32::MAX));
+    session.apply(ViewAction::SetCrowdSize(u32::MAX));
     assert_eq!(session.crowd().map(|crowd| crowd.arms), Some(Crowd::MOST));
-    session.apply(Action::SetCrowd(40));
+    session.apply(ViewAction::SetCrowdSize(40));
     for time in [10.0, 12.0] {
-        session.apply(Action::Advance(time));
+        session.apply(PlaybackAction::Advance(time));
     }
     assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0));
-    session.apply(Action::MoveCrowd(false));
-    session.apply(Action::Advance(15.0));
+    session.apply(ViewAction::AnimateCrowd(false));
+    session.apply(PlaybackAction::Advance(15.0));
     assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0));
     assert!(!session.is_moving());
-    session.apply(Action::MoveCrowd(true));
-    session.apply(Action::Advance(100.0));
+    session.apply(ViewAction::AnimateCrowd(true));
+    session.apply(PlaybackAction::Advance(100.0));
     assert_eq!(session.crowd().map(|crowd| crowd.time), Some(2.0), "a pause is no time");
-    session.apply(Action::ShowCrowd(false));
-    session.apply(Action::Advance(120.0));
+    session.apply(ViewAction::ShowCrowd(false));
+    session.apply(PlaybackAction::Advance(120.0));
     assert_eq!(session.crowd(), None);
     let after = Document { camera: before.camera, ..session.document().clone() };
     assert_eq!(after, before);

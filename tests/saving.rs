@@ -15,7 +15,7 @@ use glam::Vec3;
 use ik_arm::document::{Document, RigKind};
 use ik_arm::io;
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use ik_arm::session::{Action, Session};
+use ik_arm::session::{EditAction, FileAction, Session};
 
 /// Names the file that a child process saves to.
 const TO: &str = "IK_ARM_TEST_SAVES_TO";
@@ -107,11 +107,11 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
 /// A session with changes, and what it says when it is told to save to `path`.
 fn not_saved(path: &Path) -> (Session, String) {
     let mut session = Session::default();
-    session.apply(Action::SetHand(Vec3::new(1.0, 2.0, 3.0)));
+    session.apply(EditAction::SetHand(Vec3::new(1.0, 2.0, 3.0)));
     let document = session.document().clone();
     let error = io::save(session.document(), path).expect_err("it cannot be saved");
     let why = error.to_string();
-    session.apply(Action::NotSaved { path: path.to_owned(), why });
+    session.apply(FileAction::NotSaved { path: path.to_owned(), why });
     assert!(session.is_unsaved());
     assert_eq!(session.document(), &document);
     assert_eq!(session.file(), None);

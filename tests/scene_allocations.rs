@@ -9,7 +9,9 @@ use ik_arm::document::{
 };
 use ik_arm::io::Example;
 use ik_arm::scene::Scene;
-use ik_arm::session::{Action, Overlays, Preferences, Session};
+use ik_arm::session::{
+    Action, EditAction, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
+};
 
 /// What the window does between two frames, with what it keeps for it.
 struct Stage {
@@ -71,13 +73,13 @@ fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
         }
         // Within reach, out of it, too close, and turned.
         Stage::new(document).assert_takes_nothing(&[
-            Action::SetHand(Vec3::new(250.0, 120.0, 60.0)),
-            Action::SetHand(Vec3::new(-900.5, 120.25, 60.0)),
-            Action::SetHand(Vec3::new(12.0, -40.0, 9.0)),
-            Action::SetTwist(1.25),
-            Action::SetTwist(-0.5),
-            Action::SetTime(0.5),
-            Action::SetTime(0.25),
+            Action::from(EditAction::SetHand(Vec3::new(250.0, 120.0, 60.0))),
+            EditAction::SetHand(Vec3::new(-900.5, 120.25, 60.0)).into(),
+            EditAction::SetHand(Vec3::new(12.0, -40.0, 9.0)).into(),
+            EditAction::SetTwist(1.25).into(),
+            EditAction::SetTwist(-0.5).into(),
+            PlaybackAction::SetTime(0.5).into(),
+            PlaybackAction::SetTime(0.25).into(),
         ]);
     }
 }
@@ -97,17 +99,17 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
         document.key(Channel::Rotation(3), time);
     }
     let mut stage = Stage::new(document);
-    stage.session.apply(Action::Select(vec![joints - 1]));
+    stage.session.apply(SelectAction::Joints(vec![joints - 1]));
     assert!(stage.session.overlays().trail.len() > 10, "a motion path");
     stage.assert_takes_nothing(&[
-        Action::SetTime(0.1),
-        Action::SetTime(0.6),
-        Action::Step,
-        Action::Point(Some(2)),
-        Action::Point(None),
-        Action::Select(vec![joints - 1, 4]),
-        Action::Select(vec![3]),
-        Action::Select(vec![joints - 1]),
+        Action::from(PlaybackAction::SetTime(0.1)),
+        PlaybackAction::SetTime(0.6).into(),
+        EditAction::StepSolver.into(),
+        SelectAction::Hover(Some(2)).into(),
+        SelectAction::Hover(None).into(),
+        SelectAction::Joints(vec![joints - 1, 4]).into(),
+        SelectAction::Joints(vec![3]).into(),
+        SelectAction::Joints(vec![joints - 1]).into(),
     ]);
 }
 
@@ -115,10 +117,11 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
 fn solvers_that_race_take_no_memory() {
     let opened = Example::find("human").expect("an example").open().expect("it opens");
     let mut stage = Stage::new(opened.document);
-    stage.session.apply(Action::Comparison(true));
-    stage.frame(Action::Advance(0.0));
+    stage.session.apply(SolverAction::Compare(true));
+    stage.frame(PlaybackAction::Advance(0.0).into());
     for frame in 1..8 {
-        let (taken, has_changed) = stage.frame(Action::Advance(f64::from(frame) / 60.0));
+        let (taken, has_changed) =
+            stage.frame(PlaybackAction::Advance(f64::from(frame) / 60.0).into());
         assert!(has_changed && (frame < 3 || taken == 0), "frame {frame}: {taken}");
     }
 }
@@ -126,7 +129,7 @@ fn solvers_that_race_take_no_memory() {
 #[test]
 fn a_snake_on_its_way_takes_no_memory() {
     let opened = Example::find("snake").expect("an example").open().expect("it opens");
-    let times = [0.1, 0.4, 1.7, 2.3].map(Action::SetTime);
+    let times = [0.1, 0.4, 1.7, 2.3].map(|time| PlaybackAction::SetTime(time).into());
     Stage::new(opened.document).assert_takes_nothing(&times);
 }
 

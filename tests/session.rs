@@ -14,7 +14,10 @@ use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::Limit;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
-use ik_arm::session::{Action, Dialog, DragInput, Grip, Handle, PoseMode, Session};
+use ik_arm::session::{
+    Action, Dialog, DragInput, EditAction, FileAction, Grip, Handle, PlaybackAction, PoseMode,
+    SelectAction, Session, SolverAction, TransactionAction, ViewAction,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -60,19 +63,19 @@ fn grips() -> impl Strategy<Value = Grip> {
 fn building() -> impl Strategy<Value = Action> {
     prop_oneof![
         3 => (joints(), proptest::option::of(points()))
-            .prop_map(|(parent, tip)| Action::AddChild { parent, tip }),
-        1 => Just(Action::AddRoot),
-        1 => vec(joints(), 1..3).prop_map(Action::Delete),
-        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::Rename { joint, name }),
+            .prop_map(|(parent, tip)| Action::from(EditAction::AddChild { parent, tip })),
+        1 => Just(Action::from(EditAction::AddRoot)),
+        1 => vec(joints(), 1..3).prop_map(EditAction::DeleteJoints).prop_map(Action::from),
+        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::from(EditAction::RenameJoint { joint, name })),
         2 => (joints(), proptest::option::of(joints()))
-            .prop_map(|(joint, parent)| Action::Reparent { joint, parent }),
-        1 => (joints(), points()).prop_map(|(joint, axis)| Action::SetAxis { joint, axis }),
+            .prop_map(|(joint, parent)| Action::from(EditAction::ReparentJoint { joint, parent })),
+        1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(EditAction::SetAxis { joint, axis })),
         1 => (joints(), 0..3_usize, numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
-            Action::SetLimit { joint, axis, limit: Some(Limit { min, max }) }
+            Action::from(EditAction::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
         }),
         1 => (joints(), any::<bool>())
-            .prop_map(|(joint, locked)| Action::SetLocked { joint, locked }),
-        1 => vec(joints(), 0..3).prop_map(Action::Select),
+            .prop_map(|(joint, locked)| Action::from(EditAction::SetLocked { joint, locked })),
+        1 => vec(joints(), 0..3).prop_map(SelectAction::Joints).prop_map(Action::from),
     ]
 }
 
@@ -89,30 +92,30 @@ fn posing() -> impl Strategy<Value = Action> {
     });
     prop_oneof![
         2 => (joints(), points())
-            .prop_map(|(joint, rotation)| Action::SetRotation { joint, rotation }),
-        2 => joints().prop_map(Action::AddTarget),
-        1 => joints().prop_map(Action::RemoveTarget),
+            .prop_map(|(joint, rotation)| Action::from(EditAction::SetRotation { joint, rotation })),
+        2 => joints().prop_map(EditAction::AddTarget).prop_map(Action::from),
+        1 => joints().prop_map(EditAction::RemoveTarget).prop_map(Action::from),
         2 => (joints(), points(), numbers(), any::<bool>(), motion).prop_map(
-            |(joint, home, weight, enabled, motion)| Action::SetTarget(Target {
+            |(joint, home, weight, enabled, motion)| Action::from(EditAction::SetTarget(Target {
                 joint, home, weight, enabled, motion
-            })
+            }))
         ),
         1 => (0..6_usize, numbers(), any::<bool>()).prop_map(|(method, damping, free)| {
             let root = if free { Root::Free } else { Root::Fixed };
-            Action::SetSolver(SolverOptions {
+            Action::from(EditAction::SetSolver(SolverOptions {
                 method: Method::ALL[method], damping, root, ..SolverOptions::default()
-            })
+            }))
         }),
-        1 => any::<bool>().prop_map(|on| Action::SetFollowPath(on.then_some(FollowPath {
+        1 => any::<bool>().prop_map(|on| Action::from(EditAction::SetFollowPath(on.then_some(FollowPath {
             radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0
-        }))),
-        1 => any::<bool>().prop_map(Action::Run),
-        1 => Just(Action::Step),
-        1 => Just(Action::ResetSolver),
-        1 => any::<bool>().prop_map(Action::Comparison),
-        1 => any::<bool>().prop_map(Action::Play),
-        2 => (0.0..60.0).prop_map(Action::Advance),
-        1 => Just(Action::ResetPose),
+        })))),
+        1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
+        1 => Just(Action::from(EditAction::StepSolver)),
+        1 => Just(Action::from(EditAction::ResetSolver)),
+        1 => any::<bool>().prop_map(SolverAction::Compare).prop_map(Action::from),
+        1 => any::<bool>().prop_map(PlaybackAction::Play).prop_map(Action::from),
+        2 => (0.0..60.0).prop_map(PlaybackAction::Advance).prop_map(Action::from),
+        1 => Just(Action::from(EditAction::ResetPose)),
     ]
 }
 
@@ -120,24 +123,24 @@ fn arming() -> impl Strategy<Value = Action> {
     let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
     let soft_reach = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
     prop_oneof![
-        3 => points().prop_map(Action::SetHand),
-        2 => points().prop_map(Action::SetRoot),
-        2 => any::<bool>().prop_map(Action::PinHand),
-        1 => points().prop_map(Action::SetPin),
-        3 => (0..4_usize).prop_map(|twist_reference| Action::SetTwistReference(TwistReferenceKind::ALL[twist_reference])),
-        2 => points().prop_map(Action::SetPole),
-        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::SetSoftReach(
+        3 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
+        2 => points().prop_map(EditAction::SetRoot).prop_map(Action::from),
+        2 => any::<bool>().prop_map(EditAction::PinHand).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetPin).prop_map(Action::from),
+        3 => (0..4_usize).prop_map(|twist_reference| Action::from(EditAction::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
+        2 => points().prop_map(EditAction::SetPole).prop_map(Action::from),
+        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::from(EditAction::SetSoftReach(
             SoftReach::new(softness, stretch, angle).expect("a softening")
-        )),
-        2 => parts().prop_map(Action::SetInfluence),
-        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(Action::SwitchTo),
-        1 => points().prop_map(Action::SetShoulder),
-        1 => numbers().prop_map(Action::SetBend),
-        1 => points().prop_map(Action::SetWrist),
-        1 => prop_oneof![Just(HandSpace::Lower), Just(HandSpace::World)].prop_map(Action::SetWristSpace),
-        1 => Just(Action::ResetTransport),
+        ))),
+        2 => parts().prop_map(EditAction::SetInfluence).prop_map(Action::from),
+        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(EditAction::SwitchPoseMode).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetShoulder).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetBend).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetWrist).prop_map(Action::from),
+        1 => prop_oneof![Just(HandSpace::Lower), Just(HandSpace::World)].prop_map(EditAction::SetWristSpace).prop_map(Action::from),
+        1 => Just(Action::from(ViewAction::ResetTransport)),
         1 => any::<bool>().prop_map(|arm| {
-            Action::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton })
+            Action::from(EditAction::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
         }),
     ]
 }
@@ -160,27 +163,27 @@ fn keying() -> impl Strategy<Value = Action> {
     let times = prop_oneof![(0..5).prop_map(|step| f64::from(step) * 0.5), -1.0..9.0_f64];
     let key = (channels(), times.clone());
     prop_oneof![
-        4 => vec(channels(), 1..4).prop_map(Action::Key),
-        3 => times.clone().prop_map(Action::SetTime),
-        1 => vec(key.clone(), 1..3).prop_map(Action::DeleteKeys),
-        1 => vec(channels(), 1..3).prop_map(Action::ClearChannels),
+        4 => vec(channels(), 1..4).prop_map(EditAction::Key).prop_map(Action::from),
+        3 => times.clone().prop_map(PlaybackAction::SetTime).prop_map(Action::from),
+        1 => vec(key.clone(), 1..3).prop_map(EditAction::DeleteKeys).prop_map(Action::from),
+        1 => vec(channels(), 1..3).prop_map(EditAction::ClearChannels).prop_map(Action::from),
         1 => (vec(key.clone(), 1..3), -2.0..2.0_f64)
-            .prop_map(|(keys, by)| Action::MoveKeys { keys, by }),
-        1 => vec(key, 1..3).prop_map(Action::SelectKeys),
-        1 => Just(Action::CopyKeys),
-        1 => Just(Action::PasteKeys),
-        1 => any::<bool>().prop_map(Action::SetAutoKey),
+            .prop_map(|(keys, by)| Action::from(EditAction::MoveKeys { keys, by })),
+        1 => vec(key, 1..3).prop_map(SelectAction::Keys).prop_map(Action::from),
+        1 => Just(Action::from(SelectAction::CopyKeys)),
+        1 => Just(Action::from(EditAction::PasteKeys)),
+        1 => any::<bool>().prop_map(PlaybackAction::SetAutoKey).prop_map(Action::from),
         1 => (times.clone(), times, 0..70_u32).prop_map(|(start, end, frame_rate)| {
-            Action::SetTimeline(Timeline { start, end, frame_rate })
+            Action::from(EditAction::SetTimeline(Timeline { start, end, frame_rate }))
         }),
-        1 => points().prop_map(Action::SetHand),
-        1 => numbers().prop_map(Action::SetTwist),
-        1 => numbers().prop_map(Action::SetUpper),
-        1 => any::<bool>().prop_map(|shown| Action::Show(Overlay::Cursor, shown)),
-        1 => points().prop_map(Action::SetTranslation),
-        1 => numbers().prop_map(|metres| Action::SetMetres(Some(metres))),
-        1 => Just(Action::Undo),
-        1 => Just(Action::Redo),
+        1 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetTwist).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetUpper).prop_map(Action::from),
+        1 => any::<bool>().prop_map(|shown| Action::from(EditAction::ShowOverlay(Overlay::Cursor, shown))),
+        1 => points().prop_map(EditAction::SetTranslation).prop_map(Action::from),
+        1 => numbers().prop_map(|metres| Action::from(EditAction::SetMetres(Some(metres)))),
+        1 => Just(Action::from(TransactionAction::Undo)),
+        1 => Just(Action::from(TransactionAction::Redo)),
     ]
 }
 
@@ -191,15 +194,15 @@ fn dragging() -> impl Strategy<Value = Action> {
         snap,
     });
     prop_oneof![
-        (grips(), rays()).prop_map(|(grip, ray)| Action::Grab {
+        (grips(), rays()).prop_map(|(grip, ray)| Action::from(TransactionAction::Grab {
             grip,
             ray,
             forward: Camera::default().projection(1.0).forward
-        }),
-        input.prop_map(Action::Drag),
-        "[-0-9.,]{0,4}".prop_map(Action::TypeOffset),
-        Just(Action::CommitEdit),
-        Just(Action::CancelEdit),
+        })),
+        input.prop_map(TransactionAction::Drag).prop_map(Action::from),
+        "[-0-9.,]{0,4}".prop_map(TransactionAction::TypeOffset).prop_map(Action::from),
+        Just(Action::from(TransactionAction::Commit)),
+        Just(Action::from(TransactionAction::Cancel)),
     ]
 }
 
@@ -291,21 +294,21 @@ proptest! {
         for action in before {
             session.apply(action);
         }
-        for action in [Action::CancelEdit, Action::Comparison(false), Action::Play(false)] {
+        for action in [Action::from(TransactionAction::Cancel), Action::from(SolverAction::Compare(false)), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
         let (document, shown) = (session.document().clone(), session.shown().clone());
         let forward = session.camera().projection(1.0).forward;
         let ray = session.camera().projection(1.0).ray(glam::Vec2::ZERO);
-        session.apply(Action::Grab { grip, ray, forward });
+        session.apply(TransactionAction::Grab { grip, ray, forward });
         let held = session.is_editing();
         for action in drag {
-            let goes_on = matches!(action, Action::Drag(_) | Action::TypeOffset(_));
+            let goes_on = matches!(action, Action::Transaction(TransactionAction::Drag(_)) | Action::Transaction(TransactionAction::TypeOffset(_)));
             if goes_on {
                 session.apply(action);
             }
         }
-        session.apply(Action::CancelEdit);
+        session.apply(TransactionAction::Cancel);
         if held {
             prop_assert!(same(session.skeleton_rig(), &shown.skeleton_rig));
             prop_assert_eq!(session.arm(), &shown.arm);
@@ -320,22 +323,22 @@ proptest! {
         for action in actions {
             session.apply(action);
         }
-        for action in [Action::CommitEdit, Action::Run(false), Action::Play(false)] {
+        for action in [Action::from(TransactionAction::Commit), Action::from(SolverAction::Run(false)), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
         while session.redo_name().is_some() {
-            session.apply(Action::Redo);
+            session.apply(TransactionAction::Redo);
         }
         let last = session.document().clone();
         prop_assert!(session.is_unsaved() || content(&last) == content(&first));
         while session.undo_name().is_some() {
-            session.apply(Action::Undo);
+            session.apply(TransactionAction::Undo);
             check(&session)?;
         }
         prop_assert_eq!(without_views(session.document()), without_views(&first));
         prop_assert!(!session.is_unsaved());
         while session.redo_name().is_some() {
-            session.apply(Action::Redo);
+            session.apply(TransactionAction::Redo);
             check(&session)?;
         }
         prop_assert_eq!(without_views(session.document()), without_views(&last));
@@ -346,11 +349,11 @@ proptest! {
 fn halfway() -> Session {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::Key(vec![Channel::Hand]));
     }
-    session.apply(Action::SetTime(0.5));
+    session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
     session
 }
@@ -359,14 +362,14 @@ fn halfway() -> Session {
 fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
     let mut session = halfway();
     let document = session.document().clone();
-    session.apply(Action::Saved("x.json".into()));
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
+    session.apply(FileAction::Saved("x.json".into()));
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     assert!(session.is_overridden(Channel::Hand));
     assert_eq!(session.message(), Some("Shown until the time changes: press K to keep it"));
     assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
     assert_eq!(session.document().keys, document.keys);
     for time in [0.6, 0.5] {
-        session.apply(Action::SetTime(time));
+        session.apply(PlaybackAction::SetTime(time));
         let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
         assert!(session.arm().cursor().distance(expected) < 1e-3);
         assert!(!session.is_overridden(Channel::Hand));
@@ -376,45 +379,45 @@ fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
 #[test]
 fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
     let mut session = halfway();
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
-    session.apply(Action::Undo);
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(TransactionAction::Undo);
     assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
-    session.apply(Action::Redo);
+    session.apply(TransactionAction::Redo);
     assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
-    session.apply(Action::Key(vec![Channel::Hand]));
-    session.apply(Action::SetTime(0.0));
-    session.apply(Action::SetTime(0.5));
+    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(PlaybackAction::SetTime(0.0));
+    session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
 }
 
 #[test]
 fn what_is_changed_against_its_keys_is_no_change_of_the_document() {
     let mut session = halfway();
-    session.apply(Action::Saved("x.json".into()));
+    session.apply(FileAction::Saved("x.json".into()));
     let document = session.document().clone();
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
-    session.apply(Action::SetTime(0.6));
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::SetTime(0.6));
     assert_eq!(session.document(), &document);
     assert!(!session.is_unsaved());
     // Nothing of it is left to undo: the step before is.
-    session.apply(Action::Undo);
+    session.apply(TransactionAction::Undo);
     assert_eq!(session.document().keys.count(), 1);
 }
 
 #[test]
 fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     let mut session = halfway();
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
-    session.apply(Action::SetAutoKey(true));
-    session.apply(Action::SetHand(Vec3::Z * 60.0));
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::SetAutoKey(true));
+    session.apply(EditAction::SetHand(Vec3::Z * 60.0));
     assert_eq!(session.arm().cursor(), Vec3::Z * 60.0);
     assert!(!session.is_overridden(Channel::Hand));
 
     let mut session = halfway();
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
-    session.apply(Action::ClearChannels(vec![Channel::Hand]));
-    session.apply(Action::SetHand(Vec3::Z * 70.0));
-    session.apply(Action::SetTwist(1.0));
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(EditAction::ClearChannels(vec![Channel::Hand]));
+    session.apply(EditAction::SetHand(Vec3::Z * 70.0));
+    session.apply(EditAction::SetTwist(1.0));
     assert_eq!(session.arm().cursor(), Vec3::Z * 70.0);
     assert_eq!(session.document().arm.cursor(), Vec3::Z * 70.0);
 }
@@ -422,37 +425,37 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
 #[test]
 fn selected_and_copied_keys_follow_their_joints() {
     let mut session = Session::default();
-    session.apply(Action::OpenExample(Example::find("human").expect("an example")));
+    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
     let channels: Vec<Channel> = (0..19).map(Channel::Rotation).collect();
-    session.apply(Action::Key(channels));
+    session.apply(EditAction::Key(channels));
     let name = |session: &Session, joint: usize| session.skeleton().joints()[joint].name.clone();
     let foot = name(&session, 15);
-    session.apply(Action::SelectKeys(vec![(Channel::Rotation(15), 0.0)]));
-    session.apply(Action::SelectChannels(vec![Channel::Rotation(15)]));
-    session.apply(Action::CopyKeys);
-    session.apply(Action::Delete(vec![8]));
+    session.apply(SelectAction::Keys(vec![(Channel::Rotation(15), 0.0)]));
+    session.apply(SelectAction::Channels(vec![Channel::Rotation(15)]));
+    session.apply(SelectAction::CopyKeys);
+    session.apply(EditAction::DeleteJoints(vec![8]));
     let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
     assert_eq!(name(&session, joint), foot);
     assert!(session.selected_channels().contains(&Channel::Rotation(joint)));
-    session.apply(Action::SetTime(1.0));
-    session.apply(Action::PasteKeys);
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(EditAction::PasteKeys);
     assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
     // Going back, places are others again: nothing is selected that was not meant.
-    session.apply(Action::Undo);
-    session.apply(Action::Undo);
+    session.apply(TransactionAction::Undo);
+    session.apply(TransactionAction::Undo);
     assert_eq!((session.selected_keys(), session.selection()), (&[][..], &[][..]));
 }
 
 #[test]
 fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
     let mut session = Session::default();
-    session.apply(Action::Open { path: "slow.glb".into(), skeleton: None });
-    session.apply(Action::SetTwist(1.0));
-    let opened = Action::Opened { document: Box::default(), file: None };
+    session.apply(FileAction::Open { path: "slow.glb".into(), skeleton: None });
+    session.apply(EditAction::SetTwist(1.0));
+    let opened = FileAction::Opened { document: Box::default(), file: None };
     session.apply(opened.clone());
     assert_eq!(session.arm().twist, 1.0);
     assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
-    session.apply(Action::Discard(Box::new(opened)));
+    session.apply(FileAction::Discard(Box::new(opened)));
     assert_eq!(session.document(), &Document::default());
 }
 
@@ -463,9 +466,9 @@ fn many_keys_move_at_once() {
     for frame in 0..50_000 {
         document.keys.insert(Channel::Hand, f64::from(frame) / 30.0, Vec3::X * frame as f32);
     }
-    session.apply(Action::Opened { document: Box::new(document), file: None });
+    session.apply(FileAction::Opened { document: Box::new(document), file: None });
     let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
-    session.apply(Action::MoveKeys { keys, by: 1.0 });
+    session.apply(EditAction::MoveKeys { keys, by: 1.0 });
     let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
     assert_eq!((track.len(), track[0].time), (50_000, 1.0));
 }
@@ -473,14 +476,14 @@ fn many_keys_move_at_once() {
 #[test]
 fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
     let mut session = halfway();
-    session.apply(Action::SetTime(0.0));
+    session.apply(PlaybackAction::SetTime(0.0));
     let skins = Channel::Overlay(Overlay::OnionSkins);
-    session.apply(Action::Key(vec![skins]));
-    session.apply(Action::SetTime(0.5));
-    session.apply(Action::Show(Overlay::OnionSkins, true));
-    session.apply(Action::Key(vec![skins]));
+    session.apply(EditAction::Key(vec![skins]));
+    session.apply(PlaybackAction::SetTime(0.5));
+    session.apply(EditAction::ShowOverlay(Overlay::OnionSkins, true));
+    session.apply(EditAction::Key(vec![skins]));
     for (time, shown) in [(0.4, false), (0.6, true)] {
-        session.apply(Action::SetTime(time));
+        session.apply(PlaybackAction::SetTime(time));
         assert_eq!(session.overlays().onion_skins.is_empty(), !shown, "at {time} s");
     }
 }
@@ -488,20 +491,20 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
 #[test]
 fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
     let mut session = halfway();
-    session.apply(Action::SetHand(Vec3::Z * 50.0));
-    session.apply(Action::BeginEdit);
-    session.apply(Action::SetTime(1.0));
-    session.apply(Action::CancelEdit);
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(TransactionAction::Begin);
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(TransactionAction::Cancel);
     assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
 }
 
 #[test]
 fn with_auto_key_every_edit_makes_a_key() {
     let mut session = Session::default();
-    session.apply(Action::SetAutoKey(true));
+    session.apply(PlaybackAction::SetAutoKey(true));
     for (time, spin) in [(0.0, 6.0), (1.0, 0.5)] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetTwist(spin));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetTwist(spin));
     }
     let keys = &session.document().keys;
     let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
@@ -510,7 +513,7 @@ fn with_auto_key_every_edit_makes_a_key() {
     let spun = keys.value(Channel::Twist, 1.0).expect("a key").x;
     assert!((spun - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{spun}");
     // A switch gets no key by being switched.
-    session.apply(Action::Show(Overlay::Cursor, false));
+    session.apply(EditAction::ShowOverlay(Overlay::Cursor, false));
     assert!(!session.document().keys.has(Channel::Overlay(Overlay::Cursor)));
 }
 
@@ -518,11 +521,11 @@ fn with_auto_key_every_edit_makes_a_key() {
 fn playing_keeps_time_however_slow_the_pictures_are_and_writes_nothing() {
     for (steps, step) in [(200, 0.01), (4, 0.5), (1, 2.0)] {
         let mut session = halfway();
-        session.apply(Action::SetTime(0.0));
+        session.apply(PlaybackAction::SetTime(0.0));
         let document = session.document().clone();
-        session.apply(Action::Play(true));
+        session.apply(PlaybackAction::Play(true));
         for tick in 0..=steps {
-            session.apply(Action::Advance(50.0 + f64::from(tick) * step));
+            session.apply(PlaybackAction::Advance(50.0 + f64::from(tick) * step));
         }
         assert!((session.time() - 2.0).abs() < 1e-9, "{}", session.time());
         assert_eq!(session.document(), &document);
@@ -533,11 +536,11 @@ fn playing_keeps_time_however_slow_the_pictures_are_and_writes_nothing() {
 fn time_ends_where_the_timeline_does_or_begins_again() {
     for (looping, expected, playing) in [(true, 1.5, true), (false, 8.0, false)] {
         let mut session = halfway();
-        session.apply(Action::SetTime(0.0));
-        session.apply(Action::SetLooping(looping));
-        session.apply(Action::Play(true));
+        session.apply(PlaybackAction::SetTime(0.0));
+        session.apply(PlaybackAction::SetLooping(looping));
+        session.apply(PlaybackAction::Play(true));
         for seconds in [1.0, 10.5] {
-            session.apply(Action::Advance(seconds));
+            session.apply(PlaybackAction::Advance(seconds));
         }
         assert_eq!((session.time(), session.is_playing()), (expected, playing));
     }
@@ -546,19 +549,19 @@ fn time_ends_where_the_timeline_does_or_begins_again() {
 #[test]
 fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
     let mut session = Session::default();
-    session.apply(Action::OpenExample(Example::find("two-targets").expect("an example")));
+    session.apply(FileAction::OpenExample(Example::find("two-targets").expect("an example")));
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
     let targets: Vec<_> = session.skeleton_rig().targets.clone();
     for (target, home) in targets.iter().zip(apart) {
-        session.apply(Action::SetTarget(Target { home, ..*target }));
+        session.apply(EditAction::SetTarget(Target { home, ..*target }));
     }
     let heavy = targets[0];
     let gap = |session: &mut Session| {
-        (0..400).for_each(|_| drop(session.apply(Action::Step)));
+        (0..400).for_each(|_| drop(session.apply(EditAction::StepSolver)));
         session.skeleton_pose().tip(heavy.joint).distance(apart[0])
     };
     let before = gap(&mut session);
-    session.apply(Action::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
+    session.apply(EditAction::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
     let after = gap(&mut session);
     assert!(after < before * 0.99, "{before} before and {after} after");
 }

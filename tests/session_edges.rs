@@ -6,8 +6,9 @@ use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistRefe
 use ik_arm::io::{Example, to_json};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Constraint, Drag, DragInput, Grip, Handle, Motion, PointDrag, PoseMode, Preferences,
-    Session, TurnDrag,
+    Action, Constraint, Drag, DragInput, EditAction, FileAction, Grip, Handle, Motion,
+    PlaybackAction, PointDrag, PoseMode, Preferences, SelectAction, Session, ShellAction,
+    SolverAction, TransactionAction, TurnDrag, ViewAction,
 };
 
 fn ray() -> Ray {
@@ -30,10 +31,10 @@ fn a_camera_that_looks_from_nowhere_is_not_taken() {
         Camera { distance: f32::NAN, ..camera },
     ] {
         let mut session = session();
-        session.apply(Action::SetCamera(wrong));
-        session.apply(Action::GlideTo(wrong));
+        session.apply(ViewAction::SetCamera(wrong));
+        session.apply(ViewAction::GlideTo(wrong));
         for seconds in [0.0, 0.1, 1.0] {
-            session.apply(Action::Advance(seconds));
+            session.apply(PlaybackAction::Advance(seconds));
         }
         assert_eq!(session.camera(), &camera, "after {wrong:?}");
     }
@@ -48,8 +49,8 @@ fn a_view_that_is_dragged_to_nowhere_stays() {
         (Motion::Orbit, Vec2::X, f32::INFINITY),
     ] {
         let mut session = session();
-        session.apply(Action::GrabView(motion, Vec2::ZERO));
-        session.apply(Action::DragView { to, aspect });
+        session.apply(ViewAction::Grab(motion, Vec2::ZERO));
+        session.apply(ViewAction::Drag { to, aspect });
         assert_eq!(session.camera(), &Camera::default(), "after {motion:?} to {to}");
     }
 }
@@ -58,14 +59,14 @@ fn a_view_that_is_dragged_to_nowhere_stays() {
 fn a_picture_at_no_time_changes_nothing() {
     let mut session = session();
     let to = Camera { yaw: 3.0, ..Camera::default() };
-    session.apply(Action::GlideTo(to));
-    session.apply(Action::Play(true));
+    session.apply(ViewAction::GlideTo(to));
+    session.apply(PlaybackAction::Play(true));
     for seconds in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        session.apply(Action::Advance(seconds));
+        session.apply(PlaybackAction::Advance(seconds));
         assert_eq!((session.camera(), session.time()), (&Camera::default(), 0.0));
     }
     for seconds in [2.0, 4.0] {
-        session.apply(Action::Advance(seconds));
+        session.apply(PlaybackAction::Advance(seconds));
     }
     assert_eq!((session.camera(), session.time()), (&to, 2.0));
 }
@@ -75,7 +76,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
     for axis in [3, usize::MAX] {
         let mut session = session();
         let before = session.document().clone();
-        session.apply(Action::SetLimit { joint: 0, axis, limit: None });
+        session.apply(EditAction::SetLimit { joint: 0, axis, limit: None });
         assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
         let (line, plane) = (Handle::Axis(axis), Handle::Plane(axis));
         for grip in
@@ -83,18 +84,18 @@ fn what_is_about_a_fourth_axis_is_not_done() {
                 .into_iter()
                 .chain([Grip::Shoulder(axis), Grip::Ring(0, axis)])
         {
-            session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             assert!(!session.is_editing(), "{grip:?} holds nothing");
         }
         assert_eq!(session.ring(0, axis), None);
         let grip = Grip::Hand(Handle::Free);
-        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
-            session.apply(Action::ConstrainDrag(Some(constraint)));
-            session.apply(Action::TypeOffset("1".to_owned()));
+            session.apply(TransactionAction::Constrain(Some(constraint)));
+            session.apply(TransactionAction::TypeOffset("1".to_owned()));
             assert_eq!(session.point_drag().and_then(PointDrag::constraint), None);
         }
-        session.apply(Action::CancelEdit);
+        session.apply(TransactionAction::Cancel);
         assert_eq!(session.document(), &before);
     }
 }
@@ -103,7 +104,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
 fn a_pointer_is_on_no_joint_that_is_not_there() {
     let mut session = session();
     for (joint, expected) in [(Some(0), Some(0)), (Some(1), None), (Some(usize::MAX), None)] {
-        session.apply(Action::Point(joint));
+        session.apply(SelectAction::Hover(joint));
         assert_eq!(session.pointed(), expected);
     }
 }
@@ -111,12 +112,12 @@ fn a_pointer_is_on_no_joint_that_is_not_there() {
 #[test]
 fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
     let mut session = session();
-    session.apply(Action::AddChild { parent: 0, tip: None });
-    session.apply(Action::Key(vec![Channel::Rotation(1), Channel::Hand]));
-    session.apply(Action::BeginEdit);
-    session.apply(Action::Delete(vec![1]));
+    session.apply(EditAction::AddChild { parent: 0, tip: None });
+    session.apply(EditAction::Key(vec![Channel::Rotation(1), Channel::Hand]));
+    session.apply(TransactionAction::Begin);
+    session.apply(EditAction::DeleteJoints(vec![1]));
     let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(1), 0.0)];
-    session.apply(Action::MoveKeys { keys, by: 1.0 });
+    session.apply(EditAction::MoveKeys { keys, by: 1.0 });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
     assert_eq!(left, [(Channel::Hand, 1.0)]);
@@ -125,14 +126,14 @@ fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
 #[test]
 fn keys_that_are_made_while_others_move_stay() {
     let mut session = session();
-    session.apply(Action::Key(vec![Channel::Hand]));
-    session.apply(Action::BeginEdit);
+    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(TransactionAction::Begin);
     let keys = vec![(Channel::Hand, 0.0)];
-    session.apply(Action::MoveKeys { keys: keys.clone(), by: 1.0 });
-    session.apply(Action::MoveKeys { keys: keys.clone(), by: 2.0 });
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 1.0 });
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 2.0 });
     assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
-    session.apply(Action::Key(vec![Channel::Root]));
-    session.apply(Action::MoveKeys { keys: vec![(Channel::Hand, 2.0)], by: 1.0 });
+    session.apply(EditAction::Key(vec![Channel::Root]));
+    session.apply(EditAction::MoveKeys { keys: vec![(Channel::Hand, 2.0)], by: 1.0 });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
     assert_eq!(left, [(Channel::Hand, 3.0), (Channel::Root, 0.0)]);
@@ -140,19 +141,21 @@ fn keys_that_are_made_while_others_move_stay() {
 
 #[test]
 fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
-    let hang = Action::AddChild { parent: 0, tip: Some(Vec3::Y) };
-    for change in
-        [Action::Delete(vec![2]), Action::AddRoot, Action::Reparent { joint: 2, parent: None }]
-    {
+    let hang = EditAction::AddChild { parent: 0, tip: Some(Vec3::Y) };
+    for change in [
+        EditAction::DeleteJoints(vec![2]),
+        EditAction::AddRoot,
+        EditAction::ReparentJoint { joint: 2, parent: None },
+    ] {
         let mut session = session();
         session.apply(hang.clone());
-        session.apply(Action::AddChild { parent: 1, tip: None });
+        session.apply(EditAction::AddChild { parent: 1, tip: None });
         let grip = Grip::Tip(1, Handle::Free);
-        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         assert!(session.drag().is_some());
         session.apply(change);
         let joints = session.skeleton().joints().len();
-        session.apply(Action::TypeOffset("0.1".to_owned()));
+        session.apply(TransactionAction::TypeOffset("0.1".to_owned()));
         assert!(session.drag().is_none() && session.is_editing());
         assert_eq!(session.skeleton().joints().len(), joints);
     }
@@ -160,17 +163,21 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
 
 #[test]
 fn a_race_ends_when_the_joints_become_others() {
-    for change in [Action::Delete(vec![3]), Action::AddRoot, Action::Undo] {
+    for change in [
+        Action::from(EditAction::DeleteJoints(vec![3])),
+        EditAction::AddRoot.into(),
+        TransactionAction::Undo.into(),
+    ] {
         let mut session = session();
-        session.apply(Action::OpenExample(Example::find("ten-joints").expect("an example")));
-        session.apply(Action::AddChild { parent: 0, tip: None });
-        session.apply(Action::Comparison(true));
-        session.apply(Action::Advance(1.0));
+        session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
+        session.apply(EditAction::AddChild { parent: 0, tip: None });
+        session.apply(SolverAction::Compare(true));
+        session.apply(PlaybackAction::Advance(1.0));
         assert_eq!(session.overlays().ghosts.len(), 6);
-        session.apply(Action::SetRotation { joint: 1, rotation: Vec3::X });
+        session.apply(EditAction::SetRotation { joint: 1, rotation: Vec3::X });
         assert!(session.comparison().is_some());
-        if change == Action::Undo {
-            session.apply(Action::Undo);
+        if change == Action::Transaction(TransactionAction::Undo) {
+            session.apply(TransactionAction::Undo);
         }
         session.apply(change);
         assert!(session.comparison().is_none(), "{:?}", session.message());
@@ -181,24 +188,28 @@ fn a_race_ends_when_the_joints_become_others() {
 #[test]
 fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
     let mut session = session();
-    session.apply(Action::SwitchTo(PoseMode::Angles));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
     let before = session.document().clone();
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         for wrong in [f32::INFINITY, f32::NAN, f32::MAX] {
-            session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             let (origin, direction) = (Vec3::splat(wrong), Vec3::new(-0.4, 0.4, wrong));
             for ray in
                 [Ray { origin, ..ray() }, Ray { direction, ..ray() }, Ray { origin, direction }]
             {
-                session.apply(Action::Drag(DragInput { ray, precise: false, snap: false }));
+                session.apply(TransactionAction::Drag(DragInput {
+                    ray,
+                    precise: false,
+                    snap: false,
+                }));
                 assert!(
                     session.drag().and_then(Drag::turn).is_some_and(|it| it.turned().is_finite())
                 );
                 assert!(session.message().is_none(), "{:?}", session.message());
             }
-            session.apply(Action::CancelEdit);
+            session.apply(TransactionAction::Cancel);
             assert_eq!(session.document(), &before);
-            session.apply(Action::CloseDialog);
+            session.apply(ShellAction::CloseDialog);
         }
     }
 }
@@ -207,10 +218,23 @@ fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
 fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
     let far = f32::MAX;
     for actions in [
-        vec![Action::ShowRig(RigKind::Skeleton), Action::SetTranslation(Vec3::new(-far, 0.3, 0.2))],
-        vec![Action::NewSkeleton, Action::AddChild { parent: 0, tip: Some(Vec3::splat(far)) }],
-        vec![Action::SetRoot(Vec3::splat(far)), Action::SetHand(Vec3::splat(far))],
-        vec![Action::SetUpper(far), Action::SetLower(far), Action::SetHand(Vec3::splat(-far))],
+        vec![
+            Action::from(EditAction::ShowRig(RigKind::Skeleton)),
+            EditAction::SetTranslation(Vec3::new(-far, 0.3, 0.2)).into(),
+        ],
+        vec![
+            Action::from(FileAction::NewSkeleton),
+            EditAction::AddChild { parent: 0, tip: Some(Vec3::splat(far)) }.into(),
+        ],
+        vec![
+            EditAction::SetRoot(Vec3::splat(far)).into(),
+            EditAction::SetHand(Vec3::splat(far)).into(),
+        ],
+        vec![
+            EditAction::SetUpper(far).into(),
+            EditAction::SetLower(far).into(),
+            EditAction::SetHand(Vec3::splat(-far)).into(),
+        ],
     ] {
         let mut session = session();
         for action in actions {
@@ -231,12 +255,12 @@ fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
     let mut session = session();
     let far = Vec3::new(-1e19, 0.7, -f32::MAX);
     for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
-        session.apply(Action::AddChild { parent, tip });
+        session.apply(EditAction::AddChild { parent, tip });
     }
-    session.apply(Action::AddRoot);
-    session.apply(Action::SetRotation { joint: 1, rotation: Vec3::new(1.0, -3.0, 2.0) });
+    session.apply(EditAction::AddRoot);
+    session.apply(EditAction::SetRotation { joint: 1, rotation: Vec3::new(1.0, -3.0, 2.0) });
     for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
-        session.apply(Action::Reparent { joint, parent });
+        session.apply(EditAction::ReparentJoint { joint, parent });
         for joint in session.skeleton().joints() {
             assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
         }
@@ -249,15 +273,17 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
     let text = |session: &Session| to_json(session.document()).expect("saved");
     let mut texts = vec![text(&session)];
     for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
-        session.apply(Action::BeginEdit);
+        session.apply(TransactionAction::Begin);
         for x in [1.0, x] {
-            session.apply(Action::SetRotation { joint: 0, rotation: Vec3::new(x, 0.0, 0.0) });
+            session.apply(EditAction::SetRotation { joint: 0, rotation: Vec3::new(x, 0.0, 0.0) });
         }
-        session.apply(Action::SetHand(Vec3::X * hand));
-        session.apply(Action::CommitEdit);
+        session.apply(EditAction::SetHand(Vec3::X * hand));
+        session.apply(TransactionAction::Commit);
         texts.push(text(&session));
     }
-    for (back, steps) in [(Action::Undo, [2, 1, 0]), (Action::Redo, [1, 2, 3])] {
+    for (back, steps) in
+        [(TransactionAction::Undo, [2, 1, 0]), (TransactionAction::Redo, [1, 2, 3])]
+    {
         for step in steps {
             session.apply(back.clone());
             assert_eq!(text(&session), texts[step]);
@@ -269,13 +295,13 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
         let mut session = session();
-        session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
-        session.apply(Action::SetPole(Vec3::new(0.0, 0.0, pole)));
+        session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
+        session.apply(EditAction::SetPole(Vec3::new(0.0, 0.0, pole)));
         let grip = Grip::Pole(Handle::Axis(2));
-        session.apply(Action::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
-        session.apply(Action::TypeOffset(typed.to_owned()));
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        session.apply(TransactionAction::TypeOffset(typed.to_owned()));
         let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };
-        session.apply(Action::Drag(DragInput { ray, precise: false, snap }));
+        session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap }));
         assert!(session.point_drag().is_some_and(|drag| drag.moved().is_finite()));
         assert!(session.arm().pole.is_finite(), "{:?}", session.message());
         assert!(session.message().is_none(), "{:?}", session.message());
@@ -286,11 +312,11 @@ fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
 fn the_same_revision_is_saved_as_the_same_text() {
     let mut session = session();
     let (revision, text) = (session.revision(), to_json(session.document()).expect("saved"));
-    session.apply(Action::BeginEdit);
+    session.apply(TransactionAction::Begin);
     for x in [1.0, -0.0] {
-        session.apply(Action::SetRoot(Vec3::new(x, 0.0, 0.0)));
+        session.apply(EditAction::SetRoot(Vec3::new(x, 0.0, 0.0)));
     }
-    session.apply(Action::CommitEdit);
+    session.apply(TransactionAction::Commit);
     assert_eq!(session.revision(), revision);
     assert_eq!(to_json(session.document()).expect("saved"), text);
 }
@@ -299,14 +325,18 @@ fn the_same_revision_is_saved_as_the_same_text() {
 fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
-        session.apply(Action::SetRotation { joint: 0, rotation: Vec3::X * angle });
+        session.apply(EditAction::SetRotation { joint: 0, rotation: Vec3::X * angle });
         let axis = session.ring(0, 0).expect("a ring").axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
         let (one, other) = axis.any_orthonormal_pair();
         let grip = Grip::Ring(0, 0);
-        session.apply(Action::Grab { grip, ray: seen(one), forward: -axis });
+        session.apply(TransactionAction::Grab { grip, ray: seen(one), forward: -axis });
         for precise in [false, true] {
-            session.apply(Action::Drag(DragInput { ray: seen(other), precise, snap: true }));
+            session.apply(TransactionAction::Drag(DragInput {
+                ray: seen(other),
+                precise,
+                snap: true,
+            }));
             let turned = session.drag().and_then(Drag::turn).map(TurnDrag::turned);
             assert!(turned.is_some_and(f32::is_finite), "{turned:?}");
             assert!(session.message().is_none(), "{:?}", session.message());

@@ -5,16 +5,18 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
 use ik_arm::kinematics::pop::{Change, Pop};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{Action, PopFix, Session, Spike, What};
+use ik_arm::session::{
+    EditAction, FileAction, PlaybackAction, PopFix, Session, Spike, TransactionAction, What,
+};
 
 fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
-    session.apply(Action::SetHand(from));
-    session.apply(Action::BeginEdit);
+    session.apply(EditAction::SetHand(from));
+    session.apply(TransactionAction::Begin);
     for step in 1..=steps {
         let part = f32::from(step) / f32::from(steps);
-        session.apply(Action::SetHand(from.lerp(to, part)));
+        session.apply(EditAction::SetHand(from.lerp(to, part)));
     }
-    session.apply(Action::CommitEdit);
+    session.apply(TransactionAction::Commit);
 }
 
 fn over_the_top(session: &mut Session) {
@@ -72,8 +74,8 @@ fn each_remedy_cures_the_drag_that_asked_for_it() {
 #[test]
 fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
     let mut session = Session::default();
-    session.apply(Action::SetPole(Vec3::new(0.0, 300.0, 10.0)));
-    session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
+    session.apply(EditAction::SetPole(Vec3::new(0.0, 300.0, 10.0)));
+    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
     assert_eq!(
         cure(&mut session, over_the_top),
         PopFix::Measure(TwistReferenceKind::Stereographic)
@@ -83,7 +85,7 @@ fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
 #[test]
 fn behind_the_body_the_map_pops_and_transport_cures_it() {
     let mut session = Session::default();
-    session.apply(Action::SetTwistReference(TwistReferenceKind::Stereographic));
+    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Stereographic));
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
@@ -94,7 +96,7 @@ fn behind_the_body_the_map_pops_and_transport_cures_it() {
 fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let mut session = Session::default();
     let almost_hard = SoftReach::new(0.01, 1.2, 0.0).expect("soft");
-    session.apply(Action::SetSoftReach(almost_hard));
+    session.apply(EditAction::SetSoftReach(almost_hard));
     let expected = PopFix::KeepOpen(SoftReach::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
     assert_eq!(cure(&mut session, fold_up), expected);
 
@@ -135,30 +137,31 @@ fn each_drag_and_each_played_stretch_is_a_run_of_its_own() {
         (runs.len(), steps)
     };
     assert_eq!(runs(&session), (2, 28 + 30));
-    session.apply(Action::Undo);
-    session.apply(Action::SetHand(Vec3::new(222.0, 0.0, 0.0)));
+    session.apply(TransactionAction::Undo);
+    session.apply(EditAction::SetHand(Vec3::new(222.0, 0.0, 0.0)));
     assert_eq!(runs(&session), (2, 28 + 30), "what is not dragged is not measured");
 }
 
 /// A second of the hand over the top, ten pictures, and the spin the other way.
 fn keyed(channels: &[Channel]) -> Session {
     let mut session = Session::default();
-    session.apply(Action::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
+    session.apply(EditAction::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
     for (time, x, spin) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(Vec3::new(x, 300.0, 20.0)));
-        session.apply(Action::SetTwist(spin));
-        session.apply(Action::Key(channels.to_vec()));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(Vec3::new(x, 300.0, 20.0)));
+        session.apply(EditAction::SetTwist(spin));
+        session.apply(EditAction::Key(channels.to_vec()));
     }
     session
 }
 
 fn play(session: &mut Session, seconds: std::ops::Range<f64>) {
-    session.apply(Action::SetTime(0.0));
-    session.apply(Action::Play(true));
+    session.apply(PlaybackAction::SetTime(0.0));
+    session.apply(PlaybackAction::Play(true));
     for picture in 0..=40 {
         let part = f64::from(picture) / 40.0;
-        session.apply(Action::Advance(seconds.start + part * (seconds.end - seconds.start)));
+        session
+            .apply(PlaybackAction::Advance(seconds.start + part * (seconds.end - seconds.start)));
     }
 }
 
@@ -190,12 +193,12 @@ fn a_spin_that_is_played_is_marked_once_and_apart() {
 fn the_root_of_a_pinned_arm_is_marked_and_that_of_another_is_nothing() {
     for (pinned, marked) in [(false, vec![]), (true, vec![Change::Root])] {
         let mut session = Session::default();
-        session.apply(Action::PinHand(pinned));
-        session.apply(Action::BeginEdit);
+        session.apply(EditAction::PinHand(pinned));
+        session.apply(TransactionAction::Begin);
         for step in 1..9_u8 {
-            session.apply(Action::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
+            session.apply(EditAction::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
         }
-        session.apply(Action::CommitEdit);
+        session.apply(TransactionAction::Commit);
         assert_eq!(changes(&session), marked);
         assert_eq!(session.pops().samples().count(), marked.len());
     }
@@ -220,7 +223,7 @@ fn what_is_kept_is_bounded_and_goes_with_the_document() {
     }
     assert_eq!(session.pops().samples().count(), 600);
     let document = Box::new(Document::default());
-    session.apply(Action::Discard(Box::new(Action::Opened { document, file: None })));
+    session.apply(FileAction::Discard(Box::new(FileAction::Opened { document, file: None })));
     assert_eq!(session.pops().samples().count(), 0);
 }
 

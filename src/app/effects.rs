@@ -6,7 +6,7 @@ use super::UserEvent;
 use super::jobs::{self, Shot};
 use super::window::{AppWindow, pixels};
 use crate::io;
-use crate::session::{Action, Effect, Session};
+use crate::session::{Action, Effect, FileAction, Session};
 
 /// What the session asks of the world outside.
 impl AppWindow {
@@ -63,7 +63,7 @@ impl AppWindow {
                 let shot = self.shot(session);
                 let (job, thread) = jobs::export(export, document, &shot, proxy.clone());
                 self.exporting = Some(thread);
-                session.apply(Action::Exporting(job));
+                session.apply(FileAction::ExportStarted(job));
             }
             Effect::ChoosePath(dialog) => {
                 let path = session.full_path(&dialog, dialog.path().unwrap_or(Path::new("")));
@@ -72,8 +72,8 @@ impl AppWindow {
             Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
             Effect::Save(path) => {
                 let saved = match io::save(session.document(), &path) {
-                    Ok(()) => Action::Saved(path),
-                    Err(error) => Action::NotSaved { path, why: error.to_string() },
+                    Ok(()) => FileAction::Saved(path),
+                    Err(error) => FileAction::NotSaved { path, why: error.to_string() },
                 };
                 let next = session.apply(saved);
                 return next.is_some_and(|effect| self.carry_out(effect, session, proxy));

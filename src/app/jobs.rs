@@ -13,7 +13,7 @@ use crate::export::{self, ExportError, Format, Options};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, Picture};
 use crate::scene::Scene;
-use crate::session::{Action, Dialog, Export, Job, Overlays};
+use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, Overlays, ShellAction};
 
 /// What a picture shows and how large it is, in pixels and pixels a point.
 pub(super) struct Shot {
@@ -95,10 +95,14 @@ pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProx
 
 /// What becomes of a file that was read: one that is no document leaves the open one as it is; one
 /// with several skeletons asks which.
-pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError>) -> Vec<Action> {
+pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError>) -> Actions {
+    let mut actions = Actions::new();
     let Opened { document, warnings, skeletons, .. } = match read {
         Ok(opened) => opened,
-        Err(error) => return vec![Action::NotOpened { path, why: error.to_string() }],
+        Err(error) => {
+            actions.push(FileAction::NotOpened { path, why: error.to_string() });
+            return actions;
+        }
     };
     let said = match &warnings[..] {
         [] => format!("Opened {}", path.display()),
@@ -109,10 +113,10 @@ pub(super) fn opened(path: PathBuf, chosen: bool, read: Result<Opened, OpenError
     };
     // A scene of another program is opened, not saved over.
     let file = skeletons.is_empty().then(|| path.clone());
-    let mut actions =
-        vec![Action::Opened { document: Box::new(document), file }, Action::Report(said)];
+    actions.push(FileAction::Opened { document: Box::new(document), file });
+    actions.push(ShellAction::Report(said));
     if skeletons.len() > 1 && !chosen {
-        actions.push(Action::OpenDialog(Dialog::ChooseSkeleton { path, names: skeletons }));
+        actions.push(ShellAction::OpenDialog(Dialog::ChooseSkeleton { path, names: skeletons }));
     }
     actions
 }
@@ -169,17 +173,19 @@ pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<Use
 /// A path is taken at once; where the system has no dialog, ours asks for it.
 pub(super) fn chosen(dialog: Dialog, choice: Choice) -> Option<Action> {
     match (choice, dialog) {
-        (Choice::Path(path), Dialog::Open { .. }) => Some(Action::Open { path, skeleton: None }),
-        (Choice::Path(path), Dialog::SaveAs { .. }) => Some(Action::SaveAs(path)),
+        (Choice::Path(path), Dialog::Open { .. }) => {
+            Some(FileAction::Open { path, skeleton: None }.into())
+        }
+        (Choice::Path(path), Dialog::SaveAs { .. }) => Some(FileAction::SaveAs(path).into()),
         (Choice::Path(path), Dialog::SavePicture { .. }) => {
-            Some(Action::SavePicture(path.display().to_string()))
+            Some(FileAction::SavePicture(path.display().to_string()).into())
         }
         (Choice::Path(path), Dialog::Export(export)) => {
-            Some(Action::OpenDialog(Dialog::Export(Export { path, ..export })))
+            Some(ShellAction::OpenDialog(Dialog::Export(Export { path, ..export })).into())
         }
         (Choice::Path(_), _) => None,
-        (Choice::Cancelled, _) => Some(Action::ChoseNothing),
-        (Choice::NoDialog, dialog) => Some(Action::NoSystemDialog(dialog)),
+        (Choice::Cancelled, _) => Some(FileAction::ChoseNothing.into()),
+        (Choice::NoDialog, dialog) => Some(FileAction::NoSystemDialog(dialog).into()),
     }
 }
 

@@ -24,7 +24,7 @@ use winit::window::WindowId;
 
 use crate::document::Document;
 use crate::io::{OpenError, Opened};
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Dialog, FileAction, Session, ShellAction};
 pub use graphics::GraphicsError;
 use jobs::Choice;
 use recovery::{Found, Recovery};
@@ -106,13 +106,13 @@ pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError
     session.set_recent(settings.recent.clone());
     session.set_export_folder(settings.export_folder.clone());
     if let Some((document, file)) = document {
-        session.apply(Action::Opened { document: Box::new(document), file });
+        session.apply(FileAction::Opened { document: Box::new(document), file });
     }
     let recovery = Recovery::start();
     let found = recovery.find();
     if let Some(Found { kept, .. }) = &found {
         let (document, file) = (Box::new(kept.document.clone()), kept.file.clone());
-        session.apply(Action::OpenDialog(Dialog::Recover { document, file }));
+        session.apply(ShellAction::OpenDialog(Dialog::Recover { document, file }));
     }
     let mut app = App {
         started,
@@ -187,7 +187,7 @@ impl App {
 
     /// What is done last in a window.
     fn close(&mut self) {
-        self.session.apply(Action::CancelExport);
+        self.session.apply(FileAction::CancelExport);
         if let State::Active(window) = &mut self.state {
             window.await_export();
             log::info!("{} frames drawn", window.frames());
@@ -246,7 +246,7 @@ impl ApplicationHandler<UserEvent> for App {
         };
         match &event {
             WindowEvent::CloseRequested => {
-                match self.session.apply(Action::Quit) {
+                match self.session.apply(FileAction::Quit) {
                     Some(_) => event_loop.exit(),
                     None => window.request_redraw(),
                 }
@@ -269,12 +269,12 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Kept | UserEvent::GraphicsFailed => {}
             UserEvent::Report(message) => {
                 self.session.apply(match message {
-                    Ok(done) => Action::Report(done),
-                    Err(why) => Action::Fail(why),
+                    Ok(done) => ShellAction::Report(done),
+                    Err(why) => ShellAction::Fail(why),
                 });
             }
             UserEvent::Exported(how) => {
-                self.session.apply(Action::Exported(how));
+                self.session.apply(FileAction::ExportEnded(how));
             }
             UserEvent::Opened { path, chosen, read } => {
                 for action in jobs::opened(path, chosen, *read) {

@@ -20,7 +20,7 @@ use super::present::Presented;
 use super::settings::Settings;
 use super::{AppError, UserEvent};
 use crate::scene::Scene;
-use crate::session::{Action, Effect, Overlays, Session};
+use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
 use crate::ui::{self, FrameTime, Machine, style};
 
 pub(super) const TITLE: &str = "ik-arm";
@@ -229,7 +229,7 @@ impl AppWindow {
         self.machine.adapter = graphics.gpu.name();
         self.machine.has_clock = graphics.has_clock();
         self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
-        session.apply(Action::Report(
+        session.apply(ShellAction::Report(
             "The graphics device was lost and has been made anew; nothing is lost.".to_owned(),
         ));
         None
@@ -304,7 +304,7 @@ impl AppWindow {
         let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
         let mut viewport = Rect::ZERO;
-        let mut actions = Vec::new();
+        let mut actions = Actions::new();
         let mut output = ctx.run_ui(input, |ui| {
             viewport = ui::show(ui, session, machine, picture, &mut actions);
         });
@@ -312,7 +312,7 @@ impl AppWindow {
         if actions.is_empty() {
             return (output, viewport, Vec::new());
         }
-        let effects = actions.drain(..).filter_map(|action| session.apply(action)).collect();
+        let effects = actions.drain().filter_map(|action| session.apply(action)).collect();
         frame.solve += lap();
         style::apply(ctx, session.preferences().theme);
         output.append(ctx.run_ui(again, |ui| {

@@ -3,17 +3,228 @@ use glam::Vec3;
 use super::crowd::Crowding;
 use super::drag::DragKind;
 use super::{
-    Action, Constraint, Dialog, Drag, Effect, Glide, Grip, Session, Transaction, TransportPath,
-    ViewDrag, naming,
+    Action, Constraint, Dialog, Drag, EditAction, Effect, FileAction, Glide, Grip, PlaybackAction,
+    SelectAction, Session, ShellAction, SolverAction, Transaction, TransactionAction,
+    TransportPath, ViewAction, ViewDrag,
 };
 use crate::document::{Arm, Camera, Cursor, Display, Document, Ray, RigKind, SkeletonRig};
 use crate::io::Example;
 
 impl Session {
-    /// Does it; what is not possible changes nothing and is said in [`Session::message`]. What would
-    /// lose changes that are not saved is asked about first.
-    pub fn apply(&mut self, action: Action) -> Option<Effect> {
-        if action == Action::Quit && self.is_exporting() {
+    /// Applies an action. What is not possible changes nothing and is reported by
+    /// [`Session::message`]; what would lose unsaved changes is asked about first.
+    pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
+        match action.into() {
+            Action::Edit(action) => self.apply_edit(action),
+            Action::Transaction(action) => self.apply_transaction(action),
+            Action::Select(action) => return self.apply_selection(action),
+            Action::View(action) => self.apply_view(action),
+            Action::Playback(action) => self.apply_playback(action),
+            Action::Solver(action) => self.apply_solver(action),
+            Action::File(action) => return self.apply_file(action),
+            Action::Shell(action) => return self.apply_shell(action),
+        }
+        None
+    }
+
+    pub(super) fn apply_edit(&mut self, action: EditAction) {
+        self.step_by(action.label(), |session| session.edit_by(action));
+    }
+
+    fn edit_by(&mut self, action: EditAction) {
+        match action {
+            EditAction::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
+            EditAction::SetRoot(root) => {
+                self.set_point("shoulder", root, |arm, root| arm.root = root);
+            }
+            EditAction::SetTwist(twist) => self.set_twist(twist),
+            EditAction::SetPin(pin) => {
+                self.set_point("hand", pin, |arm, pin| arm.goal = Cursor::World(pin));
+            }
+            EditAction::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
+            EditAction::SetTwistReference(reference) => self.set_twist_reference(reference),
+            EditAction::SetPole(pole) => self.set_pole(pole),
+            EditAction::SetSoftReach(soft_reach) => {
+                self.replace_arm(Arm { soft_reach, ..*self.arm() });
+            }
+            EditAction::SetInfluence(influence) => self.set_influence(influence),
+            EditAction::SwitchPoseMode(mode) => self.switch_to(mode),
+            EditAction::SetShoulder(angles) => self.set_shoulder(angles),
+            EditAction::SetBend(bend) => self.set_bend(bend),
+            EditAction::SetWrist(angles) => {
+                self.set_point("hand angles", angles, |arm, angles| arm.wrist.angles = angles);
+            }
+            EditAction::SetWristSpace(space) => {
+                self.message = None;
+                self.commit(self.shown.with_wrist_in(space));
+            }
+            EditAction::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
+            EditAction::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
+            EditAction::ResetPose => match self.rig() {
+                RigKind::Arm => self.replace_arm(Arm::default()),
+                RigKind::Skeleton => self.bind_pose(),
+            },
+            EditAction::ResetAll => self.reset_all(),
+            EditAction::ShowOverlay(overlay, shown) => {
+                let display = self.shown.display.with(overlay, shown);
+                self.commit(Document { display, ..self.shown.clone() });
+            }
+            EditAction::ShowRig(rig) => self.show_rig(rig),
+
+            EditAction::AddChild { parent, tip } => self.add_joint(Some(parent), tip),
+            EditAction::AddJoint { tip } => self.add_next_joint(tip),
+            EditAction::AddRoot => self.add_joint(None, None),
+            EditAction::DeleteJoints(joints) => {
+                self.dialog = None;
+                self.delete_joints(&joints, Document::delete);
+            }
+            EditAction::DissolveJoints(joints) => {
+                self.dialog = None;
+                self.delete_joints(&joints, Document::dissolve);
+            }
+            EditAction::RenameJoint { joint, name } => {
+                self.dialog = None;
+                self.edit_skeleton(|rig| rig.skeleton_mut().rename(joint, name.trim()));
+            }
+            EditAction::ReparentJoint { joint, parent } => self.reparent(joint, parent),
+            EditAction::SetRotation { joint, rotation } => {
+                self.edit_skeleton(|rig| rig.skeleton_mut().set_rotation(joint, rotation));
+            }
+            EditAction::SetAxis { joint, axis } => {
+                self.edit_skeleton(|rig| rig.skeleton_mut().set_axis(joint, axis));
+            }
+            EditAction::SetLimit { joint, axis, limit } => self.set_limit(joint, axis, limit),
+            EditAction::SetLocked { joint, locked } => {
+                self.change_joint(joint, |joint| joint.locked = locked);
+            }
+            EditAction::SetTranslation(to) => self.set_translation(to),
+            EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
+
+            EditAction::AddTarget(joint) => self.add_target(joint),
+            EditAction::RemoveTarget(joint) => self.remove_target(joint),
+            EditAction::SetTarget(target) => self.set_target(target),
+            EditAction::SetSolver(solver) => self.set_solver(solver),
+            EditAction::SetIterationsPerFrame(iterations) => {
+                self.edit_skeleton(|rig| {
+                    rig.iterations_per_frame =
+                        iterations.clamp(1, SkeletonRig::MOST_ITERATIONS_PER_FRAME);
+                    Ok(())
+                });
+            }
+            EditAction::StepSolver => self.step(),
+            EditAction::ResetSolver => self.reset_solver(),
+
+            EditAction::Key(channels) => self.key(&channels),
+            EditAction::DeleteKeys(keys) => self.delete_keys(&keys),
+            EditAction::ClearChannels(channels) => self.clear_channels(&channels),
+            EditAction::MoveKeys { keys, by } => self.move_keys(&keys, by),
+            EditAction::PasteKeys => self.paste_keys(),
+            EditAction::SetTimeline(timeline) => self.set_timeline(timeline),
+            EditAction::SetMetres(metres) => self.set_metres(metres),
+        }
+    }
+
+    fn apply_transaction(&mut self, action: TransactionAction) {
+        match action {
+            TransactionAction::Begin => self.begin_edit(None),
+            TransactionAction::Commit => self.commit_edit(),
+            TransactionAction::Cancel => self.cancel_edit(),
+            TransactionAction::Undo => self.undo(),
+            TransactionAction::Redo => self.redo(),
+            TransactionAction::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
+            TransactionAction::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
+            TransactionAction::Constrain(constraint) => {
+                if constraint.is_none_or(Constraint::is_possible) {
+                    self.drag_by(|drag| drag.set_constraint(constraint));
+                }
+            }
+            TransactionAction::TypeOffset(typed) => self.drag_by(|drag| drag.set_typed(typed)),
+        }
+    }
+
+    fn apply_selection(&mut self, action: SelectAction) -> Option<Effect> {
+        match action {
+            SelectAction::Joints(joints) => self.select(joints),
+            SelectAction::Hover(joint) => self.point(joint),
+            SelectAction::Keys(keys) => {
+                self.selected_keys = keys;
+                self.retain_keys();
+            }
+            SelectAction::Channels(channels) => {
+                self.selected_channels = channels.into_iter().collect();
+                self.retain_keys();
+            }
+            SelectAction::CopyKeys => return self.copy_keys(),
+        }
+        None
+    }
+
+    fn apply_view(&mut self, action: ViewAction) {
+        match action {
+            ViewAction::SetCamera(camera) => {
+                self.glide = None;
+                self.set_camera(camera);
+            }
+            ViewAction::GlideTo(camera) => {
+                if camera.is_valid() {
+                    self.glide = Some(Glide::new(self.document.camera, camera));
+                }
+            }
+            ViewAction::Grab(motion, at) => {
+                self.glide = None;
+                self.view_drag = Some(ViewDrag::new(motion, self.document.camera, at));
+            }
+            ViewAction::Drag { to, aspect } => {
+                if let Some(drag) = &self.view_drag {
+                    self.set_camera(drag.camera(to, aspect));
+                }
+            }
+            ViewAction::Drop => self.view_drag = None,
+            ViewAction::Cancel => {
+                if let Some(drag) = self.view_drag.take() {
+                    self.set_camera(drag.before);
+                }
+            }
+            ViewAction::ShowCrowd(shown) => self.show_crowd(shown),
+            ViewAction::SetCrowdSize(arms) => self.set_crowd(arms),
+            ViewAction::SetCrowdSolver(solved_by) => self.solve_crowd(solved_by),
+            ViewAction::AnimateCrowd(moving) => self.move_crowd(moving),
+            ViewAction::ResetTransport => self.transport_path = TransportPath::new(self.arm()),
+            ViewAction::ShowExplain(shown) => self.preferences.explain = shown,
+            ViewAction::ShowTimeline(shown) => self.preferences.timeline = shown,
+            ViewAction::ShowGraphEditor(shown) => self.preferences.curves = shown,
+        }
+    }
+
+    fn apply_playback(&mut self, action: PlaybackAction) {
+        match action {
+            PlaybackAction::Play(playing) => self.play(playing),
+            PlaybackAction::SetTime(time) => self.set_time(time),
+            PlaybackAction::SetLooping(looping) => self.playback.looping = looping,
+            PlaybackAction::SetSpeed(speed) => {
+                let (slowest, fastest) = Self::SPEEDS;
+                if speed.is_finite() {
+                    self.playback.speed = speed.clamp(slowest, fastest);
+                }
+            }
+            PlaybackAction::SetAutoKey(auto_key) => self.auto_key = auto_key,
+            PlaybackAction::Advance(seconds) => self.advance(seconds),
+        }
+    }
+
+    fn apply_solver(&mut self, action: SolverAction) {
+        match action {
+            SolverAction::Run(running) => self.run(running),
+            SolverAction::Cancel => self.cancel_run(),
+            SolverAction::Compare(true) => self.start_comparison(),
+            SolverAction::Compare(false) => self.comparison = None,
+            SolverAction::SetFollow(follow) => self.preferences.follow = follow,
+        }
+    }
+
+    /// Asks first if the action would lose unsaved changes or end an export.
+    pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
+        if action == FileAction::Quit && self.is_exporting() {
             self.dialog = Some(Dialog::Exporting);
             return None;
         }
@@ -21,201 +232,28 @@ impl Session {
             self.dialog = Some(Dialog::Unsaved { then: Box::new(action) });
             return None;
         }
-        self.apply_unasked(action)
+        self.apply_file_unasked(action)
     }
 
-    pub(super) fn apply_unasked(&mut self, action: Action) -> Option<Effect> {
-        let effect = match naming::of(&action) {
-            Some(name) => self.step_by(name, |session| session.act(action)),
-            None => self.act(action),
-        };
+    fn apply_file_unasked(&mut self, action: FileAction) -> Option<Effect> {
+        let effect = self.file_effect(action);
         self.choosing |= matches!(effect, Some(Effect::ChoosePath(_)));
         effect
     }
 
-    fn act(&mut self, action: Action) -> Option<Effect> {
+    fn file_effect(&mut self, action: FileAction) -> Option<Effect> {
         match action {
-            Action::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
-            Action::SetRoot(root) => self.set_point("shoulder", root, |arm, root| arm.root = root),
-            Action::SetTwist(spin) => self.set_twist(spin),
-            Action::SetPin(pin) => {
-                self.set_point("hand", pin, |arm, pin| arm.goal = Cursor::World(pin));
-            }
-            Action::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
-            Action::SetTwistReference(twist_reference) => self.set_twist_reference(twist_reference),
-            Action::SetPole(pole) => self.set_pole(pole),
-            Action::SetSoftReach(soft_reach) => {
-                self.replace_arm(Arm { soft_reach, ..*self.arm() });
-            }
-            Action::SetInfluence(weight) => self.set_weight(weight),
-            Action::SwitchTo(lead) => self.switch_to(lead),
-            Action::SetShoulder(angles) => self.set_shoulder(angles),
-            Action::SetBend(bend) => self.set_bend(bend),
-            Action::SetWrist(angles) => {
-                self.set_point("hand angles", angles, |arm, angles| arm.wrist.angles = angles);
-            }
-            Action::SetWristSpace(space) => {
-                self.message = None;
-                self.commit(self.shown.with_wrist_in(space));
-            }
-            Action::ResetTransport => self.transport_path = TransportPath::new(self.arm()),
-            Action::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
-            Action::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
-            Action::ResetPose => match self.rig() {
-                RigKind::Arm => self.replace_arm(Arm::default()),
-                RigKind::Skeleton => self.bind_pose(),
-            },
-            Action::ResetAll => self.reset_all(),
-            Action::Show(layer, shown) => {
-                let display = self.shown.display.with(layer, shown);
-                self.commit(Document { display, ..self.shown.clone() });
-            }
-            Action::ShowRig(rig) => self.show_rig(rig),
-
-            Action::Select(joints) => self.select(joints),
-            Action::Point(joint) => self.point(joint),
-            Action::AddChild { parent, tip } => self.add_joint(Some(parent), tip),
-            Action::AddJoint { tip } => self.add_next_joint(tip),
-            Action::AddRoot => self.add_joint(None, None),
-            Action::Delete(joints) => {
-                self.dialog = None;
-                self.delete_joints(&joints, Document::delete);
-            }
-            Action::Dissolve(joints) => {
-                self.dialog = None;
-                self.delete_joints(&joints, Document::dissolve);
-            }
-            Action::Rename { joint, name } => {
-                self.dialog = None;
-                self.edit_skeleton(|rig| rig.skeleton_mut().rename(joint, name.trim()));
-            }
-            Action::Reparent { joint, parent } => self.reparent(joint, parent),
-            Action::SetRotation { joint, rotation } => {
-                self.edit_skeleton(|rig| rig.skeleton_mut().set_rotation(joint, rotation));
-            }
-            Action::SetAxis { joint, axis } => {
-                self.edit_skeleton(|rig| rig.skeleton_mut().set_axis(joint, axis));
-            }
-            Action::SetLimit { joint, axis, limit } => self.set_limit(joint, axis, limit),
-            Action::SetLocked { joint, locked } => {
-                self.change_joint(joint, |joint| joint.locked = locked);
-            }
-            Action::SetTranslation(to) => self.set_translation(to),
-            Action::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
-
-            Action::AddTarget(joint) => self.add_target(joint),
-            Action::RemoveTarget(joint) => self.remove_target(joint),
-            Action::SetTarget(target) => self.set_target(target),
-            Action::SetSolver(solver) => self.set_solver(solver),
-            Action::SetIterationsPerFrame(iterations) => {
-                self.edit_skeleton(|rig| {
-                    rig.iterations_per_frame =
-                        iterations.clamp(1, SkeletonRig::MOST_ITERATIONS_PER_FRAME);
-                    Ok(())
-                });
-            }
-            Action::SetFollow(follow) => self.preferences.follow = follow,
-            Action::Run(running) => self.run(running),
-            Action::CancelRun => self.cancel_run(),
-            Action::Step => self.step(),
-            Action::ResetSolver => self.reset_solver(),
-            Action::Comparison(true) => self.start_comparison(),
-            Action::Comparison(false) => self.comparison = None,
-            Action::Play(playing) => self.play(playing),
-            Action::SetTime(time) => self.set_time(time),
-            Action::SetLooping(looping) => self.playback.looping = looping,
-            Action::SetSpeed(speed) => {
-                let (slowest, fastest) = Self::SPEEDS;
-                if speed.is_finite() {
-                    self.playback.speed = speed.clamp(slowest, fastest);
-                }
-            }
-
-            Action::Key(channels) => self.key(&channels),
-            Action::DeleteKeys(keys) => self.delete_keys(&keys),
-            Action::ClearChannels(channels) => self.clear_channels(&channels),
-            Action::MoveKeys { keys, by } => self.move_keys(&keys, by),
-            Action::CopyKeys => return self.copy_keys(),
-            Action::PasteKeys => self.paste_keys(),
-            Action::SelectKeys(keys) => {
-                self.selected_keys = keys;
-                self.retain_keys();
-            }
-            Action::SelectChannels(channels) => {
-                self.selected_channels = channels.into_iter().collect();
-                self.retain_keys();
-            }
-            Action::SetAutoKey(auto_key) => self.auto_key = auto_key,
-            Action::SetTimeline(timeline) => self.set_timeline(timeline),
-            Action::SetMetres(metres) => self.set_metres(metres),
-
-            Action::BeginEdit => self.begin_edit(None),
-            Action::CommitEdit => self.commit_edit(),
-            Action::Undo => self.undo(),
-            Action::Redo => self.redo(),
-            Action::CancelEdit => self.cancel_edit(),
-            Action::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
-            Action::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
-            Action::ConstrainDrag(constraint) if constraint.is_none_or(Constraint::is_possible) => {
-                self.drag_by(|drag| drag.set_constraint(constraint));
-            }
-            Action::ConstrainDrag(_) => {}
-            Action::TypeOffset(typed) => self.drag_by(|drag| drag.set_typed(typed)),
-
-            Action::SetCamera(camera) => {
-                self.glide = None;
-                self.set_camera(camera);
-            }
-            Action::GlideTo(camera) if camera.is_valid() => {
-                self.glide = Some(Glide::new(self.document.camera, camera));
-            }
-            Action::GlideTo(_) => {}
-            Action::Advance(seconds) => self.advance(seconds),
-            Action::GrabView(motion, at) => {
-                self.glide = None;
-                self.view_drag = Some(ViewDrag::new(motion, self.document.camera, at));
-            }
-            Action::DragView { to, aspect } => {
-                if let Some(drag) = &self.view_drag {
-                    self.set_camera(drag.camera(to, aspect));
-                }
-            }
-            Action::DropView => self.view_drag = None,
-            Action::CancelView => {
-                if let Some(drag) = self.view_drag.take() {
-                    self.set_camera(drag.before);
-                }
-            }
-
-            Action::SetTheme(theme) => self.preferences.theme = theme,
-            Action::SetNavigation(navigation) => self.preferences.navigation = navigation,
-            Action::ShowExplain(shown) => self.preferences.explain = shown,
-            Action::ShowCrowd(shown) => self.show_crowd(shown),
-            Action::SetCrowd(arms) => self.set_crowd(arms),
-            Action::SolveCrowd(solved_by) => self.solve_crowd(solved_by),
-            Action::MoveCrowd(moving) => self.move_crowd(moving),
-            Action::ShowTimeline(shown) => self.preferences.timeline = shown,
-            Action::ShowCurves(shown) => self.preferences.curves = shown,
-            Action::OpenDialog(dialog) => self.open_dialog(dialog),
-            Action::CloseDialog => self.close_dialog(),
-            Action::Report(message) => self.say(message),
-            Action::Fail(why) => self.fail(why),
-
-            Action::CopyPose => {
-                self.say("Pose copied as a line for ik-arm solve");
-                return Some(Effect::CopyText(super::pose_line::of(self.arm())));
-            }
-            Action::SavePicture(path) => {
+            FileAction::SavePicture(path) => {
                 (self.dialog, self.choosing) = (None, false);
                 self.remember_export_folder(path.as_ref());
                 self.say(format!("Saving {path} …"));
                 return Some(Effect::SavePicture(path));
             }
-            Action::Export(export) => return self.export(export),
-            Action::Exporting(job) => self.job = Some(job),
-            Action::CancelExport => self.cancel_export(),
-            Action::StopExportAndQuit => return self.stop_export_and_quit(),
-            Action::Exported(how) => {
+            FileAction::Export(export) => return self.export(export),
+            FileAction::ExportStarted(job) => self.job = Some(job),
+            FileAction::CancelExport => self.cancel_export(),
+            FileAction::StopExportAndQuit => return self.stop_export_and_quit(),
+            FileAction::ExportEnded(how) => {
                 self.job = None;
                 if self.dialog == Some(Dialog::Exporting) {
                     self.dialog = None;
@@ -225,17 +263,17 @@ impl Session {
                     Err(why) => self.fail(why),
                 }
             }
-            Action::Ask(dialog) => {
+            FileAction::AskPath(dialog) => {
                 self.then = None;
                 return Some(Effect::ChoosePath(dialog));
             }
-            Action::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),
-            Action::ChoseNothing => {
+            FileAction::ChoosePath => return self.dialog.clone().map(Effect::ChoosePath),
+            FileAction::ChoseNothing => {
                 (self.then, self.choosing) = (None, false);
                 self.say("No file was chosen");
             }
-            Action::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
-            Action::Open { path, skeleton } => {
+            FileAction::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
+            FileAction::Open { path, skeleton } => {
                 self.choosing = false;
                 if !matches!(self.dialog, Some(Dialog::Open { .. })) {
                     self.dialog = None;
@@ -243,37 +281,53 @@ impl Session {
                 self.opening = Some(self.revision);
                 return Some(Effect::Open { path, skeleton });
             }
-            Action::Opened { document, file } => self.replace_document(*document, file),
-            Action::NotOpened { path, why } => self.not_opened(&path, &why),
-            Action::Save => {
+            FileAction::Opened { document, file } => self.replace_document(*document, file),
+            FileAction::NotOpened { path, why } => self.not_opened(&path, &why),
+            FileAction::Save => {
                 self.then = None;
                 return Some(self.save());
             }
-            Action::SaveAs(path) => {
+            FileAction::SaveAs(path) => {
                 (self.dialog, self.choosing) = (None, false);
                 self.end_glide();
                 return Some(Effect::Save(path));
             }
-            Action::Saved(path) => return self.saved(path),
-            Action::NotSaved { path, why } => self.not_saved(&path, &why),
-            Action::SaveAnd(then) => {
+            FileAction::Saved(path) => return self.saved(path),
+            FileAction::NotSaved { path, why } => self.not_saved(&path, &why),
+            FileAction::SaveAnd(then) => {
                 self.dialog = None;
                 self.then = Some(then);
                 return Some(self.save());
             }
-            Action::Discard(then) => {
+            FileAction::Discard(then) => {
                 self.dialog = None;
-                return self.apply_unasked(*then);
+                return self.apply_file_unasked(*then);
             }
-            Action::Recover { document, file } => self.recover(*document, file),
-            Action::ForgetRecovered => {
+            FileAction::Recover { document, file } => self.recover(*document, file),
+            FileAction::DeclineRecovery => {
                 self.dialog = None;
                 self.recovery_settled = true;
             }
-            Action::OpenExample(example) => self.open_example(example),
-            Action::NewSkeleton => self.new_skeleton(),
-            Action::LoseDevice => return Some(Effect::LoseDevice),
-            Action::Quit => return Some(Effect::Quit),
+            FileAction::OpenExample(example) => self.open_example(example),
+            FileAction::NewSkeleton => self.new_skeleton(),
+            FileAction::Quit => return Some(Effect::Quit),
+        }
+        None
+    }
+
+    fn apply_shell(&mut self, action: ShellAction) -> Option<Effect> {
+        match action {
+            ShellAction::OpenDialog(dialog) => self.open_dialog(dialog),
+            ShellAction::CloseDialog => self.close_dialog(),
+            ShellAction::Report(message) => self.say(message),
+            ShellAction::Fail(why) => self.fail(why),
+            ShellAction::CopyPose => {
+                self.say("Pose copied as a line for ik-arm solve");
+                return Some(Effect::CopyText(super::pose_line::of(self.arm())));
+            }
+            ShellAction::SetTheme(theme) => self.preferences.theme = theme,
+            ShellAction::SetNavigation(navigation) => self.preferences.navigation = navigation,
+            ShellAction::LoseDevice => return Some(Effect::LoseDevice),
         }
         None
     }
@@ -347,7 +401,7 @@ impl Session {
         let grip = drag.grip;
         let Arm { goal, pole, fk, .. } = shown.arm;
         let mut angles = fk.shoulder;
-        *name = Some(naming::of_drag(grip));
+        *name = Some(grip.label());
         match (grip, &mut drag.way) {
             (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
                 let angle = turn.angle();

@@ -51,7 +51,7 @@ impl Session {
         }
     }
 
-    pub(super) fn set_weight(&mut self, weight: f32) {
+    pub(super) fn set_influence(&mut self, weight: f32) {
         if (0.0..=1.0).contains(&weight) {
             self.replace_arm(Arm { influence: weight, ..*self.arm() });
         } else {

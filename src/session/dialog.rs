@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use super::{Action, Export, Session};
+use super::{Export, FileAction, Session};
 use crate::document::Document;
 
 /// A window over the others. All but the statistics take the keyboard and the mouse.
@@ -17,14 +17,14 @@ pub enum Dialog {
     },
     /// Asks before an action that would lose unsaved changes.
     Unsaved {
-        then: Box<Action>,
+        then: Box<FileAction>,
     },
     /// Asks before quitting while an export runs.
     Exporting,
     /// Asks before a file is overwritten; `back` is the dialog that the path comes from.
     Replace {
         path: PathBuf,
-        then: Box<Action>,
+        then: Box<FileAction>,
         back: Box<Dialog>,
     },
     /// Asks for a path, which is shown as it is typed.

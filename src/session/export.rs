@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Action, Dialog, Effect, Session};
+use super::{Dialog, Effect, FileAction, Session};
 use crate::io::Progress;
 
 /// What is asked for of an export; its path's ending says the format.
@@ -65,7 +65,7 @@ impl Session {
     pub(super) fn stop_export_and_quit(&mut self) -> Option<Effect> {
         self.dialog = None;
         self.cancel_export();
-        self.apply(Action::Quit)
+        self.apply_file(FileAction::Quit)
     }
 
     pub(super) fn cancel_export(&mut self) {

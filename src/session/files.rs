@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use super::{Action, Dialog, Effect, Session};
+use super::{Dialog, Effect, FileAction, Session};
 use crate::document::Document;
 
 /// The document's way to the disk and from there.
@@ -39,9 +39,9 @@ impl Session {
 
     /// Whether a file that took its time to open would now take the place of changes that were made
     /// meanwhile.
-    pub(super) fn came_late(&self, action: &Action) -> bool {
+    pub(super) fn came_late(&self, action: &FileAction) -> bool {
         let is_other = self.opening.is_some_and(|revision| revision != self.revision);
-        matches!(action, Action::Opened { .. }) && (is_other || self.is_changing())
+        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
     }
 
     /// Whether what an earlier run kept has been opened or declined.
@@ -97,7 +97,7 @@ impl Session {
         self.saved_content = self.content;
         self.remember_file(path.clone());
         self.file = Some(path);
-        self.then.take().and_then(|then: Box<Action>| self.apply(*then))
+        self.then.take().and_then(|then: Box<FileAction>| self.apply_file(*then))
     }
 
     /// Asks for another place, and says why this one will not do.

@@ -8,28 +8,38 @@ mod comparison;
 mod crowd;
 mod dialog;
 mod drag;
+mod edit_action;
+mod edit_label;
+mod effect;
 mod export;
+mod file_action;
 mod files;
 mod history;
 mod keys;
 mod message;
-mod naming;
 mod overlays;
 mod playback;
+mod playback_action;
 mod point_drag;
 mod pop_fix;
 mod pops;
 mod pose_line;
+mod pose_mode;
 mod preferences;
 mod run;
+mod select_action;
+mod shell_action;
 mod skeleton;
 mod skeleton_drag;
+mod solver_action;
 mod solver_run;
 mod solver_status;
 mod trail;
 mod transaction;
+mod transaction_action;
 mod transport;
 mod turn_drag;
+mod view_action;
 mod view_drag;
 
 use std::cell::OnceCell;
@@ -38,21 +48,31 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-pub use action::{Action, Effect, PoseMode};
+pub use action::{Action, Actions};
 pub use comparison::{Comparison, Runner};
 pub use dialog::Dialog;
 pub use drag::{Drag, Grip};
+pub use edit_action::EditAction;
+pub use effect::Effect;
 pub use export::{Export, Job};
+pub use file_action::FileAction;
 pub use keys::Key;
 pub use overlays::{Ghost, OnionSkin, Overlays};
+pub use playback_action::PlaybackAction;
 pub use point_drag::{Constraint, DragInput, Handle, PointDrag};
 pub use pop_fix::PopFix;
 pub use pops::{Pops, Sample, Spike, What};
+pub use pose_mode::PoseMode;
 pub use preferences::{Navigation, Preferences};
+pub use select_action::SelectAction;
+pub use shell_action::ShellAction;
+pub use solver_action::SolverAction;
 pub use solver_run::{History, SolverRun};
 pub use solver_status::{SolverState, SolverStatus};
+pub use transaction_action::TransactionAction;
 pub use transport::TransportPath;
 pub use turn_drag::{Ring, TurnDrag};
+pub use view_action::ViewAction;
 pub use view_drag::{Motion, ViewDrag};
 
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
@@ -121,7 +141,7 @@ pub struct Session {
     /// Which document was there when the file was asked for that is being opened.
     opening: Option<u64>,
     /// What waits for the document to be saved.
-    then: Option<Box<Action>>,
+    then: Option<Box<FileAction>>,
     message: Option<Message>,
 }
 

@@ -1,4 +1,4 @@
-use super::{Action, Spike};
+use super::{EditAction, Spike};
 use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::Pop;
 use crate::kinematics::soft_reach::SoftReach;
@@ -40,11 +40,11 @@ impl PopFix {
         }
     }
 
-    pub fn action(self) -> Action {
+    pub fn action(self) -> EditAction {
         match self {
-            Self::Measure(twist_reference) => Action::SetTwistReference(twist_reference),
+            Self::Measure(twist_reference) => EditAction::SetTwistReference(twist_reference),
             Self::Soften(soft_reach) | Self::KeepOpen(soft_reach) => {
-                Action::SetSoftReach(soft_reach)
+                EditAction::SetSoftReach(soft_reach)
             }
         }
     }

@@ -46,7 +46,7 @@ impl Session {
     /// Makes a step of what a running solver has done by now.
     pub(super) fn end_run(&mut self) {
         if let Some(before) = self.run_before.take() {
-            self.remember("solve", before);
+            self.remember("Solve", before);
         }
     }
 
@@ -64,7 +64,7 @@ impl Session {
         if let Some(before) = self.run_before.take() {
             self.restore(&before);
         }
-        self.say("Taken back");
+        self.say("Cancelled");
     }
 
     /// One iteration, after which the solver waits.

@@ -223,7 +223,7 @@ impl Session {
 
     pub(super) fn commit_edit(&mut self) {
         if let Some(edit) = self.edit.take() {
-            self.remember(edit.name.unwrap_or("change"), edit.before);
+            self.remember(edit.name.unwrap_or("Change"), edit.before);
             self.begin_run();
         }
     }
@@ -232,7 +232,7 @@ impl Session {
         if let Some(edit) = self.edit.take() {
             self.restore(&edit.before);
             self.begin_run();
-            self.say("Taken back");
+            self.say("Cancelled");
         }
     }
 
@@ -248,7 +248,7 @@ impl Session {
         match self.history.undo(now) {
             Some((name, state)) => {
                 self.restore(&state);
-                self.say(format!("Undone: {name}"));
+                self.say(format!("Undid {name}"));
             }
             None => self.say("There is nothing to undo"),
         }
@@ -261,7 +261,7 @@ impl Session {
         match self.history.redo(now) {
             Some((name, state)) => {
                 self.restore(&state);
-                self.say(format!("Redone: {name}"));
+                self.say(format!("Redid {name}"));
             }
             None => self.say("There is nothing to redo"),
         }
@@ -270,8 +270,8 @@ impl Session {
     /// What Undo would take back, as in "Undo move hand".
     pub fn undo_name(&self) -> Option<&'static str> {
         match (&self.edit, &self.run_before) {
-            (Some(edit), _) => Some(edit.name.unwrap_or("change")),
-            (None, Some(_)) => Some("solve"),
+            (Some(edit), _) => Some(edit.name.unwrap_or("Change")),
+            (None, Some(_)) => Some("Solve"),
             (None, None) => self.history.undo_name(),
         }
     }

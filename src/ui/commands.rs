@@ -1,18 +1,18 @@
 //! Actions that menus, keys and buttons have in common.
 
 use crate::document::{AxisView, Camera};
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
 
-pub(in crate::ui) fn open() -> Action {
-    Action::Ask(Dialog::open())
+pub(in crate::ui) fn open() -> FileAction {
+    FileAction::AskPath(Dialog::open())
 }
 
-pub(in crate::ui) fn save_as() -> Action {
-    Action::Ask(Dialog::save_as())
+pub(in crate::ui) fn save_as() -> FileAction {
+    FileAction::AskPath(Dialog::save_as())
 }
 
-pub(in crate::ui) fn save_picture() -> Action {
-    Action::Ask(Dialog::save_picture())
+pub(in crate::ui) fn save_picture() -> FileAction {
+    FileAction::AskPath(Dialog::save_picture())
 }
 
 pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [
@@ -28,12 +28,12 @@ pub(in crate::ui) fn with_other_projection(camera: Camera) -> Camera {
     Camera { orthographic: !camera.orthographic, ..camera }
 }
 
-pub(in crate::ui) fn frame_selection(session: &Session) -> Action {
-    Action::GlideTo(session.framing_selection())
+pub(in crate::ui) fn frame_selection(session: &Session) -> ViewAction {
+    ViewAction::GlideTo(session.framing_selection())
 }
 
-pub(in crate::ui) fn frame_all(session: &Session) -> Action {
-    Action::GlideTo(session.framing_all())
+pub(in crate::ui) fn frame_all(session: &Session) -> ViewAction {
+    ViewAction::GlideTo(session.framing_all())
 }
 
 /// Deletes the selected joints; asks first what becomes of children that are not selected too.
@@ -47,23 +47,23 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
         .enumerate()
         .any(|(child, joint)| is_left(joint.parent) && !joints.contains(&child));
     if leaves_children {
-        Action::OpenDialog(Dialog::DeleteJoints { joints })
+        ShellAction::OpenDialog(Dialog::DeleteJoints { joints }).into()
     } else {
-        Action::Delete(joints)
+        EditAction::DeleteJoints(joints).into()
     }
 }
 
 /// Asks for a joint's name.
-pub(in crate::ui) fn rename(session: &Session, joint: usize) -> Action {
+pub(in crate::ui) fn rename(session: &Session, joint: usize) -> ShellAction {
     let name = session.skeleton().joint(joint).map(|joint| joint.name.clone());
-    Action::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
+    ShellAction::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
 }
 
 /// Gives the selected joint a target, or takes it away.
-pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Action> {
+pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
     let joint = session.selected()?;
     Some(match session.skeleton_rig().target(joint) {
-        Some(_) => Action::RemoveTarget(joint),
-        None => Action::AddTarget(joint),
+        Some(_) => EditAction::RemoveTarget(joint),
+        None => EditAction::AddTarget(joint),
     })
 }

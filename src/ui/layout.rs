@@ -5,7 +5,7 @@ use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 use super::panels::{crowd, explain, left, solver};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport};
 use crate::document::RigKind;
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session};
 
 /// Shows everything. Returns where the scene is to be drawn, in points; `picture` is the scene as
 /// last drawn there.
@@ -14,7 +14,7 @@ pub fn show(
     session: &Session,
     machine: &Machine,
     picture: Option<TextureId>,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) -> Rect {
     keyboard::global(ui, session, actions);
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, machine, actions));

@@ -6,14 +6,12 @@ use super::machine::Machine;
 use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group};
-use crate::session::{Action, Dialog, Navigation, Session};
+use crate::session::{
+    Action, Actions, Dialog, EditAction, FileAction, Navigation, Session, ShellAction,
+    TransactionAction, ViewAction,
+};
 
-pub(in crate::ui) fn ui(
-    ui: &mut Ui,
-    session: &Session,
-    machine: &Machine,
-    actions: &mut Vec<Action>,
-) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, session, actions));
         ui.menu_button("Edit", |ui| edit(ui, session, actions));
@@ -41,9 +39,9 @@ fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
     ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked()
 }
 
-fn file(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "New skeleton", "") {
-        actions.push(Action::NewSkeleton);
+        actions.push(FileAction::NewSkeleton);
     }
     if item(ui, "Open…", "Ctrl+O") {
         actions.push(commands::open());
@@ -53,42 +51,42 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
     ui.separator();
     if item(ui, "Save", "Ctrl+S") {
-        actions.push(Action::Save);
+        actions.push(FileAction::Save);
     }
     if item(ui, "Save as…", "Ctrl+Shift+S") {
         actions.push(commands::save_as());
     }
     ui.separator();
     if item(ui, "Export…", "Ctrl+E") {
-        actions.push(Action::OpenDialog(session.export_dialog()));
+        actions.push(ShellAction::OpenDialog(session.export_dialog()));
     }
     if item(ui, "Save picture…", "Ctrl+P") {
         actions.push(commands::save_picture());
     }
     ui.separator();
     if item(ui, "Quit", "Ctrl+Q") {
-        actions.push(Action::Quit);
+        actions.push(FileAction::Quit);
     }
 }
 
-fn recent(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for path in session.recent() {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let button = ui.button(name).on_hover_text(path.display().to_string());
         if button.clicked() {
-            actions.push(Action::Open { path: path.clone(), skeleton: None });
+            actions.push(FileAction::Open { path: path.clone(), skeleton: None });
         }
     }
 }
 
-fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    step(ui, "Undo", session.undo_name(), "Ctrl+Z", Action::Undo, actions);
-    step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", Action::Redo, actions);
+fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    step(ui, "Undo", session.undo_name(), "Ctrl+Z", TransactionAction::Undo.into(), actions);
+    step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", TransactionAction::Redo.into(), actions);
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     ui.separator();
     if item(ui, "Copy pose as JSON line", "Ctrl+C") {
-        actions.push(Action::CopyPose);
+        actions.push(ShellAction::CopyPose);
     }
     ui.separator();
     ui.menu_button("Navigation", |ui| {
@@ -97,24 +95,24 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let [turn, pan, zoom] = navigation.help();
             let tooltip = format!("Turn: {turn}\nMove: {pan}\nZoom: {zoom}");
             if ui.radio(chosen, navigation.name()).on_hover_text(tooltip).clicked() {
-                actions.push(Action::SetNavigation(navigation));
+                actions.push(ShellAction::SetNavigation(navigation));
             }
         }
     });
 }
 
 /// Everything that can have keys, switches too.
-fn key(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Selected", "K") {
-        actions.push(Action::Key(session.channels_to_key()));
+        actions.push(EditAction::Key(session.channels_to_key()));
     }
     if item(ui, "All", "Shift+K") {
-        actions.push(Action::Key(session.all_channels()));
+        actions.push(EditAction::Key(session.all_channels()));
     }
     ui.separator();
-    let one = |ui: &mut Ui, channel: Channel, actions: &mut Vec<Action>| {
+    let one = |ui: &mut Ui, channel: Channel, actions: &mut Actions| {
         if ui.button(labels::channel(session, channel)).clicked() {
-            actions.push(Action::Key(vec![channel]));
+            actions.push(EditAction::Key(vec![channel]));
         }
     };
     match session.rig() {
@@ -145,7 +143,7 @@ fn step(
     name: Option<&str>,
     keys: &str,
     action: Action,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let title = name.map_or(verb.to_owned(), |name| format!("{verb} {name}"));
     let button = ui.add_enabled(name.is_some(), Button::new(title).shortcut_text(keys));
@@ -154,15 +152,16 @@ fn step(
     }
 }
 
-fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for (axis_view, name, keys) in commands::AXIS_VIEWS {
         if item(ui, name, keys) {
-            actions.push(Action::GlideTo(session.settled_camera().along(axis_view)));
+            actions.push(ViewAction::GlideTo(session.settled_camera().along(axis_view)));
         }
     }
     ui.separator();
     if item(ui, "Perspective / orthographic", "5") {
-        actions.push(Action::SetCamera(commands::with_other_projection(session.settled_camera())));
+        actions
+            .push(ViewAction::SetCamera(commands::with_other_projection(session.settled_camera())));
     }
     if item(ui, "Frame selection", "F") {
         actions.push(commands::frame_selection(session));
@@ -173,7 +172,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.separator();
     for (theme, name) in [(Theme::Light, "Light theme"), (Theme::Dark, "Dark theme")] {
         if ui.radio(session.preferences().theme == theme, name).clicked() {
-            actions.push(Action::SetTheme(theme));
+            actions.push(ShellAction::SetTheme(theme));
         }
     }
     ui.separator();
@@ -185,13 +184,13 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     for (layer, name) in layers {
         let mut shown = session.shown().display.shows(layer);
         if ui.checkbox(&mut shown, name).changed() {
-            actions.push(Action::Show(layer, shown));
+            actions.push(EditAction::ShowOverlay(layer, shown));
         }
     }
     let mut crowd = session.crowd().is_some();
     let tooltip = "Up to a million arms like this one, each after a target of its own";
     if ui.checkbox(&mut crowd, "Crowd").on_hover_text(tooltip).changed() {
-        actions.push(Action::ShowCrowd(crowd));
+        actions.push(ViewAction::ShowCrowd(crowd));
     }
     let mut explain = session.preferences().explain;
     let name = match session.rig() {
@@ -199,46 +198,46 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         RigKind::Skeleton => "Solver panel",
     };
     if ui.checkbox(&mut explain, name).changed() {
-        actions.push(Action::ShowExplain(explain));
+        actions.push(ViewAction::ShowExplain(explain));
     }
     let mut timeline = session.preferences().timeline;
     if ui.checkbox(&mut timeline, "Timeline").changed() {
-        actions.push(Action::ShowTimeline(timeline));
+        actions.push(ViewAction::ShowTimeline(timeline));
     }
     let mut curves = session.preferences().curves;
     if ui.checkbox(&mut curves, "Curves").on_hover_text("In the timeline").changed() {
-        actions.push(Action::ShowCurves(curves));
+        actions.push(ViewAction::ShowGraphEditor(curves));
     }
 }
 
-fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn examples(ui: &mut Ui, actions: &mut Actions) {
     examples_of(Group::Tour, ui, actions);
     ui.separator();
     ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
 }
 
-fn examples_of(group: Group, ui: &mut Ui, actions: &mut Vec<Action>) {
+fn examples_of(group: Group, ui: &mut Ui, actions: &mut Actions) {
     for example in Example::of(group) {
         if ui.button(example.title).on_hover_text(example.sentence).clicked() {
-            actions.push(Action::OpenExample(example));
+            actions.push(FileAction::OpenExample(example));
         }
     }
 }
 
-fn help(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
+fn help(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
     if item(ui, "Shortcuts", "F1") {
-        actions.push(Action::OpenDialog(Dialog::Shortcuts));
+        actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
     }
     if item(ui, "Statistics", "") {
-        actions.push(Action::OpenDialog(Dialog::Statistics));
+        actions.push(ShellAction::OpenDialog(Dialog::Statistics));
     }
     if item(ui, "About", "") {
-        actions.push(Action::OpenDialog(Dialog::About));
+        actions.push(ShellAction::OpenDialog(Dialog::About));
     }
     if machine.shows_debug_actions {
         ui.separator();
         if item(ui, "Lose the graphics device", "") {
-            actions.push(Action::LoseDevice);
+            actions.push(ShellAction::LoseDevice);
         }
     }
 }

@@ -6,14 +6,9 @@ use super::machine::Machine;
 use super::pose_summary;
 use super::widgets::{self, format};
 use crate::document::RigKind;
-use crate::session::{Action, Drag, Grip, Job, PointDrag, Session, TurnDrag};
+use crate::session::{Actions, Drag, FileAction, Grip, Job, PointDrag, Session, TurnDrag};
 
-pub(in crate::ui) fn ui(
-    ui: &mut Ui,
-    session: &Session,
-    machine: &Machine,
-    actions: &mut Vec<Action>,
-) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) {
     ui.horizontal(|ui| {
         ui.set_height(24.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -35,10 +30,10 @@ pub(in crate::ui) fn ui(
 }
 
 /// How far an export is; a press stops it.
-fn show_job(ui: &mut Ui, job: &Job, actions: &mut Vec<Action>) {
+fn show_job(ui: &mut Ui, job: &Job, actions: &mut Actions) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Stops the export; no file is left").clicked() {
-        actions.push(Action::CancelExport);
+        actions.push(FileAction::CancelExport);
     }
     let name = job.path.file_name().unwrap_or(job.path.as_os_str()).to_string_lossy();
     let part = job.progress.part();

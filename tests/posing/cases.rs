@@ -6,7 +6,9 @@ use glam::{DQuat, DVec3, Vec3};
 use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::session::{Action, DragInput, Grip, Handle, PoseMode, Session};
+use ik_arm::session::{
+    DragInput, EditAction, Grip, Handle, PoseMode, Session, TransactionAction, ViewAction,
+};
 
 use crate::*;
 
@@ -14,8 +16,8 @@ use crate::*;
 fn a_root_is_where_the_hand_reaches_on_a_table_from() {
     // The case of the seed's analysis: a hand on the edge of a table, and a body that leans.
     let mut session =
-        session([Action::SetHand(Vec3::new(300.0, 0.0, 100.0)), Action::PinHand(true)]);
-    session.apply(Action::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
+        session([EditAction::SetHand(Vec3::new(300.0, 0.0, 100.0)), EditAction::PinHand(true)]);
+    session.apply(EditAction::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
     let (arm, pose) = (session.arm(), session.pose());
     assert_eq!(arm.goal, Cursor::World(Vec3::new(300.0, 0.0, 100.0)));
     assert!((arm.root + pose.hand).distance(Vec3::new(300.0, 0.0, 100.0)) < 2e-4);
@@ -25,9 +27,9 @@ fn a_root_is_where_the_hand_reaches_on_a_table_from() {
 fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
     // An octant of the sphere: a quarter turn.
     let mut session = session([
-        Action::SetTwistReference(TwistReferenceKind::Transport),
-        Action::SetHand(Vec3::X * 300.0),
-        Action::ResetTransport,
+        Action::from(EditAction::SetTwistReference(TwistReferenceKind::Transport)),
+        EditAction::SetHand(Vec3::X * 300.0).into(),
+        ViewAction::ResetTransport.into(),
     ]);
     let before = session.pose().outward();
     let corners = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::X];
@@ -35,7 +37,7 @@ fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
         for step in 1..=90 {
             let angle = (step as f32).to_radians();
             let hand = ends[0] * angle.cos() + ends[1] * angle.sin();
-            session.apply(Action::SetHand(hand * 300.0));
+            session.apply(EditAction::SetHand(hand * 300.0));
         }
     }
     let holonomy = f64::from(session.transport_path().holonomy());
@@ -50,7 +52,7 @@ fn a_forearm_rolls_on_past_half_a_turn() {
     let mut session = Session::default();
     for step in 1..=30 {
         let roll = step as f32 * 0.3;
-        session.apply(Action::SetWrist(Vec3::X * roll));
+        session.apply(EditAction::SetWrist(Vec3::X * roll));
         let found = session.arm().roll(session.pose());
         assert!((found - roll).abs() < 1e-4, "{found} is not {roll}");
     }
@@ -64,11 +66,11 @@ fn a_forearm_rolls_on_past_half_a_turn() {
 fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
     let soft = SoftReach::new(0.3, 1.0, 0.0).expect("a softening");
     for hand in [Vec3::new(470.0, 100.0, 40.0), Vec3::new(90.0, 60.0, 10.0)] {
-        let mut session = session([Action::SetSoftReach(soft), Action::SetHand(hand)]);
+        let mut session = session([EditAction::SetSoftReach(soft), EditAction::SetHand(hand)]);
         let before = *session.pose();
         assert!(before.hand.distance(hand) > 1.0, "it is softened");
-        session.apply(Action::SwitchTo(PoseMode::Angles));
-        session.apply(Action::SwitchTo(PoseMode::Hand));
+        session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+        session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
         assert!(apart(&before, session.pose()) < 1e-4);
         assert!(session.message().is_none());
     }
@@ -77,27 +79,30 @@ fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
 #[test]
 fn a_stretched_arm_keeps_its_length_when_its_angles_lead() {
     let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
-    let mut session = session([Action::SetSoftReach(stretch), Action::SetHand(Vec3::X * 750.0)]);
+    let mut session =
+        session([EditAction::SetSoftReach(stretch), EditAction::SetHand(Vec3::X * 750.0)]);
     assert_eq!(session.pose().stretch, 1.5);
     let before = *session.pose();
-    session.apply(Action::SwitchTo(PoseMode::Angles));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
     assert!(apart(&before, session.pose()) < 1e-5);
-    session.apply(Action::SetInfluence(0.5));
+    session.apply(EditAction::SetInfluence(0.5));
     assert!((session.pose().hand.length() - 750.0).abs() < 1e-2);
 }
 
 #[test]
 fn a_pole_is_dragged_and_the_elbow_follows() {
-    let mut session =
-        session([Action::SetTwistReference(TwistReferenceKind::Pole), Action::SetTwist(0.0)]);
+    let mut session = session([
+        EditAction::SetTwistReference(TwistReferenceKind::Pole),
+        EditAction::SetTwist(0.0),
+    ]);
     let projection = session.camera().projection(1.0);
     let ray = projection.ray(projection.project(session.arm().pole).expect("seen"));
     let forward = projection.forward;
-    session.apply(Action::Grab { grip: Grip::Pole(Handle::Free), ray, forward });
+    session.apply(TransactionAction::Grab { grip: Grip::Pole(Handle::Free), ray, forward });
     let to = projection.ray(glam::Vec2::new(0.2, -0.3));
-    session.apply(Action::Drag(DragInput { ray: to, precise: false, snap: false }));
-    session.apply(Action::CommitEdit);
-    assert_eq!(session.undo_name(), Some("move pole"));
+    session.apply(TransactionAction::Drag(DragInput { ray: to, precise: false, snap: false }));
+    session.apply(TransactionAction::Commit);
+    assert_eq!(session.undo_name(), Some("Move pole"));
     let (arm, pose) = (session.arm(), session.pose());
     let aside =
         (arm.pole - pose.facing.direction * arm.pole.dot(pose.facing.direction)).normalize();
@@ -106,7 +111,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
 
 #[test]
 fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
-    let mut session = session([Action::SwitchTo(PoseMode::Angles)]);
+    let mut session = session([EditAction::SwitchPoseMode(PoseMode::Angles)]);
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = session.arm_ring(grip).expect("a ring");
         let fk = session.arm().fk;
@@ -117,10 +122,10 @@ fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
             Grip::Shoulder(axis) => {
                 let mut angles = fk.shoulder;
                 angles[axis] += 0.2;
-                session.apply(Action::SetShoulder(angles));
+                session.apply(EditAction::SetShoulder(angles));
             }
             _ => {
-                session.apply(Action::SetBend(fk.bend + 0.2));
+                session.apply(EditAction::SetBend(fk.bend + 0.2));
             }
         }
         // What the angle does is a right-handed turn about the ring.
@@ -129,14 +134,15 @@ fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
         let upper = if grip == Grip::Bend { before } else { turn * before };
         assert!(upper.distance(limb(&session)) < 1e-3, "{grip:?}");
     }
-    session.apply(Action::SwitchTo(PoseMode::Hand));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
     assert!(session.arm_ring(Grip::Bend).is_none());
 }
 
 #[test]
 fn a_hand_pinned_beyond_all_numbers_is_within_them() {
     let far = Vec3::X * 3e38;
-    let session = session([Action::SetRoot(far), Action::SetHand(far), Action::PinHand(true)]);
+    let session =
+        session([EditAction::SetRoot(far), EditAction::SetHand(far), EditAction::PinHand(true)]);
     assert!(session.arm().cursor_world().is_finite());
     assert!(ik_arm::io::to_json(session.document()).is_ok());
 }
@@ -145,15 +151,17 @@ fn a_hand_pinned_beyond_all_numbers_is_within_them() {
 fn a_hand_that_is_pressed_and_let_go_leaves_the_document() {
     for twist_reference in TwistReferenceKind::ALL {
         for hand in [Vec3::new(250.0, 120.0, 60.0), Vec3::new(-90.0, 210.0, 33.3)] {
-            let mut session =
-                session([Action::SetTwistReference(twist_reference), Action::SetHand(hand)]);
+            let mut session = session([
+                EditAction::SetTwistReference(twist_reference),
+                EditAction::SetHand(hand),
+            ]);
             let (before, undo) = (session.document().clone(), session.undo_name());
             let projection = session.camera().projection(1.0);
             let ray = projection.ray(projection.project(hand).expect("seen"));
             let forward = projection.forward;
-            session.apply(Action::Grab { grip: Grip::Hand(Handle::Free), ray, forward });
-            session.apply(Action::Drag(DragInput { ray, precise: false, snap: false }));
-            session.apply(Action::CommitEdit);
+            session.apply(TransactionAction::Grab { grip: Grip::Hand(Handle::Free), ray, forward });
+            session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap: false }));
+            session.apply(TransactionAction::Commit);
             assert_eq!(session.document(), &before);
             assert_eq!(session.undo_name(), undo);
         }

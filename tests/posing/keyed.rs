@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::Vec3;
 use ik_arm::document::{Channel, HandSpace, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{Action, PoseMode, Session};
+use ik_arm::session::{EditAction, PlaybackAction, PoseMode, Session};
 
 use crate::*;
 
@@ -13,42 +13,46 @@ use crate::*;
 fn hand_keys_rest_while_the_hand_is_pinned() {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::Key(vec![Channel::Hand]));
     }
-    session.apply(Action::PinHand(true));
-    session.apply(Action::SetTime(0.5));
+    session.apply(EditAction::PinHand(true));
+    session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
-    session.apply(Action::PinHand(false));
+    session.apply(EditAction::PinHand(false));
     assert_eq!(session.arm().cursor(), Vec3::Y * 200.0, "it stays until the time changes");
-    session.apply(Action::SetTime(0.0));
+    session.apply(PlaybackAction::SetTime(0.0));
     assert_eq!(session.arm().cursor(), Vec3::X * 200.0);
 }
 
 #[test]
 fn k_keeps_what_is_shown_only_until_the_time_changes() {
-    let mut session = session([Action::SetInfluence(0.0), Action::Key(vec![Channel::Influence])]);
-    session.apply(Action::SetTime(1.0));
-    session.apply(Action::SetInfluence(1.0));
+    let mut session =
+        session([EditAction::SetInfluence(0.0), EditAction::Key(vec![Channel::Influence])]);
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(EditAction::SetInfluence(1.0));
     assert!(session.message().is_some_and(|message| message.contains("press K")));
-    session.apply(Action::Key(session.channels_to_key()));
-    session.apply(Action::SetTime(0.0));
-    session.apply(Action::SetTime(1.0));
+    session.apply(EditAction::Key(session.channels_to_key()));
+    session.apply(PlaybackAction::SetTime(0.0));
+    session.apply(PlaybackAction::SetTime(1.0));
     assert_eq!(session.arm().influence, 1.0);
 }
 
 #[test]
 fn a_keyed_switch_keeps_how_far_its_limbs_are_stretched() {
     let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
-    let mut session = session([Action::SetSoftReach(stretch), Action::SetAutoKey(true)]);
-    session.apply(Action::SetHand(Vec3::X * 750.0));
-    session.apply(Action::SwitchTo(PoseMode::Angles));
-    session.apply(Action::SetTime(1.0));
-    session.apply(Action::SwitchTo(PoseMode::Hand));
-    session.apply(Action::SetHand(Vec3::new(300.0, 50.0, 0.0)));
-    session.apply(Action::SwitchTo(PoseMode::Angles));
-    session.apply(Action::SetTime(0.0));
+    let mut session = session([
+        Action::from(EditAction::SetSoftReach(stretch)),
+        PlaybackAction::SetAutoKey(true).into(),
+    ]);
+    session.apply(EditAction::SetHand(Vec3::X * 750.0));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
+    session.apply(EditAction::SetHand(Vec3::new(300.0, 50.0, 0.0)));
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+    session.apply(PlaybackAction::SetTime(0.0));
     assert!(session.pose().hand.distance(Vec3::X * 750.0) < 1e-2, "{}", session.pose().hand);
 }
 
@@ -59,17 +63,17 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
         (0.0, Vec3::new(250.0, 120.0, 60.0), Vec3::new(0.3, 0.2, 0.1)),
         (2.0, Vec3::new(-150.0, 220.0, 160.0), Vec3::new(0.9, -0.2, 0.4)),
     ] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::SetWrist(angles));
-        session.apply(Action::Key(vec![Channel::Hand, Channel::Wrist]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::SetWrist(angles));
+        session.apply(EditAction::Key(vec![Channel::Hand, Channel::Wrist]));
     }
     let turned = |session: &Session, time: f64| {
         let arm = session.document().at(time).arm;
         arm.hand_rotation(&arm.pose())
     };
     let before = [0.0, 2.0].map(|time| turned(&session, time));
-    session.apply(Action::SetWristSpace(HandSpace::World));
+    session.apply(EditAction::SetWristSpace(HandSpace::World));
     for (before, time) in before.into_iter().zip([0.0, 2.0]) {
         let now = turned(&session, time);
         assert!(
@@ -80,20 +84,20 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
 
 /// A hand with keys, whose elbow has none and is carried along, between two of them.
 fn carried_between_keys() -> Session {
-    let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport)]);
+    let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::Key(vec![Channel::Hand]));
     }
-    session.apply(Action::SetTime(1.0));
+    session.apply(PlaybackAction::SetTime(1.0));
     session
 }
 
 /// Takes the hand around, off its keys.
 fn look_off(mut session: Session) -> Session {
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
-        session.apply(Action::SetHand(hand * 300.0));
+        session.apply(EditAction::SetHand(hand * 300.0));
     }
     session
 }
@@ -101,10 +105,10 @@ fn look_off(mut session: Session) -> Session {
 #[test]
 fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
     let mut session = look_off(carried_between_keys());
-    session.apply(Action::SetTwist(2.0));
+    session.apply(EditAction::SetTwist(2.0));
     assert_eq!(session.arm().twist, 2.0);
-    session.apply(Action::SetUpper(210.0));
-    session.apply(Action::SetTime(0.5));
+    session.apply(EditAction::SetUpper(210.0));
+    session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().twist, 2.0, "it has no keys to come back to");
 }
 
@@ -115,33 +119,33 @@ fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere()
     {
         let mut session = look_off(carried_between_keys());
         let before = *session.pose();
-        session.apply(Action::SetTwistReference(twist_reference));
+        session.apply(EditAction::SetTwistReference(twist_reference));
         assert!(apart(&before, session.pose()) < 1e-5, "{twist_reference:?}");
     }
 }
 
 #[test]
 fn another_edit_leaves_a_keyed_carried_spin_as_its_keys_have_it() {
-    let mut session = session([Action::SetTwistReference(TwistReferenceKind::Transport)]);
+    let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 90.0))] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetHand(hand));
-        session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
     }
-    session.apply(Action::SetTime(0.7));
-    session.apply(Action::SetUpper(210.0));
+    session.apply(PlaybackAction::SetTime(0.7));
+    session.apply(EditAction::SetUpper(210.0));
     assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
 }
 
 #[test]
 fn what_is_beneath_the_keys_is_measured_anew_too() {
-    let mut session = session([Action::SetTwist(1.0)]);
+    let mut session = session([EditAction::SetTwist(1.0)]);
     let pose = *session.pose();
-    session.apply(Action::Key(vec![Channel::Twist, Channel::Wrist]));
-    session.apply(Action::SetTwistReference(TwistReferenceKind::Stereographic));
-    session.apply(Action::SetWristSpace(HandSpace::World));
+    session.apply(EditAction::Key(vec![Channel::Twist, Channel::Wrist]));
+    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Stereographic));
+    session.apply(EditAction::SetWristSpace(HandSpace::World));
     let hand = session.arm().hand_rotation(session.pose());
-    session.apply(Action::ClearChannels(vec![Channel::Twist, Channel::Wrist]));
+    session.apply(EditAction::ClearChannels(vec![Channel::Twist, Channel::Wrist]));
     assert!(apart(&pose, session.pose()) < 1e-5);
     let now = session.arm().hand_rotation(session.pose());
     assert!(now.x_axis.distance(hand.x_axis) < 1e-5 && now.y_axis.distance(hand.y_axis) < 1e-5);
@@ -153,8 +157,8 @@ fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
     let (document, pose) = (session.document().clone(), *session.pose());
     let mut session = look_off(session);
     assert_eq!(session.document(), &document);
-    session.apply(Action::SetTime(0.5));
-    session.apply(Action::SetTime(1.0));
+    session.apply(PlaybackAction::SetTime(0.5));
+    session.apply(PlaybackAction::SetTime(1.0));
     assert_eq!(session.pose(), &pose);
 }
 
@@ -162,9 +166,9 @@ fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
 fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
     let mut session = Session::default();
     for (time, roll) in [(0.0, 0.0), (2.0, 2.0 * PI as f32)] {
-        session.apply(Action::SetTime(time));
-        session.apply(Action::SetWrist(Vec3::X * roll));
-        session.apply(Action::Key(vec![Channel::Wrist]));
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetWrist(Vec3::X * roll));
+        session.apply(EditAction::Key(vec![Channel::Wrist]));
     }
     let roll = |frame: i32| {
         let arm = session.document().at(f64::from(frame) / 50.0).arm;
@@ -177,8 +181,8 @@ fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
 
 #[test]
 fn changing_the_reference_at_a_key_shows_nothing_against_the_keys() {
-    let mut session = session([Action::SetTwist(1.0)]);
-    session.apply(Action::Key(vec![Channel::Hand, Channel::Twist]));
-    session.apply(Action::SetTwistReference(TwistReferenceKind::Pole));
+    let mut session = session([EditAction::SetTwist(1.0)]);
+    session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
+    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
     assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
 }

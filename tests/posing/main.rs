@@ -18,7 +18,7 @@ pub fn references() -> impl Strategy<Value = TwistReferenceKind> {
     (0..TwistReferenceKind::ALL.len()).prop_map(|index| TwistReferenceKind::ALL[index])
 }
 
-pub fn session(actions: impl IntoIterator<Item = Action>) -> Session {
+pub fn session(actions: impl IntoIterator<Item = impl Into<Action>>) -> Session {
     let mut session = Session::default();
     for action in actions {
         session.apply(action);

@@ -2,7 +2,7 @@
 //! not grow without end.
 
 use ik_arm::document::Channel;
-use ik_arm::session::{Action, Session};
+use ik_arm::session::{Action, EditAction, FileAction, Session};
 
 use crate::common::Random;
 use crate::kinds::{KINDS, Kind, Sort};
@@ -60,7 +60,7 @@ impl Actions {
     fn anew(&mut self, session: &Session) -> Action {
         let mut values = self.values(session);
         let (document, file) = (Box::new(values.document()), values.file());
-        Action::Discard(Box::new(Action::Opened { document, file }))
+        FileAction::Discard(Box::new(FileAction::Opened { document, file })).into()
     }
 
     fn made_smaller(&mut self, session: &Session) -> Option<Action> {
@@ -70,12 +70,12 @@ impl Actions {
             return Some(self.anew(session));
         }
         if joints > Self::MOST_JOINTS && joints <= Self::HUGE && self.random.chance(0.2) {
-            return Some(Action::Delete(vec![1 + self.random.below(joints - 1)]));
+            return Some(EditAction::DeleteJoints(vec![1 + self.random.below(joints - 1)]).into());
         }
         if keys.count() > Self::MOST_KEYS && self.random.chance(0.2) {
             let place = self.random.below(keys.tracks().count());
             let channel: Option<Channel> = keys.tracks().nth(place).map(|(channel, _)| channel);
-            return Some(Action::ClearChannels(channel.into_iter().collect()));
+            return Some(EditAction::ClearChannels(channel.into_iter().collect()).into());
         }
         None
     }

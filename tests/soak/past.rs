@@ -2,7 +2,7 @@
 
 use ik_arm::document::Document;
 use ik_arm::io;
-use ik_arm::session::{Action, Session};
+use ik_arm::session::{Action, Session, SolverAction, TransactionAction};
 
 use crate::{Broken, hold};
 
@@ -54,15 +54,16 @@ pub fn saving(document: &Document) -> Result<(), Broken> {
 /// How often a session can be taken back, and that it comes to where it began and back again.
 pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken> {
     let mut session = session.clone();
-    for action in [Action::CommitEdit, Action::Run(false)] {
+    for action in [Action::from(TransactionAction::Commit), SolverAction::Run(false).into()] {
         session.apply(action);
     }
     let present = (session.shown().clone(), saved(session.document())?);
-    way(&mut session, &Action::Redo, &Action::Undo)?;
+    way(&mut session, &TransactionAction::Redo.into(), &TransactionAction::Undo.into())?;
     let mut first = session.clone();
-    let steps = way(&mut session, &Action::Undo, &Action::Redo)?;
+    let steps =
+        way(&mut session, &TransactionAction::Undo.into(), &TransactionAction::Redo.into())?;
     while first.undo_name().is_some() {
-        first.apply(Action::Undo);
+        first.apply(TransactionAction::Undo);
     }
     if let Some(began) = began {
         hold!(is_same(first.document(), began), "all undone, it is the document of the beginning");

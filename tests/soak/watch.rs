@@ -6,7 +6,9 @@ use std::hash::{Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ik_arm::document::Document;
-use ik_arm::session::{Action, Dialog, Session};
+use ik_arm::session::{
+    Action, Dialog, EditAction, FileAction, PlaybackAction, Session, TransactionAction,
+};
 
 use crate::kinds::{KINDS, Sort, kind};
 use crate::past::is_same;
@@ -73,8 +75,13 @@ impl Watch {
         let before = Before::new(&self.session, care.step);
         self.session.apply(action.clone());
         self.age += 1;
-        let waits = Some(&Dialog::Unsaved { then: Box::new(action.clone()) });
-        let is_done = self.session.dialog() != waits || before.dialog.as_ref() == waits;
+        let waits = match action {
+            Action::File(action) => Some(Dialog::Unsaved { then: Box::new(action.clone()) }),
+            _ => None,
+        };
+        let waits = waits.as_ref();
+        let is_done =
+            waits.is_none() || self.session.dialog() != waits || before.dialog.as_ref() == waits;
         let is_replaced = self.follow(action, &before);
         sound::document(self.session.document())?;
         sound::shown(&self.session)?;
@@ -100,19 +107,19 @@ impl Watch {
         let session = &self.session;
         let can_replace = matches!(
             action,
-            Action::Opened { .. }
-                | Action::OpenExample(_)
-                | Action::NewSkeleton
-                | Action::Recover { .. }
-                | Action::Discard(_)
-                | Action::Saved(_)
+            Action::File(FileAction::Opened { .. })
+                | Action::File(FileAction::OpenExample(_))
+                | Action::File(FileAction::NewSkeleton)
+                | Action::File(FileAction::Recover { .. })
+                | Action::File(FileAction::Discard(_))
+                | Action::File(FileAction::Saved(_))
         );
         let is_fresh = session.undo_name().is_none() && session.redo_name().is_none();
         let is_replaced = can_replace
             && is_fresh
             && session.revision() != before.revision
             && !session.is_changing();
-        if let Action::Saved(_) = action {
+        if let Action::File(FileAction::Saved(_)) = action {
             self.saved = Some(before.document.clone());
         }
         if is_replaced {
@@ -133,15 +140,23 @@ impl Watch {
     ) -> Result<(), Broken> {
         let document = self.session.document();
         let is_left = is_same(document, &before.document);
-        let solves = matches!(action, Action::Advance(_)) && before.is_running;
+        let solves =
+            matches!(action, Action::Playback(PlaybackAction::Advance(_))) && before.is_running;
         if matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time) && !solves {
             hold!(is_left, "it leaves the document alone");
         }
-        if matches!(action, Action::Advance(_) | Action::Step) {
+        if matches!(
+            action,
+            Action::Playback(PlaybackAction::Advance(_)) | Action::Edit(EditAction::StepSolver)
+        ) {
             let [was, is] = [&before.document, document].map(|it| it.skeleton());
             posed::locked(was, is)?;
         }
-        let takes_back = matches!(action, Action::CancelEdit | Action::Undo);
+        let takes_back = matches!(
+            action,
+            Action::Transaction(TransactionAction::Cancel)
+                | Action::Transaction(TransactionAction::Undo)
+        );
         if let Some(before) = self.before_edit.as_ref().filter(|_| takes_back && !is_replaced) {
             hold!(is_same(document, before), "a change taken back leaves no trace");
             let same = past::saved(document)? == past::saved(before)?;
@@ -163,7 +178,7 @@ impl Watch {
                 .is_some_and(|it| past::has_same_content(it, session.document()));
             hold!(is_saved, "what counts as saved is as it was saved");
         }
-        let is_written = matches!(action, Action::Saved(_)) && !is_replaced;
+        let is_written = matches!(action, Action::File(FileAction::Saved(_))) && !is_replaced;
         hold!(!is_written || !session.is_unsaved(), "what has just been saved is saved");
         Ok(())
     }
@@ -190,7 +205,8 @@ impl Watch {
             return Ok(());
         }
         let mut copy = session.clone();
-        let back = if *action == Action::Undo { Action::Redo } else { Action::Undo };
+        let is_undo = *action == Action::Transaction(TransactionAction::Undo);
+        let back = if is_undo { TransactionAction::Redo } else { TransactionAction::Undo };
         copy.apply(back.clone());
         hold!(is_same(copy.document(), was.document()), "one {back:?} leads to before the action");
         let same = past::saved(copy.document())? == past::saved(was.document())?;
@@ -198,10 +214,14 @@ impl Watch {
         let is_same_time = session.time() == was.time();
         let same = is_same(copy.shown(), was.shown());
         hold!(!is_same_time || same, "one {back:?} shows what was shown before the action");
-        if matches!(action, Action::Undo | Action::Redo) {
+        if matches!(
+            action,
+            Action::Transaction(TransactionAction::Undo)
+                | Action::Transaction(TransactionAction::Redo)
+        ) {
             return Ok(());
         }
-        copy.apply(Action::Redo);
+        copy.apply(TransactionAction::Redo);
         hold!(is_same(copy.document(), session.document()), "one Redo leads to after the action");
         hold!(is_same(copy.shown(), session.shown()), "one Redo shows what the action did");
         Ok(())
@@ -224,7 +244,11 @@ impl Watch {
         let Some(last) = last.filter(|_| !is_replaced) else { return Ok(()) };
         // Steps that show something at a time only are none at another.
         let is_elsewhen = before.time != self.session.time();
-        let moves = matches!(action, Action::Undo | Action::Redo) || is_elsewhen;
+        let moves = matches!(
+            action,
+            Action::Transaction(TransactionAction::Undo)
+                | Action::Transaction(TransactionAction::Redo)
+        ) || is_elsewhen;
         hold!(moves || steps <= last + 1, "an action is one step: {steps} after {last}");
         Ok(())
     }

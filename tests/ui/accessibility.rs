@@ -5,7 +5,7 @@ use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::Action;
+use ik_arm::session::EditAction;
 
 use crate::bench::{Bench, SMALL, bits};
 use crate::panel::{CHECKBOXES, SLIDERS};
@@ -154,7 +154,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 
 #[test]
 fn the_viewport_is_an_image_that_says_how_the_arm_stands() {
-    let bench = Bench::after([Action::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
+    let bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
     let name = "Viewport. Too far: the arm is straight and points at the cursor, 100.0 short.";
     let rect = bench.rect(Role::Image, name);
     assert_eq!(rect, bench.viewport());

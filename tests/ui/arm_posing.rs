@@ -6,7 +6,9 @@ use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBonePose;
-use ik_arm::session::{Action, Grip, PoseMode};
+use ik_arm::session::{
+    Action, EditAction, Grip, PoseMode, ShellAction, TransactionAction, ViewAction,
+};
 
 use crate::bench::{Bench, LARGE, bits};
 use crate::looks::has_tooltip;
@@ -44,7 +46,7 @@ fn pole_place(bench: &Bench) -> Pos2 {
 
 #[test]
 fn fk_takes_over_the_pose_and_ik_takes_it_back() {
-    let mut bench = Bench::after([Action::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
+    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
     let pose = *bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
     bench.click(Role::Button, "FK");
@@ -61,13 +63,13 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     let pose = *bench.session().pose();
     bench.click(Role::Button, "IK");
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
-    assert_eq!(bench.session().undo_name(), Some("switch to IK"));
+    assert_eq!(bench.session().undo_name(), Some("Switch to IK"));
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
 }
 
 #[test]
 fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
-    let mut bench = Bench::after([Action::SwitchTo(PoseMode::Angles)]);
+    let mut bench = Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles)]);
     let before = bench.hand();
     let rail = bench.rect(Role::Slider, "Hand x");
     bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
@@ -79,7 +81,8 @@ fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
 
 #[test]
 fn between_fk_and_ik_the_arm_is_between_its_poses() {
-    let mut bench = Bench::after([Action::SwitchTo(PoseMode::Angles), Action::SetBend(0.5)]);
+    let mut bench =
+        Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles), EditAction::SetBend(0.5)]);
     let angles = bench.session().pose().elbow_angle();
     bench.enter("IK weight", "1");
     let hand = bench.session().pose().elbow_angle();
@@ -94,9 +97,11 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
 
 #[test]
 fn rings_turn_the_shoulder_and_bend_the_elbow() {
-    let mut bench =
-        Bench::after([Action::SwitchTo(PoseMode::Angles), Action::SetShoulder(Vec3::ZERO)]);
-    bench.apply([Action::SetBend(0.8)]);
+    let mut bench = Bench::after([
+        EditAction::SwitchPoseMode(PoseMode::Angles),
+        EditAction::SetShoulder(Vec3::ZERO),
+    ]);
+    bench.apply([EditAction::SetBend(0.8)]);
     for grip in [Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = bench.session().arm_ring(grip).expect("a ring");
         let centre = bench.place(ring.centre);
@@ -133,7 +138,7 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
         let expected =
             [false, grip == Grip::Shoulder(1), grip == Grip::Shoulder(2), grip == Grip::Bend];
         assert_eq!(changed, expected, "{grip:?}");
-        bench.apply([Action::Undo]);
+        bench.apply([TransactionAction::Undo]);
         assert_eq!(bench.session().arm().fk, was);
     }
 }
@@ -154,14 +159,14 @@ fn a_pinned_hand_stays_when_the_root_moves() {
     bench.click(Role::CheckBox, "Pinned to the world");
     assert!(apart(&pose, bench.session().pose()) < 1e-3);
     let cursor = bench.cursor_place();
-    bench.apply([Action::PinHand(true)]);
+    bench.apply([EditAction::PinHand(true)]);
     bench.drag_and_drop(LEFT, cursor, cursor + vec2(-30.0, 20.0));
     assert!(bench.cursor_place().distance(cursor + vec2(-30.0, 20.0)) < 0.5, "it can be dragged");
 }
 
 #[test]
 fn the_elbow_is_measured_from_elsewhere_and_stays() {
-    let mut bench = Bench::after([Action::SetTwist(0.4)]);
+    let mut bench = Bench::after([EditAction::SetTwist(0.4)]);
     let pose = *bench.session().pose();
     for (name, twist_reference) in [
         ("Pole", TwistReferenceKind::Pole),
@@ -176,13 +181,13 @@ fn the_elbow_is_measured_from_elsewhere_and_stays() {
             bench.shows(Role::Slider, "Pole x"),
             twist_reference == TwistReferenceKind::Pole
         );
-        assert_eq!(bench.session().undo_name(), Some("change swivel"));
+        assert_eq!(bench.session().undo_name(), Some("Change twist reference"));
     }
 }
 
 #[test]
 fn the_pole_is_dragged_in_the_view_and_taken_back() {
-    let mut bench = Bench::after([Action::SetTwistReference(TwistReferenceKind::Pole)]);
+    let mut bench = Bench::after([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
     let (before, elbow) = (bench.session().arm().pole, bench.session().pose().elbow);
     let at = pole_place(&bench);
     bench.drag(LEFT, at, at + vec2(60.0, 90.0));
@@ -193,8 +198,8 @@ fn the_pole_is_dragged_in_the_view_and_taken_back() {
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.release(LEFT);
     bench.drag_and_drop(LEFT, at, at + vec2(-40.0, 20.0));
-    assert_eq!(bench.session().undo_name(), Some("move pole"));
-    bench.apply([Action::Undo]);
+    assert_eq!(bench.session().undo_name(), Some("Move pole"));
+    bench.apply([TransactionAction::Undo]);
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.enter("Pole y", "123.5");
     assert_eq!(bench.session().arm().pole.y, 123.5);
@@ -202,7 +207,7 @@ fn the_pole_is_dragged_in_the_view_and_taken_back() {
 
 #[test]
 fn the_four_references_stand_beside_each_other() {
-    let mut bench = Bench::after([Action::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
+    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
     for name in ["Stereographic", "Transport", "Holonomy"] {
         assert!(bench.says(name), "{name}");
     }
@@ -212,9 +217,12 @@ fn the_four_references_stand_beside_each_other() {
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
     }
-    bench.apply([Action::SetHand(Vec3::X * 300.0), Action::ResetTransport]);
+    bench.apply([
+        Action::from(EditAction::SetHand(Vec3::X * 300.0)),
+        ViewAction::ResetTransport.into(),
+    ]);
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
-        bench.apply([Action::SetHand(hand * 300.0)]);
+        bench.apply([EditAction::SetHand(hand * 300.0)]);
     }
     assert!(bench.says("+90.0°"), "an octant's solid angle");
     reveal(&mut bench, Role::Button, "Start here");
@@ -247,7 +255,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
 
 #[test]
 fn every_control_of_the_posing_has_a_tooltip() {
-    let mut bench = Bench::after([Action::SetTwistReference(TwistReferenceKind::Pole)]);
+    let mut bench = Bench::after([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
     for (role, name) in [
         (Role::Button, "IK"),
         (Role::Button, "FK"),
@@ -263,13 +271,16 @@ fn every_control_of_the_posing_has_a_tooltip() {
 #[test]
 fn k_keys_what_leads() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::PinHand(true)]);
+    bench.apply([EditAction::PinHand(true)]);
     bench.key(egui::Key::K);
     let keyed = |bench: &Bench| -> Vec<Channel> {
         bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
     };
     assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin]);
-    bench.apply([Action::Undo, Action::SwitchTo(PoseMode::Angles)]);
+    bench.apply([
+        Action::from(TransactionAction::Undo),
+        EditAction::SwitchPoseMode(PoseMode::Angles).into(),
+    ]);
     bench.key(egui::Key::K);
     assert_eq!(keyed(&bench), [Channel::Influence, Channel::Shoulder, Channel::Bend]);
 }
@@ -279,15 +290,15 @@ fn the_panels_of_a_measured_and_of_a_led_arm_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut bench = Bench::after([
-            Action::SetTheme(theme),
-            Action::SetTwistReference(TwistReferenceKind::Pole),
+            Action::from(ShellAction::SetTheme(theme)),
+            EditAction::SetTwistReference(TwistReferenceKind::Pole).into(),
         ]);
         let options = SnapshotOptions::new()
             .threshold(2.0)
             .max_failed_pixels(600)
             .output_path("tests/ui/snapshots");
         results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
-        bench.apply([Action::SwitchTo(PoseMode::Angles)]);
+        bench.apply([EditAction::SwitchPoseMode(PoseMode::Angles)]);
         results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));
     }
 }

@@ -10,7 +10,7 @@ use egui::{
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
-use ik_arm::session::{Action, Effect, Preferences, Session};
+use ik_arm::session::{Action, Actions, Effect, Preferences, Session, ShellAction};
 use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
@@ -22,7 +22,7 @@ pub struct App {
     pub session: Session,
     pub machine: Machine,
     viewport: Rect,
-    actions: Vec<Action>,
+    actions: Actions,
     effects: Vec<Effect>,
 }
 
@@ -63,7 +63,7 @@ impl Bench {
                 ..Machine::default()
             },
             viewport: Rect::ZERO,
-            actions: Vec::new(),
+            actions: Actions::new(),
             effects: Vec::new(),
         };
         let harness = Harness::builder()
@@ -77,7 +77,7 @@ impl Bench {
                 },
                 app,
             );
-        assert_eq!(harness.state().actions, [], "nothing happens by itself");
+        assert!(harness.state().actions.is_empty(), "nothing happens by itself");
         let mut bench =
             Self { harness, now: 10.0, modifiers: Modifiers::NONE, pointer: Pos2::ZERO };
         bench.settle();
@@ -85,13 +85,13 @@ impl Bench {
     }
 
     /// With a session that some actions have changed.
-    pub fn after(actions: impl IntoIterator<Item = Action>) -> Self {
+    pub fn after(actions: impl IntoIterator<Item = impl Into<Action>>) -> Self {
         let mut bench = Self::new();
         bench.apply(actions);
         bench
     }
 
-    pub fn apply(&mut self, actions: impl IntoIterator<Item = Action>) {
+    pub fn apply(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
         for action in actions {
             self.harness.state_mut().session.apply(action);
         }
@@ -99,12 +99,12 @@ impl Bench {
     }
 
     /// What the world outside answers, and what it is to do then.
-    pub fn tell(&mut self, action: Action) -> Option<Effect> {
+    pub fn tell(&mut self, action: impl Into<Action>) -> Option<Effect> {
         self.harness.state_mut().session.apply(action)
     }
 
     /// As [`Self::apply`], for what then moves by itself.
-    pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = Action>) {
+    pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
         for action in actions {
             self.harness.state_mut().session.apply(action);
         }
@@ -138,13 +138,13 @@ impl Bench {
             match app.session.apply(action) {
                 // As on a system that has no dialog of its own.
                 Some(Effect::ChoosePath(dialog)) if app.session.dialog().is_none() => {
-                    app.session.apply(Action::OpenDialog(dialog));
+                    app.session.apply(ShellAction::OpenDialog(dialog));
                 }
                 effect => app.effects.extend(effect),
             }
         }
         self.pass(Vec::new());
-        self.harness.state_mut().actions.clear();
+        self.harness.state_mut().actions = Actions::new();
     }
 
     fn pass(&mut self, events: Vec<Event>) {

@@ -6,14 +6,14 @@ use egui::PointerButton;
 use egui::accesskit::Role;
 use ik_arm::document::Document;
 use ik_arm::rig::{Crowd, CrowdTimes, SolvedBy};
-use ik_arm::session::Action;
+use ik_arm::session::ViewAction;
 use ik_arm::ui::FrameTime;
 
 use crate::bench::Bench;
 
 /// A crowd that stands.
 fn shown() -> Bench {
-    let mut bench = Bench::after([Action::MoveCrowd(false)]);
+    let mut bench = Bench::after([ViewAction::AnimateCrowd(false)]);
     bench.choose(&["View", "Crowd"]);
     bench
 }
@@ -54,13 +54,13 @@ fn what_solves_it_and_whether_it_moves_are_chosen() {
     bench.click(Role::RadioButton, "CPU");
     assert_eq!(crowd(&bench).solved_by, SolvedBy::Cpu);
     assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
-    bench.apply_moving([Action::MoveCrowd(true)]);
+    bench.apply_moving([ViewAction::AnimateCrowd(true)]);
     for _ in 0..3 {
         bench.wait(0.5);
     }
     assert!(crowd(&bench).time > 0.9);
     assert!(bench.asks_for_a_frame());
-    bench.apply([Action::MoveCrowd(false)]);
+    bench.apply([ViewAction::AnimateCrowd(false)]);
     let before = crowd(&bench).time;
     bench.wait(1.0);
     assert_eq!(crowd(&bench).time, before);
@@ -77,13 +77,13 @@ fn its_figures_are_those_of_the_machine() {
     for figure in ["1.25 ms", "1250.00 ns", "8.75 ms"] {
         assert!(bench.says(figure), "{figure}");
     }
-    bench.apply([Action::SetCrowd(2_000)]);
+    bench.apply([ViewAction::SetCrowdSize(2_000)]);
     assert!(!bench.says("1.25 ms"), "those were of another crowd");
 }
 
 #[test]
 fn the_hand_cannot_be_taken_hold_of_behind_a_crowd() {
-    let mut bench = Bench::after([Action::MoveCrowd(false)]);
+    let mut bench = Bench::after([ViewAction::AnimateCrowd(false)]);
     let (hand, document) = (bench.cursor_place(), bench.session().document().clone());
     bench.choose(&["View", "Crowd"]);
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(60.0, 10.0));

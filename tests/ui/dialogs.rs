@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::TwistReferenceKind;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::session::{Action, Dialog, Effect};
+use ik_arm::session::{Action, Dialog, EditAction, Effect};
 use serde_json::json;
 
 use crate::bench::Bench;
@@ -123,10 +123,10 @@ fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
 fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
     for by_key in [true, false] {
         let mut bench = Bench::after([
-            Action::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
-            Action::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
-            Action::SetUpper(123.5),
-            Action::SetTwist(1.0),
+            EditAction::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
+            EditAction::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
+            EditAction::SetUpper(123.5),
+            EditAction::SetTwist(1.0),
         ]);
         if by_key {
             bench.frame([Event::Copy]);
@@ -152,7 +152,7 @@ fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
 }
 
 /// What a session puts on the clipboard.
-fn copied(actions: impl IntoIterator<Item = Action>) -> serde_json::Value {
+fn copied(actions: impl IntoIterator<Item = impl Into<Action>>) -> serde_json::Value {
     let mut bench = Bench::after(actions);
     bench.frame([Event::Copy]);
     let effects = bench.effects();
@@ -164,22 +164,23 @@ fn copied(actions: impl IntoIterator<Item = Action>) -> serde_json::Value {
 fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
     let soft_reach = SoftReach::new(0.25, 1.5, 0.5).expect("a softening");
     let line = copied([
-        Action::SetTwistReference(TwistReferenceKind::Pole),
-        Action::SetPole(Vec3::new(1.0, 2.0, 3.0)),
-        Action::SetSoftReach(soft_reach),
+        EditAction::SetTwistReference(TwistReferenceKind::Pole),
+        EditAction::SetPole(Vec3::new(1.0, 2.0, 3.0)),
+        EditAction::SetSoftReach(soft_reach),
     ]);
     assert_eq!(line["swivel"], json!({ "pole": [1.0, 2.0, 3.0] }));
     assert_eq!(line["softness"], json!(0.25_f32));
     assert_eq!(line["max_stretch"], json!(1.5_f32));
     assert_eq!(line["min_elbow_deg"], json!(0.5_f32.to_degrees()));
-    let transported = copied([Action::SetTwistReference(TwistReferenceKind::Transport)]);
+    let transported = copied([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
     assert_eq!(transported["swivel"], json!("stereographic"), "a line has no past");
 }
 
 #[test]
 fn a_copied_pose_has_its_elbow_where_only_the_arms_past_says() {
     // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
-    let upwards = [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(Action::SetHand);
+    let upwards =
+        [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(EditAction::SetHand);
     let spin = copied(upwards)["elbow_spin_deg"].as_f64().expect("a number");
     let elbow = TwoBone::new(200.0, 300.0).expect("lengths");
     let elbow = elbow.solve(Vec3::Y * 300.0, spin.to_radians() as f32).elbow;

@@ -8,12 +8,13 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Channel;
 use ik_arm::io::{self, Cancelled, Example, Progress};
-use ik_arm::session::{Action, Effect, Export, Job};
+use ik_arm::session::{Action, EditAction, Effect, Export, FileAction, Job, PlaybackAction};
 
 use crate::bench::Bench;
 
 fn asked() -> Bench {
-    let mut bench = Bench::after([Action::OpenExample(Example::find("keyframes").expect("there"))]);
+    let mut bench =
+        Bench::after([FileAction::OpenExample(Example::find("keyframes").expect("there"))]);
     bench.key_with(Modifiers::COMMAND, Key::E);
     bench.settle();
     bench
@@ -70,17 +71,17 @@ fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
     let export = exported(&mut bench);
     let progress = Arc::new(Progress::default());
     let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
-    bench.apply_moving([Action::Exporting(job)]);
+    bench.apply_moving([FileAction::ExportStarted(job)]);
     assert_eq!(progress.step(30, 120), Ok(()));
     bench.frame([]);
     assert!(bench.says("Exporting ik-arm.glb") && bench.says("25 %"));
     // A second one waits.
-    bench.apply_moving([Action::Export(export)]);
+    bench.apply_moving([FileAction::Export(export)]);
     assert!(bench.says("Another export is under way; cancel it or wait"));
     let cancel = bench.rect(Role::Button, "Cancel").center();
     bench.click_at(cancel);
     assert_eq!(progress.step(31, 120), Err(Cancelled));
-    bench.tell(Action::Exported(Ok("Export cancelled".to_owned())));
+    bench.tell(FileAction::ExportEnded(Ok("Export cancelled".to_owned())));
     bench.settle();
     assert!(bench.says("Export cancelled") && !bench.says("25 %"));
 }
@@ -90,11 +91,11 @@ fn a_document_with_keys_is_saved_opened_again_and_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("saved.json");
     let mut bench = Bench::after([
-        Action::SetHand(Vec3::new(100.0, 200.0, 50.0)),
-        Action::Key(vec![Channel::Hand, Channel::Twist]),
-        Action::SetTime(1.5),
-        Action::SetHand(Vec3::new(-100.0, 200.0, 50.0)),
-        Action::Key(vec![Channel::Hand]),
+        Action::from(EditAction::SetHand(Vec3::new(100.0, 200.0, 50.0))),
+        EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
+        PlaybackAction::SetTime(1.5).into(),
+        EditAction::SetHand(Vec3::new(-100.0, 200.0, 50.0)).into(),
+        EditAction::Key(vec![Channel::Hand]).into(),
     ]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     bench.settle();
@@ -104,14 +105,16 @@ fn a_document_with_keys_is_saved_opened_again_and_the_same() {
     bench.key(Key::Enter);
     let [Effect::Save(to)] = &bench.effects()[..] else { panic!("it is not saved") };
     io::save(bench.session().document(), to).expect("saved");
-    bench.tell(Action::Saved(to.clone()));
+    bench.tell(FileAction::Saved(to.clone()));
     let saved = bench.session().document().clone();
     assert!(!bench.session().is_unsaved());
 
     let opened = io::open(&path, None).expect("it opens");
-    let mut again =
-        Bench::after([Action::Opened { document: Box::new(opened.document), file: Some(path) }]);
+    let mut again = Bench::after([FileAction::Opened {
+        document: Box::new(opened.document),
+        file: Some(path),
+    }]);
     assert_eq!(again.session().document(), &saved);
-    again.apply([Action::SetTime(0.75)]);
+    again.apply([PlaybackAction::SetTime(0.75)]);
     assert_eq!(again.hand(), Vec3::new(0.0, 200.0, 50.0));
 }

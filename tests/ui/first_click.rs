@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use glam::Vec3;
-use ik_arm::session::Action;
+use ik_arm::session::{EditAction, SelectAction, TransactionAction, ViewAction};
 
 use crate::bench::Bench;
 
@@ -39,7 +39,7 @@ fn the_skeleton_switch_of_a_new_window_shows_the_human_framed() {
     assert!(box_of_human.height() > 0.4 * bench.viewport().height(), "and it is large");
 
     let view = bench.session().camera().orbited(0.5, 0.1);
-    bench.apply([Action::SetCamera(view)]);
+    bench.apply([ViewAction::SetCamera(view)]);
     bench.click(Role::Button, "Arm");
     assert_eq!(*bench.session().camera(), arm_view, "the arm is seen as it was");
     bench.click(Role::Button, "Skeleton");
@@ -52,9 +52,9 @@ fn undoing_a_switch_brings_back_its_view_too() {
     let arm_view = *bench.session().camera();
     bench.click(Role::Button, "Skeleton");
     let view = *bench.session().camera();
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert_eq!(*bench.session().camera(), arm_view);
-    bench.apply([Action::Redo]);
+    bench.apply([TransactionAction::Redo]);
     assert_eq!(*bench.session().camera(), view);
 }
 
@@ -74,7 +74,7 @@ fn each_rig_keeps_its_view_in_a_file() {
 #[test]
 fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     let mut bench = new_skeleton();
-    bench.apply([Action::Select(Vec::new())]);
+    bench.apply([SelectAction::Joints(Vec::new())]);
     assert!(bench.says("Click to place the first joint"));
     let centre = bench.viewport().center();
     bench.click_at(centre + vec2(0.0, -120.0));
@@ -84,7 +84,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     let tip = bench.session().skeleton_pose().tip(1);
     assert!(bench.place(tip).distance(centre + vec2(0.0, -120.0)) < 2.0, "where the mouse is");
 
-    bench.apply([Action::Select(Vec::new())]);
+    bench.apply([SelectAction::Joints(Vec::new())]);
     bench.hold(CTRL);
     bench.click_at(centre + vec2(90.0, -170.0));
     bench.hold(Modifiers::NONE);
@@ -92,7 +92,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     assert_eq!(names(&bench).len(), 3, "Ctrl+click with nothing selected continues the last one");
     assert_eq!(bench.session().skeleton().joints()[2].parent, Some(1));
 
-    bench.apply([Action::Select(Vec::new())]);
+    bench.apply([SelectAction::Joints(Vec::new())]);
     bench.key(Key::A);
     bench.settle();
     assert_eq!(bench.session().skeleton().joints()[3].parent, Some(2), "and so does A");
@@ -102,7 +102,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
 fn a_skeleton_without_any_joint_gets_a_root_and_a_joint_by_one_click() {
     for by_key in [false, true] {
         let mut bench = new_skeleton();
-        bench.apply([Action::Delete(vec![0])]);
+        bench.apply([EditAction::DeleteJoints(vec![0])]);
         assert!(names(&bench).is_empty());
         assert!(bench.says("Click to place the first joint"));
         if by_key {
@@ -112,7 +112,7 @@ fn a_skeleton_without_any_joint_gets_a_root_and_a_joint_by_one_click() {
         }
         bench.settle();
         assert_eq!(names(&bench), ["root", "joint"]);
-        bench.apply([Action::Undo]);
+        bench.apply([TransactionAction::Undo]);
         assert!(names(&bench).is_empty(), "it is one step");
     }
 }
@@ -144,7 +144,7 @@ fn a_bone_that_leaves_the_view_makes_the_camera_zoom_out() {
 fn a_view_that_shows_the_new_bone_stays() {
     let mut bench = new_skeleton();
     let view = bench.session().camera().zoomed(6.0, glam::Vec2::ZERO, 1.0);
-    bench.apply([Action::SetCamera(view)]);
+    bench.apply([ViewAction::SetCamera(view)]);
     bench.click(Role::Button, "Add child");
     bench.wait(0.5);
     assert_eq!(*bench.session().camera(), view);
@@ -154,7 +154,7 @@ fn a_view_that_shows_the_new_bone_stays() {
 fn bones_of_one_skeleton_are_about_as_thick_however_long_they_are() {
     let mut bench = new_skeleton();
     let tips = [Vec3::Y, Vec3::Y * 1.1, Vec3::new(3.0, 1.1, 0.0), Vec3::new(3.0, 1.3, 0.0)];
-    bench.apply(tips.map(|tip| Action::AddJoint { tip: Some(tip) }));
+    bench.apply(tips.map(|tip| EditAction::AddJoint { tip: Some(tip) }));
     let joints = &bench.session().skeleton().joints()[1..];
     for joint in joints {
         assert!((0.02..=0.15).contains(&joint.radius), "{} of {}", joint.radius, joint.axis);

@@ -4,7 +4,7 @@ use egui::{CursorIcon, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, Handle, PointDrag};
+use ik_arm::session::{Action, EditAction, Handle, PointDrag, ViewAction};
 
 use crate::bench::{Bench, SMALL, bits};
 
@@ -13,8 +13,8 @@ const LEFT: PointerButton = PointerButton::Primary;
 /// A pose of awkward numbers, so that a bit that changes is seen.
 pub fn odd() -> Bench {
     Bench::after([
-        Action::SetRoot(Vec3::new(12.345_679, -7.654_321, 33.333_332)),
-        Action::SetHand(Vec3::new(223.456_79, 98.765_43, 71.234_57)),
+        EditAction::SetRoot(Vec3::new(12.345_679, -7.654_321, 33.333_332)),
+        EditAction::SetHand(Vec3::new(223.456_79, 98.765_43, 71.234_57)),
     ])
 }
 
@@ -134,8 +134,8 @@ fn a_hand_out_of_reach_is_taken_where_it_is_and_so_is_its_cursor() {
     let far = Vec3::new(500.0, 220.0, 300.0);
     for take_cursor in [true, false] {
         let mut bench = Bench::after([
-            Action::SetHand(far),
-            Action::GlideTo(Camera { distance: 1800.0, ..Camera::default() }),
+            Action::from(EditAction::SetHand(far)),
+            ViewAction::GlideTo(Camera { distance: 1800.0, ..Camera::default() }).into(),
         ]);
         let hand = bench.place(bench.session().pose().hand);
         let start = if take_cursor { bench.cursor_place() } else { hand };
@@ -163,7 +163,7 @@ fn esc_and_the_right_button_take_a_drag_back() {
         }
         assert_eq!(bench.session().arm(), &before, "by key: {by_key}");
         assert!(!bench.session().is_editing());
-        assert!(bench.says("Taken back"));
+        assert!(bench.says("Cancelled"));
         bench.move_to(start - vec2(50.0, 0.0));
         if !by_key {
             bench.release(PointerButton::Secondary);
@@ -235,7 +235,7 @@ fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
 
 #[test]
 fn an_arrow_along_the_view_cannot_be_taken() {
-    let mut bench = Bench::after([Action::SetCamera(Camera::default().along(AxisView::Front))]);
+    let mut bench = Bench::after([ViewAction::SetCamera(Camera::default().along(AxisView::Front))]);
     let place = bench.cursor_place();
     bench.move_to(place + vec2(17.0, 12.0));
     bench.press(LEFT);

@@ -7,7 +7,10 @@ use glam::Vec3;
 use ik_arm::document::{Cursor, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::session::{Action, Dialog, Effect};
+use ik_arm::session::{
+    Action, Dialog, EditAction, Effect, FileAction, PlaybackAction, SelectAction, ShellAction,
+    SolverAction, TransactionAction, ViewAction,
+};
 
 use crate::bench::Bench;
 
@@ -15,7 +18,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 
 fn moved() -> Bench {
-    Bench::after([Action::SetHand(Vec3::X * 300.0), Action::SetTwist(1.0)])
+    Bench::after([EditAction::SetHand(Vec3::X * 300.0), EditAction::SetTwist(1.0)])
 }
 
 fn menu(bench: &mut Bench, menu: &str) {
@@ -32,7 +35,7 @@ fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
         assert_eq!((bench.hand(), bench.session().arm().twist), (Vec3::X * 300.0, 0.0));
         bench.key_with(CTRL, Key::Z);
         assert_eq!(bench.session().document(), &ik_arm::io::new_document());
-        assert!(bench.says("Undone: move hand"));
+        assert!(bench.says("Undid Move hand"));
         bench.key_with(CTRL, Key::Z);
         assert!(bench.says("There is nothing to undo"));
         bench.key_with(redo.0, redo.1);
@@ -45,11 +48,11 @@ fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
 fn the_edit_menu_names_what_it_would_undo_and_redo() {
     let mut bench = moved();
     menu(&mut bench, "Edit");
-    bench.click(Role::Button, "Undo spin elbow Ctrl+Z");
+    bench.click(Role::Button, "Undo Set Socket twist Ctrl+Z");
     bench.settle();
     menu(&mut bench, "Edit");
-    assert!(bench.shows(Role::Button, "Undo move hand Ctrl+Z"));
-    bench.click(Role::Button, "Redo spin elbow Ctrl+Shift+Z");
+    assert!(bench.shows(Role::Button, "Undo Move hand Ctrl+Z"));
+    bench.click(Role::Button, "Redo Set Socket twist Ctrl+Shift+Z");
     bench.settle();
     assert_eq!(bench.session().arm().twist, 1.0);
 }
@@ -87,9 +90,9 @@ fn undo_while_something_is_dragged_takes_the_drag_back() {
 #[test]
 fn a_running_solver_is_one_step() {
     let mut bench =
-        Bench::after([Action::OpenExample(Example::find("ten-joints").expect("there"))]);
+        Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
     let first = bench.session().document().clone();
-    bench.apply_moving([Action::Run(true)]);
+    bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(2.0);
     assert!(!bench.session().is_running());
     assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
@@ -102,11 +105,11 @@ fn a_running_solver_is_one_step() {
 #[test]
 fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
     let mut bench =
-        Bench::after([Action::OpenExample(Example::find("ten-joints").expect("there"))]);
+        Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
     let method = Method::TransposeFixed;
-    bench.apply([Action::SetSolver(SolverOptions { method, ..SolverOptions::default() })]);
+    bench.apply([EditAction::SetSolver(SolverOptions { method, ..SolverOptions::default() })]);
     let first = bench.session().document().clone();
-    bench.apply_moving([Action::Run(true)]);
+    bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(0.05);
     assert!(bench.session().is_running());
     bench.key_with(CTRL, Key::Z);
@@ -116,13 +119,19 @@ fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
 
 #[test]
 fn the_view_and_the_selection_are_no_steps() {
-    let mut bench = Bench::after([Action::OpenExample(Example::find("human").expect("there"))]);
+    let mut bench = Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))]);
     let camera = *bench.session().camera();
-    bench.apply([Action::Select(vec![3]), Action::SetCamera(camera.orbited(1.0, 0.1))]);
-    bench.apply([Action::SetTime(2.0)]);
+    bench.apply([
+        Action::from(SelectAction::Joints(vec![3])),
+        ViewAction::SetCamera(camera.orbited(1.0, 0.1)).into(),
+    ]);
+    bench.apply([PlaybackAction::SetTime(2.0)]);
     assert_eq!(bench.session().undo_name(), None);
     assert!(!bench.session().is_unsaved());
-    bench.apply([Action::SetLocked { joint: 3, locked: true }, Action::Undo]);
+    bench.apply([
+        Action::from(EditAction::SetLocked { joint: 3, locked: true }),
+        TransactionAction::Undo.into(),
+    ]);
     assert_eq!(bench.session().selection(), [3]);
     assert_eq!(*bench.session().camera(), camera.orbited(1.0, 0.1));
     assert_eq!(bench.session().time(), 2.0);
@@ -131,17 +140,19 @@ fn the_view_and_the_selection_are_no_steps() {
 #[test]
 fn hundreds_of_steps_can_be_undone() {
     let mut bench = Bench::new();
-    let steps = (0..900).map(|step| Action::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
+    let steps = (0..900).map(|step| EditAction::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
     bench.apply(steps);
-    bench.apply((0..900).map(|_| Action::Undo));
+    bench.apply((0..900).map(|_| TransactionAction::Undo));
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
 }
 
 #[test]
 fn what_would_lose_changes_is_asked_about() {
     let example = Example::find("human").expect("there");
-    let open = |path: &str| Action::Open { path: path.into(), skeleton: None };
-    for leaving in [Action::Quit, Action::NewSkeleton, Action::OpenExample(example), open("a")] {
+    let open = |path: &str| FileAction::Open { path: path.into(), skeleton: None };
+    for leaving in
+        [FileAction::Quit, FileAction::NewSkeleton, FileAction::OpenExample(example), open("a")]
+    {
         let mut bench = moved();
         let document = bench.session().document().clone();
         bench.apply([leaving.clone()]);
@@ -154,8 +165,10 @@ fn what_would_lose_changes_is_asked_about() {
         bench.apply([leaving.clone()]);
         bench.click(Role::Button, "Don't save");
         match leaving {
-            Action::Quit => assert_eq!(bench.effects(), [Effect::Quit]),
-            Action::Open { .. } => assert!(matches!(bench.effects()[..], [Effect::Open { .. }])),
+            FileAction::Quit => assert_eq!(bench.effects(), [Effect::Quit]),
+            FileAction::Open { .. } => {
+                assert!(matches!(bench.effects()[..], [Effect::Open { .. }]))
+            }
             _ => assert_ne!(bench.session().document(), &document),
         }
     }
@@ -164,56 +177,56 @@ fn what_would_lose_changes_is_asked_about() {
 #[test]
 fn saving_first_goes_on_once_it_is_saved() {
     let mut bench = moved();
-    bench.apply([Action::Quit]);
+    bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
     assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
     bench.settle();
     bench.key(Key::Enter);
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
-    let quit = bench.tell(Action::Saved("ik-arm.json".into()));
+    let quit = bench.tell(FileAction::Saved("ik-arm.json".into()));
     assert_eq!(quit, Some(Effect::Quit));
 }
 
 #[test]
 fn what_is_not_saved_stays_open_and_unsaved() {
     let mut bench = moved();
-    bench.apply([Action::Quit]);
+    bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
     bench.settle();
     bench.key(Key::Enter);
     let why = "the disk is full".to_owned();
-    bench.tell(Action::NotSaved { path: "ik-arm.json".into(), why });
+    bench.tell(FileAction::NotSaved { path: "ik-arm.json".into(), why });
     bench.settle();
     assert!(bench.says("Not saved: the disk is full"));
     assert!(bench.session().is_unsaved());
     // A later save does not end the program any more.
-    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
+    assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
     assert!(!bench.session().is_unsaved());
 }
 
 #[test]
 fn a_save_that_was_given_up_does_not_end_the_program_later() {
     let mut bench = moved();
-    bench.apply([Action::Quit]);
+    bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
     bench.settle();
     bench.key(Key::Escape);
     bench.settle();
     assert_eq!(bench.session().dialog(), None);
-    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
+    assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
 }
 
 #[test]
 fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
     let mut bench = moved();
     assert!(bench.session().is_unsaved());
-    bench.tell(Action::Saved("x.json".into()));
+    bench.tell(FileAction::Saved("x.json".into()));
     assert!(!bench.session().is_unsaved());
-    bench.apply([Action::SetHand(Vec3::Y * 200.0)]);
+    bench.apply([EditAction::SetHand(Vec3::Y * 200.0)]);
     assert!(bench.session().is_unsaved());
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert!(!bench.session().is_unsaved());
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert!(bench.session().is_unsaved());
 }
 
@@ -221,7 +234,7 @@ fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
 fn files_that_were_open_are_offered_again() {
     let mut bench = Bench::new();
     for name in ["/a/one.json", "/a/two.json", "/a/one.json"] {
-        bench.tell(Action::Saved(name.into()));
+        bench.tell(FileAction::Saved(name.into()));
     }
     menu(&mut bench, "File");
     menu(&mut bench, "Open recent");
@@ -241,7 +254,7 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     document.arm.goal = Cursor::Root(Vec3::Y * 123.0);
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
-    let mut bench = Bench::after([Action::OpenDialog(dialog.clone())]);
+    let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);
     assert!(bench.says("ik-arm ended before the changes of lost.json were saved. They are kept."));
     bench.click(Role::Button, "Open it");
     bench.settle();
@@ -250,7 +263,7 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     bench.key_with(CTRL, Key::S);
     assert_eq!(bench.effects(), [Effect::Save("/a/lost.json".into())]);
 
-    let mut bench = Bench::after([Action::OpenDialog(dialog)]);
+    let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
     bench.click(Role::Button, "Discard it");
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
     assert!(bench.session().has_settled_recovery());

@@ -6,7 +6,7 @@ use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
-use ik_arm::session::{Action, Navigation};
+use ik_arm::session::{Action, EditAction, FileAction, Navigation, SelectAction, ShellAction};
 
 use crate::bench::{Bench, SMALL};
 use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
@@ -14,7 +14,7 @@ use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
 const THEMES: [Theme; 2] = [Theme::Dark, Theme::Light];
 
 fn in_theme(theme: Theme) -> Bench {
-    Bench::after([Action::SetTheme(theme)])
+    Bench::after([ShellAction::SetTheme(theme)])
 }
 
 /// Rests the pointer on a widget until its tooltip shows.
@@ -64,7 +64,7 @@ fn every_menu_and_dialog_can_be_read_in_both_themes() {
         }
         for navigation in Navigation::ALL {
             let mut bench = in_theme(theme);
-            bench.apply([Action::SetNavigation(navigation)]);
+            bench.apply([ShellAction::SetNavigation(navigation)]);
             bench.choose(&["Help", "Shortcuts"]);
             bench.wait(0.5);
             assert!(bench.says(navigation.help()[0]));
@@ -81,10 +81,10 @@ fn every_menu_and_dialog_can_be_read_in_both_themes() {
 fn every_sentence_of_the_status_line_can_be_read() {
     let mut bench = Bench::new();
     for hand in [Vec3::ZERO, Vec3::splat(900.0), Vec3::new(-1e30, 1e-30, 0.0)] {
-        bench.apply([Action::SetHand(hand)]);
+        bench.apply([EditAction::SetHand(hand)]);
     }
-    bench.apply([Action::SetUpper(-1.0)]);
-    bench.apply([Action::ResetPose]);
+    bench.apply([EditAction::SetUpper(-1.0)]);
+    bench.apply([EditAction::ResetPose]);
     for key in [Key::X, Key::Y, Key::Z] {
         let at = bench.cursor_place();
         bench.drag(PointerButton::Primary, at, at + vec2(20.0, 5.0));
@@ -104,7 +104,7 @@ fn nothing_moves_when_a_number_changes_its_width() {
     };
     let before = places(&bench);
     for hand in [Vec3::ZERO, Vec3::splat(-123_456.8), Vec3::new(1.0, 480.0, 3.0)] {
-        bench.apply([Action::SetHand(hand), Action::SetRoot(hand)]);
+        bench.apply([EditAction::SetHand(hand), EditAction::SetRoot(hand)]);
         assert_eq!(places(&bench), before, "{hand}");
         bench.click(Role::SpinButton, "Hand x value");
         bench.type_text("12345678901234567890");
@@ -132,10 +132,14 @@ fn the_panels_leave_the_viewport_room_at_960_by_600() {
 fn the_panels_look_as_they_did() {
     let mut results = SnapshotResults::new();
     let human = Example::find("human").expect("an example");
-    let skeleton = [Action::OpenExample(human), Action::Select(vec![8]), Action::Step];
+    let skeleton = [
+        Action::from(FileAction::OpenExample(human)),
+        SelectAction::Joints(vec![8]).into(),
+        EditAction::StepSolver.into(),
+    ];
     for theme in THEMES {
         let rigs = [
-            ("panels", vec![Action::Show(Overlay::InnerLimit, true)]),
+            ("panels", vec![EditAction::ShowOverlay(Overlay::InnerLimit, true).into()]),
             ("skeleton", skeleton.to_vec()),
         ];
         for (name, actions) in rigs {

@@ -6,7 +6,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::Action;
+use ik_arm::session::EditAction;
 
 use crate::bench::{Bench, bits};
 use crate::panel::SLIDERS;
@@ -44,7 +44,7 @@ fn large_numbers_are_shown_short_and_kept_whole() {
         (-1.25e30, "-1.2e30"),
         (1e-20, "0.0"),
     ] {
-        let mut bench = Bench::after([Action::SetHand(Vec3::new(number, 0.0, 0.0))]);
+        let mut bench = Bench::after([EditAction::SetHand(Vec3::new(number, 0.0, 0.0))]);
         bench.click(Role::SpinButton, "Hand x value");
         bench.key(Key::Enter);
         bench.settle();

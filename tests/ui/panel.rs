@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Display, Overlay, Theme};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, Dialog, Effect, Navigation};
+use ik_arm::session::{Action, Dialog, EditAction, Effect, Navigation, ShellAction, ViewAction};
 
 use crate::bench::{Bench, SMALL};
 
@@ -127,12 +127,12 @@ fn a_checkbox_answers_to_the_keyboard() {
 fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
     let camera = Camera { yaw: 1.0, ..Camera::default() };
     let actions = [
-        Action::SetHand(Vec3::new(1.0, 2.0, 3.0)),
-        Action::SetRoot(Vec3::splat(9.0)),
-        Action::SetTwist(2.0),
-        Action::SetUpper(77.0),
-        Action::Show(Overlay::OuterLimit, true),
-        Action::SetCamera(camera),
+        Action::from(EditAction::SetHand(Vec3::new(1.0, 2.0, 3.0))),
+        EditAction::SetRoot(Vec3::splat(9.0)).into(),
+        EditAction::SetTwist(2.0).into(),
+        EditAction::SetUpper(77.0).into(),
+        EditAction::ShowOverlay(Overlay::OuterLimit, true).into(),
+        ViewAction::SetCamera(camera).into(),
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset pose");
@@ -144,10 +144,10 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
 #[test]
 fn reset_all_resets_everything_but_what_the_user_likes() {
     let actions = [
-        Action::SetLower(77.0),
-        Action::Show(Overlay::Axes, false),
-        Action::SetCamera(Camera { yaw: 1.0, ..Camera::default() }),
-        Action::SetTheme(Theme::Light),
+        Action::from(EditAction::SetLower(77.0)),
+        EditAction::ShowOverlay(Overlay::Axes, false).into(),
+        ViewAction::SetCamera(Camera { yaw: 1.0, ..Camera::default() }).into(),
+        ShellAction::SetTheme(Theme::Light).into(),
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset all");
@@ -209,7 +209,7 @@ fn the_explain_panel_says_in_a_sentence_how_the_arm_stands() {
             "Too close: the arm is folded and points past the cursor, by 40.0.",
         ),
     ] {
-        let bench = Bench::after([Action::SetHand(hand)]);
+        let bench = Bench::after([EditAction::SetHand(hand)]);
         assert_eq!(bench.session().pose().reach, reach);
         assert!(bench.shows(Role::Label, sentence), "{sentence}");
         assert!(bench.shows(Role::Image, &format!("Viewport. {sentence}")), "{sentence}");
@@ -218,7 +218,7 @@ fn the_explain_panel_says_in_a_sentence_how_the_arm_stands() {
 
 #[test]
 fn the_explain_panel_names_the_quantities_and_shows_their_values() {
-    let bench = Bench::after([Action::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
+    let bench = Bench::after([EditAction::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
     for name in ["theta z", "h c", "theta y", "D", "d 1", "d 2", "h e", "o e", "theta e", "phi"] {
         assert!(bench.shows(Role::Label, name), "{name}");
     }

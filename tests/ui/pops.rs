@@ -6,7 +6,7 @@ use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options}
 use glam::Vec3;
 use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{Action, Preferences};
+use ik_arm::session::{Action, EditAction, FileAction, Preferences, TransactionAction, ViewAction};
 use image::{RgbaImage, imageops};
 
 use crate::bench::Bench;
@@ -21,12 +21,12 @@ fn from_the_front() -> Bench {
     let preferences = Preferences { timeline: false, ..Preferences::default() };
     let mut bench = Bench::liking(HUGE, preferences);
     let all = bench.session().framing_all();
-    bench.apply([Action::SetCamera(all.along(AxisView::Front))]);
+    bench.apply([ViewAction::SetCamera(all.along(AxisView::Front))]);
     bench
 }
 
 fn drag(bench: &mut Bench, from: Vec3, to: Vec3, steps: u16) {
-    bench.apply([Action::SetHand(from)]);
+    bench.apply([EditAction::SetHand(from)]);
     let (start, end) = (bench.place(from), bench.place(to));
     bench.move_to(start);
     bench.press(LEFT);
@@ -85,7 +85,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
 #[test]
 fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
     let mut bench = from_the_front();
-    bench.apply([Action::SetTwistReference(TwistReferenceKind::Stereographic)]);
+    bench.apply([EditAction::SetTwistReference(TwistReferenceKind::Stereographic)]);
     let behind = |bench: &mut Bench| {
         drag(bench, Vec3::new(-300.0, 90.0, 12.0), Vec3::new(-300.0, -90.0, 12.0), 40);
     };
@@ -106,7 +106,7 @@ fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
     assert_eq!(bench.session().arm().soft_reach, softened(0.25));
     out_straight(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Straight"), "no other one");
-    bench.apply([Action::Undo, Action::Undo, Action::Undo]);
+    bench.apply([TransactionAction::Undo, TransactionAction::Undo, TransactionAction::Undo]);
     assert_eq!(bench.session().arm().soft_reach, softened(0.0), "it is a step to undo");
 }
 
@@ -138,7 +138,7 @@ fn one_remedy_is_offered_once() {
 #[test]
 fn other_changes_are_told_apart_from_pops() {
     let mut bench = from_the_front();
-    bench.apply([Action::SetTwist(2.0), Action::SetLower(240.0)]);
+    bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
     assert!(bench.says("Dotted: lengths, spin changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
@@ -148,15 +148,17 @@ fn another_document_has_popped_nowhere() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     let document = Box::new(Document::default());
-    bench.apply([Action::Discard(Box::new(Action::Opened { document, file: None }))]);
+    bench.apply([FileAction::Discard(Box::new(FileAction::Opened { document, file: None }))]);
     assert!(bench.says("Drag the hand, or play"));
 }
 
 /// Drags as a slider would.
 fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
-    let way = (1..=40).map(|step| Action::SetHand(from.lerp(to, step as f32 / 40.0)));
-    let way = [Action::SetHand(from), Action::BeginEdit].into_iter().chain(way);
-    bench.apply(way.chain([Action::CommitEdit]));
+    let way = (1..=40).map(|step| EditAction::SetHand(from.lerp(to, step as f32 / 40.0)).into());
+    let way = [Action::from(EditAction::SetHand(from)), TransactionAction::Begin.into()]
+        .into_iter()
+        .chain(way);
+    bench.apply(way.chain([TransactionAction::Commit.into()]));
 }
 
 /// The two sections as they are painted, and nothing around them.
@@ -176,12 +178,12 @@ fn pops_and_the_reach_curve_look_as_they_did() {
         let mut bench = Bench::liking(HIGH, preferences);
         slide(&mut bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0));
         bench.apply([
-            Action::SetTwistReference(TwistReferenceKind::Stereographic),
-            Action::SetTwist(0.4),
+            EditAction::SetTwistReference(TwistReferenceKind::Stereographic),
+            EditAction::SetTwist(0.4),
         ]);
         slide(&mut bench, Vec3::new(400.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0));
         slide(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0));
-        bench.apply([Action::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
+        bench.apply([EditAction::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
         let options = SnapshotOptions::new()
             .threshold(2.0)
             .max_failed_pixels(600)

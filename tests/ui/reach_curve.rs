@@ -5,7 +5,7 @@ use egui::{Rect, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{Action, Preferences};
+use ik_arm::session::{EditAction, Preferences};
 
 use crate::bench::Bench;
 
@@ -13,7 +13,7 @@ fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
     let preferences = Preferences { timeline: false, ..Preferences::default() };
     let mut bench = Bench::liking(vec2(1280.0, 1500.0), preferences);
     let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("a softening");
-    bench.apply([Action::SetSoftReach(soft_reach), Action::SetHand(Vec3::X * asked)]);
+    bench.apply([EditAction::SetSoftReach(soft_reach), EditAction::SetHand(Vec3::X * asked)]);
     bench
 }
 
@@ -64,7 +64,7 @@ fn its_lines_are_named_and_examples_are_called_that() {
 fn it_says_when_the_hand_does_not_lead_alone() {
     let mut bench = bench(0.0, 1.0, 300.0);
     assert!(!bench.says("As the hand alone would have it"));
-    bench.apply([Action::SetInfluence(0.5)]);
+    bench.apply([EditAction::SetInfluence(0.5)]);
     assert!(bench.says("As the hand alone would have it"));
 }
 
@@ -99,11 +99,11 @@ fn hovering_reads_the_curve_at_the_pointer() {
 fn what_is_far_or_tiny_does_not_upset_it() {
     let mut bench = bench(0.2, 1.5, 300.0);
     for hand in [Vec3::ZERO, Vec3::X * 1e30, Vec3::MAX, Vec3::splat(1e-30)] {
-        bench.apply([Action::SetHand(hand)]);
+        bench.apply([EditAction::SetHand(hand)]);
         plot(&bench);
     }
     for length in [1e-20, 1e30] {
-        bench.apply([Action::SetUpper(length), Action::SetLower(length)]);
+        bench.apply([EditAction::SetUpper(length), EditAction::SetLower(length)]);
         plot(&bench);
     }
 }

@@ -7,14 +7,17 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, RigKind, Theme};
 use ik_arm::io::Example;
-use ik_arm::session::{Action, Dialog, DragInput, Effect, Grip, Job, SolverState};
+use ik_arm::session::{
+    Action, Dialog, DragInput, EditAction, Effect, FileAction, Grip, Job, SelectAction,
+    ShellAction, SolverAction, SolverState, TransactionAction, ViewAction,
+};
 
 use crate::bench::Bench;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
 fn human() -> Bench {
-    Bench::after([Action::OpenExample(Example::find("human").expect("there"))])
+    Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))])
 }
 
 fn joint_named(bench: &Bench, name: &str) -> usize {
@@ -74,9 +77,9 @@ fn a_joint_is_named_after_a_click_on_it() {
 #[test]
 fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_into_it() {
     let mut bench = human();
-    bench.apply([Action::Select(vec![3])]);
+    bench.apply([SelectAction::Joints(vec![3])]);
     bench.click_at(bench.empty_place());
-    bench.apply([Action::Select(vec![3])]);
+    bench.apply([SelectAction::Joints(vec![3])]);
     let press = |key| Event::Key {
         key,
         physical_key: None,
@@ -93,7 +96,7 @@ fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_int
 #[test]
 fn nothing_behind_an_open_question_answers() {
     let mut bench = human();
-    bench.apply([Action::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
+    bench.apply([EditAction::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
     bench.click_at(bench.empty_place());
     bench.key_with(CTRL, Key::Q);
     bench.settle();
@@ -151,7 +154,7 @@ fn a_key_has_the_modifiers_that_were_held_when_it_was_pressed() {
 #[test]
 fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
     let mut bench = human();
-    bench.apply([Action::Select(vec![4])]);
+    bench.apply([SelectAction::Joints(vec![4])]);
     let at = bench.empty_place();
     bench.move_to(at);
     let count = bench.session().skeleton_pose().len();
@@ -174,44 +177,44 @@ fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
 #[test]
 fn what_is_only_looked_at_is_no_unsaved_change() {
     for look in [
-        Action::SetTheme(Theme::Light),
-        Action::Show(Overlay::Globe, true),
-        Action::Show(Overlay::Labels, false),
-        Action::ShowCrowd(true),
-        Action::ShowRig(RigKind::Skeleton),
-        Action::ShowExplain(false),
-        Action::SetCamera(Camera::default().orbited(1.0, 0.2)),
+        Action::from(ShellAction::SetTheme(Theme::Light)),
+        EditAction::ShowOverlay(Overlay::Globe, true).into(),
+        EditAction::ShowOverlay(Overlay::Labels, false).into(),
+        ViewAction::ShowCrowd(true).into(),
+        EditAction::ShowRig(RigKind::Skeleton).into(),
+        ViewAction::ShowExplain(false).into(),
+        ViewAction::SetCamera(Camera::default().orbited(1.0, 0.2)).into(),
     ] {
         let mut bench = Bench::new();
         bench.apply_moving([look.clone()]);
         assert!(!bench.session().is_unsaved(), "{look:?}");
-        bench.apply_moving([Action::Quit]);
+        bench.apply_moving([FileAction::Quit]);
         assert_eq!(bench.session().dialog(), None, "{look:?}");
     }
 }
 
 #[test]
 fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
-    let mut bench = Bench::after([Action::Show(Overlay::Globe, true)]);
-    bench.apply([Action::SetTwist(0.5), Action::Show(Overlay::Globe, false)]);
+    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::Globe, true)]);
+    bench.apply([EditAction::SetTwist(0.5), EditAction::ShowOverlay(Overlay::Globe, false)]);
     assert!(bench.session().is_unsaved());
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert!(bench.session().is_unsaved(), "only the globe is back");
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert!(!bench.session().is_unsaved(), "the spin is back");
-    bench.apply([Action::Redo, Action::Redo]);
+    bench.apply([TransactionAction::Redo, TransactionAction::Redo]);
     assert!(bench.session().is_unsaved());
-    assert_eq!(bench.tell(Action::Saved("x.json".into())), None);
-    bench.apply([Action::Show(Overlay::Globe, true)]);
+    assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
+    bench.apply([EditAction::ShowOverlay(Overlay::Globe, true)]);
     assert!(!bench.session().is_unsaved());
-    assert_eq!(bench.tell(Action::Quit), Some(Effect::Quit));
+    assert_eq!(bench.tell(FileAction::Quit), Some(Effect::Quit));
 }
 
 #[test]
 fn after_a_limit_the_reading_says_what_was_turned() {
     let mut bench = human();
     let joint = joint_named(&bench, "left_shin");
-    bench.apply([Action::Select(vec![joint])]);
+    bench.apply([SelectAction::Joints(vec![joint])]);
     let limits = bench.session().skeleton().joints()[joint].limits;
     let free: Vec<_> =
         (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
@@ -225,21 +228,21 @@ fn after_a_limit_the_reading_says_what_was_turned() {
     let before = bench.session().skeleton().joints()[joint].rotation[axis];
     let projection = bench.session().camera().projection(1.0);
     let ray = projection.ray(projection.project(ring.centre).expect("seen") + glam::Vec2::X * 0.05);
-    bench.apply([Action::Grab { grip, ray, forward: projection.forward }]);
+    bench.apply([TransactionAction::Grab { grip, ray, forward: projection.forward }]);
     let most = (limit.max - limit.min).to_degrees();
-    bench.apply([Action::TypeOffset(format!("{}", most + 90.0))]);
-    bench.apply([Action::Drag(DragInput { ray, precise: false, snap: false })]);
+    bench.apply([TransactionAction::TypeOffset(format!("{}", most + 90.0))]);
+    bench.apply([TransactionAction::Drag(DragInput { ray, precise: false, snap: false })]);
     let now = bench.session().skeleton().joints()[joint].rotation[axis];
     assert_eq!(now, limit.max);
     let turned = (now - before).to_degrees();
     assert!(bench.says(&format!("{turned:+.1}°, at its limit")), "{turned}");
-    bench.apply([Action::CancelEdit]);
+    bench.apply([TransactionAction::Cancel]);
 }
 
 #[test]
 fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     let example = Example::find("ten-joints").expect("there");
-    let mut bench = Bench::after([Action::OpenExample(example)]);
+    let mut bench = Bench::after([FileAction::OpenExample(example)]);
     let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
     let tip_to_target = |bench: &Bench| {
         let session = bench.session();
@@ -247,22 +250,22 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
         session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
     };
     assert_eq!(status(&bench).state, SolverState::NotSolved);
-    bench.apply_moving([Action::Run(true)]);
+    bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
     assert_eq!(status(&bench).state, SolverState::Reached);
     assert!(bench.says("reached after"), "the status line says so");
 
-    bench.apply([Action::SetRotation { joint: 2, rotation: Vec3::splat(0.7) }]);
+    bench.apply([EditAction::SetRotation { joint: 2, rotation: Vec3::splat(0.7) }]);
     assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody turned a joint");
     assert!(bench.shows(Role::Label, "not solved yet"));
     assert!(!bench.says("reached after"));
     assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
 
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert_eq!(status(&bench).state, SolverState::Reached, "it is the solved pose again");
     let mut target = bench.session().skeleton_rig().targets[0];
     target.home += Vec3::splat(0.5);
-    bench.apply([Action::SetTarget(target)]);
+    bench.apply([EditAction::SetTarget(target)]);
     assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody moved the target");
     assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
 }
@@ -280,9 +283,9 @@ fn deleting_a_joint_asks_what_becomes_of_its_children() {
         (0..pose.len()).map(|joint| (pose.base(joint), pose.tip(joint))).collect()
     };
     let before = (names(&bench), places(&bench));
-    bench.apply([Action::Select(vec![shoulder])]);
+    bench.apply([SelectAction::Joints(vec![shoulder])]);
     bench.click_at(bench.empty_place() + egui::vec2(0.0, 1.0));
-    bench.apply([Action::Select(vec![shoulder])]);
+    bench.apply([SelectAction::Joints(vec![shoulder])]);
     bench.key(Key::Delete);
     bench.settle();
     assert!(bench.node(Role::Button, "Keep children").is_focused(), "the default keeps them");
@@ -300,17 +303,17 @@ fn deleting_a_joint_asks_what_becomes_of_its_children() {
     for ((base, tip), (now_base, now_tip)) in stay.into_iter().zip(places(&bench)) {
         assert!(base.distance(now_base) < 1e-4 && tip.distance(now_tip) < 1e-4, "nothing moves");
     }
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert_eq!((names(&bench), places(&bench)), before);
 
-    bench.apply([Action::Select(vec![shoulder])]);
+    bench.apply([SelectAction::Joints(vec![shoulder])]);
     bench.key(Key::Delete);
     bench.settle();
     bench.click(Role::Button, "Delete children too");
     assert!(names(&bench).len() < kept.len());
 
     let leaf = names(&bench).len() - 1;
-    bench.apply([Action::Select(vec![leaf])]);
+    bench.apply([SelectAction::Joints(vec![leaf])]);
     bench.click(Role::Button, "Delete");
     assert_eq!(names(&bench).len(), leaf, "a joint without children is deleted at once");
 }
@@ -371,7 +374,7 @@ fn quitting_during_an_export_asks() {
     let mut bench = Bench::new();
     let progress = std::sync::Arc::new(ik_arm::io::Progress::default());
     let job = Job { path: "walk.glb".into(), progress };
-    bench.apply_moving([Action::Exporting(job.clone())]);
+    bench.apply_moving([FileAction::ExportStarted(job.clone())]);
     bench.key_with(CTRL, Key::Q);
     bench.wait(0.2);
     assert!(bench.says("walk.glb is being exported"));
@@ -399,21 +402,21 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     let effects = bench.effects();
     assert!(matches!(effects[..], [Effect::Open { .. }]));
     let why = "/nowhere/walk.bvh: there is no such file".to_owned();
-    bench.apply([Action::NotOpened { path: "/nowhere/walk.bvh".into(), why: why.clone() }]);
+    bench.apply([FileAction::NotOpened { path: "/nowhere/walk.bvh".into(), why: why.clone() }]);
     let prompt = "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf";
     assert_eq!(typed(&bench, prompt), "/nowhere/walk.bvh");
     assert!(bench.shows(Role::Alert, &why), "in the dialog");
     bench.key(Key::Escape);
     bench.settle();
     assert!(bench.shows(Role::Alert, &format!("Not opened: {why}")), "in the status line");
-    bench.apply([Action::SetTwist(0.3)]);
+    bench.apply([EditAction::SetTwist(0.3)]);
     assert!(!bench.says("Not opened"), "until the next change");
 }
 
 #[test]
 fn enter_in_the_frame_of_the_key_that_asks_is_the_answer() {
     let mut bench = human();
-    bench.apply([Action::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
+    bench.apply([EditAction::SetRotation { joint: 3, rotation: Vec3::splat(0.1) }]);
     bench.click_at(bench.empty_place());
     let key = |key, modifiers| Event::Key {
         key,
@@ -435,7 +438,7 @@ fn enter_in_the_frame_of_the_key_that_asks_is_the_answer() {
 #[test]
 fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     let mut bench = human();
-    bench.apply([Action::Select(vec![joint_named(&bench, "head")])]);
+    bench.apply([SelectAction::Joints(vec![joint_named(&bench, "head")])]);
     bench.key(Key::F2);
     bench.settle();
     bench.type_text("neck");
@@ -454,7 +457,7 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
 fn a_view_that_is_on_its_way_is_saved_as_it_will_be() {
     let mut bench = Bench::new();
     let back = bench.session().camera().along(ik_arm::document::AxisView::Back);
-    bench.apply_moving([Action::GlideTo(back)]);
-    bench.tell(Action::SaveAs("view.json".into()));
+    bench.apply_moving([ViewAction::GlideTo(back)]);
+    bench.tell(FileAction::SaveAs("view.json".into()));
     assert_eq!(*bench.session().camera(), back);
 }

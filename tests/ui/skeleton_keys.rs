@@ -9,21 +9,21 @@ use glam::Vec3;
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::skeleton::Limit;
-use ik_arm::session::{Action, Effect};
+use ik_arm::session::{Action, EditAction, Effect, FileAction, SelectAction, SolverAction};
 
 use crate::bench::{Bench, SMALL};
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
 fn example(name: &str) -> Bench {
-    Bench::after([Action::OpenExample(Example::find(name).expect("an example"))])
+    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
 }
 
 /// The Y-shaped tree with its last joint selected.
 fn tree() -> Bench {
     let mut bench = example("two-targets");
     let joint = bench.session().skeleton().find("left_3").expect("there");
-    bench.apply([Action::Select(vec![joint])]);
+    bench.apply([SelectAction::Joints(vec![joint])]);
     bench
 }
 
@@ -52,8 +52,9 @@ fn escape_in_a_number_leaves_it_and_the_selection_alone() {
 fn escape_in_a_number_lets_a_running_solver_run() {
     let mut bench = tree();
     let solver = bench.session().skeleton_rig().solver;
-    bench.apply([Action::SetSolver(SolverOptions { method: Method::TransposeFixed, ..solver })]);
-    bench.apply_moving([Action::Run(true)]);
+    bench
+        .apply([EditAction::SetSolver(SolverOptions { method: Method::TransposeFixed, ..solver })]);
+    bench.apply_moving([SolverAction::Run(true)]);
     bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
     bench.frame([]);
     bench.frame([]);
@@ -96,10 +97,14 @@ fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
     let target = bench.session().skeleton_rig().targets[0];
     let solver = bench.session().skeleton_rig().solver;
     bench.apply([
-        Action::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
-        Action::SetLimit { joint, axis: 0, limit: Some(Limit { min: -1.234_567, max: 0.7654 }) },
-        Action::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
-        Action::SetSolver(SolverOptions {
+        EditAction::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
+        EditAction::SetLimit {
+            joint,
+            axis: 0,
+            limit: Some(Limit { min: -1.234_567, max: 0.7654 }),
+        },
+        EditAction::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
+        EditAction::SetSolver(SolverOptions {
             method: Method::DampedLeastSquares,
             tolerance: Some(1.234e-8),
             damping: 0.012_345_678,
@@ -179,7 +184,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
 fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
-    bench.apply([Action::Delete(vec![0])]);
+    bench.apply([EditAction::DeleteJoints(vec![0])]);
     for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F] {
         bench.key(key);
         bench.settle();
@@ -187,7 +192,7 @@ fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     bench.key_with(CTRL, Key::A);
     bench.key(Key::Escape);
     bench.click(Role::Button, "Bind pose");
-    bench.apply([Action::Comparison(true)]);
+    bench.apply([SolverAction::Compare(true)]);
     assert!(bench.session().skeleton().joints().is_empty());
     assert_eq!(bench.session().dialog(), None);
 }
@@ -219,11 +224,14 @@ fn a_file_that_is_dropped_on_the_window_is_opened() {
 fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
     for example in Example::ALL {
         let mut bench = Bench::of_size(SMALL);
-        bench.apply([Action::OpenExample(example)]);
-        bench.apply([Action::Select(vec![0])]);
+        bench.apply([FileAction::OpenExample(example)]);
+        bench.apply([SelectAction::Joints(vec![0])]);
         bench.harness.check_accessibility();
         let joint = bench.session().skeleton_rig().targets.first().map(|target| target.joint);
-        bench.apply([Action::Select(joint.into_iter().collect()), Action::Step]);
+        bench.apply([
+            Action::from(SelectAction::Joints(joint.into_iter().collect())),
+            EditAction::StepSolver.into(),
+        ]);
         bench.harness.check_accessibility();
     }
 }
@@ -248,7 +256,7 @@ fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
     bench.settle();
     bench.click(Role::CheckBox, "Slither");
     assert_eq!(bench.session().skeleton_rig().follow_path, None);
-    bench.apply([Action::Select(vec![1])]);
+    bench.apply([SelectAction::Joints(vec![1])]);
     bench.enter("Rotation x", "10");
     let angle = bench.session().skeleton().joints()[1].rotation.x;
     assert!((angle.to_degrees() - 10.0).abs() < 1e-3);
@@ -262,8 +270,11 @@ fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
     bench.click(Role::Button, "Add target");
     let before = bench.viewport();
     let name = "a name of many letters ".repeat(3);
-    bench.apply([Action::Rename { joint: 1, name: name.clone() }]);
-    bench.apply([Action::AddChild { parent: 1, tip: None }, Action::Select(vec![1])]);
+    bench.apply([EditAction::RenameJoint { joint: 1, name: name.clone() }]);
+    bench.apply([
+        Action::from(EditAction::AddChild { parent: 1, tip: None }),
+        SelectAction::Joints(vec![1]).into(),
+    ]);
     assert_eq!(bench.viewport(), before);
     for field in ["Bone x", "Bone z", "Length"] {
         let rect = bench.rect(Role::SpinButton, field);
@@ -275,7 +286,7 @@ fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
 #[test]
 fn a_race_says_of_every_solver_how_it_ended() {
     let mut bench = tree();
-    bench.apply_moving([Action::Comparison(true)]);
+    bench.apply_moving([SolverAction::Compare(true)]);
     bench.wait(4.0);
     assert!(bench.shows(Role::Image, "FABRIK: Reached"));
     assert!(bench.shows(Role::Image, "Two-bone: At rest, out of reach"));

@@ -9,7 +9,10 @@ use glam::Vec3;
 use ik_arm::document::{RigKind, TargetPath};
 use ik_arm::io::{Example, Group};
 use ik_arm::kinematics::chain_ik::{Method, Root};
-use ik_arm::session::{Action, Dialog, Effect};
+use ik_arm::session::{
+    Action, Dialog, EditAction, Effect, FileAction, SelectAction, ShellAction, SolverAction,
+    ViewAction,
+};
 
 use crate::bench::{Bench, SMALL};
 
@@ -24,7 +27,7 @@ fn built() -> Bench {
 }
 
 fn example(name: &str) -> Bench {
-    Bench::after([Action::OpenExample(Example::find(name).expect("an example"))])
+    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
 }
 
 fn names(bench: &Bench) -> Vec<&str> {
@@ -85,7 +88,7 @@ fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "hand"]);
-    bench.apply([Action::Rename { joint: 1, name: "hand".to_owned() }]);
+    bench.apply([EditAction::RenameJoint { joint: 1, name: "hand".to_owned() }]);
     assert_eq!(names(&bench)[1], "joint");
     assert!(bench.says("Two joints are called \"hand\""));
 }
@@ -126,7 +129,7 @@ fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
 #[test]
 fn without_a_selection_what_needs_one_is_disabled() {
     let mut bench = built();
-    bench.apply([Action::Select(Vec::new())]);
+    bench.apply([SelectAction::Joints(Vec::new())]);
     for name in ["Delete", "Rename…", "Add target"] {
         assert!(!is_enabled(&bench, Role::Button, name), "{name}");
     }
@@ -241,7 +244,7 @@ fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
 #[test]
 fn escape_takes_back_what_a_running_solver_has_done() {
     let mut bench = example("ten-joints");
-    bench.apply([Action::SetSolver({
+    bench.apply([EditAction::SetSolver({
         let solver = bench.session().skeleton_rig().solver;
         ik_arm::kinematics::chain_ik::SolverOptions { method: Method::TransposeFixed, ..solver }
     })]);
@@ -312,7 +315,7 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     let target = bench.session().skeleton_rig().targets[0];
     assert_eq!(target.motion.path, TargetPath::Circle);
     assert!(bench.session().is_playing(), "it goes at once");
-    bench.apply_moving([Action::Run(true)]);
+    bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(1.0);
     let time = bench.session().time();
     assert!(time > 0.8, "{time} s");
@@ -324,14 +327,14 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     bench.key(Key::Space);
     bench.wait(1.0);
     assert!(!bench.session().is_playing());
-    bench.apply([Action::Run(false)]);
+    bench.apply([SolverAction::Run(false)]);
     bench.settle();
 }
 
 #[test]
 fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
     let mut bench = example("snake");
-    bench.apply([Action::ShowTimeline(true)]);
+    bench.apply([ViewAction::ShowTimeline(true)]);
     let before = bench.session().skeleton_pose().clone();
     bench.click_at(bench.rect(Role::Button, "Play").center());
     bench.wait(1.0);
@@ -374,7 +377,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.choose(&["File", "New skeleton"]);
     let empty = bench.empty_place();
     bench.move_to(empty);
-    bench.apply([Action::Select(vec![0])]);
+    bench.apply([SelectAction::Joints(vec![0])]);
     bench.key(Key::A);
     bench.key(Key::A);
     assert_eq!(names(&bench).len(), 3);
@@ -391,12 +394,12 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     assert_eq!(names(&bench).len(), 3, "a letter in a text box is a letter");
     bench.key(Key::Escape);
     bench.settle();
-    bench.apply([Action::CloseDialog]);
+    bench.apply([ShellAction::CloseDialog]);
     bench.key_with(Modifiers::COMMAND, Key::A);
     assert_eq!(bench.session().selection(), [0, 1, 2]);
     bench.key(Key::Escape);
     assert!(bench.session().selection().is_empty());
-    bench.apply([Action::Select(vec![1])]);
+    bench.apply([SelectAction::Joints(vec![1])]);
     bench.key(Key::Delete);
     bench.settle();
     bench.key(Key::Enter);
@@ -443,13 +446,13 @@ fn files_are_asked_for_opened_and_saved() {
     let open = Effect::Open { path: "scene.js3d".into(), skeleton: None };
     assert_eq!(bench.effects(), [open]);
     let document = Box::new(bench.session().document().clone());
-    bench.apply([Action::Opened { document, file: None }]);
+    bench.apply([FileAction::Opened { document, file: None }]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
     bench.settle();
     bench.key(Key::Enter);
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
-    bench.apply([Action::Saved("ik-arm.json".into())]);
+    bench.apply([FileAction::Saved("ik-arm.json".into())]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
 }
@@ -458,7 +461,7 @@ fn files_are_asked_for_opened_and_saved() {
 fn of_several_skeletons_one_is_chosen() {
     let names = ["left", "right"].map(str::to_owned).to_vec();
     let dialog = Dialog::ChooseSkeleton { path: "two.js3d".into(), names };
-    let mut bench = Bench::after([Action::OpenDialog(dialog)]);
+    let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
     bench.click(Role::Button, "right");
     let open = Effect::Open { path: "two.js3d".into(), skeleton: Some("right".to_owned()) };
     assert_eq!(bench.effects(), [open]);
@@ -480,10 +483,13 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
     let mut bench = Bench::of_size(SMALL);
     bench.choose(&["File", "New skeleton"]);
     let name = "a name of many letters ".repeat(4);
-    bench.apply([Action::Rename { joint: 0, name }]);
-    bench.apply((0..200).map(|parent| Action::AddChild { parent, tip: None }));
+    bench.apply([EditAction::RenameJoint { joint: 0, name }]);
+    bench.apply((0..200).map(|parent| EditAction::AddChild { parent, tip: None }));
     assert_eq!(names(&bench).len(), 201);
     assert_eq!(bench.session().selected(), Some(200));
-    bench.apply([Action::AddTarget(200), Action::Select((0..201).collect())]);
+    bench.apply([
+        Action::from(EditAction::AddTarget(200)),
+        SelectAction::Joints((0..201).collect()).into(),
+    ]);
     bench.settle();
 }

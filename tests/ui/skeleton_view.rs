@@ -6,7 +6,10 @@ use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use ik_arm::session::{Action, Drag, Grip};
+use ik_arm::session::{
+    Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, SolverAction,
+    TransactionAction, ViewAction,
+};
 
 use crate::bench::{Bench, bits};
 
@@ -30,9 +33,9 @@ fn skeleton() -> Skeleton {
 fn bench() -> Bench {
     let skeleton_rig = SkeletonRig::new(skeleton());
     let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
-    let mut bench = Bench::after([Action::Opened { document: Box::new(document), file: None }]);
+    let mut bench = Bench::after([FileAction::Opened { document: Box::new(document), file: None }]);
     let camera = bench.session().framing_all();
-    bench.apply([Action::SetCamera(camera)]);
+    bench.apply([ViewAction::SetCamera(camera)]);
     bench
 }
 
@@ -182,7 +185,7 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_pointer_goes_around() {
     for axis in 0..3 {
         let mut bench = bench();
         let b = joint(&bench, "b");
-        bench.apply([Action::Select(vec![b])]);
+        bench.apply([SelectAction::Joints(vec![b])]);
         // Where nothing else can be taken.
         let grip = |bench: &mut Bench, from: f32| {
             let at = ring_place(bench, axis, 56.0, from);
@@ -192,7 +195,7 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_pointer_goes_around() {
             if drag != Some(Grip::Ring(b, axis)) {
                 bench.key(Key::Escape);
                 bench.release(LEFT);
-                bench.apply([Action::Select(vec![b])]);
+                bench.apply([SelectAction::Joints(vec![b])]);
             }
             drag == Some(Grip::Ring(b, axis))
         };
@@ -221,11 +224,11 @@ fn digits_type_the_degrees_that_a_ring_turns() {
     let b = joint(&bench, "b");
     let forward = bench.session().camera().projection(1.0).forward;
     let ray = bench.session().camera().projection(1.0).ray(glam::Vec2::new(0.3, 0.3));
-    bench.apply([Action::Grab { grip: Grip::Ring(b, 2), ray, forward }]);
-    bench.apply([Action::TypeOffset("37.5".to_owned())]);
+    bench.apply([TransactionAction::Grab { grip: Grip::Ring(b, 2), ray, forward }]);
+    bench.apply([TransactionAction::TypeOffset("37.5".to_owned())]);
     let rotation = bench.session().skeleton().joints()[b].rotation;
     assert!((rotation.z.to_degrees() - 37.5).abs() < 1e-4);
-    bench.apply([Action::CancelEdit]);
+    bench.apply([TransactionAction::Cancel]);
     assert_eq!(bench.session().skeleton().joints()[b].rotation, Vec3::ZERO);
 }
 
@@ -233,7 +236,7 @@ fn digits_type_the_degrees_that_a_ring_turns() {
 fn a_target_is_dragged_and_the_skeleton_follows() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::AddTarget(c)]);
+    bench.apply([EditAction::AddTarget(c)]);
     let start = tip_place(&bench, "c");
     for step in 1..=15 {
         let pointer = start + vec2(-5.0, 4.0) * step as f32;
@@ -257,12 +260,12 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
 fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::AddTarget(c), Action::SetFollow(false)]);
+    bench.apply([Action::from(EditAction::AddTarget(c)), SolverAction::SetFollow(false).into()]);
     let before = bench.session().skeleton().clone();
     let start = tip_place(&bench, "c");
     bench.drag_and_drop(LEFT, start, start + vec2(-60.0, 50.0));
     assert_eq!(bench.session().skeleton(), &before);
-    bench.apply([Action::Run(true)]);
+    bench.apply([SolverAction::Run(true)]);
     bench.wait(2.0);
     assert!(!bench.session().is_running(), "it rests when it is there");
     let report = bench.session().solver_run().expect("it ran").report();
@@ -274,7 +277,7 @@ fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
 fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::AddTarget(c), Action::Select(vec![c])]);
+    bench.apply([Action::from(EditAction::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
     let home = bench.session().skeleton_rig().targets[0].home;
     let start = bench.place(home);
     let camera = bench.session().camera();
@@ -290,10 +293,10 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
 fn a_moving_target_is_dragged_along_its_way() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::AddTarget(c)]);
+    bench.apply([EditAction::AddTarget(c)]);
     let mut target = bench.session().skeleton_rig().targets[0];
     target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
-    bench.apply([Action::SetTarget(target), Action::SetTime(1.0)]);
+    bench.apply([Action::from(EditAction::SetTarget(target)), PlaybackAction::SetTime(1.0).into()]);
     let start = bench.place(target.at(1.0));
     bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));
     let dragged = bench.session().skeleton_rig().targets[0];
@@ -305,7 +308,7 @@ fn a_moving_target_is_dragged_along_its_way() {
 fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_pointer() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::Select(vec![c])]);
+    bench.apply([SelectAction::Joints(vec![c])]);
     let (from, at) = (tip(&bench, "c"), tip_place(&bench, "c") + vec2(-20.0, 90.0));
     bench.hold(Modifiers::COMMAND);
     bench.click_at(at);

@@ -8,7 +8,7 @@ use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::Theme;
 use ik_arm::render::Counts;
-use ik_arm::session::{Action, Dialog};
+use ik_arm::session::{Action, Dialog, EditAction, PlaybackAction, ShellAction};
 use ik_arm::ui::{FrameTime, FrameTimes, Machine};
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -139,10 +139,10 @@ fn the_statistics_ask_for_no_frame_and_the_rest_goes_on_beside_them() {
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
     assert_ne!(bench.hand(), before, "the hand is dragged");
     bench.apply([
-        Action::Key(bench.session().all_channels()),
-        Action::SetTime(1.0),
-        Action::SetHand(Vec3::new(100.0, 200.0, 0.0)),
-        Action::Key(bench.session().all_channels()),
+        Action::from(EditAction::Key(bench.session().all_channels())),
+        PlaybackAction::SetTime(1.0).into(),
+        EditAction::SetHand(Vec3::new(100.0, 200.0, 0.0)).into(),
+        EditAction::Key(bench.session().all_channels()).into(),
     ]);
     bench.key(Key::Space);
     assert!(bench.session().is_playing(), "Space plays");
@@ -164,7 +164,7 @@ fn the_statistics_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for theme in [Theme::Dark, Theme::Light] {
         let mut bench = opened(LARGE, machine(240, true));
-        bench.apply([Action::SetTheme(theme)]);
+        bench.apply([ShellAction::SetTheme(theme)]);
         bench.move_to(bench.empty_place());
         bench.settle();
         let options = SnapshotOptions::new()

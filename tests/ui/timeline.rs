@@ -10,7 +10,9 @@ use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::Joint;
 use ik_arm::kinematics::spline::{Knot, Spline};
-use ik_arm::session::Action;
+use ik_arm::session::{
+    Action, EditAction, FileAction, PlaybackAction, TransactionAction, ViewAction,
+};
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
 
@@ -24,13 +26,20 @@ pub const HAND: [(f64, Vec3); 3] = [
 pub fn keyed() -> Bench {
     let mut bench = Bench::with_timeline(LARGE);
     for (time, hand) in HAND {
-        let key = Action::Key(vec![Channel::Hand]);
-        bench.apply([Action::SetTime(time), Action::SetHand(hand), key]);
+        let key = EditAction::Key(vec![Channel::Hand]).into();
+        bench.apply([
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::SetHand(hand).into(),
+            key,
+        ]);
     }
     for time in [1.0, 4.0] {
-        bench.apply([Action::SetTime(time), Action::Key(vec![Channel::Twist])]);
+        bench.apply([
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::Key(vec![Channel::Twist]).into(),
+        ]);
     }
-    bench.apply([Action::SetTime(0.0)]);
+    bench.apply([PlaybackAction::SetTime(0.0)]);
     bench
 }
 
@@ -52,7 +61,7 @@ fn place(bench: &Bench, time: f64) -> Pos2 {
 #[test]
 fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::SetTime(1.5)]);
+    bench.apply([PlaybackAction::SetTime(1.5)]);
     bench.click(Role::Button, "Key");
     assert_eq!(times(&bench, Channel::Hand), [1.5]);
     assert_eq!(times(&bench, Channel::Twist), [1.5]);
@@ -85,13 +94,13 @@ fn the_time_follows_the_pointer_on_the_ruler_from_frame_to_frame() {
     bench.move_to(place(&bench, 3.0));
     assert_eq!(bench.session().time(), 0.0, "it is let go");
     assert_eq!(bench.session().document(), &document);
-    assert_eq!(bench.session().undo_name(), Some("key elbow spin"), "it is no step");
+    assert_eq!(bench.session().undo_name(), Some("Key Socket twist"), "it is no step");
 }
 
 #[test]
 fn esc_takes_the_time_back() {
     let mut bench = keyed();
-    bench.apply([Action::SetTime(0.5)]);
+    bench.apply([PlaybackAction::SetTime(0.5)]);
     bench.drag(PointerButton::Primary, place(&bench, 1.0), place(&bench, 4.0));
     assert_eq!(bench.session().time(), 4.0);
     bench.key(Key::Escape);
@@ -115,10 +124,10 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     bench.release(PointerButton::Primary);
     bench.settle();
     assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
-    assert_eq!(bench.session().undo_name(), Some("move keys"));
-    bench.apply([Action::Undo]);
+    assert_eq!(bench.session().undo_name(), Some("Move keys"));
+    bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
-    bench.apply([Action::Redo]);
+    bench.apply([TransactionAction::Redo]);
     assert_eq!(times(&bench, Channel::Hand)[1], moved);
 }
 
@@ -218,7 +227,7 @@ fn spline() -> Spline<Vec3> {
 #[test]
 fn the_hand_goes_along_the_spline_while_it_is_played() {
     let mut bench = keyed();
-    bench.apply([Action::SetTime(1.2)]);
+    bench.apply([PlaybackAction::SetTime(1.2)]);
     bench.click_at(bench.rect(Role::Button, "Play").center());
     assert!(bench.session().is_playing());
     bench.frame([]);
@@ -245,7 +254,7 @@ fn half_the_speed_goes_half_as_far() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(bench.session().speed(), 0.5);
-    bench.apply_moving([Action::Play(true)]);
+    bench.apply_moving([PlaybackAction::Play(true)]);
     let begun = bench.session().time();
     bench.wait(1.0);
     assert!((bench.session().time() - begun - 0.5).abs() < 0.02);
@@ -254,13 +263,13 @@ fn half_the_speed_goes_half_as_far() {
 #[test]
 fn at_its_end_the_time_begins_again_or_stands() {
     let mut bench = keyed();
-    bench.apply_moving([Action::SetTime(7.9), Action::Play(true)]);
+    bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
     assert!(bench.session().is_playing() && bench.session().time() < 1.0);
-    bench.apply([Action::Play(false)]);
+    bench.apply([PlaybackAction::Play(false)]);
     bench.click(Role::Button, "Loop");
     assert!(!bench.session().is_looping());
-    bench.apply_moving([Action::SetTime(7.9), Action::Play(true)]);
+    bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
     assert_eq!((bench.session().is_playing(), bench.session().time()), (false, 8.0));
     bench.click_at(bench.rect(Role::Button, "Play").center());
@@ -288,14 +297,14 @@ fn buttons_lead_to_the_ends_and_from_key_to_key() {
 #[test]
 fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_changes() {
     let mut bench = keyed();
-    bench.apply([Action::SetTime(3.0)]);
+    bench.apply([PlaybackAction::SetTime(3.0)]);
     bench.enter("Hand x", "77");
     assert_eq!(bench.hand().x, 77.0);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
     assert!(bench.says("Hand is changed here, not keyed: press K to keep it"));
     bench.click(Role::Button, "Next key");
     bench.click(Role::Button, "Previous key");
-    bench.apply([Action::SetTime(3.0)]);
+    bench.apply([PlaybackAction::SetTime(3.0)]);
     assert!(bench.hand().distance(spline().at(3.0).expect("keys")) < 1e-3);
     assert!(!bench.says("changed here"));
 
@@ -303,7 +312,7 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
     assert!(bench.session().is_auto_key());
     bench.enter("Hand x", "77");
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
-    bench.apply([Action::SetTime(0.0), Action::SetTime(3.0)]);
+    bench.apply([PlaybackAction::SetTime(0.0), PlaybackAction::SetTime(3.0)]);
     assert!((bench.hand().x - 77.0).abs() < 1e-4);
 }
 
@@ -317,7 +326,7 @@ fn the_frame_rate_is_chosen_and_another_one_of_a_file_is_shown() {
     let frames = bench.session().time() * 24.0;
     assert!((frames - frames.round()).abs() < 1e-9);
     let timeline = Timeline { frame_rate: 25, ..Timeline::default() };
-    bench.apply([Action::SetTimeline(timeline)]);
+    bench.apply([EditAction::SetTimeline(timeline)]);
     bench.click(Role::ComboBox, "Frame rate");
     assert!(bench.shows(Role::Button, "25 fps"));
 }
@@ -396,7 +405,7 @@ fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
     assert_eq!(selected(&bench), [Channel::Hand, Channel::Twist]);
     bench.click(Role::Button, "Channel Elbow spin");
     assert_eq!(selected(&bench), [Channel::Twist]);
-    bench.apply([Action::SetTime(7.0)]);
+    bench.apply([PlaybackAction::SetTime(7.0)]);
     bench.click(Role::Button, "Key");
     assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0, 7.0]);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
@@ -474,10 +483,10 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
 #[test]
 fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::OpenExample(Example::find("human").expect("an example"))]);
+    bench.apply([FileAction::OpenExample(Example::find("human").expect("an example"))]);
     let names = |joint: usize| bench.session().skeleton().joints()[joint].name.clone();
     let (turned, reached) = (names(1), names(8));
-    bench.apply([Action::Key(vec![Channel::Rotation(1), Channel::Target(8), Channel::Hand])]);
+    bench.apply([EditAction::Key(vec![Channel::Rotation(1), Channel::Target(8), Channel::Hand])]);
     for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
     {
         assert!(bench.shows(Role::Button, &format!("Channel {name}")), "{name}");
@@ -502,14 +511,14 @@ fn ten_thousand_channels_are_scrolled_in_no_time() {
         }
     }
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::Opened { document: Box::new(document), file: None }]);
+    bench.apply([FileAction::Opened { document: Box::new(document), file: None }]);
     let frame = |bench: &mut Bench| {
         let begun = Instant::now();
         bench.frame([]);
         begun.elapsed()
     };
     let with = (0..5).map(|_| frame(&mut bench)).min().expect("some");
-    bench.apply([Action::ShowTimeline(false)]);
+    bench.apply([ViewAction::ShowTimeline(false)]);
     let without = (0..5).map(|_| frame(&mut bench)).min().expect("some");
     // In a build without optimisation.
     assert!(with < without + Duration::from_millis(400), "{with:?}, without it {without:?}");

@@ -4,7 +4,9 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use ik_arm::document::Channel;
 use ik_arm::io::Example;
-use ik_arm::session::{Action, Effect};
+use ik_arm::session::{
+    Action, EditAction, Effect, FileAction, PlaybackAction, SelectAction, TransactionAction,
+};
 
 use crate::bench::{Bench, LARGE};
 use crate::timeline::{HAND, key_of_hand, keyed, times};
@@ -37,7 +39,7 @@ fn k_keys_after_a_slider_was_dragged_but_is_a_letter_in_a_text() {
     assert_eq!(bench.focused().map(|it| it.0), Some(Role::Slider));
     bench.key(Key::K);
     assert_eq!(times(&bench, Channel::Hand), [0.0]);
-    bench.apply([Action::SetTime(1.0)]);
+    bench.apply([PlaybackAction::SetTime(1.0)]);
     bench.click(Role::SpinButton, "Hand x value");
     bench.type_text("k");
     bench.key(Key::Escape);
@@ -49,7 +51,10 @@ fn k_keys_after_a_slider_was_dragged_but_is_a_letter_in_a_text() {
 fn k_keys_the_selected_joints() {
     let mut bench = Bench::with_timeline(LARGE);
     let human = Example::find("human").expect("an example");
-    bench.apply([Action::OpenExample(human), Action::Select(vec![8])]);
+    bench.apply([
+        Action::from(FileAction::OpenExample(human)),
+        SelectAction::Joints(vec![8]).into(),
+    ]);
     bench.key(Key::K);
     let keyed: Vec<_> = bench.session().document().keys.tracks().map(|it| it.0).collect();
     assert_eq!(keyed, [Channel::Rotation(8), Channel::Target(8)]);
@@ -112,10 +117,10 @@ fn arrows_go_from_frame_to_frame_and_from_key_to_key_once_the_timeline_was_click
 fn from_between_frames_the_arrows_lead_to_the_next_one() {
     let mut bench = keyed();
     bench.focus(Role::Slider, "Timeline ruler");
-    bench.apply([Action::SetTime(1.01)]);
+    bench.apply([PlaybackAction::SetTime(1.01)]);
     bench.key(Key::ArrowRight);
     assert_eq!(bench.session().time(), 31.0 / 30.0);
-    bench.apply([Action::SetTime(1.01)]);
+    bench.apply([PlaybackAction::SetTime(1.01)]);
     bench.key(Key::ArrowLeft);
     assert_eq!(bench.session().time(), 1.0);
 }
@@ -129,7 +134,7 @@ fn delete_takes_the_selected_keys_away() {
         bench.settle();
         assert_eq!(times(&bench, Channel::Hand), [1.0, 5.0], "{key:?}");
         assert!(bench.session().selected_keys().is_empty());
-        bench.apply([Action::Undo]);
+        bench.apply([TransactionAction::Undo]);
         assert_eq!(times(&bench, Channel::Hand), HAND.map(|it| it.0), "{key:?}");
     }
 }
@@ -140,7 +145,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.choose(&["File", "New skeleton"]);
     bench.click(Role::Button, "Add child");
     bench.click(Role::Button, "Add child");
-    bench.apply([Action::Key(vec![Channel::Rotation(1)])]);
+    bench.apply([EditAction::Key(vec![Channel::Rotation(1)])]);
     let joints = |bench: &Bench| bench.session().skeleton_pose().len();
     let key = |bench: &Bench| bench.rect(Role::Button, "Keys at 0.00 s").center();
     bench.click_at(key(&bench));
@@ -151,7 +156,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 3, "in the timeline it never means joints");
-    bench.apply([Action::Key(vec![Channel::Rotation(1)])]);
+    bench.apply([EditAction::Key(vec![Channel::Rotation(1)])]);
     bench.click_at(key(&bench));
     bench.click(Role::Button, "Joint joint_1");
     bench.key(Key::Delete);
@@ -173,14 +178,14 @@ fn copied_keys_are_pasted_to_where_the_time_is() {
         matches!(&effects[..], [Effect::CopyText(text)] if text.contains("Hand")),
         "{effects:?}"
     );
-    bench.apply([Action::SetTime(6.0)]);
+    bench.apply([PlaybackAction::SetTime(6.0)]);
     bench.frame([Event::Paste("whatever".to_owned())]);
     bench.settle();
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0, 6.0, 7.0]);
     let track = bench.session().document().keys.track(Channel::Hand).expect("keys");
     assert_eq!((track.get(6.0), track.get(7.0)), (Some(HAND[0].1), Some(HAND[1].1)));
     assert_eq!(bench.session().selected_keys().len(), 2, "they are selected");
-    bench.apply([Action::Undo]);
+    bench.apply([TransactionAction::Undo]);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
 }
 

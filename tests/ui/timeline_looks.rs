@@ -6,7 +6,9 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Channel, Theme};
-use ik_arm::session::Action;
+use ik_arm::session::{
+    Action, Actions, EditAction, PlaybackAction, SelectAction, ShellAction, ViewAction,
+};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::looks::has_tooltip;
@@ -15,10 +17,10 @@ use crate::looks::has_tooltip;
 pub fn animated() -> Vec<Action> {
     let keyed = |time, hand, spin: f32| {
         [
-            Action::SetTime(time),
-            Action::SetHand(hand),
-            Action::SetTwist(spin.to_radians()),
-            Action::Key(vec![Channel::Hand, Channel::Twist]),
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::SetHand(hand).into(),
+            EditAction::SetTwist(spin.to_radians()).into(),
+            EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
         ]
     };
     let mut actions = Vec::new();
@@ -26,21 +28,21 @@ pub fn animated() -> Vec<Action> {
     actions.extend(keyed(3.5, Vec3::new(-100.0, 300.0, 160.0), 90.0));
     actions.extend(keyed(6.0, Vec3::new(200.0, -50.0, -60.0), 30.0));
     actions.extend([
-        Action::SetTime(2.0),
-        Action::SetUpper(220.0),
-        Action::Key(vec![Channel::Upper]),
-        Action::SetTime(5.0),
-        Action::SetUpper(180.0),
-        Action::Key(vec![Channel::Upper]),
-        Action::SelectKeys(vec![(Channel::Hand, 3.5), (Channel::Twist, 3.5)]),
-        Action::SelectChannels(vec![Channel::Hand]),
-        Action::SetTime(4.5),
-        Action::SetHand(Vec3::new(100.0, 100.0, 100.0)),
+        Action::from(PlaybackAction::SetTime(2.0)),
+        EditAction::SetUpper(220.0).into(),
+        EditAction::Key(vec![Channel::Upper]).into(),
+        PlaybackAction::SetTime(5.0).into(),
+        EditAction::SetUpper(180.0).into(),
+        EditAction::Key(vec![Channel::Upper]).into(),
+        SelectAction::Keys(vec![(Channel::Hand, 3.5), (Channel::Twist, 3.5)]).into(),
+        SelectAction::Channels(vec![Channel::Hand]).into(),
+        PlaybackAction::SetTime(4.5).into(),
+        EditAction::SetHand(Vec3::new(100.0, 100.0, 100.0)).into(),
     ]);
     actions
 }
 
-fn bench(size: Vec2, more: impl IntoIterator<Item = Action>) -> Bench {
+fn bench(size: Vec2, more: impl IntoIterator<Item = impl Into<Action>>) -> Bench {
     let mut bench = Bench::with_timeline(size);
     bench.apply(animated());
     bench.apply(more);
@@ -54,12 +56,15 @@ fn the_timeline_looks_as_it_did() {
         for (name, size, curves) in
             [("timeline", LARGE, false), ("timeline_small", SMALL, false), ("curves", LARGE, true)]
         {
-            let looks = [Action::SetTheme(theme), Action::ShowCurves(curves)];
+            let looks = [
+                Action::from(ShellAction::SetTheme(theme)),
+                ViewAction::ShowGraphEditor(curves).into(),
+            ];
             let mut bench = bench(size, looks);
             if curves {
-                bench.apply([Action::SelectChannels(Vec::new())]);
+                bench.apply([SelectAction::Channels(Vec::new())]);
             } else if size == SMALL {
-                bench.apply([Action::SetAutoKey(true)]);
+                bench.apply([PlaybackAction::SetAutoKey(true)]);
             }
             let options = SnapshotOptions::new()
                 .threshold(2.0)
@@ -96,7 +101,7 @@ const CONTROLS: [(Role, &str); 17] = [
 fn no_control_is_cut_and_none_overlaps_another_in_any_window() {
     for size in [SMALL, LARGE, egui::vec2(2560.0, 1600.0)] {
         for curves in [false, true] {
-            let bench = bench(size, [Action::ShowCurves(curves)]);
+            let bench = bench(size, [ViewAction::ShowGraphEditor(curves)]);
             let window = Rect::from_min_size(egui::Pos2::ZERO, size);
             let rects = CONTROLS.map(|(role, name)| (name, bench.rect(role, name)));
             for (index, (name, rect)) in rects.iter().enumerate() {
@@ -115,11 +120,11 @@ fn no_control_is_cut_and_none_overlaps_another_in_any_window() {
 
 #[test]
 fn nothing_in_the_timeline_moves_when_the_time_goes_on() {
-    let mut bench = bench(LARGE, []);
+    let mut bench = bench(LARGE, Actions::new());
     let places = |bench: &Bench| CONTROLS.map(|(role, name)| bench.rect(role, name));
     let before = places(&bench);
     for time in [0.0, 7.96, 123.456, -9999.5] {
-        bench.apply([Action::SetTime(time), Action::SetAutoKey(time > 5.0)]);
+        bench.apply([PlaybackAction::SetTime(time), PlaybackAction::SetAutoKey(time > 5.0)]);
         assert_eq!(places(&bench), before, "{time}");
     }
 }
@@ -128,7 +133,7 @@ fn nothing_in_the_timeline_moves_when_the_time_goes_on() {
 fn everything_in_the_timeline_that_can_be_acted_on_has_a_name() {
     for size in [SMALL, LARGE] {
         for curves in [false, true] {
-            let bench = bench(size, [Action::ShowCurves(curves)]);
+            let bench = bench(size, [ViewAction::ShowGraphEditor(curves)]);
             bench.harness.check_accessibility();
         }
     }
@@ -138,15 +143,18 @@ fn everything_in_the_timeline_that_can_be_acted_on_has_a_name() {
 fn a_timeline_without_keys_says_how_to_set_the_first_one() {
     let mut bench = Bench::with_timeline(SMALL);
     assert!(bench.says("press K to key it"));
-    bench.apply([Action::ShowCurves(true)]);
+    bench.apply([ViewAction::ShowGraphEditor(true)]);
     assert!(bench.says("No curves"));
-    bench.apply([Action::ShowCurves(false), Action::Key(vec![Channel::Hand])]);
+    bench.apply([
+        Action::from(ViewAction::ShowGraphEditor(false)),
+        EditAction::Key(vec![Channel::Hand]).into(),
+    ]);
     assert!(!bench.says("press K to key it"));
 }
 
 #[test]
 fn every_control_of_the_timeline_has_a_tooltip() {
-    let mut bench = bench(LARGE, []);
+    let mut bench = bench(LARGE, Actions::new());
     let more = [
         (Role::Button, "Channel Hand"),
         (Role::Button, "Key of Hand at 1.00 s"),
@@ -178,10 +186,10 @@ fn what_cannot_act_is_disabled() {
 
 #[test]
 fn the_curves_are_those_of_the_selected_channels_or_of_the_whole_rig() {
-    let mut bench = bench(LARGE, [Action::ShowCurves(true)]);
-    bench.apply([Action::SelectChannels(Vec::new())]);
+    let mut bench = bench(LARGE, [ViewAction::ShowGraphEditor(true)]);
+    bench.apply([SelectAction::Channels(Vec::new())]);
     assert!(bench.shows(Role::Image, "Curves of Hand, Elbow spin, Upper length"));
-    bench.apply([Action::SelectChannels(vec![Channel::Upper])]);
+    bench.apply([SelectAction::Channels(vec![Channel::Upper])]);
     assert!(bench.shows(Role::Image, "Curves of Upper length"));
     assert!(bench.harness.query_all_by_label_contains("Curve of Hand").next().is_none());
 }

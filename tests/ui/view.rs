@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
-use ik_arm::session::{Action, Motion, Navigation};
+use ik_arm::session::{Motion, Navigation, ShellAction, ViewAction};
 
 use crate::bench::Bench;
 
@@ -45,7 +45,7 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
     bench.hold(NONE);
     assert!(bench.session().view_drag().is_none());
     assert_eq!(bench.session().arm(), &arm);
-    bench.apply([Action::SetCamera(Camera::default())]);
+    bench.apply([ViewAction::SetCamera(Camera::default())]);
     motion
 }
 
@@ -60,7 +60,7 @@ fn each_navigation_preset_turns_moves_and_zooms_with_its_own_buttons() {
         (Trackpad, [Some(Orbit), Some(Pan), Some(Orbit), Some(Pan), Some(Zoom)]),
     ];
     for (navigation, expected) in table {
-        let mut bench = Bench::after([Action::SetNavigation(navigation)]);
+        let mut bench = Bench::after([ShellAction::SetNavigation(navigation)]);
         let presses =
             [(NONE, Primary), (NONE, Secondary), (NONE, Middle), (SHIFT, Middle), (CTRL, Middle)];
         for ((modifiers, button), expected) in presses.into_iter().zip(expected) {
@@ -85,7 +85,7 @@ fn alt_turns_the_view_even_over_a_handle() {
 
 #[test]
 fn turning_moves_with_the_pointer_keeps_the_horizon_and_returns_to_perspective() {
-    let mut bench = Bench::after([Action::SetCamera(Camera::default().along(AxisView::Front))]);
+    let mut bench = Bench::after([ViewAction::SetCamera(Camera::default().along(AxisView::Front))]);
     let at = bench.empty_place();
     bench.drag(Primary, at, at + vec2(0.0, 4000.0));
     let camera = bench.session().camera();
@@ -140,7 +140,7 @@ fn the_wheel_over_a_panel_leaves_the_view() {
 
 #[test]
 fn on_a_trackpad_scrolling_turns_with_shift_moves_and_with_ctrl_zooms() {
-    let mut bench = Bench::after([Action::SetNavigation(Navigation::Trackpad)]);
+    let mut bench = Bench::after([ShellAction::SetNavigation(Navigation::Trackpad)]);
     let before = Camera::default();
     bench.move_to(bench.empty_place());
     bench.scroll(vec2(2.0, 1.0));
@@ -175,7 +175,7 @@ fn esc_takes_a_turn_of_the_view_back() {
 #[test]
 fn a_double_click_on_the_background_resets_the_view_and_on_the_hand_frames_the_arm() {
     let elsewhere = Camera { yaw: 2.0, distance: 1500.0, ..Camera::default() };
-    let mut bench = Bench::after([Action::SetCamera(elsewhere)]);
+    let mut bench = Bench::after([ViewAction::SetCamera(elsewhere)]);
     bench.double_click_at(bench.empty_place());
     assert_eq!(bench.session().camera(), &Camera::default());
     let arm = *bench.session().arm();
@@ -207,7 +207,7 @@ fn the_corner_axes_look_along_their_axis_when_their_ends_are_clicked() {
 
 #[test]
 fn dragging_the_corner_axes_turns_the_view() {
-    let mut bench = Bench::after([Action::SetNavigation(Navigation::Blender)]);
+    let mut bench = Bench::after([ShellAction::SetNavigation(Navigation::Blender)]);
     let at = bench.rect(Role::Button, "View from the top").center();
     bench.drag_and_drop(Primary, at, at + Vec2::new(70.0, -10.0));
     bench.settle();

@@ -1,7 +1,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use ik_arm::document::RigKind;
-use ik_arm::session::{Action, Session};
+use ik_arm::session::{Actions, EditAction, Session};
 use ik_arm::ui::{self, Machine};
 
 use crate::screen::SIZE;
@@ -35,7 +35,7 @@ impl Places {
             .with_size(egui::vec2(SIZE.0 as f32, SIZE.1 as f32) + 2.0 * HARNESS_MARGIN)
             .with_context_setup(ui::style::install)
             .build_ui(|ui| {
-                ui::show(ui, &Session::default(), &machine, None, &mut Vec::new());
+                ui::show(ui, &Session::default(), &machine, None, &mut Actions::new());
             });
         let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
         let rail = rail.translate(-HARNESS_MARGIN);
@@ -63,7 +63,7 @@ impl Places {
         };
         let place = |point| place_in(&session, point);
         let mut human = Session::default();
-        human.apply(Action::ShowRig(RigKind::Skeleton));
+        human.apply(EditAction::ShowRig(RigKind::Skeleton));
         let head = human.skeleton().find("head").expect("the Human has a head");
         let pose = human.skeleton_pose();
         let head = place_in(&human, pose.base(head).midpoint(pose.tip(head)));

@@ -9,7 +9,7 @@ use super::prompt::prompt;
 use crate::document::Timeline;
 use crate::export::Format;
 use crate::io::Frames;
-use crate::session::{Action, Dialog, Export, Session};
+use crate::session::{Actions, Dialog, EditAction, Export, FileAction, Session, ShellAction};
 use crate::ui::widgets::NumberField;
 
 /// A format, what it is called and for, and the ending of its files.
@@ -64,11 +64,11 @@ pub(in crate::ui) fn ui(
     session: &Session,
     export: &Export,
     is_new: bool,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     ui.set_width(460.0);
     let path = export.path.to_string_lossy();
-    let change = |export: Export| Action::OpenDialog(Dialog::Export(export));
+    let change = |export: Export| ShellAction::OpenDialog(Dialog::Export(export));
     let chosen = Format::of(&export.path).ok();
     ui.horizontal_wrapped(|ui| {
         for FormatChoice { format, name, ending, tooltip } in CHOICES {
@@ -110,7 +110,7 @@ pub(in crate::ui) fn ui(
                 digits: 4,
                 tooltip,
             }
-            .show(ui, session, actions, |metres| Action::SetMetres(Some(metres)));
+            .show(ui, session, actions, |metres| EditAction::SetMetres(Some(metres)));
             ui.end_row();
         }
         ui.label("Length");
@@ -140,13 +140,7 @@ pub(in crate::ui) fn ui(
     buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
 }
 
-fn buttons(
-    ui: &mut Ui,
-    session: &Session,
-    export: &Export,
-    entered: bool,
-    actions: &mut Vec<Action>,
-) {
+fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {
     let why_not = if session.job().is_some() {
         Some("Another export is under way")
     } else if Format::of(&export.path).is_err() {
@@ -160,12 +154,12 @@ fn buttons(
         if (accept.clicked() || entered) && why_not.is_none() {
             let back = Dialog::Export(export.clone());
             let path = session.full_path(&back, &export.path);
-            let action = Action::Export(Export { path: path.clone(), ..export.clone() });
+            let action = FileAction::Export(Export { path: path.clone(), ..export.clone() });
             actions.push(unless_there(session, path, action, back));
         }
         browse(ui, actions);
         if ui.button("Cancel").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }

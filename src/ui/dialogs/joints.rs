@@ -6,27 +6,22 @@ use egui::{Button, ScrollArea, Ui};
 
 use super::first_button::first_button;
 use super::prompt::prompt;
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Actions, Dialog, EditAction, FileAction, Session, ShellAction};
 use crate::ui::widgets;
 
-pub(super) fn choose_skeleton(
-    ui: &mut Ui,
-    path: &Path,
-    names: &[String],
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Actions) {
     ui.set_width(360.0);
     ui.label("The file has several skeletons. The first one is open; another can be chosen:");
     ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
         for name in names {
             if ui.add(Button::new(name).truncate()).clicked() {
                 let (path, skeleton) = (path.to_owned(), Some(name.clone()));
-                actions.push(Action::Open { path, skeleton });
+                actions.push(FileAction::Open { path, skeleton });
             }
         }
     });
     if first_button(ui, "Keep the first") {
-        actions.push(Action::CloseDialog);
+        actions.push(ShellAction::CloseDialog);
     }
 }
 
@@ -36,12 +31,12 @@ pub(super) fn rename(
     joint: usize,
     name: &str,
     is_new: bool,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     ui.set_width(300.0);
     let (typed, entered) = prompt(ui, "The joint's name", name, is_new);
     if typed != name {
-        actions.push(Action::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
+        actions.push(ShellAction::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
     }
     let other = session.skeleton().find(typed.trim()).filter(|other| *other != joint);
     let why_not = match other {
@@ -58,10 +53,10 @@ pub(super) fn rename(
             .add_enabled(why_not.is_none(), Button::new("Rename"))
             .on_disabled_hover_text(why_not.unwrap_or_default());
         if (accept.clicked() || entered) && why_not.is_none() {
-            actions.push(Action::Rename { joint, name: typed.trim().to_owned() });
+            actions.push(EditAction::RenameJoint { joint, name: typed.trim().to_owned() });
         }
         if ui.button("Cancel").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }
@@ -70,7 +65,7 @@ pub(super) fn delete_joints(
     ui: &mut Ui,
     session: &Session,
     joints: &[usize],
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     ui.set_width(360.0);
     let skeleton = &session.skeleton();
@@ -83,13 +78,13 @@ pub(super) fn delete_joints(
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Keep children") {
-            actions.push(Action::Dissolve(joints.to_vec()));
+            actions.push(EditAction::DissolveJoints(joints.to_vec()));
         }
         if ui.button("Delete children too").clicked() {
-            actions.push(Action::Delete(joints.to_vec()));
+            actions.push(EditAction::DeleteJoints(joints.to_vec()));
         }
         if ui.button("Cancel").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }

@@ -10,7 +10,7 @@ mod unsaved;
 
 use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
 
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Actions, Dialog, Session, ShellAction};
 use crate::ui::machine::Machine;
 use crate::ui::panels::statistics;
 use first_button::first_button;
@@ -20,7 +20,7 @@ pub(in crate::ui) fn ui(
     session: &Session,
     machine: &Machine,
     viewport: Rect,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let is_new = is_new(ui, session.dialog());
     let Some(dialog) = session.dialog() else { return };
@@ -112,7 +112,7 @@ fn beside(
     ui: &Ui,
     title: &str,
     viewport: Rect,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
     contents: impl FnOnce(&mut Ui),
 ) {
     let mut open = true;
@@ -126,11 +126,11 @@ fn beside(
         .open(&mut open)
         .show(ui.ctx(), contents);
     if !open {
-        actions.push(Action::CloseDialog);
+        actions.push(ShellAction::CloseDialog);
     }
 }
 
-fn about(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
+fn about(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
     ui.set_width(360.0);
     ui.heading(concat!("ik-arm ", env!("CARGO_PKG_VERSION")));
     ui.label("A 3D inverse-kinematics arm to pose, look into and understand.");
@@ -146,14 +146,14 @@ fn about(ui: &mut Ui, machine: &Machine, actions: &mut Vec<Action>) {
     close(ui, actions);
 }
 
-fn shortcuts(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn shortcuts(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     shortcuts::ui(ui, session);
     close(ui, actions);
 }
 
-fn close(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn close(ui: &mut Ui, actions: &mut Actions) {
     ui.add_space(8.0);
     if first_button(ui, "Close") {
-        actions.push(Action::CloseDialog);
+        actions.push(ShellAction::CloseDialog);
     }
 }

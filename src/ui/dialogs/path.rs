@@ -6,7 +6,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::prompt::prompt;
 use crate::export::existing;
-use crate::session::{Action, Dialog, Session};
+use crate::session::{Action, Actions, Dialog, FileAction, Session, ShellAction};
 use crate::ui::widgets;
 
 /// What a path box asks for.
@@ -14,28 +14,28 @@ pub(super) struct PathPrompt {
     prompt: &'static str,
     accept: &'static str,
     dialog: fn(String) -> Dialog,
-    action: fn(PathBuf) -> Action,
+    action: fn(PathBuf) -> FileAction,
 }
 
 pub(super) const SAVE_PICTURE: PathPrompt = PathPrompt {
     prompt: "Save the viewport as PNG to",
     accept: "Save",
     dialog: |path| Dialog::SavePicture { path },
-    action: |path| Action::SavePicture(path.display().to_string()),
+    action: |path| FileAction::SavePicture(path.display().to_string()),
 };
 
 pub(super) const OPEN: PathPrompt = PathPrompt {
     prompt: "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf",
     accept: "Open",
     dialog: |path| Dialog::Open { path, problem: None },
-    action: |path| Action::Open { path, skeleton: None },
+    action: |path| FileAction::Open { path, skeleton: None },
 };
 
 pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     prompt: "Save the document to",
     accept: "Save",
     dialog: |path| Dialog::SaveAs { path, problem: None },
-    action: Action::SaveAs,
+    action: FileAction::SaveAs,
 };
 
 /// A path box that works on every system, with the system's own dialog behind a button.
@@ -45,13 +45,13 @@ pub(super) fn ask_path(
     question: &PathPrompt,
     (path, problem): (&str, Option<&str>),
     is_new: bool,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     ui.set_width(440.0);
     let (typed, entered) = prompt(ui, question.prompt, path, is_new);
     let dialog = (question.dialog)(typed.clone());
     if typed != path {
-        actions.push(Action::OpenDialog(dialog.clone()));
+        actions.push(ShellAction::OpenDialog(dialog.clone()));
     }
     folder(ui, session, &dialog);
     if let Some(problem) = problem {
@@ -67,21 +67,21 @@ pub(super) fn ask_path(
             let path = session.full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
             actions.push(match dialog {
-                Dialog::Open { .. } => action,
+                Dialog::Open { .. } => action.into(),
                 _ => unless_there(session, path, action, dialog),
             });
         }
         browse(ui, actions);
         if ui.button("Cancel").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }
 
-pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
     let tooltip = "Open the system's file dialog, where it has one";
     if ui.button("Browse…").on_hover_text(tooltip).clicked() {
-        actions.push(Action::ChoosePath);
+        actions.push(FileAction::ChoosePath);
     }
 }
 
@@ -98,15 +98,15 @@ pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &Dialog) {
 pub(in crate::ui) fn unless_there(
     session: &Session,
     path: PathBuf,
-    action: Action,
+    action: FileAction,
     back: Dialog,
 ) -> Action {
     let is_own = session.file() == Some(path.as_path());
     match existing(&path).filter(|_| !is_own) {
         Some(path) => {
             let (then, back) = (Box::new(action), Box::new(back));
-            Action::OpenDialog(Dialog::Replace { path, then, back })
+            ShellAction::OpenDialog(Dialog::Replace { path, then, back }).into()
         }
-        None => action,
+        None => action.into(),
     }
 }

@@ -6,9 +6,9 @@ use egui::Ui;
 
 use super::first_button::first_button;
 use crate::document::Document;
-use crate::session::{Action, Session};
+use crate::session::{Actions, FileAction, Session, ShellAction};
 
-pub(super) fn replace(ui: &mut Ui, path: &Path, then: &Action, actions: &mut Vec<Action>) {
+pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut Actions) {
     ui.set_width(380.0);
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new("")).display();
@@ -17,7 +17,7 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &Action, actions: &mut Vec
     ui.horizontal(|ui| {
         // Enter that is pressed twice, or held, overwrites nothing.
         if first_button(ui, "Choose another name") {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
         if ui.button("Replace").on_hover_text("The file that is there is lost").clicked() {
             actions.push(then.clone());
@@ -25,7 +25,7 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &Action, actions: &mut Vec
     });
 }
 
-pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.set_width(380.0);
     let path = session.job().map(|job| job.path.as_path());
     let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
@@ -33,15 +33,15 @@ pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut V
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Go on exporting") {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
         if ui.button("Stop the export and quit").clicked() {
-            actions.push(Action::StopExportAndQuit);
+            actions.push(FileAction::StopExportAndQuit);
         }
     });
 }
 
-pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &mut Vec<Action>) {
+pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &FileAction, actions: &mut Actions) {
     ui.set_width(380.0);
     let name = session.file().and_then(Path::file_name);
     let name = name.map_or("The document".into(), |name| name.to_string_lossy());
@@ -49,13 +49,13 @@ pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &Action, actions: &m
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Save") {
-            actions.push(Action::SaveAnd(Box::new(then.clone())));
+            actions.push(FileAction::SaveAnd(Box::new(then.clone())));
         }
         if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
-            actions.push(Action::Discard(Box::new(then.clone())));
+            actions.push(FileAction::Discard(Box::new(then.clone())));
         }
         if ui.button("Cancel").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }
@@ -64,7 +64,7 @@ pub(super) fn recover(
     ui: &mut Ui,
     document: &Document,
     file: Option<&Path>,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     ui.set_width(420.0);
     let name = file.and_then(Path::file_name).map(|name| name.to_string_lossy());
@@ -78,13 +78,13 @@ pub(super) fn recover(
     ui.horizontal(|ui| {
         if first_button(ui, "Open it") {
             let (document, file) = (Box::new(document.clone()), file.map(Path::to_owned));
-            actions.push(Action::Recover { document, file });
+            actions.push(FileAction::Recover { document, file });
         }
         if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
-            actions.push(Action::ForgetRecovered);
+            actions.push(FileAction::DeclineRecovery);
         }
         if ui.button("Ask again next time").clicked() {
-            actions.push(Action::CloseDialog);
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }

@@ -8,7 +8,7 @@ use egui::{
 use glam::Vec3;
 
 use crate::document::AxisView;
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session, ViewAction};
 use crate::ui::style;
 
 const RADIUS: f32 = 38.0;
@@ -35,7 +35,7 @@ fn centre(viewport: Rect) -> Pos2 {
 }
 
 /// Shows the axes in the lower right of `viewport`. A drag on them is the viewport's to follow.
-pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mut Actions) {
     let centre = centre(viewport);
     let painter = ui.painter();
     let pointer = ui.input(|input| input.pointer.latest_pos());
@@ -50,7 +50,7 @@ pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mu
         let response = ui.interact(rect, Id::unique(("compass", end.name)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, end.name));
         if response.clicked() {
-            actions.push(Action::GlideTo(session.settled_camera().along(end.view)));
+            actions.push(ViewAction::GlideTo(session.settled_camera().along(end.view)));
         }
         let lit = response.hovered() || response.has_focus();
         let near = 0.6 + 0.4 * end.depth.clamp(0.0, 1.0);

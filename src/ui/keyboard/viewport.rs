@@ -4,11 +4,14 @@ use egui::{Event, Key, Ui};
 use glam::Vec2;
 
 use crate::document::{AxisView, RigKind};
-use crate::session::{Action, Constraint, PointDrag, Session};
+use crate::session::{
+    Actions, Constraint, EditAction, PointDrag, SelectAction, Session, SolverAction,
+    TransactionAction, ViewAction,
+};
 use crate::ui::commands;
 
 /// Single keys, while no widget or the viewport or the tree of joints has the keyboard.
-pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions) {
     if session.is_asking() {
         return;
     }
@@ -22,14 +25,14 @@ pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Vec<Acti
     }
 }
 
-fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
     let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
     let selected = session.selected();
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
-        actions.push(Action::Select((0..session.skeleton_pose().len()).collect()));
+        actions.push(SelectAction::Joints((0..session.skeleton_pose().len()).collect()));
     }
     if pressed(Key::A) {
-        actions.push(Action::AddJoint { tip: None });
+        actions.push(EditAction::AddJoint { tip: None });
     }
     if pressed(Key::T) {
         actions.extend(commands::toggle_target(session));
@@ -41,16 +44,16 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         actions.push(commands::delete(session));
     }
     if pressed(Key::R) {
-        actions.push(Action::Run(!session.is_running()));
+        actions.push(SolverAction::Run(!session.is_running()));
     }
     if pressed(Key::S) {
-        actions.push(Action::Step);
+        actions.push(EditAction::StepSolver);
     }
 }
 
-fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
     let camera = session.settled_camera();
-    let along = |view| Action::GlideTo(camera.along(view));
+    let along = |view| ViewAction::GlideTo(camera.along(view));
     ui.input(|input| {
         let other_side = input.modifiers.command;
         if !(input.modifiers.is_none() || input.modifiers.command_only()) {
@@ -69,7 +72,7 @@ fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             return;
         }
         if input.key_pressed(Key::Num5) {
-            actions.push(Action::SetCamera(commands::with_other_projection(camera)));
+            actions.push(ViewAction::SetCamera(commands::with_other_projection(camera)));
         }
         if input.key_pressed(Key::F) {
             actions.push(commands::frame_selection(session));
@@ -82,7 +85,7 @@ fn view(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
 
 /// Arrow keys, while the viewport has the keyboard: they turn the view, with Shift they move it;
 /// plus and minus zoom.
-pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Actions) {
     const TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
     const PAN: f32 = 0.1;
     const ZOOM: f32 = 1.15;
@@ -104,11 +107,11 @@ pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut
         if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
     });
     if asked != camera && session.drag().is_none() {
-        actions.push(Action::SetCamera(asked));
+        actions.push(ViewAction::SetCamera(asked));
     }
 }
 
-fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+fn drag(ui: &Ui, session: &Session, actions: &mut Actions) {
     let Some(drag) = session.drag() else {
         return;
     };
@@ -122,7 +125,7 @@ fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
                     Constraint::Axis(axis)
                 };
                 let released = drag.point().and_then(PointDrag::constraint) == Some(asked);
-                actions.push(Action::ConstrainDrag((!released).then_some(asked)));
+                actions.push(TransactionAction::Constrain((!released).then_some(asked)));
             }
         }
         for event in &input.events {
@@ -134,10 +137,10 @@ fn drag(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
             typed.pop();
         }
         if input.key_pressed(Key::Enter) {
-            actions.push(Action::CommitEdit);
+            actions.push(TransactionAction::Commit);
         }
     });
     if typed != drag.typed() {
-        actions.push(Action::TypeOffset(typed));
+        actions.push(TransactionAction::TypeOffset(typed));
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 
 use crate::rig::{Crowd, SolvedBy};
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session, ViewAction};
 use crate::ui::machine::Machine;
 use crate::ui::widgets::format::grouped;
 
@@ -14,7 +14,7 @@ pub(in crate::ui) fn ui(
     viewport: Rect,
     session: &Session,
     machine: &Machine,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let Some(crowd) = session.crowd() else {
         return;
@@ -38,11 +38,11 @@ pub(in crate::ui) fn ui(
             moving(ui, session, actions);
         });
     if !open {
-        actions.push(Action::ShowCrowd(false));
+        actions.push(ViewAction::ShowCrowd(false));
     }
 }
 
-fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
+fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
     let mut arms = crowd.arms;
     ui.horizontal(|ui| {
         let label = ui.label("Arms");
@@ -52,12 +52,12 @@ fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
             .custom_formatter(|value, _| grouped(value as u64))
             .custom_parser(|text| text.replace(',', "").trim().parse().ok());
         if ui.add(slider).labelled_by(label.id).changed() {
-            actions.push(Action::SetCrowd(arms));
+            actions.push(ViewAction::SetCrowdSize(arms));
         }
     });
 }
 
-fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
+fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
     let solvers = [
         (SolvedBy::Cpu, "CPU", "By the batch solver, on all cores"),
         (SolvedBy::Gpu, "GPU", "By the same mathematics in a shader"),
@@ -67,7 +67,7 @@ fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Vec<Action>) {
         for (solved_by, name, tooltip) in solvers {
             let button = ui.radio(crowd.solved_by == solved_by, name);
             if button.on_hover_text(tooltip).clicked() {
-                actions.push(Action::SolveCrowd(solved_by));
+                actions.push(ViewAction::SetCrowdSolver(solved_by));
             }
         }
     });
@@ -95,9 +95,9 @@ fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
     }
 }
 
-fn moving(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn moving(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut moving = session.is_crowd_moving();
     if ui.checkbox(&mut moving, "Follow the targets").changed() {
-        actions.push(Action::MoveCrowd(moving));
+        actions.push(ViewAction::AnimateCrowd(moving));
     }
 }

@@ -4,11 +4,11 @@ use egui::{ScrollArea, Ui};
 
 use super::{arm, skeleton};
 use crate::document::{Overlay, RigKind};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::labels;
 use crate::ui::widgets;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
     rig(ui, session, actions);
     ui.add_space(2.0);
@@ -26,7 +26,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
     });
 }
 
-fn rig(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rigs = [
         (RigKind::Arm, "Arm", "Two limbs in closed form"),
         (RigKind::Skeleton, "Skeleton", "A tree of joints, brought to targets by iteration"),
@@ -39,7 +39,7 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 let button =
                     ui.add(egui::Button::selectable(chosen, name).frame_when_inactive(true));
                 if button.on_hover_text(tooltip).clicked() && !chosen {
-                    actions.push(Action::ShowRig(rig));
+                    actions.push(EditAction::ShowRig(rig));
                 }
             });
         }
@@ -57,26 +57,20 @@ fn guides(session: &Session) -> &'static [Overlay] {
 }
 
 /// In so many columns.
-fn layers(
-    ui: &mut Ui,
-    session: &Session,
-    count: usize,
-    layers: &[Overlay],
-    actions: &mut Vec<Action>,
-) {
+fn layers(ui: &mut Ui, session: &Session, count: usize, layers: &[Overlay], actions: &mut Actions) {
     ui.columns(count, |columns| {
         for (index, layer) in layers.iter().enumerate() {
             let (name, tooltip) = labels::overlay(session.rig(), *layer);
             let mut shown = session.shown().display.shows(*layer);
             let column = &mut columns[index % count];
             if column.checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
-                actions.push(Action::Show(*layer, shown));
+                actions.push(EditAction::ShowOverlay(*layer, shown));
             }
         }
     });
 }
 
-fn resets(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (name, tooltip) = match session.rig() {
         RigKind::Arm => (
             "Reset pose",
@@ -86,13 +80,13 @@ fn resets(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     };
     ui.horizontal(|ui| {
         if ui.button(name).on_hover_text(tooltip).clicked() {
-            actions.push(Action::ResetPose);
+            actions.push(EditAction::ResetPose);
         }
         let all = ui
             .button("Reset all")
             .on_hover_text("Reset the pose, guides, display and view, and hide the crowd");
         if all.clicked() {
-            actions.push(Action::ResetAll);
+            actions.push(EditAction::ResetAll);
         }
     });
 }

@@ -6,7 +6,7 @@ use super::drag;
 use super::lane::TimelineLane;
 use super::mouse::LaneView;
 use crate::document::Channel;
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
 /// Where the right button went down.
@@ -21,7 +21,7 @@ pub(in crate::ui) fn of_lanes(
     ui: &Ui,
     lanes: &LaneView<'_>,
     body: &Response,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let id = Id::unique("asked in the timeline");
     let session = lanes.session;
@@ -38,13 +38,15 @@ pub(in crate::ui) fn of_lanes(
         if let Some(lane) = lane
             && widgets::button(ui, "Add key here", "Key it as it is shown at that time", None)
         {
-            actions.extend([Action::SetTime(time), Action::Key(lane.channels(session))]);
+            actions.push(PlaybackAction::SetTime(time));
+            actions.push(EditAction::Key(lane.channels(session)));
             ui.close();
         }
         of_keys(ui, session, actions);
         let nothing = (!session.can_paste()).then_some("No keys have been copied");
         if widgets::button(ui, "Paste here", "The copied keys, from here on", nothing) {
-            actions.extend([Action::SetTime(time), Action::PasteKeys]);
+            actions.push(PlaybackAction::SetTime(time));
+            actions.push(EditAction::PasteKeys);
             ui.close();
         }
         if let Some(TimelineLane::Channel(channel)) = lane {
@@ -58,35 +60,35 @@ pub(in crate::ui) fn of_channel(
     response: &Response,
     session: &Session,
     channel: Channel,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     response.context_menu(|ui| {
         if widgets::button(ui, "Key it now", "Where the time is", None) {
-            actions.push(Action::Key(vec![channel]));
+            actions.push(EditAction::Key(vec![channel]));
             ui.close();
         }
         clear(ui, session, channel, actions);
     });
 }
 
-fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let keys = session.selected_keys();
     let none = keys.is_empty().then_some("Select keys first: click them, or draw a box");
     if widgets::button(ui, "Copy keys", "Ctrl+C", none) {
-        actions.push(Action::CopyKeys);
+        actions.push(SelectAction::CopyKeys);
         ui.close();
     }
     if widgets::button(ui, "Delete keys", "Delete", none) {
-        actions.push(Action::DeleteKeys(keys.to_vec()));
+        actions.push(EditAction::DeleteKeys(keys.to_vec()));
         ui.close();
     }
 }
 
-fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Vec<Action>) {
+fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Actions) {
     let name = labels::channel(session, channel);
     let tooltip = format!("{name} no longer changes in time");
     if widgets::button(ui, "Delete channel's keys", &tooltip, None) {
-        actions.push(Action::ClearChannels(vec![channel]));
+        actions.push(EditAction::ClearChannels(vec![channel]));
         ui.close();
     }
 }

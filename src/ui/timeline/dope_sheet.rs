@@ -12,7 +12,7 @@ use super::mouse::{self, LaneView};
 use super::time_scale::TimeScale;
 use super::{context_menu, text};
 use crate::document::Channel;
-use crate::session::{Action, Session};
+use crate::session::{Actions, SelectAction, Session};
 use crate::ui::widgets::diamond;
 use crate::ui::{labels, style};
 
@@ -26,7 +26,7 @@ pub(in crate::ui) fn ui(
     scale: TimeScale,
     areas: &TimelineAreas,
     ruler: &Response,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let channels = channels(session);
     if channels.is_empty() {
@@ -66,7 +66,7 @@ impl DopeSheet<'_> {
         ui: &mut Ui,
         channels: &[Channel],
         rect: Rect,
-        actions: &mut Vec<Action>,
+        actions: &mut Actions,
     ) -> f32 {
         // Over the lanes the wheel shows more or less of the time.
         let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
@@ -88,7 +88,7 @@ impl DopeSheet<'_> {
         scroll.inner.state.clamped_offset().y
     }
 
-    fn lane(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Vec<Action>) {
+    fn lane(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Actions) {
         let split = self.areas.lanes.left();
         let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
         let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
@@ -109,7 +109,7 @@ impl DopeSheet<'_> {
     }
 
     /// A channel's name; a click selects the channel, with Shift or Ctrl beside others.
-    fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Vec<Action>) {
+    fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
         let session = self.session;
         let selected = session.selected_channels().contains(&channel);
         let shown = labels::channel(session, channel);
@@ -150,13 +150,13 @@ impl DopeSheet<'_> {
             if alone && !several {
                 channels.clear();
             }
-            actions.push(Action::SelectChannels(channels.into_iter().collect()));
+            actions.push(SelectAction::Channels(channels.into_iter().collect()));
         }
         context_menu::of_channel(&response, session, channel, actions);
         response.on_hover_text(shown);
     }
 
-    fn keys(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Vec<Action>) {
+    fn keys(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Actions) {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
         let mut last = f32::NEG_INFINITY;
@@ -194,7 +194,7 @@ impl DopeSheet<'_> {
         time: f64,
         at: egui::Pos2,
         lane_rect: Rect,
-        actions: &mut Vec<Action>,
+        actions: &mut Actions,
     ) -> bool {
         let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
         let (id, said) = match lane {
@@ -212,7 +212,7 @@ impl DopeSheet<'_> {
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
         ui.ctx().accesskit_node_builder(id, |node| node.add_action(accesskit::Action::Click));
         if ui.input(|input| input.has_accesskit_action_request(id, accesskit::Action::Click)) {
-            actions.push(Action::SelectKeys(lane.keys(self.session, time)));
+            actions.push(SelectAction::Keys(lane.keys(self.session, time)));
         }
         let hovered = response.hovered();
         response.on_hover_text(said);

@@ -4,7 +4,7 @@ use egui::{Id, Key, Pos2, Ui};
 
 use super::time_scale::TimeScale;
 use crate::document::Timeline;
-use crate::session::{Action, Key as KeyOf, Session};
+use crate::session::{Actions, Key as KeyOf, PlaybackAction, Session};
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) enum TimelineDrag {
@@ -62,18 +62,18 @@ pub(in crate::ui) fn follow_playhead(
     ui: &Ui,
     session: &Session,
     scale: TimeScale,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let Some(TimelineDrag::Playhead { before }) = get(ui) else {
         return;
     };
     if ui.input(|input| input.key_pressed(Key::Escape)) {
         clear(ui);
-        actions.push(Action::SetTime(before));
+        actions.push(PlaybackAction::SetTime(before));
         return;
     }
     if let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) {
-        actions.push(Action::SetTime(pointed_time(ui, session, scale, pointer)));
+        actions.push(PlaybackAction::SetTime(pointed_time(ui, session, scale, pointer)));
     }
     if is_released(ui) {
         clear(ui);
@@ -81,10 +81,10 @@ pub(in crate::ui) fn follow_playhead(
 }
 
 /// Takes hold of the time; what plays stands.
-pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Actions) {
     set(ui, TimelineDrag::Playhead { before: session.time() });
     if session.is_playing() {
-        actions.push(Action::Play(false));
+        actions.push(PlaybackAction::Play(false));
     }
 }
 

@@ -12,7 +12,7 @@ use super::time_scale::TimeScale;
 use super::{lane, ruler, text};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session};
 use crate::ui::widgets::{format, plot};
 use crate::ui::{labels, style};
 
@@ -41,7 +41,7 @@ pub(in crate::ui) fn ui(
     scale: TimeScale,
     areas: &TimelineAreas,
     ruler: &Response,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let channels = shown(session);
     if channels.is_empty() {

@@ -3,11 +3,11 @@
 use egui::{Event, EventFilter, Key, Modifiers, Ui};
 
 use super::{drag, ruler};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session, ShellAction};
 use crate::ui::keyboard::{focus, viewport};
 
 /// The keys for keys, wherever no text has the keyboard.
-pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Actions) {
     let is_busy = ui.text_edit_focused()
         || session.drag().is_some()
         || session.is_asking()
@@ -19,15 +19,15 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Ac
     let pressed = |key| ui.input(|input| input.key_pressed(key));
     let modifiers = ui.input(|input| input.modifiers);
     if pressed(Key::K) && modifiers.shift_only() {
-        actions.push(Action::Key(session.all_channels()));
+        actions.push(EditAction::Key(session.all_channels()));
     } else if pressed(Key::K) && modifiers.is_none() {
-        actions.push(Action::Key(session.channels_to_key()));
+        actions.push(EditAction::Key(session.channels_to_key()));
     }
     if focus::leaves_space(ui) && pressed(Key::Space) && modifiers.is_none() {
         if session.is_playing() || session.has_motion() {
-            actions.push(Action::Play(!session.is_playing()));
+            actions.push(PlaybackAction::Play(!session.is_playing()));
         } else {
-            actions.push(Action::Report("Nothing moves yet: K keys the rig".to_owned()));
+            actions.push(ShellAction::Report("Nothing moves yet: K keys the rig".to_owned()));
         }
     }
     let pasted = ui.input(|input| {
@@ -35,12 +35,12 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Vec<Ac
         input.events.iter().any(is_paste)
     });
     if session.can_paste() && (pasted || consumed(Modifiers::COMMAND, Key::V)) {
-        actions.push(Action::PasteKeys);
+        actions.push(EditAction::PasteKeys);
     }
     if has_the_word(ui, session) {
         let delete = consumed(Modifiers::NONE, Key::Delete);
         if delete || consumed(Modifiers::NONE, Key::Backspace) {
-            actions.push(Action::DeleteKeys(session.selected_keys().to_vec()));
+            actions.push(EditAction::DeleteKeys(session.selected_keys().to_vec()));
         }
     }
 }
@@ -59,7 +59,7 @@ pub(in crate::ui) fn holds(ui: &Ui) -> bool {
 
 /// Keys while the timeline has the keyboard: arrows go from frame to frame and from key to key, Home
 /// and End to the ends; single keys do what they do in the viewport.
-pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) {
     if !ui.memory(|memory| memory.has_focus(ruler::id())) {
         return;
     }
@@ -85,13 +85,13 @@ pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Vec<Actio
     } else {
         None
     };
-    actions.extend(to.map(Action::SetTime));
+    actions.extend(to.map(PlaybackAction::SetTime));
     if consumed(Modifiers::COMMAND, Key::A) {
         let tracks = session.document().keys.tracks();
         let keys = tracks.flat_map(|(channel, track)| {
             track.knots().iter().map(move |knot| (channel, knot.time))
         });
-        actions.push(Action::SelectKeys(keys.collect()));
+        actions.push(SelectAction::Keys(keys.collect()));
     }
     // Here it never means joints.
     for key in [Key::Delete, Key::Backspace] {

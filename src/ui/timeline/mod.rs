@@ -19,11 +19,11 @@ use areas::TimelineAreas;
 use drag::TimelineDrag;
 use time_scale::TimeScale;
 
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session};
 
 pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     transport_bar::ui(ui, session, actions);
     let areas = TimelineAreas::new(ui.available_rect_before_wrap());
     ui.expand_to_include_rect(areas.whole);

@@ -7,7 +7,9 @@ use super::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
 use super::lane::{SelectedKeys, TimelineLane};
 use super::time_scale::TimeScale;
 use crate::document::Channel;
-use crate::session::{Action, Key, Session};
+use crate::session::{
+    Actions, EditAction, Key, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
+};
 use crate::ui::{labels, style};
 
 /// How far from a key it can be taken hold of, in points.
@@ -70,7 +72,7 @@ pub(in crate::ui) fn press(
     lanes: &LaneView<'_>,
     body: &Response,
     ruler: &Response,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     take_keyboard(ui, body, ruler);
     if !body.contains_pointer() {
@@ -96,7 +98,7 @@ pub(in crate::ui) fn press(
                 if let Some((lane, time)) = lanes.key(pos)
                     && !SelectedKeys::new(lanes.session).has(lane, time)
                 {
-                    actions.push(Action::SelectKeys(lane.keys(lanes.session, time)));
+                    actions.push(SelectAction::Keys(lane.keys(lanes.session, time)));
                 }
             }
             PointerButton::Extra1 | PointerButton::Extra2 => {}
@@ -107,8 +109,13 @@ pub(in crate::ui) fn press(
         && lanes.key(at).is_none()
         && let Some(lane) = lanes.lane(at)
     {
-        actions.push(Action::SetTime(drag::pointed_time(ui, lanes.session, lanes.scale, at)));
-        actions.push(Action::Key(lane.channels(lanes.session)));
+        actions.push(PlaybackAction::SetTime(drag::pointed_time(
+            ui,
+            lanes.session,
+            lanes.scale,
+            at,
+        )));
+        actions.push(EditAction::Key(lane.channels(lanes.session)));
     }
 }
 
@@ -119,7 +126,7 @@ fn press_key(
     time: f64,
     pressed: Pos2,
     adds: bool,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let session = lanes.session;
     let pointed = lane.keys(session, time);
@@ -145,7 +152,7 @@ fn press_key(
         (false, false) => (pointed.clone(), pointed),
     };
     if keys != selected {
-        actions.push(Action::SelectKeys(keys.clone()));
+        actions.push(SelectAction::Keys(keys.clone()));
     }
     drag::set(ui, TimelineDrag::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
 }
@@ -157,7 +164,7 @@ fn press_lane(ui: &Ui, lanes: &LaneView<'_>, at: Pos2, adds: bool) {
 }
 
 /// What is held follows the pointer, until it is let go or taken back.
-pub(in crate::ui) fn follow(ui: &Ui, lanes: &LaneView<'_>, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn follow(ui: &Ui, lanes: &LaneView<'_>, actions: &mut Actions) {
     let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
         return;
     };
@@ -174,17 +181,17 @@ fn move_keys(
     lanes: &LaneView<'_>,
     mut drag: KeyDrag,
     pointer: Pos2,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let session = lanes.session;
     let taken_back = ui.input(|input| input.key_pressed(Button::Escape));
     if taken_back || drag.moved && !session.is_editing() {
-        actions.push(Action::SelectKeys(drag.keys));
+        actions.push(SelectAction::Keys(drag.keys));
         drag::clear(ui);
         return;
     }
     if !drag.moved && (pointer - drag.pressed).length() > SLACK {
-        actions.push(Action::BeginEdit);
+        actions.push(TransactionAction::Begin);
         drag.moved = true;
         drag::set(ui, TimelineDrag::Keys(drag.clone()));
     }
@@ -193,27 +200,22 @@ fn move_keys(
         let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
         let count = labels::count_of_keys(drag.keys.len());
         let said = format!("Move {count}: {by:+.2} s     Ctrl between frames · Esc take back");
-        actions.push(Action::MoveKeys { keys: drag.keys.clone(), by });
-        actions.push(Action::Report(said));
+        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by });
+        actions.push(ShellAction::Report(said));
     }
     if drag::is_released(ui) {
-        actions.push(match drag.moved {
-            true => Action::CommitEdit,
-            false => Action::SelectKeys(drag.clicked),
-        });
+        if drag.moved {
+            actions.push(TransactionAction::Commit);
+        } else {
+            actions.push(SelectAction::Keys(drag.clicked));
+        }
         drag::clear(ui);
     }
 }
 
-fn draw_box(
-    ui: &Ui,
-    lanes: &LaneView<'_>,
-    drag: &BoxDrag,
-    pointer: Pos2,
-    actions: &mut Vec<Action>,
-) {
+fn draw_box(ui: &Ui, lanes: &LaneView<'_>, drag: &BoxDrag, pointer: Pos2, actions: &mut Actions) {
     if ui.input(|input| input.key_pressed(Button::Escape)) {
-        actions.push(Action::SelectKeys(drag.base.clone()));
+        actions.push(SelectAction::Keys(drag.base.clone()));
         drag::clear(ui);
         return;
     }
@@ -230,7 +232,7 @@ fn draw_box(
         );
     }
     if keys != lanes.session.selected_keys() {
-        actions.push(Action::SelectKeys(keys));
+        actions.push(SelectAction::Keys(keys));
     }
     if drag::is_released(ui) {
         drag::clear(ui);

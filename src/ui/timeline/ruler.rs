@@ -8,7 +8,7 @@ use egui::{
 use super::drag;
 use super::time_scale::TimeScale;
 use crate::document::Timeline;
-use crate::session::{Action, Session};
+use crate::session::{Actions, PlaybackAction, Session};
 use crate::ui::style;
 
 /// Between two times that are written, in points, at least.
@@ -27,7 +27,7 @@ pub(in crate::ui) fn ui(
     session: &Session,
     scale: TimeScale,
     rect: Rect,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) -> Response {
     let response = ui.interact(rect, id(), Sense::click_and_drag());
     let time = session.time();
@@ -71,7 +71,7 @@ pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
 }
 
 /// What a screen reader asks for.
-fn asked(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+fn asked(ui: &Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let frames = ui.input(|input| {
         let asked = |action| input.num_accesskit_action_requests(id(), action) as f64;
@@ -79,7 +79,7 @@ fn asked(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     });
     if frames != 0.0 {
         let time = timeline.snapped(session.time()) + frames / f64::from(timeline.frame_rate);
-        actions.push(Action::SetTime(timeline.snapped(time)));
+        actions.push(PlaybackAction::SetTime(timeline.snapped(time)));
     }
     let values: Vec<f64> = ui.input(|input| {
         let requests = input.accesskit_action_requests(id(), accesskit::Action::SetValue);
@@ -89,7 +89,7 @@ fn asked(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
         };
         requests.filter_map(value).collect()
     });
-    actions.extend(values.into_iter().map(Action::SetTime));
+    actions.extend(values.into_iter().map(PlaybackAction::SetTime));
 }
 
 fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {

@@ -4,7 +4,7 @@ use egui::{ComboBox, RichText, Ui};
 
 use super::keyboard;
 use crate::document::Timeline;
-use crate::session::{Action, Session};
+use crate::session::{Action, Actions, EditAction, PlaybackAction, Session, ViewAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 
@@ -12,7 +12,7 @@ use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let roomy = ui.available_width() > ROOMY;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -31,47 +31,47 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
     });
 }
 
-fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Timeline { start, end, .. } = session.document().timeline;
     let button =
         |icon, name, tooltip, disabled| IconButton { icon, name, tooltip, on: None, disabled };
     let tooltip = "To where the timeline starts (Home, in the timeline)";
     if button(Icon::Start, "To start", tooltip, None).show(ui) {
-        actions.push(Action::SetTime(start));
+        actions.push(PlaybackAction::SetTime(start));
     }
     let before = keyboard::key_before(session);
     let tooltip = "To the key before (up arrow, in the timeline)";
     let why = before.is_none().then_some("There is no key before this time");
     if button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
-        actions.extend(before.map(Action::SetTime));
+        actions.extend(before.map(PlaybackAction::SetTime));
     }
     play(ui, session, actions);
     let after = keyboard::key_after(session);
     let tooltip = "To the key after (down arrow, in the timeline)";
     let why = after.is_none().then_some("There is no key after this time");
     if button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
-        actions.extend(after.map(Action::SetTime));
+        actions.extend(after.map(PlaybackAction::SetTime));
     }
     let tooltip = "To where the timeline ends (End, in the timeline)";
     if button(Icon::End, "To end", tooltip, None).show(ui) {
-        actions.push(Action::SetTime(end));
+        actions.push(PlaybackAction::SetTime(end));
     }
     let looping = session.is_looping();
     let tooltip = "Whether the time begins again where the timeline ends";
     let on = Some(looping);
     if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled: None }).show(ui) {
-        actions.push(Action::SetLooping(!looping));
+        actions.push(PlaybackAction::SetLooping(!looping));
     }
 }
 
-fn play(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let playing = session.is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let tooltip = "Let the time go on, or stand (Space)";
     let nothing = "Nothing moves yet: key the rig at two times (K), or let a target go around";
     let disabled = (!playing && !session.has_motion()).then_some(nothing);
     if (IconButton { icon, name, tooltip, on: None, disabled }).show(ui) {
-        actions.push(Action::Play(!playing));
+        actions.push(PlaybackAction::Play(!playing));
     }
 }
 
@@ -89,13 +89,13 @@ struct TimeField<'a> {
 }
 
 impl TimeField<'_> {
-    fn show(
+    fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
         roomy: bool,
         is_editing: bool,
-        actions: &mut Vec<Action>,
-        set: impl Fn(f64) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(f64) -> A,
     ) {
         if roomy && !self.label.is_empty() {
             ui.add(egui::Label::new(RichText::new(self.label).weak()).selectable(false));
@@ -107,25 +107,26 @@ impl TimeField<'_> {
     }
 
     /// Shows one that is not the document's: there is nothing to take back.
-    fn show_free(
+    fn show_free<A: Into<Action>>(
         self,
         ui: &mut Ui,
         roomy: bool,
-        actions: &mut Vec<Action>,
-        set: impl Fn(f64) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(f64) -> A,
     ) {
-        let mut own = Vec::new();
+        let mut own = Actions::new();
         self.show(ui, roomy, true, &mut own, set);
-        own.retain(|action| !matches!(action, Action::BeginEdit | Action::CommitEdit));
+        own.retain(|action| !matches!(action, Action::Transaction(_)));
         actions.extend(own);
     }
 }
 
-fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let rate = f64::from(timeline.frame_rate);
     let is_dragged = ui.input(|input| input.pointer.any_down());
-    let set = |time| Action::SetTime(if is_dragged { timeline.snapped(time) } else { time });
+    let set =
+        |time| PlaybackAction::SetTime(if is_dragged { timeline.snapped(time) } else { time });
     let seconds = TimeField {
         name: "Time",
         label: "",
@@ -148,21 +149,21 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
         digits: 0,
         tooltip: "The time in frames: drag, or click to type",
     };
-    frame.show_free(ui, roomy, actions, |frame| Action::SetTime(frame.round() / rate));
+    frame.show_free(ui, roomy, actions, |frame| PlaybackAction::SetTime(frame.round() / rate));
 }
 
-fn keying(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let channels = session.channels_to_key();
     let nothing = "There is nothing to key";
     let why = channels.is_empty().then_some(nothing);
     let tooltip = "Key the selected channels or joints as they are shown; of an arm hand and elbow \
                    spin (K)";
     if widgets::button(ui, "Key", tooltip, why) {
-        actions.push(Action::Key(channels));
+        actions.push(EditAction::Key(channels));
     }
     let tooltip = "Key all that shapes the rig, and all that has keys (Shift+K)";
     if widgets::button(ui, "Key all", tooltip, None) {
-        actions.push(Action::Key(session.all_channels()));
+        actions.push(EditAction::Key(session.all_channels()));
     }
     let on = session.is_auto_key();
     let accent = style::accent(ui);
@@ -178,11 +179,11 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         false => "Let every edit make keys where the time is",
     };
     if ui.add(button).on_hover_text(tooltip).clicked() {
-        actions.push(Action::SetAutoKey(!on));
+        actions.push(PlaybackAction::SetAutoKey(!on));
     }
 }
 
-fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let speed = TimeField {
         name: "Speed",
         label: "Speed",
@@ -193,11 +194,11 @@ fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
         digits: 2,
         tooltip: "Seconds of the timeline in one of yours: 0.1 to 4",
     };
-    speed.show_free(ui, roomy, actions, Action::SetSpeed);
+    speed.show_free(ui, roomy, actions, PlaybackAction::SetSpeed);
     frame_rate(ui, session, actions);
 }
 
-fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let name = |rate: u32| format!("{rate} fps");
     let combo = ComboBox::from_id_salt("frame rate")
@@ -212,7 +213,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for frame_rate in rates {
             let chosen = frame_rate == timeline.frame_rate;
             if ui.selectable_label(chosen, name(frame_rate)).clicked() && !chosen {
-                actions.push(Action::SetTimeline(Timeline { frame_rate, ..timeline }));
+                actions.push(EditAction::SetTimeline(Timeline { frame_rate, ..timeline }));
             }
         }
     });
@@ -222,7 +223,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         .on_hover_text("Frames in a second: where times snap to, and what is saved as pictures");
 }
 
-fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) {
+fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let figure = |name, value, tooltip| TimeField {
         name,
@@ -237,15 +238,15 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Vec<Action>) 
     let is_editing = session.is_editing();
     let start = figure("Start", timeline.start, "When the timeline starts");
     start.show(ui, roomy, is_editing, actions, |start| {
-        Action::SetTimeline(Timeline { start, ..timeline })
+        EditAction::SetTimeline(Timeline { start, ..timeline })
     });
     let end = figure("End", timeline.end, "When the timeline ends");
     end.show(ui, roomy, is_editing, actions, |end| {
-        Action::SetTimeline(Timeline { end, ..timeline })
+        EditAction::SetTimeline(Timeline { end, ..timeline })
     });
 }
 
-fn curves(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn curves(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let on = session.preferences().curves;
     let button = egui::Button::selectable(on, "Curves").frame_when_inactive(true);
     let tooltip = match on {
@@ -253,6 +254,6 @@ fn curves(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         false => "Show how the selected channels go between their keys",
     };
     if ui.add(button).on_hover_text(tooltip).clicked() {
-        actions.push(Action::ShowCurves(!on));
+        actions.push(ViewAction::ShowGraphEditor(!on));
     }
 }

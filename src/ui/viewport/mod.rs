@@ -11,7 +11,10 @@ use egui::{
 };
 
 use crate::document::{Camera, RigKind};
-use crate::session::{Action, Drag, DragInput, Grip, Motion, Session};
+use crate::session::{
+    Action, Actions, Drag, DragInput, EditAction, Grip, Motion, PlaybackAction, SelectAction,
+    Session, TransactionAction, ViewAction,
+};
 use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, pose_summary};
@@ -21,7 +24,7 @@ pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
     picture: Option<TextureId>,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) -> Rect {
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -68,10 +71,11 @@ pub(in crate::ui) fn ui(
         actions.push(match pointed {
             Some(_) => commands::frame_selection(session),
             None if grips.joint_at(pointer).is_some() => commands::frame_selection(session),
-            None => Action::GlideTo(match session.rig() {
+            None => ViewAction::GlideTo(match session.rig() {
                 RigKind::Arm if session.crowd().is_none() => Camera::default(),
                 _ => session.framing_all(),
-            }),
+            })
+            .into(),
         });
     }
     show_cursor(ui, session, pointed.or(held_grip));
@@ -92,9 +96,9 @@ fn invite(ui: &mut Ui, rect: Rect) {
 }
 
 /// Says which joint the pointer is on.
-fn point(session: &Session, joint: Option<usize>, actions: &mut Vec<Action>) {
+fn point(session: &Session, joint: Option<usize>, actions: &mut Actions) {
     if session.pointed() != joint {
-        actions.push(Action::Point(joint));
+        actions.push(SelectAction::Hover(joint));
     }
 }
 
@@ -107,7 +111,7 @@ fn select(
     picture: &ScreenProjection,
     grips: &Gizmo,
     pointer: Pos2,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match grips.at(pointer) {
@@ -119,7 +123,7 @@ fn select(
     if modifiers.command || is_first && modifiers.is_none() {
         let base = session.next_base();
         let at = picture.ray(pointer).meets_plane(base, picture.projection.forward);
-        actions.extend(at.map(|tip| Action::AddJoint { tip: Some(tip) }));
+        actions.extend(at.map(|tip| EditAction::AddJoint { tip: Some(tip) }));
         return;
     }
     let mut selection = if modifiers.shift { session.selection().to_vec() } else { Vec::new() };
@@ -131,7 +135,7 @@ fn select(
         }
     }
     if selection != session.selection() {
-        actions.push(Action::Select(selection));
+        actions.push(SelectAction::Joints(selection));
     }
 }
 
@@ -144,7 +148,7 @@ fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
 
 /// Lets all that moves by itself go on. Any input ends a glide of the view: a press in the viewport
 /// takes hold of the view as it is by then, all else brings it to where it was going.
-fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
+fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     if !session.is_moving() {
         return;
     }
@@ -155,9 +159,9 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Ac
         _ => false,
     };
     if session.is_gliding() && ui.input(|input| input.events.iter().any(is_input)) {
-        actions.push(Action::SetCamera(session.settled_camera()));
+        actions.push(ViewAction::SetCamera(session.settled_camera()));
     }
-    actions.push(Action::Advance(ui.input(|input| input.time)));
+    actions.push(PlaybackAction::Advance(ui.input(|input| input.time)));
     ui.request_repaint();
 }
 
@@ -176,7 +180,7 @@ fn press(
     session: &Session,
     picture: &ScreenProjection,
     grips: &Gizmo,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) -> ViewportDrag {
     let mut held = match (session.drag(), session.view_drag()) {
         (Some(_), _) => ViewportDrag::Grip,
@@ -189,7 +193,7 @@ fn press(
         };
         if button == PointerButton::Secondary && session.is_editing() {
             // Wherever the pointer is by then.
-            actions.push(Action::CancelEdit);
+            actions.push(TransactionAction::Cancel);
         }
         if !response.contains_pointer() {
             continue;
@@ -209,10 +213,10 @@ fn press(
         };
         if let Some(grip) = grip {
             let (ray, forward) = (picture.ray(pos), picture.projection.forward);
-            actions.push(Action::Grab { grip, ray, forward });
+            actions.push(TransactionAction::Grab { grip, ray, forward });
             held = ViewportDrag::Grip;
         } else if let Some(motion) = motion {
-            actions.push(Action::GrabView(motion, picture.normalised(pos)));
+            actions.push(ViewAction::Grab(motion, picture.normalised(pos)));
             held = ViewportDrag::View;
         }
     }
@@ -225,20 +229,20 @@ fn follow(
     held: ViewportDrag,
     picture: &ScreenProjection,
     pointer: Pos2,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
     let released = !down || ui.input(|input| input.pointer.any_released());
-    let (moved, dropped) = match held {
+    let (moved, dropped): (Action, Action) = match held {
         ViewportDrag::Nothing => return,
         ViewportDrag::Grip => {
             let ray = picture.ray(pointer);
             let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
-            (Action::Drag(input), Action::CommitEdit)
+            (TransactionAction::Drag(input).into(), TransactionAction::Commit.into())
         }
         ViewportDrag::View => {
             let (to, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
-            (Action::DragView { to, aspect }, Action::DropView)
+            (ViewAction::Drag { to, aspect }.into(), ViewAction::Drop.into())
         }
     };
     actions.push(moved);
@@ -248,7 +252,7 @@ fn follow(
 }
 
 /// Single keys act while no widget or the viewport itself has the keyboard.
-fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Vec<Action>) {
+fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.drag().is_some() {
         keyboard::viewport::viewport(ui, session, actions);

@@ -4,7 +4,7 @@ use egui::{CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Ui, Vec2};
 
 use super::projection::ScreenProjection;
 use crate::document::Camera;
-use crate::session::{Action, Grip, Motion, Navigation, Session};
+use crate::session::{Actions, Grip, Motion, Navigation, Session, ViewAction};
 
 /// How much nearer a step of the wheel comes.
 const WHEEL: f32 = 1.15;
@@ -42,7 +42,7 @@ pub(super) fn wheel(
     session: &Session,
     picture: &ScreenProjection,
     pointer: Pos2,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let mut camera = session.settled_camera();
     let (at, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
@@ -69,7 +69,7 @@ pub(super) fn wheel(
         }
     });
     if camera != session.settled_camera() {
-        actions.push(Action::SetCamera(camera));
+        actions.push(ViewAction::SetCamera(camera));
     }
 }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::point::AXES;
 use super::slider::Slider;
-use crate::session::{Action, Session};
+use crate::session::{Action, Actions, Session};
 use crate::ui::style;
 
 /// A slider of an angle in degrees.
@@ -24,14 +24,14 @@ pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: 
 }
 
 /// Three angles about x, y and z.
-pub(in crate::ui) fn euler_sliders(
+pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
     ui: &mut Ui,
     session: &Session,
     name: &str,
     tooltip: &str,
     angles: Vec3,
-    actions: &mut Vec<Action>,
-    set: impl Fn(Vec3) -> Action,
+    actions: &mut Actions,
+    set: impl Fn(Vec3) -> A,
 ) {
     let colours = style::palette(ui).axes;
     for (axis, label) in AXES.into_iter().enumerate() {

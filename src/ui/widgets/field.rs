@@ -4,7 +4,7 @@ use egui::{Response, Ui};
 
 use super::format;
 use super::number::DragNumber;
-use crate::session::{Action, Session};
+use crate::session::{Action, Actions, Session};
 
 /// Three of them stand beside a name in the narrowest panel.
 const FIELD_WIDTH: f32 = 52.0;
@@ -23,12 +23,12 @@ pub(in crate::ui) struct NumberField<'a> {
 }
 
 impl NumberField<'_> {
-    pub fn show(
+    pub fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: impl Fn(f32) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(f32) -> A,
     ) -> Response {
         let digits = self.digits;
         let format = |value| format::fixed(value, digits);
@@ -36,13 +36,13 @@ impl NumberField<'_> {
     }
 
     /// Shows it in letters of its own.
-    pub fn show_as(
+    pub fn show_as<A: Into<Action>>(
         self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
+        actions: &mut Actions,
         format: &dyn Fn(f64) -> String,
-        set: impl Fn(f32) -> Action,
+        set: impl Fn(f32) -> A,
     ) -> Response {
         let Self { name, value, unit, .. } = self;
         let number = DragNumber { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };

@@ -3,7 +3,7 @@
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
-use crate::session::Action;
+use crate::session::{Action, Actions, TransactionAction};
 
 const HEIGHT: f32 = 22.0;
 
@@ -22,12 +22,12 @@ pub(in crate::ui) struct DragNumber<'a, N = f32> {
 impl<N: Numeric> DragNumber<'_, N> {
     /// Shows it, always as wide. Pushes what `set` makes of a new value; a drag begins and commits
     /// an edit, and goes on only while there is one, so that it can be taken back.
-    pub fn show(
+    pub fn show<A: Into<Action>>(
         &self,
         ui: &mut Ui,
         is_editing: bool,
-        actions: &mut Vec<Action>,
-        set: impl Fn(N) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(N) -> A,
     ) -> Response {
         let mut value = self.value;
         let number = DragValue::new(&mut value)
@@ -47,7 +47,7 @@ impl<N: Numeric> DragNumber<'_, N> {
         let response = row.inner;
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
         if response.drag_started() {
-            actions.push(Action::BeginEdit);
+            actions.push(TransactionAction::Begin);
         }
         // egui enters what was typed in the pass after the one in which Esc left it.
         let was_left = ui.data_mut(|data| data.remove_temp::<LeftByEscape>(response.id)).is_some();
@@ -62,7 +62,7 @@ impl<N: Numeric> DragNumber<'_, N> {
             actions.push(set(value));
         }
         if response.drag_stopped() {
-            actions.push(Action::CommitEdit);
+            actions.push(TransactionAction::Commit);
         }
         response
     }

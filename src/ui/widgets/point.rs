@@ -2,7 +2,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use super::slider::Slider;
-use crate::session::{Action, Session};
+use crate::session::{Action, Actions, Session};
 use crate::ui::style;
 
 pub(in crate::ui) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -25,12 +25,12 @@ pub(in crate::ui) struct PointSliders<'a> {
 }
 
 impl PointSliders<'_> {
-    pub fn show(
+    pub fn show<A: Into<Action>>(
         &self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: impl Fn(Vec3) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(Vec3) -> A,
     ) {
         let colours = style::palette(ui).axes;
         for (axis, label) in self.labels.into_iter().enumerate() {

@@ -6,7 +6,7 @@ use egui::{
 use super::format;
 use super::number::DragNumber;
 use super::symbol;
-use crate::session::{Action, Session};
+use crate::session::{Action, Actions, Session, TransactionAction};
 use crate::ui::keyboard::focus;
 use crate::ui::style;
 
@@ -45,14 +45,14 @@ const PAGE: f32 = 10.0;
 impl Slider<'_> {
     /// Shows the row. Pushes what `set` makes of a new value; a drag begins and commits an edit,
     /// and goes on only while there is one, so that it can be taken back.
-    pub fn show(
+    pub fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: impl Fn(f32) -> Action,
+        actions: &mut Actions,
+        set: impl Fn(f32) -> A,
     ) {
-        let label = |ui: &mut Ui, actions: &mut Vec<Action>| {
+        let label = |ui: &mut Ui, actions: &mut Actions| {
             if self.label(ui).double_clicked() {
                 actions.push(set(self.default));
             }
@@ -61,13 +61,13 @@ impl Slider<'_> {
     }
 
     /// As [`Self::show`], with something else where the label is.
-    pub fn show_after(
+    pub fn show_after<A: Into<Action>>(
         &self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: impl Fn(f32) -> Action,
-        head: impl FnOnce(&mut Ui, &mut Vec<Action>),
+        actions: &mut Actions,
+        set: impl Fn(f32) -> A,
+        head: impl FnOnce(&mut Ui, &mut Actions),
     ) {
         let row = ui.add_enabled_ui(self.disabled.is_none(), |ui| {
             ui.horizontal(|ui| {
@@ -153,13 +153,13 @@ impl Slider<'_> {
         track.left() + part.clamp(0.0, 1.0) * track.width()
     }
 
-    fn edit_by_rail(
+    fn edit_by_rail<A: Into<Action>>(
         &self,
         ui: &Ui,
         rail: &Response,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: &impl Fn(f32) -> Action,
+        actions: &mut Actions,
+        set: &impl Fn(f32) -> A,
     ) {
         let track = Self::track(rail.rect);
         let pointed = rail.interact_pointer_pos().map(|at| {
@@ -175,7 +175,7 @@ impl Slider<'_> {
         let pressed = rail.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
         if pressed {
             rail.request_focus();
-            actions.push(Action::BeginEdit);
+            actions.push(TransactionAction::Begin);
         }
         let let_go = (rail.clicked() && !rail.double_clicked()) || rail.drag_stopped();
         let taken_back = ui.input(|input| input.key_pressed(Key::Escape));
@@ -185,7 +185,7 @@ impl Slider<'_> {
             actions.push(set(value));
         }
         if rail.clicked() || rail.drag_stopped() {
-            actions.push(Action::CommitEdit);
+            actions.push(TransactionAction::Commit);
         }
         let asked = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
         if asked != 0.0 {
@@ -237,12 +237,12 @@ impl Slider<'_> {
         })
     }
 
-    fn number(
+    fn number<A: Into<Action>>(
         &self,
         ui: &mut Ui,
         session: &Session,
-        actions: &mut Vec<Action>,
-        set: &impl Fn(f32) -> Action,
+        actions: &mut Actions,
+        set: &impl Fn(f32) -> A,
     ) {
         let number = DragNumber {
             name: &format!("{} value", self.name),

@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 use ik_arm::document::{Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use ik_arm::session::{Action, Dialog, Export, Job};
+use ik_arm::session::{Dialog, Export, FileAction, Job};
 
 use super::Values;
 use crate::common::skeletons;
@@ -59,7 +59,7 @@ impl Values<'_> {
             0 => Dialog::About,
             1 => Dialog::Shortcuts,
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
-            3 => Dialog::Unsaved { then: Box::new(Action::Quit) },
+            3 => Dialog::Unsaved { then: Box::new(FileAction::Quit) },
             4 => Dialog::SavePicture { path: path() },
             5 => Dialog::Export(self.export()),
             6 => Dialog::Open { path: path(), problem: None },
@@ -70,7 +70,8 @@ impl Values<'_> {
             9 => Dialog::Exporting,
             10 => Dialog::DeleteJoints { joints: self.some_joints() },
             11 => {
-                let (then, back) = (Box::new(Action::SaveAs(self.path())), Box::new(self.dialog()));
+                let (then, back) =
+                    (Box::new(FileAction::SaveAs(self.path())), Box::new(self.dialog()));
                 Dialog::Replace { path: self.path(), then, back }
             }
             _ => Dialog::Rename { joint: self.joint(), name: self.name() },

@@ -3,7 +3,7 @@
 use egui::{Ui, vec2};
 use glam::Vec3;
 
-use crate::session::{Action, PoseMode, Session};
+use crate::session::{Actions, EditAction, PoseMode, Session, TransactionAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, Slider, angle_slider};
 
@@ -11,7 +11,7 @@ use crate::ui::widgets::{self, Slider, angle_slider};
 const WIDTH: f32 = 33.0;
 
 /// IK or FK, and how much of each.
-pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let weight = session.arm().influence;
     let leads = [
         (PoseMode::Hand, "IK", 1.0, "The hand leads: the joints are solved for. The pose stays"),
@@ -33,14 +33,14 @@ pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Ac
         step: 0.1,
         ..Slider::default()
     };
-    blend.show_after(ui, session, actions, Action::SetInfluence, |ui, actions| {
+    blend.show_after(ui, session, actions, EditAction::SetInfluence, |ui, actions| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (lead, name, whole, tooltip) in leads {
             let chosen = weight == whole;
             let button = egui::Button::selectable(chosen, name).frame_when_inactive(true);
             let button = button.min_size(vec2(WIDTH, 0.0));
             if ui.add(button).on_hover_text(tooltip).clicked() && !chosen {
-                actions.push(Action::SwitchTo(lead));
+                actions.push(EditAction::SwitchPoseMode(lead));
             }
         }
         ui.spacing_mut().item_spacing.x = 8.0;
@@ -48,7 +48,7 @@ pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Vec<Ac
 }
 
 /// The shoulder's three and the elbow's one.
-pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let fk = session.arm().fk;
     let shoulder = [
         (1, "Shoulder yaw", "Turns the upper limb about the vertical, first"),
@@ -57,8 +57,8 @@ pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Vec<Ac
     ];
     let slide = |ui: &mut Ui,
                  slider: Slider<'_>,
-                 actions: &mut Vec<Action>,
-                 set: &dyn Fn(f32) -> Action| {
+                 actions: &mut Actions,
+                 set: &dyn Fn(f32) -> EditAction| {
         slider.show(ui, session, actions, |degrees| set(degrees.to_radians()));
     };
     for (axis, name, tooltip) in shoulder {
@@ -69,18 +69,18 @@ pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Vec<Ac
         let set = |radians| {
             let mut angles = fk.shoulder;
             angles[axis] = radians;
-            Action::SetShoulder(angles)
+            EditAction::SetShoulder(angles)
         };
         slide(ui, slider, actions, &set);
     }
     let bend = angle_slider("Elbow bend", "At the elbow: 0° straight, 180° folded", fk.bend);
     let bend = Slider { label: "Bend β", range: (0.0, 180.0), ..bend };
-    slide(ui, bend, actions, &Action::SetBend);
+    slide(ui, bend, actions, &EditAction::SetBend);
     ui.add_space(2.0);
     if widgets::button(ui, "Straighten", "All four angles to 0", None) {
-        actions.push(Action::BeginEdit);
-        actions.push(Action::SetShoulder(Vec3::ZERO));
-        actions.push(Action::SetBend(0.0));
-        actions.push(Action::CommitEdit);
+        actions.push(TransactionAction::Begin);
+        actions.push(EditAction::SetShoulder(Vec3::ZERO));
+        actions.push(EditAction::SetBend(0.0));
+        actions.push(TransactionAction::Commit);
     }
 }

@@ -11,7 +11,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use crate::document::{Arm, Cursor};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
 use crate::ui::widgets::{self, AXES, PointSliders, Slider};
 use disabled::ANGLES_LEAD;
@@ -20,18 +20,18 @@ use disabled::ANGLES_LEAD;
 const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     fk_ik::switch(ui, session, actions);
     ui.add_space(2.0);
     if session.arm().influence < 1.0 {
         widgets::section(ui, "Joint angles", |ui| fk_ik::angles(ui, session, actions));
     }
-    let mut aside = Vec::new();
+    let mut aside = Actions::new();
     let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
     let reference = |ui: &mut Ui| socket_twist::reference(ui, session, &mut aside);
     widgets::section_with(ui, "Elbow", reference, |ui| socket_twist::ui(ui, session, actions));
-    actions.append(&mut aside);
+    actions.extend(aside);
     widgets::section(ui, "Root", |ui| root(ui, session, actions));
     widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));
@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
     });
 }
 
-fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (arm, seed) = (session.arm(), Arm::default().cursor());
     let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
     let hand = PointSliders {
@@ -54,7 +54,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         disabled,
     };
     match arm.goal {
-        Cursor::Root(_) => hand.show(ui, session, actions, Action::SetHand),
+        Cursor::Root(_) => hand.show(ui, session, actions, EditAction::SetHand),
         Cursor::World(pin) => {
             let pinned = PointSliders {
                 value: pin,
@@ -63,23 +63,23 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 tooltip: "Where the Cursor is pinned, in the world",
                 ..hand
             };
-            pinned.show(ui, session, actions, Action::SetPin);
+            pinned.show(ui, session, actions, EditAction::SetPin);
         }
     }
 }
 
-fn pin(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn pin(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut pinned = session.arm().is_pinned();
     let check = ui.checkbox(&mut pinned, "Pinned to the world").on_hover_text(
         "The hand stays where it is when the Root moves, as on the edge of a table; else it goes \
          with the Root",
     );
     if check.changed() {
-        actions.push(Action::PinHand(pinned));
+        actions.push(EditAction::PinHand(pinned));
     }
 }
 
-fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let root = PointSliders {
         name: "Root",
         labels: AXES,
@@ -91,10 +91,10 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                   hand that is pinned",
         disabled: None,
     };
-    root.show(ui, session, actions, Action::SetRoot);
+    root.show(ui, session, actions, EditAction::SetRoot);
 }
 
-fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (palette, bones) = (style::palette(ui), session.arm().bones);
     let (seed, unit) = (Arm::default().bones, session.arm_unit());
     let range = (LENGTH_RANGE.0 * unit, LENGTH_RANGE.1 * unit);
@@ -109,7 +109,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         step: unit,
         ..Slider::default()
     };
-    upper.show(ui, session, actions, Action::SetUpper);
+    upper.show(ui, session, actions, EditAction::SetUpper);
     let lower = Slider {
         name: "Lower length",
         label: "Lower d_2",
@@ -121,5 +121,5 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         step: unit,
         ..Slider::default()
     };
-    lower.show(ui, session, actions, Action::SetLower);
+    lower.show(ui, session, actions, EditAction::SetLower);
 }

@@ -6,11 +6,11 @@ use egui::{ComboBox, Label, RichText, Ui};
 
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::labels;
 use crate::ui::widgets::{PointSliders, Slider};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     let slider = Slider {
         name: "Elbow spin",
@@ -25,14 +25,15 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
         disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
         ..Slider::default()
     };
-    slider.show(ui, session, actions, |degrees| Action::SetTwist((degrees % 360.0).to_radians()));
+    slider
+        .show(ui, session, actions, |degrees| EditAction::SetTwist((degrees % 360.0).to_radians()));
     if arm.twist_reference == TwistReferenceKind::Pole {
         pole(ui, session, actions);
     }
 }
 
 /// What the spin is measured from, to choose.
-pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let chosen = session.arm().twist_reference;
     let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
     let response = combo.show_ui(ui, |ui| {
@@ -40,7 +41,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec
             let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
             let item = item.on_hover_text(labels::twist_reference(twist_reference));
             if item.clicked() && twist_reference != chosen {
-                actions.push(Action::SetTwistReference(twist_reference));
+                actions.push(EditAction::SetTwistReference(twist_reference));
             }
         }
     });
@@ -53,7 +54,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Vec
     ui.add(Label::new(RichText::new("from").weak()).selectable(false));
 }
 
-fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     let pole = PointSliders {
         name: "Pole",
@@ -65,5 +66,5 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         tooltip: "What the elbow points at, relative to the Root; it can be dragged in the view",
         disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
     };
-    pole.show(ui, session, actions, Action::SetPole);
+    pole.show(ui, session, actions, EditAction::SetPole);
 }

@@ -5,13 +5,13 @@ use core::f32::consts::PI;
 use egui::Ui;
 
 use crate::kinematics::soft_reach::SoftReach;
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{Slider, angle_slider};
 
 const MOST_SOFT: f32 = 0.99;
 const MOST_STRETCHED: f32 = 3.0;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let soft_reach = session.arm().soft_reach;
     let [softness, stretch, angle] =
         [soft_reach.softness(), soft_reach.max_stretch(), soft_reach.min_elbow_angle()];
@@ -24,7 +24,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
             stretch.max(1.0),
             angle.clamp(0.0, widest),
         );
-        Action::SetSoftReach(soft_reach.unwrap_or(seed))
+        EditAction::SetSoftReach(soft_reach.unwrap_or(seed))
     };
     let slider = Slider {
         name: "Softness",

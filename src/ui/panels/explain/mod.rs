@@ -9,7 +9,7 @@ mod twist_references;
 use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Ui, vec2};
 
 use crate::document::Arm;
-use crate::session::{Action, Session};
+use crate::session::{Actions, Session};
 use crate::ui::widgets::{self, symbol};
 use crate::ui::{pose_summary, style};
 
@@ -24,7 +24,7 @@ struct FormulaRow {
     colour: Option<Color32>,
 }
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
         widgets::section(ui, "Triangle", |ui| {

@@ -10,7 +10,7 @@ use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::{Change, Pop};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TwistReference;
-use crate::session::{Action, PopFix, Pops, Sample, Session, Spike, What};
+use crate::session::{Actions, PopFix, Pops, Sample, Session, Spike, What};
 use crate::ui::style;
 use crate::ui::widgets::{self, plot};
 
@@ -20,7 +20,7 @@ const SHOWN: (f64, f64) = (0.05, 100.0);
 /// How many spikes are written out.
 const LISTED: usize = 3;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let spikes = session.pops().spikes();
     ui.weak("Elbow speed / cursor speed");
     show(ui, session.pops(), &spikes);
@@ -46,13 +46,7 @@ fn is_marked(pops: &Pops, change: Change) -> bool {
 }
 
 /// One spike: what it was, and what helps, unless it has been offered above.
-fn list(
-    ui: &mut Ui,
-    arm: &Arm,
-    spike: &Spike,
-    offered: &mut Vec<PopFix>,
-    actions: &mut Vec<Action>,
-) {
+fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
     if !spike.stands(arm) {
         ui.weak(format!("{text} – since then changed"));

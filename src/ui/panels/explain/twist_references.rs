@@ -8,11 +8,11 @@ use egui::{
 use crate::document::{Arm, Overlay, TwistReferenceKind};
 use crate::kinematics::twist::TransportedFrame;
 use crate::scene::Palette;
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session, ViewAction};
 use crate::ui::widgets;
 use crate::ui::{labels, style};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     if !arm.is_led_by_hand() {
         ui.weak("The joints' own angles lead: nothing is measured.");
@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
         for (layer, name, tooltip) in shown {
             let mut on = display.shows(layer);
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                actions.push(Action::Show(layer, on));
+                actions.push(EditAction::ShowOverlay(layer, on));
             }
         }
     });
@@ -102,10 +102,10 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
     });
 }
 
-fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::pair(ui, "Holonomy", |ui| {
         if widgets::button(ui, "Start here", "Carries along from here", None) {
-            actions.push(Action::ResetTransport);
+            actions.push(ViewAction::ResetTransport);
         }
         let turned = turn_in_words(session.transport_path().holonomy());
         ui.label(RichText::new(turned).monospace()).on_hover_text(

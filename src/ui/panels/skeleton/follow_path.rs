@@ -3,22 +3,22 @@
 use egui::Ui;
 
 use crate::document::FollowPath;
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::Slider;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     slithers(ui, session, actions);
     if let Some(follow_path) = session.skeleton_rig().follow_path {
         sliders(ui, session, follow_path, actions);
     }
 }
 
-fn slithers(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn slithers(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut slithers = session.skeleton_rig().follow_path.is_some();
     let tooltip = "The first chain of joints follows its head along a wavy ring, like a snake";
     if ui.checkbox(&mut slithers, "Slither").on_hover_text(tooltip).changed() {
         let follow_path = first(session.skeleton_rig().reach());
-        actions.push(Action::SetFollowPath(slithers.then_some(follow_path)));
+        actions.push(EditAction::SetFollowPath(slithers.then_some(follow_path)));
     }
 }
 
@@ -27,11 +27,11 @@ fn first(reach: f32) -> FollowPath {
     FollowPath { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
 }
 
-fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Vec<Action>) {
+fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Actions) {
     let reach = session.skeleton_rig().reach();
     let first = first(reach);
     let step = session.shown().cell() * 0.1;
-    let set = |follow_path| Action::SetFollowPath(Some(follow_path));
+    let set = |follow_path| EditAction::SetFollowPath(Some(follow_path));
     let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
         name,
         label,

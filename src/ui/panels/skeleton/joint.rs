@@ -6,14 +6,14 @@ use egui::{ComboBox, Ui};
 use glam::Vec3;
 
 use crate::kinematics::skeleton::{Joint, Limit};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 
 const STIFF: &str = "The limit leaves no room";
 const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
     if session.selection().len() > 1 {
         let count = session.selection().len();
@@ -26,17 +26,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &
     let mut locked = joint.locked;
     let tooltip = "Solvers do not turn a locked joint; these sliders do";
     if ui.checkbox(&mut locked, "Locked").on_hover_text(tooltip).changed() {
-        actions.push(Action::SetLocked { joint: index, locked });
+        actions.push(EditAction::SetLocked { joint: index, locked });
     }
 }
 
-fn rotation(
-    ui: &mut Ui,
-    session: &Session,
-    index: usize,
-    joint: &Joint,
-    actions: &mut Vec<Action>,
-) {
+fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let shown = match session.skeleton_rig().follow_path {
         Some(_) => session.skeleton_rig().at(session.time()).joints()[index].rotation,
@@ -64,16 +58,16 @@ fn rotation(
         slider.show(ui, session, actions, |degrees| {
             let mut rotation = joint.rotation;
             rotation[axis] = degrees.to_radians();
-            Action::SetRotation { joint: index, rotation }
+            EditAction::SetRotation { joint: index, rotation }
         });
     }
 }
 
 /// A check box for each angle, and how far it can go behind it.
-fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     for (axis, label) in AXES.into_iter().enumerate() {
         let limit = joint.limits[axis];
-        let set = |limit| Action::SetLimit { joint: index, axis, limit };
+        let set = |limit| EditAction::SetLimit { joint: index, axis, limit };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let mut limited = limit.is_some();
@@ -101,10 +95,10 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
 fn angle(
     ui: &mut Ui,
     session: &Session,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
     name: &str,
     value: f32,
-    set: &dyn Fn(f32) -> Action,
+    set: &dyn Fn(f32) -> EditAction,
 ) {
     let tooltip = "How far the angle can go";
     NumberField { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
@@ -115,7 +109,7 @@ fn angle(
     );
 }
 
-fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let step = session.shown().cell() * 0.1;
     let tooltip = "From the joint's base to its tip, in its own space";
     widgets::pair(ui, "Bone", |ui| {
@@ -133,7 +127,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
             .show(ui, session, actions, |value| {
                 let mut bone = joint.axis;
                 bone[axis] = value;
-                Action::SetAxis { joint: index, axis: bone }
+                EditAction::SetAxis { joint: index, axis: bone }
             });
         }
     });
@@ -150,12 +144,12 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
         }
         .show(ui, session, actions, |length| {
             let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
-            Action::SetAxis { joint: index, axis: direction * length.max(0.0) }
+            EditAction::SetAxis { joint: index, axis: direction * length.max(0.0) }
         });
     });
 }
 
-fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Vec<Action>) {
+fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let skeleton = &session.skeleton();
     let name = |joint: Option<usize>| match joint.and_then(|joint| skeleton.joint(joint)) {
         Some(joint) => joint.name.clone(),
@@ -170,7 +164,7 @@ fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
             let others = (0..skeleton.joints().len()).filter(|j| !skeleton.hangs_from(*j, index));
             for parent in std::iter::once(None).chain(others.map(Some)) {
                 if ui.selectable_label(joint.parent == parent, name(parent)).clicked() {
-                    actions.push(Action::Reparent { joint: index, parent });
+                    actions.push(EditAction::ReparentJoint { joint: index, parent });
                 }
             }
         });

@@ -9,9 +9,9 @@ use crate::ui::widgets::{self, AXES, PointSliders};
 use egui::Ui;
 use glam::Vec3;
 
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
     if let Some(selected) = session.selected()
@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
     widgets::section(ui, "Motion", |ui| follow_path::ui(ui, session, actions));
 }
 
-fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     let place = PointSliders {
         name: "Skeleton",
@@ -44,5 +44,5 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         tooltip: "Where the skeleton's own origin is, in the world; its targets stay",
         disabled: None,
     };
-    place.show(ui, session, actions, Action::SetTranslation);
+    place.show(ui, session, actions, EditAction::SetTranslation);
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
 use crate::ui::{commands, style};
@@ -13,7 +13,7 @@ const ROWS: f32 = 9.0;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     // Above the tree: it grows with every joint, and no button may move under the mouse.
     buttons(ui, session, actions);
     ui.add_space(4.0);
@@ -30,7 +30,7 @@ struct OutlinerRow {
     depth: usize,
 }
 
-fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rows = rows(session);
     let height = ROW * ROWS.min(rows.len().max(1) as f32);
     let area = ScrollArea::both().auto_shrink([false, false]).max_height(height);
@@ -51,7 +51,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let said = ui.make_persistent_id("pointed in the tree");
     let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
     if pointed.is_some() && pointed != session.pointed() || was && pointed.is_none() {
-        actions.push(Action::Point(pointed));
+        actions.push(SelectAction::Hover(pointed));
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
     if rows.is_empty() {
@@ -162,7 +162,7 @@ fn respond(
     rows: &[OutlinerRow],
     row: &OutlinerRow,
     response: &Response,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     // Space lets the time go on, here as anywhere.
     let by_space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
@@ -181,7 +181,7 @@ fn respond(
         } else {
             selection = vec![row.joint];
         }
-        actions.push(Action::Select(selection));
+        actions.push(SelectAction::Joints(selection));
     }
     if !response.has_focus() {
         return;
@@ -196,11 +196,11 @@ fn respond(
     let here = rows.iter().position(|row| row.joint == from).unwrap_or(0);
     if by != 0 {
         let to = here.saturating_add_signed(by).min(rows.len() - 1);
-        actions.push(Action::Select(vec![rows[to].joint]));
+        actions.push(SelectAction::Joints(vec![rows[to].joint]));
     }
 }
 
-fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selected();
     let none = selected.is_none().then_some(NONE_SELECTED);
     ui.horizontal_wrapped(|ui| {
@@ -208,10 +208,10 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let tooltip = "Add a joint at the tip of the selected one, else of the last (A). \
                        Ctrl+click in the view puts its tip there";
         if widgets::button(ui, "Add child", tooltip, None) {
-            actions.push(Action::AddJoint { tip: None });
+            actions.push(EditAction::AddJoint { tip: None });
         }
         if widgets::button(ui, "Add root", "Begin another tree with a point that is locked", None) {
-            actions.push(Action::AddRoot);
+            actions.push(EditAction::AddRoot);
         }
         let tooltip = "Delete the selected joints; asks whether their children stay (Delete)";
         if widgets::button(ui, "Delete", tooltip, none) {
@@ -226,7 +226,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
 }
 
-fn target_button(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selected();
     let none = selected.is_none().then_some(NONE_SELECTED);
     let has_target = selected.is_some_and(|joint| session.skeleton_rig().target(joint).is_some());

@@ -3,7 +3,7 @@
 use egui::{ComboBox, RichText, Ui};
 
 use crate::document::{Target, TargetMotion, TargetPath};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, format};
 
 const PATHS: [(TargetPath, &str); 3] = [
@@ -13,7 +13,7 @@ const PATHS: [(TargetPath, &str); 3] = [
 ];
 
 /// Every target in a row.
-pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     if rig.targets.is_empty() {
         ui.weak("No targets yet: select a joint and add one.");
@@ -30,12 +30,12 @@ pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Vec<Acti
                 let check = ui.checkbox(&mut enabled, "").on_hover_text("Whether solvers mind it");
                 ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
                 if check.changed() {
-                    actions.push(Action::SetTarget(Target { enabled, ..*target }));
+                    actions.push(EditAction::SetTarget(Target { enabled, ..*target }));
                 }
                 let selected = session.selected() == Some(target.joint);
                 let label = egui::Button::selectable(selected, &joint.name).truncate();
                 if ui.add(label).on_hover_text("Select its joint").clicked() {
-                    actions.push(Action::Select(vec![target.joint]));
+                    actions.push(SelectAction::Joints(vec![target.joint]));
                 }
             });
         });
@@ -51,7 +51,7 @@ pub(in crate::ui) fn selected(
     ui: &mut Ui,
     session: &Session,
     target: Target,
-    actions: &mut Vec<Action>,
+    actions: &mut Actions,
 ) {
     let step = session.shown().cell() * 0.1;
     place(ui, session, target, step, actions);
@@ -65,7 +65,9 @@ pub(in crate::ui) fn selected(
             digits: 2,
             tooltip,
         };
-        field.show(ui, session, actions, |weight| Action::SetTarget(Target { weight, ..target }));
+        field.show(ui, session, actions, |weight| {
+            EditAction::SetTarget(Target { weight, ..target })
+        });
     });
     moves(ui, target, actions);
     if target.motion.path != TargetPath::Still {
@@ -73,7 +75,7 @@ pub(in crate::ui) fn selected(
     }
 }
 
-fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
+fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
     let place = PointSliders {
         name: "Target",
         labels: AXES,
@@ -84,10 +86,10 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         tooltip: "Where the tip is asked to be, in the world",
         disabled: None,
     };
-    place.show(ui, session, actions, |home| Action::SetTarget(Target { home, ..target }));
+    place.show(ui, session, actions, |home| EditAction::SetTarget(Target { home, ..target }));
 }
 
-fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
+fn moves(ui: &mut Ui, target: Target, actions: &mut Actions) {
     widgets::pair(ui, "Moves", |ui| {
         let now = PATHS.iter().find(|(path, _)| *path == target.motion.path);
         let combo = ComboBox::from_id_salt("moves").selected_text(now.map_or("", |now| now.1));
@@ -95,8 +97,8 @@ fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
             for (path, name) in PATHS {
                 if ui.selectable_label(path == target.motion.path, name).clicked() {
                     let motion = TargetMotion { path, ..target.motion };
-                    actions.push(Action::SetTarget(Target { motion, ..target }));
-                    actions.push(Action::Play(path != TargetPath::Still));
+                    actions.push(EditAction::SetTarget(Target { motion, ..target }));
+                    actions.push(PlaybackAction::Play(path != TargetPath::Still));
                 }
             }
         });
@@ -106,8 +108,8 @@ fn moves(ui: &mut Ui, target: Target, actions: &mut Vec<Action>) {
     });
 }
 
-fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Vec<Action>) {
-    let set = |motion| Action::SetTarget(Target { motion, ..target });
+fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
+    let set = |motion| EditAction::SetTarget(Target { motion, ..target });
     widgets::pair(ui, "Radius", |ui| {
         let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
         NumberField {

@@ -6,21 +6,21 @@ use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInf
 
 use super::can_solve::why_not;
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Action, Runner, Session};
+use crate::session::{Actions, Runner, Session, SolverAction};
 use crate::ui::widgets::{self, format};
 use crate::ui::{labels, style};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.comparison() else {
         let tooltip = "From the present pose to the same targets: each as a ghost in its colour";
         if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
-            actions.push(Action::Comparison(true));
+            actions.push(SolverAction::Compare(true));
         }
         return;
     };
     let tooltip = "Take the ghosts away; the skeleton stays as it is";
     if widgets::button(ui, "End race", tooltip, None) {
-        actions.push(Action::Comparison(false));
+        actions.push(SolverAction::Compare(false));
     }
     Grid::new("race").num_columns(4).min_col_width(20.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
         ui.weak("Solver");

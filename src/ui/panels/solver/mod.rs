@@ -7,12 +7,12 @@ mod convergence;
 use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
-use crate::session::{Action, Session};
+use crate::session::{Actions, EditAction, Session, SolverAction};
 use crate::ui::labels;
 use crate::ui::widgets::{self, NumberField, format};
 use can_solve::why_not;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
         widgets::section(ui, "Solver", |ui| {
@@ -29,7 +29,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Vec<Action
     });
 }
 
-fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     let combo = ComboBox::from_id_salt("method")
         .selected_text(labels::method(options.method))
@@ -39,7 +39,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for method in Method::ALL {
             let item = ui.selectable_label(method == options.method, labels::method(method));
             if item.on_hover_text(labels::method_tooltip(method)).clicked() {
-                actions.push(Action::SetSolver(SolverOptions { method, ..options }));
+                actions.push(EditAction::SetSolver(SolverOptions { method, ..options }));
             }
         }
     });
@@ -48,10 +48,10 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     response.on_hover_text(labels::method_tooltip(options.method));
 }
 
-fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     let options = rig.solver;
-    let set = |options| Action::SetSolver(options);
+    let set = |options| EditAction::SetSolver(options);
     widgets::pair(ui, "Iterations per frame", |ui| {
         let value = rig.iterations_per_frame as f32;
         let tooltip = "How many iterations a running solver makes between two pictures";
@@ -64,7 +64,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             tooltip,
         }
         .show(ui, session, actions, |value| {
-            Action::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
+            EditAction::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
         });
     });
     widgets::pair(ui, "Iterations at most", |ui| {
@@ -113,11 +113,11 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let mut follow = session.preferences().follow;
     let tooltip = "Solve at once while a target is dragged; switch it off to watch the solver run";
     if ui.checkbox(&mut follow, "Follow while dragged").on_hover_text(tooltip).changed() {
-        actions.push(Action::SetFollow(follow));
+        actions.push(SolverAction::SetFollow(follow));
     }
 }
 
-fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     widgets::pair(ui, "Tolerance", |ui| {
         let auto = 1e-4 * session.skeleton_rig().reach();
@@ -127,19 +127,19 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let short = |value: f64| format::short(value as f32);
             NumberField { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
                 .show_as(ui, session, actions, &short, |tolerance| {
-                    Action::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
+                    EditAction::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
                 });
         }
         let mut is_auto = options.tolerance.is_none();
         let tooltip = "A ten-thousandth of the chain's length";
         if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
             let tolerance = (!is_auto).then_some(auto);
-            actions.push(Action::SetSolver(SolverOptions { tolerance, ..options }));
+            actions.push(EditAction::SetSolver(SolverOptions { tolerance, ..options }));
         }
     });
 }
 
-fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let disabled = why_not(session);
     ui.add_space(2.0);
     ui.columns(3, |columns| {
@@ -150,14 +150,14 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let running = session.is_running();
         let name = if running { "Pause solver" } else { "Run" };
         if wide(run, name, "Iterate until it is there (R)", disabled) {
-            actions.push(Action::Run(!running));
+            actions.push(SolverAction::Run(!running));
         }
         if wide(step, "Step", "One iteration (S)", disabled) {
-            actions.push(Action::Step);
+            actions.push(EditAction::StepSolver);
         }
         let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
         if wide(reset, "Reset", "Back to the pose before the solver ran", nothing) {
-            actions.push(Action::ResetSolver);
+            actions.push(EditAction::ResetSolver);
         }
     });
 }

@@ -1,0 +1,82 @@
+use super::{EditAction, PoseMode};
+use crate::document::{Channel, Overlay, RigKind};
+
+impl EditAction {
+    /// Name of its undo step, as in "Undo Move hand".
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::SetHand(_) | Self::SetPin(_) => "Move hand",
+            Self::SetTwist(_) => "Set Socket twist",
+            Self::SetRoot(_) => "Move shoulder",
+            Self::PinHand(true) => "Pin hand",
+            Self::PinHand(false) => "Unpin hand",
+            Self::SetTwistReference(_) => "Change twist reference",
+            Self::SetPole(_) => "Move pole",
+            Self::SetSoftReach(_) => "Change soft reach",
+            Self::SetInfluence(_) => "Blend FK and IK",
+            Self::SwitchPoseMode(PoseMode::Hand) => "Switch to IK",
+            Self::SwitchPoseMode(PoseMode::Angles) => "Switch to FK",
+            Self::SetShoulder(_) => "Turn shoulder",
+            Self::SetBend(_) => "Bend elbow",
+            Self::SetWrist(_) | Self::SetWristSpace(_) => "Turn hand",
+            Self::SetUpper(_) | Self::SetLower(_) => "Change length",
+            Self::ResetPose => "Reset pose",
+            Self::ResetAll => "Reset all",
+            Self::ShowOverlay(overlay, _) => toggle_label(*overlay),
+            Self::ShowRig(RigKind::Arm) => "Show arm",
+            Self::ShowRig(RigKind::Skeleton) => "Show skeleton",
+            Self::AddChild { .. } | Self::AddJoint { .. } => "Add joint",
+            Self::AddRoot => "Add root",
+            Self::DeleteJoints(joints) | Self::DissolveJoints(joints) if joints.len() == 1 => {
+                "Delete joint"
+            }
+            Self::DeleteJoints(_) | Self::DissolveJoints(_) => "Delete joints",
+            Self::RenameJoint { .. } => "Rename joint",
+            Self::ReparentJoint { .. } => "Re-parent joint",
+            Self::SetRotation { .. } => "Turn joint",
+            Self::SetAxis { .. } => "Change bone",
+            Self::SetLimit { .. } => "Change limit",
+            Self::SetLocked { locked: true, .. } => "Lock joint",
+            Self::SetLocked { locked: false, .. } => "Unlock joint",
+            Self::SetFollowPath(_) => "Change path",
+            Self::SetTranslation(_) => "Move skeleton",
+            Self::AddTarget(_) => "Add target",
+            Self::RemoveTarget(_) => "Remove target",
+            Self::SetTarget(_) => "Change target",
+            Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",
+            Self::StepSolver => "Step solver",
+            Self::ResetSolver => "Reset solver",
+            Self::Key(channels) => match channels[..] {
+                [Channel::Hand] => "Key hand",
+                [Channel::Twist] => "Key Socket twist",
+                [..] => "Set keys",
+            },
+            Self::DeleteKeys(_) | Self::ClearChannels(_) => "Delete keys",
+            Self::MoveKeys { .. } => "Move keys",
+            Self::PasteKeys => "Paste keys",
+            Self::SetTimeline(_) => "Change timeline",
+            Self::SetMetres(_) => "Change unit",
+        }
+    }
+}
+
+fn toggle_label(overlay: Overlay) -> &'static str {
+    match overlay {
+        Overlay::Cursor => "Toggle Cursor",
+        Overlay::Pointer => "Toggle Pointer",
+        Overlay::InnerLimit => "Toggle Inner Limit",
+        Overlay::OuterLimit => "Toggle Outer Limit",
+        Overlay::GridXy => "Toggle XY grid",
+        Overlay::GridXz => "Toggle XZ grid",
+        Overlay::GridYz => "Toggle YZ grid",
+        Overlay::Ground => "Toggle ground",
+        Overlay::Axes => "Toggle axes",
+        Overlay::Labels => "Toggle labels",
+        Overlay::Shadow => "Toggle shadow",
+        Overlay::Trail => "Toggle motion trail",
+        Overlay::OnionSkins => "Toggle onion skins",
+        Overlay::Globe => "Toggle singularity globe",
+        Overlay::References => "Toggle references",
+        Overlay::Hand => "Toggle hand",
+    }
+}

@@ -1,0 +1,29 @@
+use std::path::PathBuf;
+
+use super::{Dialog, Export};
+
+/// A request of the session to the program around it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Copies a text to the clipboard.
+    CopyText(String),
+    /// Draws the session into a file.
+    SavePicture(String),
+    /// Starts an export.
+    Export(Export),
+    /// Opens the system's dialog.
+    ChoosePath(Dialog),
+    /// Reads a file.
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// The name of the skeleton, for files with several.
+        skeleton: Option<String>,
+    },
+    /// Writes the document.
+    Save(PathBuf),
+    /// Destroys the graphics device.
+    LoseDevice,
+    /// Ends the program.
+    Quit,
+}

@@ -1,0 +1,8 @@
+/// FK or IK of the arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PoseMode {
+    /// IK (hand → joint angles): the Cursor poses the arm.
+    Hand,
+    /// FK (joint angles → hand): the joint angles pose the arm.
+    Angles,
+}

@@ -1,0 +1,17 @@
+use super::Key;
+use crate::document::Channel;
+
+/// Changes what is selected or copied.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SelectAction {
+    /// Selects these joints and no others; the last one is the active one.
+    Joints(Vec<usize>),
+    /// Sets the joint under the mouse.
+    Hover(Option<usize>),
+    /// Selects these keys and no others.
+    Keys(Vec<Key>),
+    /// Selects these channels and no others.
+    Channels(Vec<Channel>),
+    /// Copies the selected keys.
+    CopyKeys,
+}

@@ -1,0 +1,23 @@
+use super::{Dialog, Navigation};
+use crate::document::Theme;
+
+/// Dialogs, messages and preferences.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShellAction {
+    /// Opens a dialog.
+    OpenDialog(Dialog),
+    /// Closes the dialog.
+    CloseDialog,
+    /// Shows a message.
+    Report(String),
+    /// Shows an error.
+    Fail(String),
+    /// Copies the pose as a line for `ik-arm solve`.
+    CopyPose,
+    /// Sets the theme.
+    SetTheme(Theme),
+    /// Sets the mouse buttons that move the camera.
+    SetNavigation(Navigation),
+    /// Destroys the graphics device, as the reset of a driver does.
+    LoseDevice,
+}

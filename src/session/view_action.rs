@@ -1,0 +1,43 @@
+use glam::Vec2;
+
+use super::Motion;
+use crate::document::Camera;
+use crate::rig::SolvedBy;
+
+/// Changes the camera, the crowd or the open panels. The camera is saved, but not undone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ViewAction {
+    /// Sets the camera at once.
+    SetCamera(Camera),
+    /// Moves the camera smoothly.
+    GlideTo(Camera),
+    /// Begins to drag the camera, from a point of the picture (−1 to 1).
+    Grab(Motion, Vec2),
+    /// Drags the camera.
+    Drag {
+        /// The mouse in the picture, −1 to 1.
+        to: Vec2,
+        /// Width of the picture over its height.
+        aspect: f32,
+    },
+    /// Ends the drag of the camera.
+    Drop,
+    /// Restores the camera from before its drag.
+    Cancel,
+    /// Shows many arms instead of the rig, or the rig.
+    ShowCrowd(bool),
+    /// Sets the number of arms, from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).
+    SetCrowdSize(u32),
+    /// Solves the crowd on the CPU or on the GPU.
+    SetCrowdSolver(SolvedBy),
+    /// Animates or pauses the crowd's targets.
+    AnimateCrowd(bool),
+    /// Measures the holonomy from the present direction of the Pointer.
+    ResetTransport,
+    /// Opens or closes the panel on the right.
+    ShowExplain(bool),
+    /// Opens or closes the timeline.
+    ShowTimeline(bool),
+    /// Shows keys in the graph editor or in the dope sheet.
+    ShowGraphEditor(bool),
+}
