@@ -6,7 +6,9 @@ use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use ik_arm::session::{Action, Preferences, Session};
+use ik_arm::session::{
+    Action, EditAction, PlaybackAction, Preferences, Session, TransactionAction,
+};
 
 const JOINTS: usize = 1000;
 /// Channels that are keyed at once.
@@ -35,11 +37,11 @@ fn session() -> Session {
 }
 
 fn turn(joint: usize, angle: f32) -> Action {
-    Action::SetRotation { joint, rotation: Vec3::splat(angle) }
+    EditAction::SetRotation { joint, rotation: Vec3::splat(angle) }.into()
 }
 
 fn key() -> Action {
-    Action::Key((0..KEYED).map(Channel::Rotation).collect())
+    EditAction::Key((0..KEYED).map(Channel::Rotation).collect()).into()
 }
 
 fn counted(session: &mut Session, action: Action) -> AllocationInfo {
@@ -64,7 +66,7 @@ fn turning_one_joint_copies_the_skeleton_once() {
 #[test]
 fn an_edit_of_something_else_copies_no_skeleton() {
     let mut session = session();
-    let taken = counted(&mut session, Action::SetMetres(Some(2.0))).bytes_total;
+    let taken = counted(&mut session, EditAction::SetMetres(Some(2.0)).into()).bytes_total;
     assert!(taken < 1024, "{taken} bytes");
 }
 
@@ -76,7 +78,7 @@ fn keying_many_channels_takes_the_memory_of_the_keys() {
     assert_eq!(session.document().keys.count(), KEYED);
 
     // An unkeyed edit becomes a key: what is shown copies the skeleton, the document does not.
-    session.apply(Action::SetTime(1.0));
+    session.apply(PlaybackAction::SetTime(1.0));
     session.apply(turn(3, 0.4));
     let taken = counted(&mut session, key()).bytes_total;
     assert!(taken < copy() + KEYED as u64 * BYTES_PER_KEY, "{taken} bytes");
@@ -88,7 +90,7 @@ fn undo_steps_share_what_they_have_in_common() {
     let mut session = session();
     let keyed = measure(|| {
         for second in 0..20 {
-            session.apply(Action::SetTime(f64::from(second)));
+            session.apply(PlaybackAction::SetTime(f64::from(second)));
             session.apply(key());
         }
     });
@@ -98,7 +100,7 @@ fn undo_steps_share_what_they_have_in_common() {
     assert!(kept < 3 * knots, "{kept} bytes, of which {knots} are knots");
 
     for _ in 0..20 {
-        session.apply(Action::Undo);
+        session.apply(TransactionAction::Undo);
     }
     assert!(session.document().keys.is_empty());
     assert!(!session.skeleton().joints()[1].rotation.eq(&Vec3::ZERO), "the turn is left");
