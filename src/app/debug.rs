@@ -1,11 +1,14 @@
 use std::env;
 
-/// What `IK_ARM_DEBUG` asks for, which is for the program's own tests: any value shows what is for
-/// them in the menu Help, and `fail-devices:3` lets the first three devices fail that are made anew
-/// after a loss.
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::keyboard::{KeyCode, PhysicalKey};
+
+/// Faults that `IK_ARM_DEBUG` asks for in the program's own tests: with any value F12 destroys the
+/// graphics device, as the reset of a driver does, and with `fail-devices:3` the first three devices
+/// that are created after a loss fail.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Debug {
-    pub shows_actions: bool,
+    is_on: bool,
     failing_devices: u32,
 }
 
@@ -16,10 +19,26 @@ impl Debug {
 
     fn new(value: &str) -> Self {
         let count = value.strip_prefix("fail-devices:").and_then(|count| count.parse().ok());
-        Self { shows_actions: !value.is_empty(), failing_devices: count.unwrap_or(0) }
+        Self { is_on: !value.is_empty(), failing_devices: count.unwrap_or(0) }
     }
 
-    /// Whether the device that is made now is to fail.
+    /// Whether the event asks to destroy the graphics device.
+    pub fn destroys_device(&self, event: &WindowEvent) -> bool {
+        self.is_on
+            && matches!(
+                event,
+                WindowEvent::KeyboardInput {
+                    event: KeyEvent {
+                        physical_key: PhysicalKey::Code(KeyCode::F12),
+                        state: ElementState::Pressed,
+                        ..
+                    },
+                    ..
+                }
+            )
+    }
+
+    /// Whether the device that is created now fails.
     pub fn fails_device(&mut self) -> bool {
         let fails = self.failing_devices > 0;
         self.failing_devices = self.failing_devices.saturating_sub(1);
@@ -32,17 +51,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_fails_and_nothing_more_is_shown_unless_it_is_asked_for() {
+    fn nothing_fails_unless_it_is_asked_for() {
         let mut debug = Debug::new("");
-        assert!(!debug.shows_actions && !debug.fails_device());
+        assert!(!debug.is_on && !debug.fails_device());
     }
 
     #[test]
     fn as_many_devices_fail_as_are_asked_for() {
         let mut debug = Debug::new("fail-devices:2");
-        assert!(debug.shows_actions);
+        assert!(debug.is_on);
         assert_eq!([(); 4].map(|()| debug.fails_device()), [true, true, false, false]);
         assert!(!Debug::new("fail-devices:many").fails_device());
-        assert!(Debug::new("1").shows_actions && !Debug::new("1").fails_device());
+        assert!(Debug::new("1").is_on && !Debug::new("1").fails_device());
     }
 }

@@ -78,11 +78,6 @@ impl AppWindow {
                 let next = session.apply(saved);
                 return next.is_some_and(|effect| self.carry_out(effect, session, proxy));
             }
-            Effect::LoseDevice => {
-                if let Some(graphics) = &self.graphics {
-                    graphics.gpu.device.destroy();
-                }
-            }
             Effect::Quit => return true,
         }
         false

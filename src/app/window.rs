@@ -88,7 +88,6 @@ impl AppWindow {
         let machine = Machine {
             adapter: graphics.gpu.name(),
             has_clock: graphics.has_clock(),
-            shows_debug_actions: debug.shows_actions,
             ..Machine::default()
         };
         Ok(Self {
@@ -122,6 +121,11 @@ impl AppWindow {
 
     /// Whether the event asks for a frame.
     pub fn on_event(&mut self, event: &WindowEvent) -> bool {
+        if self.debug.destroys_device(event)
+            && let Some(graphics) = &self.graphics
+        {
+            graphics.gpu.device.destroy();
+        }
         self.egui.on_window_event(&self.window, event).repaint
     }
 

@@ -327,7 +327,6 @@ impl Session {
             }
             ShellAction::SetTheme(theme) => self.preferences.theme = theme,
             ShellAction::SetNavigation(navigation) => self.preferences.navigation = navigation,
-            ShellAction::LoseDevice => return Some(Effect::LoseDevice),
         }
         None
     }

@@ -22,8 +22,6 @@ pub enum Effect {
     },
     /// Writes the document.
     Save(PathBuf),
-    /// Destroys the graphics device.
-    LoseDevice,
     /// Ends the program.
     Quit,
 }

@@ -18,6 +18,4 @@ pub enum ShellAction {
     SetTheme(Theme),
     /// Sets the mouse buttons that move the camera.
     SetNavigation(Navigation),
-    /// Destroys the graphics device, as the reset of a driver does.
-    LoseDevice,
 }

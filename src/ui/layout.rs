@@ -17,7 +17,7 @@ pub fn show(
     actions: &mut Actions,
 ) -> Rect {
     keyboard::global(ui, session, actions);
-    Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, machine, actions));
+    Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
     Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, machine, actions));
     if session.preferences().timeline {
         Panel::bottom("timeline")

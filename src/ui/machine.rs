@@ -17,6 +17,4 @@ pub struct Machine {
     pub counts: Option<Counts>,
     /// How long the crowd took that is shown.
     pub crowd: Option<CrowdTimes>,
-    /// Whether the menu Help has what is for tests of the program.
-    pub shows_debug_actions: bool,
 }

@@ -2,7 +2,6 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use super::machine::Machine;
 use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group};
@@ -11,13 +10,13 @@ use crate::session::{
     TransactionAction, ViewAction,
 };
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, session, actions));
         ui.menu_button("Edit", |ui| edit(ui, session, actions));
         ui.menu_button("View", |ui| view(ui, session, actions));
         ui.menu_button("Examples", |ui| examples(ui, actions));
-        ui.menu_button("Help", |ui| help(ui, machine, actions));
+        ui.menu_button("Help", |ui| help(ui, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rig = match session.rig() {
                 RigKind::Arm => match session.arm().influence {
@@ -224,7 +223,7 @@ fn examples_of(group: Group, ui: &mut Ui, actions: &mut Actions) {
     }
 }
 
-fn help(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
+fn help(ui: &mut Ui, actions: &mut Actions) {
     if item(ui, "Shortcuts", "F1") {
         actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
     }
@@ -233,11 +232,5 @@ fn help(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
     }
     if item(ui, "About", "") {
         actions.push(ShellAction::OpenDialog(Dialog::About));
-    }
-    if machine.shows_debug_actions {
-        ui.separator();
-        if item(ui, "Lose the graphics device", "") {
-            actions.push(ShellAction::LoseDevice);
-        }
     }
 }

@@ -213,7 +213,6 @@ kinds! {
         Report: Look 1, |v| ShellAction::Report(v.name());
         Fail: Look 1, |v| ShellAction::Fail(v.name());
         CopyPose: Look 1, |_| ShellAction::CopyPose;
-        LoseDevice: Look 1, |_| ShellAction::LoseDevice;
     }
 }
 

@@ -15,14 +15,11 @@ fn expected(program: &Program) -> RgbImage {
     program.at_rest()
 }
 
-/// Through the menu Help.
-fn lose_device(program: &Program, places: &Places) {
-    let before = program.at_rest();
+/// Through the debug key.
+fn lose_device(program: &Program) {
+    program.at_rest();
     let errors = program.count_errors();
-    program.click(places.help);
-    program
-        .wait_until("the menu opens", |now| changed(&before, now, places.lose_device, 20.0) > 100);
-    program.click(places.lose_device);
+    program.key("F12");
     wait_for("the loss of the device", || (program.count_errors() > errors).then_some(()));
 }
 
@@ -54,7 +51,7 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
     let before = expected(&program);
 
     for _ in 0..4 {
-        lose_device(&program, &places);
+        lose_device(&program);
         assert_comes_back(&program, &before);
     }
     program.drag(places.rail_end, places.thumb);
@@ -80,10 +77,9 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
 #[ignore = "needs a display of its own"]
 fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
     let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
     let program = Program::open_to_debug(folder.path(), "fail-devices:2");
     let before = expected(&program);
-    lose_device(&program, &places);
+    lose_device(&program);
     assert_comes_back(&program, &before);
     program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
@@ -96,7 +92,7 @@ fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_a
     let places = Places::new();
     let program = Program::open_to_debug(folder.path(), "fail-devices:3");
     change(&program, &places);
-    lose_device(&program, &places);
+    lose_device(&program);
     assert_eq!(program.end(), Some(1));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
     let errors = program.errors();

@@ -22,20 +22,16 @@ pub struct Places {
     pub skeleton_switch: egui::Pos2,
     /// The middle of the Human's head, while that is shown.
     pub head: egui::Pos2,
-    pub help: egui::Pos2,
-    /// In the menu Help, while that is open.
-    pub lose_device: egui::Pos2,
 }
 
 impl Places {
     pub fn new() -> Self {
         let session = Session::default();
-        let machine = Machine { shows_debug_actions: true, ..Machine::default() };
-        let mut harness = Harness::builder()
+        let harness = Harness::builder()
             .with_size(egui::vec2(SIZE.0 as f32, SIZE.1 as f32) + 2.0 * HARNESS_MARGIN)
             .with_context_setup(ui::style::install)
             .build_ui(|ui| {
-                ui::show(ui, &Session::default(), &machine, None, &mut Actions::new());
+                ui::show(ui, &Session::default(), &Machine::default(), None, &mut Actions::new());
             });
         let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
         let rail = rail.translate(-HARNESS_MARGIN);
@@ -51,11 +47,6 @@ impl Places {
             .translate(-HARNESS_MARGIN);
         let switch = harness.get_by_role_and_label(egui::accesskit::Role::Button, "Skeleton");
         let skeleton_switch = switch.rect().center() - HARNESS_MARGIN;
-        let help = harness.get_by_label("Help");
-        let help_place = help.rect().center() - HARNESS_MARGIN;
-        help.click();
-        harness.run();
-        let lose_device = harness.get_by_label("Lose the graphics device").rect().center();
         let place_in = |session: &Session, point| {
             let projection = session.camera().projection(viewport.aspect_ratio());
             let at = projection.project(point).expect("in the picture");
@@ -78,8 +69,6 @@ impl Places {
             empty: viewport.left_top() + egui::vec2(40.0, 40.0),
             skeleton_switch,
             head,
-            help: help_place,
-            lose_device: lose_device - HARNESS_MARGIN,
         }
     }
 }
