@@ -1,4 +1,4 @@
-use ik_arm::io::{Past, solve_line};
+use ik_arm::io::{PreviousLine, solve_line};
 use serde_json::Value;
 
 use super::opened::is_readable;
@@ -12,7 +12,7 @@ pub fn json_lines(data: &[u8]) {
     }
 }
 
-fn solve(line: &[u8], past: &mut Option<Past>) {
+fn solve(line: &[u8], past: &mut Option<PreviousLine>) {
     let before = *past;
     match solve_line(line, past) {
         Err(error) => {
@@ -41,7 +41,7 @@ impl Asked {
         let line: Value = serde_json::from_slice(line).expect("a good line is JSON");
         let number = |key: &str, usual: f64| line.get(key).map_or(usual, as_f32);
         let max_stretch = number("max_stretch", 1.0);
-        let softened = ["softness", "min_elbow_deg"].map(|key| number(key, 0.0));
+        let softened = ["softness", "min_elbow_angle_deg"].map(|key| number(key, 0.0));
         Self {
             hand: point(&line["hand"]),
             root: line.get("root").map_or([0.0; 3], point),

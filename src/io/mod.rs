@@ -39,7 +39,7 @@ pub use file_batch::FileBatch;
 pub use format::{save, to_json};
 pub use frames::{Frames, Playback};
 pub use gltf::{GlbError, glb};
-pub use line::{Answer, LONGEST_LINE, LineError, Past, solve_line};
+pub use line::{Answer, LineError, PreviousLine, solve_line};
 pub use motion::{Exported, MotionError};
 pub use open::{open, parse, read};
 pub use opened::Opened;

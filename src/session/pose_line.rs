@@ -20,21 +20,21 @@ pub(super) fn of(arm: &Arm) -> String {
     say("upper", json!(arm.bones.upper()));
     say("lower", json!(arm.bones.lower()));
     say("root", json!(arm.root.to_array()));
-    say("elbow_spin_deg", json!(spin_alone(&arm).to_degrees()));
+    say("twist_deg", json!(spin_alone(&arm).to_degrees()));
     match arm.twist_reference {
         TwistReferenceKind::Limb => None,
-        TwistReferenceKind::Pole => say("swivel", json!({ "pole": arm.pole.to_array() })),
+        TwistReferenceKind::Pole => say("reference", json!({ "pole": arm.pole.to_array() })),
         TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
-            say("swivel", json!("stereographic"))
+            say("reference", json!("stereographic"))
         }
     };
     let (soft_reach, seed) = (arm.soft_reach, SoftReach::default());
     // Just below a half turn in radians may be one in degrees.
-    let min_elbow_deg = soft_reach.min_elbow_angle().to_degrees().min(180.0_f32.next_down());
+    let min_elbow_angle_deg = soft_reach.min_elbow_angle().to_degrees().min(180.0_f32.next_down());
     for (field, value, usual) in [
         ("softness", soft_reach.softness(), seed.softness()),
         ("max_stretch", soft_reach.max_stretch(), seed.max_stretch()),
-        ("min_elbow_deg", min_elbow_deg, seed.min_elbow_angle()),
+        ("min_elbow_angle_deg", min_elbow_angle_deg, seed.min_elbow_angle()),
     ] {
         if value != usual {
             say(field, json!(value));

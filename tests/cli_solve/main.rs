@@ -101,7 +101,7 @@ struct Answer {
     out: f32,
     // Null, not missing.
     #[serde(deserialize_with = "Option::deserialize")]
-    swivel_gain: Option<f32>,
+    reference_gain: Option<f32>,
     elbow_angle_deg: f32,
 }
 
@@ -133,7 +133,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
         [concat!(
             r#"{"reach":"reached","elbow":[210.0,20.0,30.0],"hand":[510.0,20.0,30.0],"#,
             r#""distance":500.0,"theta_z_deg":0.0,"theta_y_deg":0.0,"theta_e_deg":0.0,"#,
-            r#""along":200.0,"out":0.0,"swivel_gain":0.0,"elbow_angle_deg":180.0}"#
+            r#""along":200.0,"out":0.0,"reference_gain":0.0,"elbow_angle_deg":180.0}"#
         )]
     );
 }
@@ -141,8 +141,8 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
 #[test]
 fn what_a_line_leaves_out_is_the_arm_of_the_seed_at_the_origin() {
     let full = concat!(
-        r#"{"min_elbow_deg":0,"max_stretch":1,"softness":0,"swivel":"limb","#,
-        r#""elbow_spin_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#
+        r#"{"min_elbow_angle_deg":0,"max_stretch":1,"softness":0,"reference":"limb","#,
+        r#""twist_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#
     );
     assert_eq!(answers(&solve(POSE)), answers(&solve(full)));
 }
@@ -164,7 +164,7 @@ fn each_line_is_solved_on_its_own() {
 
 #[test]
 fn a_huge_spin_is_reduced_exactly_before_it_becomes_radians() {
-    let spun = |spin: f32| pose(&format!(r#"{{"hand":[250,120,60],"elbow_spin_deg":{spin:e}}}"#));
+    let spun = |spin: f32| pose(&format!(r#"{{"hand":[250,120,60],"twist_deg":{spin:e}}}"#));
     assert_eq!(spun(360.0 * 4096.0 + 90.0).elbow, spun(90.0).elbow);
     assert_eq!(spun(1e30).elbow, spun(1e30 % 360.0).elbow);
     assert_eq!(spun(-f32::MAX).elbow, spun(-f32::MAX % 360.0).elbow);
@@ -239,12 +239,12 @@ impl Asked {
         // What a line leaves out, said.
         let as_before = [
             "",
-            r#","swivel":"limb""#,
+            r#","reference":"limb""#,
             r#","softness":0,"max_stretch":1"#,
-            r#","min_elbow_deg":0,"swivel":"limb","softness":-0.0,"max_stretch":1.0"#,
+            r#","min_elbow_angle_deg":0,"reference":"limb","softness":-0.0,"max_stretch":1.0"#,
         ][random.below(4)];
         format!(
-            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"elbow_spin_deg":{spin}{as_before}}}"#
+            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"twist_deg":{spin}{as_before}}}"#
         )
     }
 
@@ -283,7 +283,7 @@ fn check_shortest(answer: &str) {
     let is_number = |token: &&str| token.starts_with(|c: char| c == '-' || c.is_ascii_digit());
     let tokens: Vec<&str> =
         answer.split([':', ',', '[', ']', '{', '}']).filter(is_number).collect();
-    let numbers = if answer.contains(r#""swivel_gain":null"#) { 13 } else { 14 };
+    let numbers = if answer.contains(r#""reference_gain":null"#) { 13 } else { 14 };
     assert_eq!(tokens.len(), numbers, "{answer}");
     for token in tokens {
         let value: f32 = token.parse().expect("it is a number");
@@ -340,8 +340,8 @@ fn a_line_that_is_json_but_no_object_is_refused() {
 #[test]
 fn a_missing_unknown_or_duplicate_field_is_named() {
     let fields = concat!(
-        "`hand`, `upper`, `lower`, `root`, `elbow_spin_deg`, ",
-        "`swivel`, `softness`, `max_stretch`, `min_elbow_deg`"
+        "`hand`, `upper`, `lower`, `root`, `twist_deg`, ",
+        "`reference`, `softness`, `max_stretch`, `min_elbow_angle_deg`"
     );
     for (line, error) in [
         ("{}", "missing field `hand`".to_owned()),
@@ -351,6 +351,18 @@ fn a_missing_unknown_or_duplicate_field_is_named() {
         (r#"{"hnad":[1,2,3]}"#, format!("unknown field `hnad`, expected one of {fields}")),
         (r#"{"Hand":[1,2,3]}"#, format!("unknown field `Hand`, expected one of {fields}")),
         (r#"{"hand":[1,2,3],"":0}"#, format!("unknown field ``, expected one of {fields}")),
+        (
+            r#"{"hand":[1,2,3],"elbow_spin_deg":0}"#,
+            "unknown field `elbow_spin_deg`; it is called `twist_deg`".to_owned(),
+        ),
+        (
+            r#"{"swivel":"limb","hand":[1,2,3]}"#,
+            "unknown field `swivel`; it is called `reference`".to_owned(),
+        ),
+        (
+            r#"{"hand":[1,2,3],"min_elbow_deg":5}"#,
+            "unknown field `min_elbow_deg`; it is called `min_elbow_angle_deg`".to_owned(),
+        ),
     ] {
         assert_eq!(refusal(line), error, "{line}");
     }
@@ -363,11 +375,7 @@ fn a_mistyped_field_is_named_with_what_it_is_and_should_be() {
         ("upper", "null", "upper: invalid type: null, expected a number"),
         ("lower", "[300]", "lower: invalid type: sequence, expected a number"),
         ("lower", "{}", "lower: invalid type: map, expected a number"),
-        (
-            "elbow_spin_deg",
-            "true",
-            "elbow_spin_deg: invalid type: boolean `true`, expected a number",
-        ),
+        ("twist_deg", "true", "twist_deg: invalid type: boolean `true`, expected a number"),
         ("root", "null", "root: invalid type: null, expected three numbers: [x, y, z]"),
         ("root", "5", "root: invalid type: integer `5`, expected three numbers: [x, y, z]"),
         ("root", "{\"x\":1}", "root: invalid type: map, expected three numbers: [x, y, z]"),
@@ -397,18 +405,18 @@ fn a_wrong_count_of_numbers_is_counted() {
 
 #[test]
 fn a_number_that_is_not_finite_in_f32_is_refused() {
-    let range = "it must be between -3.4028235e38 and 3.4028235e38";
+    let range = "must be between -3.4028235e38 and 3.4028235e38";
     let whole = format!("1{}", "0".repeat(39));
     for number in ["1e39", "-1e39", "3.4028236e38", "1e999", "-1e9999999999999", &whole] {
         for (field, before, after) in [
             ("hand[1]", r#"{"hand":[1,"#, ",3]}"),
             ("root[2]", r#"{"hand":[1,2,3],"root":[1,2,"#, "]}"),
             ("upper", r#"{"hand":[1,2,3],"upper": "#, " }"),
-            ("elbow_spin_deg", r#"{"elbow_spin_deg":"#, r#","hand":[1,2,3]}"#),
+            ("twist_deg", r#"{"twist_deg":"#, r#","hand":[1,2,3]}"#),
         ] {
             assert_eq!(
                 refusal(format!("{before}{number}{after}")),
-                format!("{field}: {number} is out of range; {range}")
+                format!("{field}: {range}, got {number}")
             );
         }
     }
@@ -426,7 +434,7 @@ fn a_length_that_is_not_above_0_is_refused() {
     ] {
         assert_eq!(
             refusal(format!(r#"{{"hand":[1,2,3],"{field}":{value}}}"#)),
-            format!("{field}: length is {shown}; it must be a finite number above 0")
+            format!("{field}: must be finite and above 0, got {shown}")
         );
     }
 }
@@ -488,7 +496,7 @@ fn a_line_longer_than_64_kib_is_refused_and_the_next_is_solved() {
             (3_000_000, true),
         ] {
             let output = solve(format!("{}{end}{POSE}{end}", spaced(length)));
-            let long = (1, "the line is longer than 64 KiB; a pose needs far less".to_owned());
+            let long = (1, "the line must be at most 64 KiB long".to_owned());
             assert_eq!(errors(&output), Vec::from_iter(bad.then_some(long)), "{length} {end:?}");
             assert_eq!(answers(&output).len(), 2);
         }
@@ -728,7 +736,7 @@ fn any_piece() -> impl Strategy<Value = &'static str> {
         "\"hand\":",
         "\"upper\":",
         "\"root\":",
-        "\"swivel\":",
+        "\"reference\":",
         "\"transport\"",
         "{\"pole\":[0,1,0]}",
         "\"softness\":",
@@ -765,11 +773,11 @@ fn any_valid_line() -> impl Strategy<Value = String> {
     let stretch = number().prop_map(|n| n.abs().max(1.0));
     let fields = (
         optional("upper", length.prop_map(|n| format!("{n:e}"))),
-        optional("elbow_spin_deg", number().prop_map(|n| n.to_string())),
-        optional("swivel", twist_reference),
+        optional("twist_deg", number().prop_map(|n| n.to_string())),
+        optional("reference", twist_reference),
         optional("softness", (0.0..1.0_f32).prop_map(|n| n.to_string())),
         optional("max_stretch", stretch.prop_map(|n| format!("{n:e}"))),
-        optional("min_elbow_deg", (0.0..180.0_f32).prop_map(|n| n.to_string())),
+        optional("min_elbow_angle_deg", (0.0..180.0_f32).prop_map(|n| n.to_string())),
     );
     (prop::array::uniform3(number()), fields).prop_map(|([x, y, z], (a, b, c, d, e, f))| {
         format!("{{\"hand\":[{x:e},{y:e},{z}]{a}{b}{c}{d}{e}{f}}}")

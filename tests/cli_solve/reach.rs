@@ -16,7 +16,7 @@ struct Asked {
     lower: f32,
     softness: f32,
     max_stretch: f32,
-    min_elbow_deg: f32,
+    min_elbow_angle_deg: f32,
 }
 
 /// What the formulas say of it, in f64.
@@ -30,20 +30,20 @@ struct Twin {
 
 impl Asked {
     fn line(&self) -> String {
-        let Self { hand, root, upper, lower, softness, max_stretch, min_elbow_deg } = self;
+        let Self { hand, root, upper, lower, softness, max_stretch, min_elbow_angle_deg } = self;
         let (hand, root) = (hand.to_array(), root.to_array());
         format!(
             concat!(
                 r#"{{"hand":{:?},"root":{:?},"upper":{},"lower":{},"#,
-                r#""softness":{},"max_stretch":{},"min_elbow_deg":{}}}"#
+                r#""softness":{},"max_stretch":{},"min_elbow_angle_deg":{}}}"#
             ),
-            hand, root, upper, lower, softness, max_stretch, min_elbow_deg
+            hand, root, upper, lower, softness, max_stretch, min_elbow_angle_deg
         )
     }
 
     fn twin(&self) -> Twin {
         let [d1, d2, s, longest_stretch, degrees] =
-            [self.upper, self.lower, self.softness, self.max_stretch, self.min_elbow_deg]
+            [self.upper, self.lower, self.softness, self.max_stretch, self.min_elbow_angle_deg]
                 .map(f64::from);
         let d = self.hand.as_dvec3().length();
         let longest = d1 + d2;
@@ -119,7 +119,7 @@ fn reaching(random: &mut Random) -> Asked {
         lower,
         softness: edge_or(random, 0.0, 0.0..0.999),
         max_stretch: edge_or(random, 1.0, 1.0..2.0),
-        min_elbow_deg: edge_or(random, 0.0, 0.0..179.0),
+        min_elbow_angle_deg: edge_or(random, 0.0, 0.0..179.0),
     }
 }
 
@@ -205,7 +205,7 @@ fn a_soft_arm_that_stretches_is_bent_and_reaches_all_the_same() {
 #[test]
 fn the_elbow_is_never_closed_more_than_it_may_be() {
     for degrees in [0.0, 1.0, 30.0, 90.0, 150.0, 179.0_f32] {
-        let open = |distance| along_x(distance, &format!(r#","min_elbow_deg":{degrees}"#));
+        let open = |distance| along_x(distance, &format!(r#","min_elbow_angle_deg":{degrees}"#));
         let cos = f64::from(degrees).to_radians().cos();
         let least = (200.0_f64.powi(2) + 300.0_f64.powi(2) - 2.0 * 200.0 * 300.0 * cos).sqrt();
         for asked in [0.0, 0.5 * least, 0.999 * least] {
@@ -238,12 +238,12 @@ fn a_number_out_of_its_range_is_refused_with_the_range() {
     for (field, range, values) in [
         ("softness", "from 0 to less than 1", ["1", "1.5", "-0.5", "-0.001"]),
         ("max_stretch", "a finite number, 1 or more", ["0", "0.5", "-2", "0.999"]),
-        ("min_elbow_deg", "from 0 to less than 180°", ["180", "200", "-1", "-0.25"]),
+        ("min_elbow_angle_deg", "from 0 to less than 180°", ["180", "200", "-1", "-0.25"]),
     ] {
         for value in values {
             assert_eq!(
                 refusal(format!(r#"{{"hand":[1,2,3],"{field}":{value}}}"#)),
-                format!("{field}: is {value}; it must be {range}")
+                format!("{field}: must be {range}, got {value}")
             );
         }
         assert_eq!(
@@ -256,9 +256,7 @@ fn a_number_out_of_its_range_is_refused_with_the_range() {
         );
         assert_eq!(
             refusal(format!(r#"{{"hand":[1,2,3],"{field}":1e39}}"#)),
-            format!(
-                "{field}: 1e39 is out of range; it must be between -3.4028235e38 and 3.4028235e38"
-            )
+            format!("{field}: must be between -3.4028235e38 and 3.4028235e38, got 1e39")
         );
         assert_eq!(
             refusal(format!(r#"{{"hand":[1,2,3],"{field}":1,"{field}":1}}"#)),
@@ -272,8 +270,8 @@ fn the_largest_and_smallest_of_each_are_right() {
     for fields in [
         r#""softness":0.99999994"#,
         r#""max_stretch":3.4028235e38"#,
-        r#""min_elbow_deg":179.99998"#,
-        r#""softness":1e-45,"max_stretch":1,"min_elbow_deg":1e-45"#,
+        r#""min_elbow_angle_deg":179.99998"#,
+        r#""softness":1e-45,"max_stretch":1,"min_elbow_angle_deg":1e-45"#,
     ] {
         for hand in ["[0,0,0]", "[1e-45,0,0]", "[250,120,60]", "[3.4028235e38,0,0]"] {
             let answer = pose(&format!(r#"{{"hand":{hand},{fields}}}"#));

@@ -13,7 +13,7 @@ const LONGEST: f64 = 500.0;
 /// A line with a hand and a swivel, written as JSON.
 fn line(hand: Vec3, twist_reference: &str) -> String {
     let Vec3 { x, y, z } = hand;
-    format!(r#"{{"hand":[{x},{y},{z}],"swivel":{twist_reference}}}"#)
+    format!(r#"{{"hand":[{x},{y},{z}],"reference":{twist_reference}}}"#)
 }
 
 fn transported(hand: Vec3) -> String {
@@ -96,7 +96,7 @@ fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
             let Vec3 { x, y, z } = hand;
             let twist_reference = &formula.twist_reference;
             lines.push(format!(
-                r#"{{"hand":[{x},{y},{z}],"elbow_spin_deg":{spin},"swivel":{twist_reference}}}"#
+                r#"{{"hand":[{x},{y},{z}],"twist_deg":{spin},"reference":{twist_reference}}}"#
             ));
             asked.push((hand.as_dvec3(), at.as_dvec3(), f64::from(spin), formula));
         }
@@ -110,7 +110,7 @@ fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
             continue;
         }
         checked += 1;
-        let printed = f64::from(answer.swivel_gain.expect("a small gain is a number"));
+        let printed = f64::from(answer.reference_gain.expect("a small gain is a number"));
         let off = (printed - gain).abs();
         assert!(off < 5e-7 * (1.0 + gain * gain), "{twist_reference}: {printed}, not {gain}");
 
@@ -129,14 +129,14 @@ fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
 
 #[test]
 fn a_pole_is_relative_to_the_root() {
-    let towards_z = r#""hand":[300,0,0],"swivel":{"pole":[0,0,50]}"#;
+    let towards_z = r#""hand":[300,0,0],"reference":{"pole":[0,0,50]}"#;
     let at_origin = pose(&format!("{{{towards_z}}}"));
     // In the world such a pole would be on the other side.
     let moved = pose(&format!(r#"{{{towards_z},"root":[64,-128,1024]}}"#));
     assert!(outward(&at_origin).distance(DVec3::Z) < 1e-6, "{at_origin:?}");
     let back = moved.elbow.as_dvec3() - DVec3::new(64.0, -128.0, 1024.0);
     assert!(back.distance(at_origin.elbow.as_dvec3()) < 2e-4, "{moved:?}");
-    assert_eq!(moved.swivel_gain, at_origin.swivel_gain);
+    assert_eq!(moved.reference_gain, at_origin.reference_gain);
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn where_a_swivel_is_singular_the_gain_is_null_and_the_elbow_as_the_limbs() {
         let elsewhere = transported(Vec3::new(10.0, -20.0, 300.0));
         let lines = [elsewhere, line(hand, &twist_reference), line(hand, r#""limb""#)];
         let [_, singular, limb] = poses(&lines).try_into().expect("three poses");
-        assert_eq!(singular.swivel_gain, None, "{twist_reference} at {hand}");
+        assert_eq!(singular.reference_gain, None, "{twist_reference} at {hand}");
         let off = singular.elbow.distance(limb.elbow);
         assert!(f64::from(off) < 1e-6 * LONGEST, "{twist_reference} at {hand}: off by {off}");
     }
@@ -168,7 +168,7 @@ fn beside_a_singular_direction_the_gain_is_a_number() {
         (r#""stereographic""#.to_owned(), Vec3::new(-400.0, 0.2, 0.0)),
         (pole(Vec3::new(0.0, 0.0, -9.0)), Vec3::new(0.1, 0.0, -400.0)),
     ] {
-        let gain = pose(&line(hand, &twist_reference)).swivel_gain.expect("a number");
+        let gain = pose(&line(hand, &twist_reference)).reference_gain.expect("a number");
         assert!((gain - 4000.0).abs() < 1.0, "{twist_reference}: {gain}");
     }
 }
@@ -206,7 +206,7 @@ fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
             }
             let off = turn(e, outward(answer), w[step]).abs();
             assert!(off < 1e-5, "off by {off} after {step} lines around {axis}");
-            assert_eq!(answer.swivel_gain, Some(0.0));
+            assert_eq!(answer.reference_gain, Some(0.0));
         }
         // The holonomy: the area of the cap, less what a circle of 90 corners cuts off.
         let turned = turn(outward(&poses[0]), outward(&poses[STEPS]), w[0]);
@@ -223,7 +223,7 @@ fn a_transported_elbow_is_spun_from_what_is_carried_without_the_spin() {
     let lines: Vec<String> = hands.iter().map(|hand| transported(*hand)).collect();
     let spin = |(step, line): (usize, &String)| {
         let spin = 25.0 * step as f64;
-        line.replace('}', &format!(r#","elbow_spin_deg":{spin}}}"#))
+        line.replace('}', &format!(r#","twist_deg":{spin}}}"#))
     };
     let spun: Vec<String> = lines.iter().enumerate().map(spin).collect();
     for (step, (plain, spun)) in poses(&lines).iter().zip(poses(&spun)).enumerate() {
@@ -251,12 +251,12 @@ fn what_is_carried_survives_bad_and_blank_lines() {
         "x",
         "{}",
         r#"{"hand":[1,2]}"#,
-        r#"{"hand":[0,0,300],"swivel":"limb","upper":0}"#,
-        r#"{"hand":[0,0,300],"swivel":"limp"}"#,
-        r#"{"hand":[0,0,300],"swivel":"transport","softness":1}"#,
-        r#"{"hand":[0,0,300],"swivel":"transport"} x"#,
+        r#"{"hand":[0,0,300],"reference":"limb","upper":0}"#,
+        r#"{"hand":[0,0,300],"reference":"limp"}"#,
+        r#"{"hand":[0,0,300],"reference":"transport","softness":1}"#,
+        r#"{"hand":[0,0,300],"reference":"transport"} x"#,
         // It has a pose, but none in the world.
-        r#"{"hand":[0,0,-3e38],"root":[0,0,-3e38],"lower":3e38,"swivel":"transport"}"#,
+        r#"{"hand":[0,0,-3e38],"root":[0,0,-3e38],"lower":3e38,"reference":"transport"}"#,
         r#"{"hand":[0,0,-3e38],"root":[0,0,-3e38],"lower":3e38}"#,
         &long,
     ] {
@@ -272,9 +272,12 @@ fn what_is_carried_survives_bad_and_blank_lines() {
 fn transport_starts_again_after_a_line_with_another_swivel() {
     let [first, second, third] = way();
     let alone = answers(&solve(&third));
-    for other in
-        ["", r#","swivel":"limb""#, r#","swivel":{"pole":[1,2,3]}"#, r#","swivel":"stereographic""#]
-    {
+    for other in [
+        "",
+        r#","reference":"limb""#,
+        r#","reference":{"pole":[1,2,3]}"#,
+        r#","reference":"stereographic""#,
+    ] {
         let other = format!(r#"{{"hand":[100,200,300]{other}}}"#);
         let interrupted = answers(&solve(format!("{first}\n{second}\n{other}\n{third}")));
         assert_eq!(interrupted[3..], alone, "{other}");
@@ -285,10 +288,8 @@ fn transport_starts_again_after_a_line_with_another_swivel() {
 #[test]
 fn transport_goes_on_across_arms_roots_and_softness() {
     let [first, second, third] = way();
-    let changed = second.replace(
-        '}',
-        r#","upper":900,"lower":30,"root":[5,6,7],"softness":0.5,"elbow_spin_deg":77}"#,
-    );
+    let changed = second
+        .replace('}', r#","upper":900,"lower":30,"root":[5,6,7],"softness":0.5,"twist_deg":77}"#);
     let whole = answers(&solve(format!("{first}\n{second}\n{third}")));
     let answers = answers(&solve(format!("{first}\n{changed}\n{third}")));
     assert_ne!(answers[1], whole[1]);
@@ -349,44 +350,50 @@ fn a_swivel_that_there_is_not_is_told_which_there_are() {
         (r#"["limb"]"#, "invalid type: sequence"),
     ] {
         let error = refusal(line(Vec3::ONE, twist_reference));
-        assert_eq!(error, format!("swivel: {found}, {all}"));
+        assert_eq!(error, format!("reference: {found}, {all}"));
     }
 }
 
 #[test]
 fn a_pole_that_is_no_point_is_named_with_what_it_should_be() {
-    let range = "it must be between -3.4028235e38 and 3.4028235e38";
+    let range = "must be between -3.4028235e38 and 3.4028235e38";
     for (twist_reference, error) in [
-        ("{}", "swivel: missing field `pole`".to_owned()),
-        (r#"{"pol":[0,1,0]}"#, "swivel.pol: unknown field `pol`, expected `pole`".to_owned()),
-        (r#"{"limb":null}"#, "swivel.limb: unknown field `limb`, expected `pole`".to_owned()),
-        (r#"{"pole":[0,1,0],"up":1}"#, "swivel.up: unknown field `up`, expected `pole`".to_owned()),
-        (r#"{"pole":[0,1,0],"pole":[0,1,0]}"#, "swivel: duplicate field `pole`".to_owned()),
-        (r#"{"pole":[]}"#, "swivel.pole: found 0 numbers, expected three: [x, y, z]".to_owned()),
-        (r#"{"pole":[0,1]}"#, "swivel.pole: found 2 numbers, expected three: [x, y, z]".to_owned()),
+        ("{}", "reference: missing field `pole`".to_owned()),
+        (r#"{"pol":[0,1,0]}"#, "reference.pol: unknown field `pol`, expected `pole`".to_owned()),
+        (r#"{"limb":null}"#, "reference.limb: unknown field `limb`, expected `pole`".to_owned()),
+        (
+            r#"{"pole":[0,1,0],"up":1}"#,
+            "reference.up: unknown field `up`, expected `pole`".to_owned(),
+        ),
+        (r#"{"pole":[0,1,0],"pole":[0,1,0]}"#, "reference: duplicate field `pole`".to_owned()),
+        (r#"{"pole":[]}"#, "reference.pole: found 0 numbers, expected three: [x, y, z]".to_owned()),
+        (
+            r#"{"pole":[0,1]}"#,
+            "reference.pole: found 2 numbers, expected three: [x, y, z]".to_owned(),
+        ),
         (
             r#"{"pole":[0,1,0,0]}"#,
-            "swivel.pole: found 4 numbers, expected three: [x, y, z]".to_owned(),
+            "reference.pole: found 4 numbers, expected three: [x, y, z]".to_owned(),
         ),
         (
             r#"{"pole":null}"#,
-            "swivel.pole: invalid type: null, expected three numbers: [x, y, z]".to_owned(),
+            "reference.pole: invalid type: null, expected three numbers: [x, y, z]".to_owned(),
         ),
         (
             r#"{"pole":[0,"1",0]}"#,
-            r#"swivel.pole[1]: invalid type: string "1", expected a number"#.to_owned(),
+            r#"reference.pole[1]: invalid type: string "1", expected a number"#.to_owned(),
         ),
-        (r#"{"pole":[0,1e39,0]}"#, format!("swivel.pole[1]: 1e39 is out of range; {range}")),
-        (r#"{"pole":[0,0,-1e999]}"#, format!("swivel.pole[2]: -1e999 is out of range; {range}")),
+        (r#"{"pole":[0,1e39,0]}"#, format!("reference.pole[1]: {range}, got 1e39")),
+        (r#"{"pole":[0,0,-1e999]}"#, format!("reference.pole[2]: {range}, got -1e999")),
         (
             r#"{"pole":[NaN,0,0]}"#,
-            "swivel.pole[0]: not JSON: expected value, found `NaN` (byte 35)".to_owned(),
+            "reference.pole[0]: not JSON: expected value, found `NaN` (byte 38)".to_owned(),
         ),
     ] {
         assert_eq!(refusal(line(Vec3::ONE, twist_reference)), error, "{twist_reference}");
     }
     assert_eq!(
-        refusal(r#"{"hand":[1,2,3],"swivel":"limb","swivel":"limb"}"#),
-        "duplicate field `swivel`"
+        refusal(r#"{"hand":[1,2,3],"reference":"limb","reference":"limb"}"#),
+        "duplicate field `reference`"
     );
 }

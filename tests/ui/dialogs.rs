@@ -144,7 +144,7 @@ fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
             "root": [1.0, 2.0, 3.0],
             "upper": 123.5,
             "lower": 300.0,
-            "elbow_spin_deg": 1.0_f32.to_degrees(),
+            "twist_deg": 1.0_f32.to_degrees(),
         });
         assert_eq!(pose, expected);
         assert!(bench.says("Pose copied"));
@@ -168,12 +168,12 @@ fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
         EditAction::SetPole(Vec3::new(1.0, 2.0, 3.0)),
         EditAction::SetSoftReach(soft_reach),
     ]);
-    assert_eq!(line["swivel"], json!({ "pole": [1.0, 2.0, 3.0] }));
+    assert_eq!(line["reference"], json!({ "pole": [1.0, 2.0, 3.0] }));
     assert_eq!(line["softness"], json!(0.25_f32));
     assert_eq!(line["max_stretch"], json!(1.5_f32));
-    assert_eq!(line["min_elbow_deg"], json!(0.5_f32.to_degrees()));
+    assert_eq!(line["min_elbow_angle_deg"], json!(0.5_f32.to_degrees()));
     let transported = copied([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
-    assert_eq!(transported["swivel"], json!("stereographic"), "a line has no past");
+    assert_eq!(transported["reference"], json!("stereographic"), "a line has no past");
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_copied_pose_has_its_elbow_where_only_the_arms_past_says() {
     // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
     let upwards =
         [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(EditAction::SetHand);
-    let spin = copied(upwards)["elbow_spin_deg"].as_f64().expect("a number");
+    let spin = copied(upwards)["twist_deg"].as_f64().expect("a number");
     let elbow = TwoBone::new(200.0, 300.0).expect("lengths");
     let elbow = elbow.solve(Vec3::Y * 300.0, spin.to_radians() as f32).elbow;
     assert!(elbow.z < -100.0 && elbow.x.abs() < 1e-3, "{elbow}");

@@ -194,7 +194,7 @@ fn without_selected_keys_the_pose_is_copied() {
     let mut bench = keyed();
     bench.frame([Event::Copy]);
     let effects = bench.effects();
-    assert!(matches!(&effects[..], [Effect::CopyText(text)] if text.contains("elbow_spin_deg")));
+    assert!(matches!(&effects[..], [Effect::CopyText(text)] if text.contains("twist_deg")));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `ik-arm solve`: poses as JSON Lines, each line on its own unless its swivel is transported.
+//! `ik-arm solve`: poses as JSON Lines, each line on its own unless its twist is transported.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -8,28 +8,28 @@ use std::process::ExitCode;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::io::{LONGEST_LINE, solve_line};
+use crate::io::{LineError, solve_line};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 #[derive(clap::Args)]
 #[command(after_help = r#"Each line in is an object; only "hand" (relative to root) is required:
-  {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"elbow_spin_deg":0,
-   "swivel":"limb","softness":0,"max_stretch":1,"min_elbow_deg":0}
-swivel, what the elbow's spin is measured from:
+  {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"twist_deg":0,
+   "reference":"limb","softness":0,"max_stretch":1,"min_elbow_angle_deg":0}
+reference, the direction that the twist is measured from:
   "limb"            up, as far as the hand's direction lets it
   {"pole":[x,y,z]}  towards a point, relative to root
-  "stereographic"   as on a map of all directions but -x
-  "transport"       from there at first, then carried along from line to line; a bad line changes
-                    nothing, and after a line with another swivel it starts again
-softness, 0 to less than 1, lets the hand lag before its limits; the limbs become up to max_stretch
-(1 or more) times as long where it would; min_elbow_deg, 0 to less than 180, keeps the elbow open.
+  "stereographic"   from a stereographic map of all directions but -x
+  "transport"       as stereographic in the first line, then transported from line to line; a bad
+                    line changes nothing, and a line with another reference restarts it
+softness (0 to less than 1) slows the hand before its limits; max_stretch (1 or more) lengthens the
+limbs instead; min_elbow_angle_deg (0 to less than 180) keeps the elbow open.
 Each line out is a pose, with elbow and hand in the world:
   {"reach":"reached|too_far|too_close","elbow":[x,y,z],"hand":[x,y,z],"distance":D,
    "theta_z_deg":…,"theta_y_deg":…,"theta_e_deg":…,"along":…,"out":…,
-   "swivel_gain":…,"elbow_angle_deg":…}
-distance is from the shoulder to that hand. swivel_gain is how many times as far as the hand's
-direction the elbow turns, at worst; it is null where that has no bound.
+   "reference_gain":…,"elbow_angle_deg":…}
+distance is from the shoulder to that hand. reference_gain is the largest ratio of the elbow's turn to
+the turn of the hand's direction; it is null where that has no bound.
 A bad line gives {"line":N,"error":"…"} in its place; the exit code is then 1."#)]
 pub struct Args {
     /// File of poses, or - for standard input
@@ -120,7 +120,7 @@ impl Input {
     }
 
     fn new(name: String, reader: Box<dyn Read>) -> Self {
-        let reader = BufReader::with_capacity(LONGEST_LINE, reader);
+        let reader = BufReader::with_capacity(LineError::MAX_LENGTH, reader);
         Self { name, reader, line: Vec::new(), number: 0 }
     }
 
@@ -142,7 +142,7 @@ impl Input {
 
     /// False at the end of the input. Of a line that is too long only the start is kept.
     fn read_line(&mut self) -> io::Result<bool> {
-        let longest = LONGEST_LINE + b"\r\n".len();
+        let longest = LineError::MAX_LENGTH + b"\r\n".len();
         self.line.clear();
         let read = (&mut self.reader).take(longest as u64).read_until(b'\n', &mut self.line)?;
         if read == longest && !self.line.ends_with(b"\n") {
@@ -167,6 +167,6 @@ impl<'a> Line<'a> {
     }
 
     fn is_blank(&self) -> bool {
-        self.content.len() <= LONGEST_LINE && self.content.trim_ascii().is_empty()
+        self.content.len() <= LineError::MAX_LENGTH && self.content.trim_ascii().is_empty()
     }
 }

@@ -1,5 +1,3 @@
-//! What is wrong with a line.
-
 use std::str::Utf8Error;
 
 use glam::Vec3;
@@ -9,10 +7,10 @@ use thiserror::Error;
 use crate::io::error::shortened;
 use crate::kinematics::two_bone::LengthError;
 
-/// Why a line has no pose. `place` is empty or ends in a colon and a space.
+/// The reason why a line has no pose. `place` is empty, or a field, a colon and a space.
 #[derive(Debug, Error)]
 pub enum LineError {
-    #[error("the line is longer than 64 KiB; a pose needs far less")]
+    #[error("the line must be at most {} KiB long", LineError::MAX_LENGTH >> 10)]
     TooLong,
     #[error("byte {at} is {byte:#04x}, which is not UTF-8 there; JSON is written in UTF-8")]
     NotUtf8 { at: usize, byte: u8 },
@@ -20,18 +18,28 @@ pub enum LineError {
     NotJson { place: String, reason: String, at: usize },
     #[error("{place}{reason}")]
     NotARequest { place: String, reason: String },
-    #[error("{place}{number} is out of range; it must be between -3.4028235e38 and 3.4028235e38")]
+    #[error("{place}must be between -3.4028235e38 and 3.4028235e38, got {number}")]
     OutOfRange { place: String, number: String },
-    #[error("{}: length is {}; it must be a finite number above 0", .0.bone, .0.value)]
+    #[error("{}: must be finite and above 0, got {}", .0.bone, .0.value)]
     Length(#[from] LengthError),
-    #[error("{field}: is {value}; it must be {range}")]
+    #[error("{field}: must be {range}, got {value}")]
     SoftReach { field: &'static str, value: f32, range: &'static str },
     #[error("root: {:?} puts the {joint} beyond 3.4028235e38; bring it nearer to 0", .root.to_array())]
     OutOfWorld { joint: &'static str, root: Vec3 },
 }
 
+/// Fields of earlier versions, and what they are called now.
+const RENAMED: [(&str, &str); 3] = [
+    ("elbow_spin_deg", "twist_deg"),
+    ("swivel", "reference"),
+    ("min_elbow_deg", "min_elbow_angle_deg"),
+];
+
 impl LineError {
-    /// What to tell whoever wrote the line; of what it quotes at length, only the start and the end.
+    /// The length of the longest line that is read, in bytes without its line ending.
+    pub const MAX_LENGTH: usize = 64 * 1024;
+
+    /// The error's text. A long quotation in it is shortened to its start and its end.
     pub fn message(&self) -> String {
         shortened(self.to_string())
     }
@@ -42,9 +50,9 @@ impl LineError {
     }
 
     pub(super) fn not_a_request(line: &str, path: &Path, error: &serde_json::Error) -> Self {
-        let reason = without_position(error);
+        let reason = renamed(without_position(error));
         let place = place(path, &reason);
-        // serde_json has no other way to tell this error from the rest.
+        // serde_json identifies this error by its text alone.
         if reason == "number out of range" {
             let number = word_around(line, error.column()).to_owned();
             return Self::OutOfRange { place, number };
@@ -64,14 +72,24 @@ impl LineError {
     }
 }
 
-/// The parser counts lines too, and would always say "line 1".
+/// Replaces the list of known fields by the new name of a renamed one.
+fn renamed(reason: String) -> String {
+    let is_unknown =
+        |(old, _): &&(&str, &str)| reason.starts_with(&format!("unknown field `{old}`"));
+    match RENAMED.iter().find(is_unknown) {
+        Some((old, new)) => format!("unknown field `{old}`; it is called `{new}`"),
+        None => reason,
+    }
+}
+
+/// The parser's positions always have line 1.
 fn without_position(error: &serde_json::Error) -> String {
     let position = format!(" at line {} column {}", error.line(), error.column());
     let text = error.to_string();
     text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
-/// The field that an error is about, unless the reason names it already or nobody knows it.
+/// The field that an error is about, unless it is unknown or the reason names it.
 fn place(path: &Path, reason: &str) -> String {
     let known = path.iter().len() > 0 && !path.iter().any(|s| matches!(s, Segment::Unknown));
     if !known || reason.contains(&format!("`{path}`")) {
@@ -80,7 +98,7 @@ fn place(path: &Path, reason: &str) -> String {
     format!("{path}: ")
 }
 
-/// What stands where the parser was when it had read `read` bytes, up to the next punctuation.
+/// The word around byte `read`, up to punctuation on both sides.
 fn word_around(line: &str, read: usize) -> &str {
     let in_word = |c: char| !(c.is_whitespace() || r#",:[]{}""#.contains(c));
     let (before, after) = line.split_at_checked(read).unwrap_or((line, ""));

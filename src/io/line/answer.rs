@@ -1,0 +1,55 @@
+use glam::Vec3;
+use serde::Serialize;
+
+use super::error::LineError;
+use crate::kinematics::ik::Solved;
+use crate::kinematics::twist::TwistReference;
+use crate::kinematics::two_bone::Reach;
+
+/// The pose that answers a line, written as JSON. Elbow and hand are in the world.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    reach: &'static str,
+    elbow: Vec3,
+    hand: Vec3,
+    distance: f32,
+    theta_z_deg: f32,
+    theta_y_deg: f32,
+    theta_e_deg: f32,
+    along: f32,
+    out: f32,
+    /// `None` where it is infinite.
+    reference_gain: Option<f32>,
+    elbow_angle_deg: f32,
+}
+
+impl Answer {
+    pub fn new(root: Vec3, reference: TwistReference, solved: &Solved) -> Result<Self, LineError> {
+        let pose = &solved.pose;
+        Ok(Self {
+            reach: match pose.reach {
+                Reach::Reached => "reached",
+                Reach::TooFar => "too_far",
+                Reach::TooClose => "too_close",
+            },
+            elbow: in_world("elbow", root, pose.elbow)?,
+            hand: in_world("hand", root, pose.hand)?,
+            distance: pose.distance,
+            theta_z_deg: pose.yaw().to_degrees(),
+            theta_y_deg: pose.pitch().to_degrees(),
+            theta_e_deg: pose.shoulder_angle().to_degrees(),
+            along: pose.along,
+            out: pose.out,
+            reference_gain: Some(reference.gain(pose.facing)).filter(|gain| gain.is_finite()),
+            elbow_angle_deg: pose.elbow_angle().to_degrees(),
+        })
+    }
+}
+
+fn in_world(joint: &'static str, root: Vec3, joint_root: Vec3) -> Result<Vec3, LineError> {
+    let joint_world = root + joint_root;
+    if !joint_world.is_finite() {
+        return Err(LineError::OutOfWorld { joint, root });
+    }
+    Ok(joint_world)
+}

@@ -1,0 +1,50 @@
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
+
+use crate::io::value::Point;
+use crate::kinematics::twist::{Stereographic, TwistReference};
+
+/// The twist reference of a line: a name, or an object with a pole.
+#[derive(Default)]
+pub struct ReferenceField(pub TwistReference);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PoleField {
+    pole: Point,
+}
+
+impl<'de> Deserialize<'de> for ReferenceField {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ReferenceVisitor;
+
+        impl<'de> Visitor<'de> for ReferenceVisitor {
+            type Value = ReferenceField;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(r#""limb", {"pole":[x,y,z]}, "stereographic" or "transport""#)
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<ReferenceField, E> {
+                match name {
+                    "limb" => Ok(ReferenceField(TwistReference::Limb)),
+                    "stereographic" => {
+                        Ok(ReferenceField(TwistReference::Stereographic(Stereographic::default())))
+                    }
+                    "transport" => Ok(ReferenceField(TwistReference::Transport)),
+                    _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
+                }
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ReferenceField, A::Error> {
+                let PoleField { pole } = PoleField::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(ReferenceField(TwistReference::Pole(pole.0)))
+            }
+        }
+
+        deserializer.deserialize_any(ReferenceVisitor)
+    }
+}

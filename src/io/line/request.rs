@@ -1,0 +1,112 @@
+//! A line's fields.
+
+use std::fmt;
+use std::str;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+
+use super::error::LineError;
+use super::previous::PreviousLine;
+use super::reference::ReferenceField;
+use crate::io::value::{Number, Point};
+use crate::kinematics::ik::{Ik, Solved};
+use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
+use crate::kinematics::two_bone::{Facing, TwoBone};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Request {
+    hand: Point,
+    #[serde(default = "default_upper")]
+    upper: Number,
+    #[serde(default = "default_lower")]
+    lower: Number,
+    #[serde(default)]
+    pub root: Point,
+    #[serde(default)]
+    twist_deg: Number,
+    #[serde(default)]
+    reference: ReferenceField,
+    #[serde(default)]
+    softness: Number,
+    #[serde(default = "default_max_stretch")]
+    max_stretch: Number,
+    #[serde(default)]
+    min_elbow_angle_deg: Number,
+}
+
+fn default_upper() -> Number {
+    Number(200.0)
+}
+
+fn default_lower() -> Number {
+    Number(300.0)
+}
+
+fn default_max_stretch() -> Number {
+    Number(1.0)
+}
+
+impl Request {
+    pub fn parse(line: &[u8]) -> Result<Self, LineError> {
+        let line = str::from_utf8(line).map_err(|error| LineError::not_utf8(line, error))?;
+        let mut json = serde_json::Deserializer::from_str(line);
+        let RequestObject(request) = serde_path_to_error::deserialize(&mut json)
+            .map_err(|error| LineError::not_a_request(line, error.path(), error.inner()))?;
+        json.end().map_err(|error| LineError::not_json(line, String::new(), &error))?;
+        Ok(request)
+    }
+
+    pub fn ik(&self) -> Result<Ik, LineError> {
+        Ok(Ik {
+            bones: TwoBone::new(self.upper.0, self.lower.0)?,
+            reference: self.reference.0,
+            soft_reach: self.soft_reach()?,
+        })
+    }
+
+    fn soft_reach(&self) -> Result<SoftReach, LineError> {
+        let degrees = self.min_elbow_angle_deg.0;
+        SoftReach::new(self.softness.0, self.max_stretch.0, degrees.to_radians()).map_err(|error| {
+            let SoftReachError { field, value, range } = error;
+            match field {
+                "min_elbow_angle" => {
+                    LineError::SoftReach { field: "min_elbow_angle_deg", value: degrees, range }
+                }
+                _ => LineError::SoftReach { field, value, range },
+            }
+        })
+    }
+
+    pub fn solve(&self, ik: Ik, previous: Option<PreviousLine>) -> Solved {
+        // In degrees the remainder is exact; in radians a large angle would lose its turns.
+        let twist = (self.twist_deg.0 % 360.0).to_radians();
+        let facing = previous.map_or_else(Facing::default, |previous| previous.facing);
+        ik.solve(self.hand.0, twist, facing, previous.map(|previous| previous.transported))
+    }
+}
+
+/// A request that is an object. The derived code alone accepts an array, too.
+struct RequestObject(Request);
+
+impl<'de> Deserialize<'de> for RequestObject {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct RequestVisitor;
+
+        impl<'de> Visitor<'de> for RequestVisitor {
+            type Value = RequestObject;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(r#"an object like {"hand":[250,120,60]}"#)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RequestObject, A::Error> {
+                Request::deserialize(MapAccessDeserializer::new(map)).map(RequestObject)
+            }
+        }
+
+        deserializer.deserialize_map(RequestVisitor)
+    }
+}
