@@ -91,8 +91,8 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.menu_button("Navigation", |ui| {
         for navigation in Navigation::ALL {
             let chosen = session.preferences().navigation == navigation;
-            let [turn, pan, zoom] = navigation.help();
-            let tooltip = format!("Turn: {turn}\nMove: {pan}\nZoom: {zoom}");
+            let [orbit, pan, zoom] = navigation.help();
+            let tooltip = format!("Orbit: {orbit}\nPan: {pan}\nZoom: {zoom}");
             if ui.radio(chosen, navigation.name()).on_hover_text(tooltip).clicked() {
                 actions.push(ShellAction::SetNavigation(navigation));
             }
@@ -130,7 +130,7 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             }
         }
     }
-    ui.menu_button("What is shown", |ui| {
+    ui.menu_button("Guides and display", |ui| {
         Overlay::all().map(Channel::Overlay).for_each(|channel| one(ui, channel, actions));
     });
 }
@@ -158,7 +158,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     }
     ui.separator();
-    if item(ui, "Perspective / orthographic", "5") {
+    if item(ui, "Toggle orthographic", "5") {
         actions
             .push(ViewAction::SetCamera(commands::with_other_projection(session.settled_camera())));
     }
@@ -178,7 +178,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut layers = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
     if session.rig() == RigKind::Arm {
         layers.push((Overlay::Globe, "Singularity globe"));
-        layers.push((Overlay::References, "Four swivel references"));
+        layers.push((Overlay::References, "Twist references"));
     }
     for (layer, name) in layers {
         let mut shown = session.shown().display.shows(layer);
@@ -187,7 +187,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     }
     let mut crowd = session.crowd().is_some();
-    let tooltip = "Up to a million arms like this one, each after a target of its own";
+    let tooltip = "Show up to a million arms, each with its own target";
     if ui.checkbox(&mut crowd, "Crowd").on_hover_text(tooltip).changed() {
         actions.push(ViewAction::ShowCrowd(crowd));
     }
@@ -204,7 +204,11 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         actions.push(ViewAction::ShowTimeline(timeline));
     }
     let mut curves = session.preferences().curves;
-    if ui.checkbox(&mut curves, "Curves").on_hover_text("In the timeline").changed() {
+    if ui
+        .checkbox(&mut curves, "Graph editor")
+        .on_hover_text("Show keys as curves instead of a dope sheet")
+        .changed()
+    {
         actions.push(ViewAction::ShowGraphEditor(curves));
     }
 }

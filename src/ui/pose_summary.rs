@@ -11,28 +11,30 @@ use crate::ui::widgets::format::{decimals_of_cell, grouped};
 pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
     let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
     if !arm.is_led_by_hand() {
-        return "FK: the joints' own angles place the hand.".to_owned();
+        return "FK (joint angles → hand): the angles place the hand.".to_owned();
     }
     if arm.influence < 1.0 {
-        return format!("Between FK and IK: the hand is {gap} from the cursor.");
+        return format!("Between FK and IK: the hand is {gap} from the Cursor.");
     }
     if pose.stretch > 1.0 {
-        let reached = if pose.reach == Reach::Reached { "" } else { " as far as they may" };
+        let reached = if pose.reach == Reach::Reached { "" } else { ", the maximum" };
         return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
     }
     match pose.reach {
-        Reach::Reached => "Reached: the hand is at the cursor.".to_owned(),
+        Reach::Reached => "Reached: the hand is at the Cursor.".to_owned(),
         Reach::TooFar if arm.soft_reach.softness() > 0.0 => {
-            format!("Soft: the hand lags {gap} behind the cursor, so that the elbow does not snap.")
+            format!(
+                "Soft limits: the hand stays {gap} behind the Cursor, so the elbow does not snap."
+            )
         }
         Reach::TooClose if !arm.soft_reach.is_hard() => {
-            format!("Soft: the hand keeps away from the shoulder, {gap} from the cursor.")
+            format!("Soft limits: the hand stays off the shoulder, {gap} from the Cursor.")
         }
         Reach::TooFar => {
-            format!("Too far: the arm is straight and points at the cursor, {gap} short.")
+            format!("Too far: the arm is straight and points at the Cursor, {gap} short.")
         }
         Reach::TooClose => {
-            format!("Too close: the arm is folded and points past the cursor, by {gap}.")
+            format!("Too close: the arm is folded and overshoots the Cursor by {gap}.")
         }
     }
 }
@@ -60,8 +62,8 @@ pub(in crate::ui) fn describe(session: &Session) -> String {
 
 fn describe_crowd(crowd: &Crowd) -> String {
     match crowd.arms {
-        1 => "A crowd of 1 arm".to_owned(),
-        arms => format!("A crowd of {} arms", grouped(arms.into())),
+        1 => "Crowd of 1 arm".to_owned(),
+        arms => format!("Crowd of {} arms", grouped(arms.into())),
     }
 }
 
@@ -86,7 +88,7 @@ fn describe_skeleton(session: &Session) -> String {
     }
     match session.selected().and_then(|joint| joints.get(joint)) {
         Some(joint) => line.insert(0, joint.name.clone()),
-        None => line.push("click a joint to select it, drag its tip to pose it".to_owned()),
+        None => line.push("click a joint to select it, drag its tip to pose".to_owned()),
     }
     line.join(" · ")
 }
@@ -105,5 +107,7 @@ fn describe_pose(session: &Session) -> String {
     let [x, y, z] = hand.to_array().map(|coordinate| arm.length_in_words(coordinate));
     let distance = arm.length_in_words(pose.distance);
     let digits = decimals_of_cell(arm.cell());
-    format!("{reach} · hand ({x}, {y}, {z}) · D {distance} of {least:.digits$}–{most:.digits$}")
+    format!(
+        "{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {least:.digits$}–{most:.digits$}"
+    )
 }

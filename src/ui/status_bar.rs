@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actio
 /// How far an export is; a press stops it.
 fn show_job(ui: &mut Ui, job: &Job, actions: &mut Actions) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
-    if ui.small_button("Cancel").on_hover_text("Stops the export; no file is left").clicked() {
+    if ui.small_button("Cancel").on_hover_text("Cancel the export; no file is written").clicked() {
         actions.push(FileAction::CancelExport);
     }
     let name = job.path.file_name().unwrap_or(job.path.as_os_str()).to_string_lossy();
@@ -71,8 +71,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         RigKind::Skeleton => format::decimals_of_cell(session.shown().cell()),
     };
     format!(
-        "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift fine · Ctrl snap · X Y Z \
-         lock · digits type · Enter accept · Esc take back",
+        "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",
         moved.x,
         moved.y,
         moved.z,
@@ -92,13 +91,12 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
         Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
-            format!("Turn about {}", ["x", "y", "z"][axis.min(2)])
+            format!("Rotate about {}", ["x", "y", "z"][axis.min(2)])
         }
         _ => "Bend".to_owned(),
     };
     format!(
-        "{verb}: {:+.1}°{limit}{}     Shift fine · Ctrl snap · digits type · Enter accept · Esc \
-         take back",
+        "{verb}: {:+.1}°{limit}{}     Shift precise · Ctrl snap · digits type · Enter accept · Esc cancel",
         turned.to_degrees(),
         typed(drag.typed()),
     )

@@ -31,31 +31,31 @@ const CHOICES: [FormatChoice; 6] = [
         format: Format::Bvh,
         name: "BVH",
         ending: ".bvh",
-        tooltip: "Joints and their motion, as motion capture has it",
+        tooltip: "Joints and their motion, the motion capture format",
     },
     FormatChoice {
         format: Format::Csv,
         name: "CSV",
         ending: ".csv",
-        tooltip: "The joints' positions at every frame, as a table",
+        tooltip: "A table of joint positions, one row a frame",
     },
     FormatChoice {
         format: Format::Apng,
         name: "Animated PNG",
         ending: ".apng",
-        tooltip: "The motion as a picture that moves",
+        tooltip: "One picture file that plays the motion",
     },
     FormatChoice {
         format: Format::PngSequence,
         name: "PNG sequence",
         ending: "_####.png",
-        tooltip: "A picture of every frame; # stand for its number",
+        tooltip: "One picture a frame; #### becomes the frame number",
     },
     FormatChoice {
         format: Format::Png,
         name: "PNG",
         ending: ".png",
-        tooltip: "A picture of this moment",
+        tooltip: "One picture of the current frame",
     },
 ];
 
@@ -81,11 +81,11 @@ pub(in crate::ui) fn ui(
         }
     });
     let described = CHOICES.iter().find(|choice| chosen == Some(choice.format));
-    ui.weak(described.map_or("The ending of the path says the format", |choice| choice.tooltip));
+    ui.weak(described.map_or("The file extension chooses the format", |choice| choice.tooltip));
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
-        let name = ui.label("Frames a second");
+        let name = ui.label("Frames per second");
         ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::HIGHEST_FRAME_RATE))
             .labelled_by(name.id);
         ui.end_row();
@@ -99,11 +99,11 @@ pub(in crate::ui) fn ui(
             ui.end_row();
         }
         if matches!(chosen, Some(Format::Glb | Format::Bvh)) {
-            ui.label("Metres in a unit");
-            let tooltip = "How long a unit of the scene is for other programs";
+            ui.label("Metres per unit");
+            let tooltip = "Set the scale for other programs";
             let value = session.document().metres_per_unit();
             NumberField {
-                name: "Metres in a unit",
+                name: "Metres per unit",
                 value,
                 unit: "",
                 step: 0.001,
@@ -123,7 +123,7 @@ pub(in crate::ui) fn ui(
         };
         ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
             true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
-            false => "One frame: nothing moves".to_owned(),
+            false => "One frame, no motion".to_owned(),
         });
         ui.end_row();
         if changed != *export {
@@ -131,7 +131,7 @@ pub(in crate::ui) fn ui(
         }
     });
     ui.add_space(4.0);
-    let (typed, entered) = prompt(ui, "To", &path, is_new);
+    let (typed, entered) = prompt(ui, "File", &path, is_new);
     if typed != path {
         actions.push(change(Export { path: typed.clone().into(), ..export.clone() }));
     }
@@ -142,9 +142,9 @@ pub(in crate::ui) fn ui(
 
 fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {
     let why_not = if session.job().is_some() {
-        Some("Another export is under way")
+        Some("Another export is running")
     } else if Format::of(&export.path).is_err() {
-        Some("The path's ending must be one of the formats'")
+        Some("The file extension must name a format")
     } else {
         None
     };

@@ -11,7 +11,7 @@ use crate::ui::widgets;
 
 pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Actions) {
     ui.set_width(360.0);
-    ui.label("The file has several skeletons. The first one is open; another can be chosen:");
+    ui.label("The file contains several skeletons. The first is open. Open another:");
     ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
         for name in names {
             if ui.add(Button::new(name).truncate()).clicked() {
@@ -34,7 +34,7 @@ pub(super) fn rename(
     actions: &mut Actions,
 ) {
     ui.set_width(300.0);
-    let (typed, entered) = prompt(ui, "The joint's name", name, is_new);
+    let (typed, entered) = prompt(ui, "Joint name", name, is_new);
     if typed != name {
         actions.push(ShellAction::OpenDialog(Dialog::Rename { joint, name: typed.clone() }));
     }
@@ -74,7 +74,7 @@ pub(super) fn delete_joints(
         _ => "The selected joints",
     };
     let verb = if joints.len() == 1 { "has" } else { "have" };
-    ui.label(format!("{what} {verb} children. Kept, they stay where they are."));
+    ui.label(format!("{what} {verb} children. Kept children do not move."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Keep children") {

@@ -32,9 +32,9 @@ pub(in crate::ui) fn ui(
         Dialog::About => "About ik-arm",
         Dialog::Shortcuts => "Shortcuts",
         Dialog::Statistics => "Statistics",
-        Dialog::Recover { .. } => "Not saved last time",
+        Dialog::Recover { .. } => "Recover unsaved changes?",
         Dialog::Unsaved { .. } => "Save changes?",
-        Dialog::Exporting => "Quit during the export?",
+        Dialog::Exporting => "Quit while exporting?",
         Dialog::Replace { .. } => "Replace the file?",
         Dialog::SavePicture { .. } => "Save picture",
         Dialog::Export(_) => "Export",
@@ -133,10 +133,10 @@ fn beside(
 fn about(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
     ui.set_width(360.0);
     ui.heading(concat!("ik-arm ", env!("CARGO_PKG_VERSION")));
-    ui.label("A 3D inverse-kinematics arm to pose, look into and understand.");
+    ui.label("Inverse kinematics of a 3D arm and of skeletons, to pose and to study.");
     ui.add_space(8.0);
     Grid::new("about").num_columns(2).show(ui, |ui| {
-        ui.weak("Graphics");
+        ui.weak("Graphics adapter");
         ui.label(&machine.adapter);
         ui.end_row();
         ui.weak("Licence");

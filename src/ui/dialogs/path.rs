@@ -18,21 +18,21 @@ pub(super) struct PathPrompt {
 }
 
 pub(super) const SAVE_PICTURE: PathPrompt = PathPrompt {
-    prompt: "Save the viewport as PNG to",
+    prompt: "PNG file",
     accept: "Save",
     dialog: |path| Dialog::SavePicture { path },
     action: |path| FileAction::SavePicture(path.display().to_string()),
 };
 
 pub(super) const OPEN: PathPrompt = PathPrompt {
-    prompt: "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf",
+    prompt: "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf",
     accept: "Open",
     dialog: |path| Dialog::Open { path, problem: None },
     action: |path| FileAction::Open { path, skeleton: None },
 };
 
 pub(super) const SAVE_AS: PathPrompt = PathPrompt {
-    prompt: "Save the document to",
+    prompt: "Document file",
     accept: "Save",
     dialog: |path| Dialog::SaveAs { path, problem: None },
     action: FileAction::SaveAs,
@@ -62,7 +62,7 @@ pub(super) fn ask_path(
         let typed = typed.trim();
         let accept = ui
             .add_enabled(!typed.is_empty(), Button::new(question.accept))
-            .on_disabled_hover_text("There is no path yet");
+            .on_disabled_hover_text("Enter a path first");
         if (accept.clicked() || entered) && !typed.is_empty() {
             let path = session.full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
@@ -79,7 +79,7 @@ pub(super) fn ask_path(
 }
 
 pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
-    let tooltip = "Open the system's file dialog, where it has one";
+    let tooltip = "Choose in the system file dialog";
     if ui.button("Browse…").on_hover_text(tooltip).clicked() {
         actions.push(FileAction::ChoosePath);
     }

@@ -6,46 +6,54 @@ use crate::session::Session;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let navigation = session.preferences().navigation;
-    let [turn, pan, zoom] = navigation.help();
+    let [orbit, pan, zoom] = navigation.help();
     let view = format!("View ({})", navigation.name());
     let groups: [(&str, &[(&str, &str)]); 7] = [
-        (&view, &[("Turn", turn), ("Move", pan), ("Zoom", zoom), ("Over handles too", "Alt+drag")]),
         (
-            "Look",
+            &view,
+            &[
+                ("Orbit", orbit),
+                ("Pan", pan),
+                ("Zoom", zoom),
+                ("Orbit over handles", "Alt+left drag"),
+            ],
+        ),
+        (
+            "Camera",
             &[
                 ("Front, right, top", "1, 3, 7"),
                 ("Back, left, bottom", "Ctrl+1, 3, 7"),
-                ("Perspective or orthographic", "5"),
-                ("Frame the arm, all", "F, Home"),
-                ("Turn, move, zoom the focused view", "arrows, Shift+arrows, + -"),
-                ("First view", "double-click on the background"),
+                ("Toggle perspective, orthographic", "5"),
+                ("Frame selection, all", "F, Home"),
+                ("Orbit, pan, zoom", "arrows, Shift+arrows, + -"),
+                ("Reset view", "double-click the background"),
             ],
         ),
         (
             "Skeleton",
             &[
                 ("Select, add to the selection", "click, Shift+click"),
-                ("Add a child, at the pointer", "A, Ctrl+click"),
+                ("Add a child joint, at the mouse", "A, Ctrl+click"),
                 ("Add or remove a target, rename, delete", "T, F2, Delete"),
-                ("Run the solver, one iteration", "R, S"),
+                ("Run or pause the solver, one iteration", "R, S"),
                 ("Select all, none", "Ctrl+A, Esc"),
             ],
         ),
         (
-            "While something is dragged",
+            "During a drag",
             &[
-                ("A tenth, whole steps", "Shift, Ctrl"),
-                ("Along an axis, in a plane", "X Y Z, Shift+X Y Z"),
+                ("Precise, snap", "Shift, Ctrl"),
+                ("Lock to an axis, a plane", "X Y Z, Shift+X Y Z"),
                 ("Type the offset", "digits , - ."),
-                ("Accept, take back", "Enter, Esc or right button"),
+                ("Accept, cancel", "Enter, Esc or right button"),
             ],
         ),
         (
             "Sliders",
             &[
-                ("1, a tenth, 10", "arrows, Shift+arrows, Page keys"),
-                ("Ends, reset", "Home End, double-click"),
-                ("Take back a drag", "Esc"),
+                ("Step 1, 0.1, 10", "arrows, Shift+arrows, Page keys"),
+                ("Minimum and maximum, reset", "Home End, double-click"),
+                ("Cancel a drag", "Esc"),
             ],
         ),
         (
@@ -57,16 +65,16 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             ],
         ),
         (
-            "Time and keys",
+            "Timeline",
             &[
                 ("Play or pause", "Space"),
-                ("Key what is selected, all", "K, Shift+K"),
-                ("Frame and key before, after", "arrows in the timeline"),
+                ("Key selected, all", "K, Shift+K"),
+                ("Previous and next frame, key", "arrows in the timeline"),
                 ("Start, end", "Home, End in the timeline"),
-                ("Select keys, more, all", "click or box, Shift, Ctrl+A"),
+                ("Select keys, add, all", "click or box, Shift, Ctrl+A"),
                 ("Delete, copy, paste keys", "Delete, Ctrl+C, Ctrl+V"),
-                ("Drag between frames", "Ctrl"),
-                ("Zoom the time, move it", "wheel, middle drag"),
+                ("Drag off the frame grid", "Ctrl"),
+                ("Zoom, pan the timeline", "wheel, middle drag"),
             ],
         ),
     ];

@@ -12,14 +12,14 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut
     ui.set_width(380.0);
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new("")).display();
-    ui.label(format!("{name} is there already, in {folder}."));
+    ui.label(format!("{name} already exists in {folder}."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         // Enter that is pressed twice, or held, overwrites nothing.
         if first_button(ui, "Choose another name") {
             actions.push(ShellAction::CloseDialog);
         }
-        if ui.button("Replace").on_hover_text("The file that is there is lost").clicked() {
+        if ui.button("Replace").on_hover_text("Overwrite the existing file").clicked() {
             actions.push(then.clone());
         }
     });
@@ -29,13 +29,13 @@ pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut A
     ui.set_width(380.0);
     let path = session.job().map(|job| job.path.as_path());
     let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
-    ui.label(format!("{name} is being exported. If the program quits now, no file is left."));
+    ui.label(format!("{name} is being exported. Quitting now discards it."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        if first_button(ui, "Go on exporting") {
+        if first_button(ui, "Continue export") {
             actions.push(ShellAction::CloseDialog);
         }
-        if ui.button("Stop the export and quit").clicked() {
+        if ui.button("Cancel export and quit").clicked() {
             actions.push(FileAction::StopExportAndQuit);
         }
     });
@@ -45,13 +45,13 @@ pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &FileAction, actions
     ui.set_width(380.0);
     let name = session.file().and_then(Path::file_name);
     let name = name.map_or("The document".into(), |name| name.to_string_lossy());
-    ui.label(format!("{name} has changes that are not saved."));
+    ui.label(format!("{name} has unsaved changes."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Save") {
             actions.push(FileAction::SaveAnd(Box::new(then.clone())));
         }
-        if ui.button("Don't save").on_hover_text("The changes are lost").clicked() {
+        if ui.button("Don't save").on_hover_text("Discard the changes").clicked() {
             actions.push(FileAction::Discard(Box::new(then.clone())));
         }
         if ui.button("Cancel").clicked() {
@@ -70,20 +70,20 @@ pub(super) fn recover(
     let name = file.and_then(Path::file_name).map(|name| name.to_string_lossy());
     ui.label(match name {
         Some(name) => {
-            format!("ik-arm ended before the changes of {name} were saved. They are kept.")
+            format!("ik-arm ended with unsaved changes to {name}. They can be recovered.")
         }
-        None => "ik-arm ended before the document was saved. It is kept.".to_owned(),
+        None => "ik-arm ended with an unsaved document. It can be recovered.".to_owned(),
     });
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        if first_button(ui, "Open it") {
+        if first_button(ui, "Recover") {
             let (document, file) = (Box::new(document.clone()), file.map(Path::to_owned));
             actions.push(FileAction::Recover { document, file });
         }
-        if ui.button("Discard it").on_hover_text("The changes are lost").clicked() {
+        if ui.button("Discard").on_hover_text("Discard the changes").clicked() {
             actions.push(FileAction::DeclineRecovery);
         }
-        if ui.button("Ask again next time").clicked() {
+        if ui.button("Decide later").clicked() {
             actions.push(ShellAction::CloseDialog);
         }
     });

@@ -59,11 +59,11 @@ fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
 
 fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
     let solvers = [
-        (SolvedBy::Cpu, "CPU", "By the batch solver, on all cores"),
-        (SolvedBy::Gpu, "GPU", "By the same mathematics in a shader"),
+        (SolvedBy::Cpu, "CPU", "Solve in batches on all CPU cores"),
+        (SolvedBy::Gpu, "GPU", "Solve in a shader on the GPU"),
     ];
     ui.horizontal(|ui| {
-        ui.label("Solved by");
+        ui.label("Solver");
         for (solved_by, name, tooltip) in solvers {
             let button = ui.radio(crowd.solved_by == solved_by, name);
             if button.on_hover_text(tooltip).clicked() {
@@ -80,9 +80,9 @@ fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
     let rest_ms = work_ms.zip(solve_ms).map(|(work, solve)| (work - solve).max(0.0));
     let per_arm = solve_ms.map(|solve| solve * 1e6 / f64::from(crowd.arms));
     let rows = [
-        ("Solve", solve_ms, "ms", "From cursors to elbows and hands"),
-        ("Each arm", per_arm, "ns", "Solving, divided by the arms"),
-        ("The rest of the frame", rest_ms, "ms", "Targets, sending, drawing, panels"),
+        ("Solve", solve_ms, "ms", "Time to solve all arms"),
+        ("Per arm", per_arm, "ns", "Solve time divided by the number of arms"),
+        ("Rest of the frame", rest_ms, "ms", "Targets, upload, drawing and panels"),
     ];
     for (name, value, unit, tooltip) in rows {
         ui.horizontal(|ui| {
@@ -97,7 +97,7 @@ fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
 
 fn moving(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut moving = session.is_crowd_moving();
-    if ui.checkbox(&mut moving, "Follow the targets").changed() {
+    if ui.checkbox(&mut moving, "Moving targets").changed() {
         actions.push(ViewAction::AnimateCrowd(moving));
     }
 }

@@ -28,8 +28,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rigs = [
-        (RigKind::Arm, "Arm", "Two limbs in closed form"),
-        (RigKind::Skeleton, "Skeleton", "A tree of joints, brought to targets by iteration"),
+        (RigKind::Arm, "Arm", "Pose an arm of two limbs, solved in closed form"),
+        (RigKind::Skeleton, "Skeleton", "Pose a tree of joints, solved by iteration"),
     ];
     ui.columns(2, |columns| {
         for (column, (rig, name, tooltip)) in columns.iter_mut().zip(rigs) {
@@ -72,11 +72,8 @@ fn layers(ui: &mut Ui, session: &Session, count: usize, layers: &[Overlay], acti
 
 fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (name, tooltip) = match session.rig() {
-        RigKind::Arm => (
-            "Reset pose",
-            "Reset hand, pin, elbow, root, lengths, soft limits, FK and hand orientation",
-        ),
-        RigKind::Skeleton => ("Bind pose", "Every joint without rotation"),
+        RigKind::Arm => ("Reset pose", "Reset everything that poses the arm"),
+        RigKind::Skeleton => ("Reset to bind pose", "Set every joint rotation to 0"),
     };
     ui.horizontal(|ui| {
         if ui.button(name).on_hover_text(tooltip).clicked() {
@@ -84,7 +81,7 @@ fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
         let all = ui
             .button("Reset all")
-            .on_hover_text("Reset the pose, guides, display and view, and hide the crowd");
+            .on_hover_text("Reset pose, guides, display and view; hide the crowd");
         if all.clicked() {
             actions.push(EditAction::ResetAll);
         }

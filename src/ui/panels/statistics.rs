@@ -28,31 +28,31 @@ const SIXTIETH: f64 = 1000.0 / 60.0;
 const PARTS: [FramePart; 5] = [
     FramePart {
         name: "Solve",
-        tooltip: "Actions, solvers and time: the session",
+        tooltip: "Actions, solvers and playback",
         of: |frame| frame.solve,
         colour: |palette| style::colour(palette.method(Method::DampedLeastSquares)),
     },
     FramePart {
         name: "Panels",
-        tooltip: "The panels, laid out and cut into triangles",
+        tooltip: "Layout and tessellation of the panels",
         of: |frame| frame.panels,
         colour: |palette| style::colour(palette.method(Method::Fabrik)),
     },
     FramePart {
         name: "Scene",
-        tooltip: "What is to be drawn, made from the document",
+        tooltip: "Making the scene from the document",
         of: |frame| frame.scene,
         colour: |palette| style::colour(palette.method(Method::TwoBone)),
     },
     FramePart {
         name: "Encode",
-        tooltip: "What changed, sent to the graphics device, and its orders",
+        tooltip: "Upload of changes and GPU commands",
         of: |frame| frame.encode,
         colour: |palette| style::colour(palette.method(Method::Transpose)),
     },
     FramePart {
         name: "Wait",
-        tooltip: "For the screen, or for the graphics device to finish what it was told before",
+        tooltip: "Waiting for vsync or the GPU",
         of: |frame| frame.wait,
         colour: |palette| style::colour(palette.joint).gamma_multiply(0.55),
     },
@@ -76,22 +76,22 @@ pub(in crate::ui) fn ui(ui: &mut Ui, machine: &Machine) {
     grid("counts", 2).show(ui, |ui| {
         let count = |count: Option<u64>| count.map_or("–".to_owned(), grouped);
         let per_second = times.per_second().map(|it| it.round() as u64);
-        row(ui, "Frames a second", "While something moves", &count(per_second));
+        row(ui, "Frames per second", "Median while something moves", &count(per_second));
         let counts = machine.counts;
         let of = |part: fn(crate::render::Counts) -> u64| count(counts.map(part));
-        row(ui, "Cones and balls", "In the scene", &of(|it| it.solids.into()));
+        row(ui, "Cones and spheres", "In the scene", &of(|it| it.solids.into()));
         row(ui, "Lines", "In the scene", &of(|it| it.lines.into()));
         row(ui, "Labels", "In the scene", &of(|it| it.labels.into()));
-        row(ui, "Triangles", "Of the scene, without the panels", &of(|it| it.triangles.into()));
-        let uploaded = "For the scene of the last frame: the device keeps what does not change";
+        row(ui, "Triangles", "In the scene, without the panels", &of(|it| it.triangles.into()));
+        let uploaded = "Upload of the last frame; unchanged data stays on the GPU";
         row(ui, "Bytes uploaded", uploaded, &of(|it| it.uploaded));
     });
     ui.separator();
     let (adapter, backend) = machine.adapter.rsplit_once(" (").unwrap_or((&machine.adapter, ""));
-    ui.label(RichText::new(adapter).size(12.0)).on_hover_text("The graphics adapter");
+    ui.label(RichText::new(adapter).size(12.0)).on_hover_text("Graphics adapter");
     let backend = backend.trim_end_matches(')');
     ui.label(RichText::new(format!("Backend: {backend}")).size(12.0).weak())
-        .on_hover_text("The interface that the adapter is reached by");
+        .on_hover_text("Graphics API");
 }
 
 fn grid(name: &str, columns: usize) -> Grid {
@@ -101,25 +101,24 @@ fn grid(name: &str, columns: usize) -> Grid {
 fn parts(ui: &mut Ui, machine: &Machine) {
     let (times, palette) = (&machine.times, style::palette(ui));
     ui.allocate_exact_size(vec2(NAME, ROW), Sense::hover());
-    heading(ui, "median", "Half of the last frames took less");
+    heading(ui, "median", "Half of the frames took less");
     heading(ui, "99 %", "One frame in a hundred took longer");
     ui.end_row();
     for part in &PARTS {
         name(ui, part.name, part.tooltip, Some((part.colour)(&palette)));
         figures(ui, times, |frame| Some((part.of)(frame)));
     }
-    name(ui, "Total", "From the input until the picture was on its way to the screen", None);
+    name(ui, "Total", "From input to presentation", None);
     figures(ui, times, |frame| Some(frame.total()));
     let text = ui.visuals().strong_text_color();
     if machine.has_clock {
-        let tooltip =
-            "The graphics device's own time for scene and panels, while the processor goes on";
+        let tooltip = "GPU time for scene and panels, in parallel to the CPU";
         name(ui, "GPU", tooltip, Some(text));
         figures(ui, times, |frame| frame.gpu);
     } else {
-        name(ui, "GPU", "The graphics device's own time", None);
+        name(ui, "GPU", "GPU time for scene and panels", None);
         ui.label(RichText::new("not measured by this adapter").weak().size(12.0))
-            .on_hover_text("It has no clock for it");
+            .on_hover_text("The adapter has no timestamp queries");
         ui.end_row();
     }
 }
@@ -214,7 +213,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
         None => "FrameTime times: no frame has been drawn".to_owned(),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-    response.on_hover_text("The last 240 frames, the newest at the right; a frame is drawn only when something changes");
+    response.on_hover_text("The last 240 frames, newest right; idle windows draw none");
 }
 
 /// The newest frame is at the right.

@@ -36,15 +36,15 @@ pub(in crate::ui) fn of_lanes(
     };
     body.context_menu(|ui| {
         if let Some(lane) = lane
-            && widgets::button(ui, "Add key here", "Key it as it is shown at that time", None)
+            && widgets::button(ui, "Add key here", "Add keys at this time", None)
         {
             actions.push(PlaybackAction::SetTime(time));
             actions.push(EditAction::Key(lane.channels(session)));
             ui.close();
         }
         of_keys(ui, session, actions);
-        let nothing = (!session.can_paste()).then_some("No keys have been copied");
-        if widgets::button(ui, "Paste here", "The copied keys, from here on", nothing) {
+        let nothing = (!session.can_paste()).then_some("Copy keys first");
+        if widgets::button(ui, "Paste here", "Paste the copied keys from this time on", nothing) {
             actions.push(PlaybackAction::SetTime(time));
             actions.push(EditAction::PasteKeys);
             ui.close();
@@ -63,7 +63,7 @@ pub(in crate::ui) fn of_channel(
     actions: &mut Actions,
 ) {
     response.context_menu(|ui| {
-        if widgets::button(ui, "Key it now", "Where the time is", None) {
+        if widgets::button(ui, "Add key", "Add a key at the playhead", None) {
             actions.push(EditAction::Key(vec![channel]));
             ui.close();
         }
@@ -73,12 +73,12 @@ pub(in crate::ui) fn of_channel(
 
 fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let keys = session.selected_keys();
-    let none = keys.is_empty().then_some("Select keys first: click them, or draw a box");
-    if widgets::button(ui, "Copy keys", "Ctrl+C", none) {
+    let none = keys.is_empty().then_some("Select keys first: click or draw a box");
+    if widgets::button(ui, "Copy keys", "Copy the selected keys (Ctrl+C)", none) {
         actions.push(SelectAction::CopyKeys);
         ui.close();
     }
-    if widgets::button(ui, "Delete keys", "Delete", none) {
+    if widgets::button(ui, "Delete keys", "Delete the selected keys (Delete)", none) {
         actions.push(EditAction::DeleteKeys(keys.to_vec()));
         ui.close();
     }
@@ -86,8 +86,8 @@ fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Actions) {
     let name = labels::channel(session, channel);
-    let tooltip = format!("{name} no longer changes in time");
-    if widgets::button(ui, "Delete channel's keys", &tooltip, None) {
+    let tooltip = format!("Delete all keys of {name}");
+    if widgets::button(ui, "Delete all keys of channel", &tooltip, None) {
         actions.push(EditAction::ClearChannels(vec![channel]));
         ui.close();
     }

@@ -30,12 +30,12 @@ pub(in crate::ui) fn ui(
 ) {
     let channels = channels(session);
     if channels.is_empty() {
-        let sentence = "No keys yet: pose the rig and press K to key it where the time is";
+        let sentence = "No keys. Pose the rig and press K to add keys at the playhead";
         text::hint(ui, areas, sentence);
         return;
     }
     let body = ui.interact(areas.lanes, Id::unique("timeline lanes"), Sense::click_and_drag());
-    body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Keys"));
+    body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Dope sheet"));
     let shown = DopeSheet { session, scale, picked: SelectedKeys::new(session), areas, ruler };
 
     let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
@@ -231,7 +231,8 @@ impl DopeSheet<'_> {
             false => "Shift+K",
         };
         let name = labels::channel(self.session, channel);
-        let said = format!("{name} is changed here, not keyed: press {key} to keep it");
+        let said =
+            format!("{name}: unkeyed change, press {key} or it is lost when the time changes");
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         let rim = Stroke::new(2.0, style::accent(ui));
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));

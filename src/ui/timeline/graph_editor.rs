@@ -45,7 +45,7 @@ pub(in crate::ui) fn ui(
 ) {
     let channels = shown(session);
     if channels.is_empty() {
-        text::hint(ui, areas, "No curves: key the rig (K), or select a channel that has keys");
+        text::hint(ui, areas, "No curves. Add keys (K) or select a channel that has keys");
         return;
     }
     let curves: Vec<ChannelCurve> = channels
@@ -231,6 +231,6 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
     }
     let beside = Rect::from_min_max(pos2(rect.left() + width + 3.0, rect.top()), rect.max);
     text::line(ui, beside, &name, ui.visuals().text_color());
-    let axes = if colours.len() == 3 { ": x, y and z in the colours of the axes" } else { "" };
+    let axes = if colours.len() == 3 { ": x, y and z in axis colours" } else { "" };
     response.on_hover_text(format!("{name}{axes}"));
 }

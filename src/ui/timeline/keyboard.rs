@@ -27,7 +27,9 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
         if session.is_playing() || session.has_motion() {
             actions.push(PlaybackAction::Play(!session.is_playing()));
         } else {
-            actions.push(ShellAction::Report("Nothing moves yet: K keys the rig".to_owned()));
+            actions.push(ShellAction::Report(
+                "Nothing to play: press K at two times to add keys".to_owned(),
+            ));
         }
     }
     let pasted = ui.input(|input| {

@@ -199,7 +199,7 @@ fn move_keys(
         let way = f64::from(pointer.x - drag.pressed.x) / lanes.scale.points_per_second();
         let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
         let count = labels::count_of_keys(drag.keys.len());
-        let said = format!("Move {count}: {by:+.2} s     Ctrl between frames · Esc take back");
+        let said = format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel");
         actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by });
         actions.push(ShellAction::Report(said));
     }

@@ -57,8 +57,7 @@ pub(in crate::ui) fn ui(
     asked(ui, session, actions);
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     response.on_hover_text(
-        "Drag to go through the time, with Ctrl between frames. Wheel zooms, middle drag moves, \
-         double-click shows all",
+        "Drag to scrub, Ctrl off the frame grid. Wheel zooms, middle drag pans, double-click shows all",
     )
 }
 

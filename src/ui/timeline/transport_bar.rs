@@ -35,29 +35,29 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Timeline { start, end, .. } = session.document().timeline;
     let button =
         |icon, name, tooltip, disabled| IconButton { icon, name, tooltip, on: None, disabled };
-    let tooltip = "To where the timeline starts (Home, in the timeline)";
+    let tooltip = "Go to the start (Home in the timeline)";
     if button(Icon::Start, "To start", tooltip, None).show(ui) {
         actions.push(PlaybackAction::SetTime(start));
     }
     let before = keyboard::key_before(session);
-    let tooltip = "To the key before (up arrow, in the timeline)";
-    let why = before.is_none().then_some("There is no key before this time");
+    let tooltip = "Go to the previous key (up arrow in the timeline)";
+    let why = before.is_none().then_some("No key before the playhead");
     if button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
         actions.extend(before.map(PlaybackAction::SetTime));
     }
     play(ui, session, actions);
     let after = keyboard::key_after(session);
-    let tooltip = "To the key after (down arrow, in the timeline)";
-    let why = after.is_none().then_some("There is no key after this time");
+    let tooltip = "Go to the next key (down arrow in the timeline)";
+    let why = after.is_none().then_some("No key after the playhead");
     if button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
         actions.extend(after.map(PlaybackAction::SetTime));
     }
-    let tooltip = "To where the timeline ends (End, in the timeline)";
+    let tooltip = "Go to the end (End in the timeline)";
     if button(Icon::End, "To end", tooltip, None).show(ui) {
         actions.push(PlaybackAction::SetTime(end));
     }
     let looping = session.is_looping();
-    let tooltip = "Whether the time begins again where the timeline ends";
+    let tooltip = "Repeat from the start when playback reaches the end";
     let on = Some(looping);
     if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled: None }).show(ui) {
         actions.push(PlaybackAction::SetLooping(!looping));
@@ -67,8 +67,8 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let playing = session.is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
-    let tooltip = "Let the time go on, or stand (Space)";
-    let nothing = "Nothing moves yet: key the rig at two times (K), or let a target go around";
+    let tooltip = "Play or pause (Space)";
+    let nothing = "Nothing to play: add keys at two times (K) or move a target";
     let disabled = (!playing && !session.has_motion()).then_some(nothing);
     if (IconButton { icon, name, tooltip, on: None, disabled }).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
@@ -135,8 +135,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         speed: 0.25 / rate as f32,
         width: 70.0,
         digits: 2,
-        tooltip: "The time in seconds: drag, or click to type. Left and right arrow go a frame, in \
-                  the timeline",
+        tooltip: "Set the time in seconds (left and right arrow in the timeline)",
     };
     seconds.show_free(ui, roomy, actions, set);
     let frame = TimeField {
@@ -147,21 +146,20 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         speed: 0.25,
         width: 74.0,
         digits: 0,
-        tooltip: "The time in frames: drag, or click to type",
+        tooltip: "Set the time in frames: drag or type",
     };
     frame.show_free(ui, roomy, actions, |frame| PlaybackAction::SetTime(frame.round() / rate));
 }
 
 fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let channels = session.channels_to_key();
-    let nothing = "There is nothing to key";
+    let nothing = "Nothing to key";
     let why = channels.is_empty().then_some(nothing);
-    let tooltip = "Key the selected channels or joints as they are shown; of an arm hand and elbow \
-                   spin (K)";
+    let tooltip = "Key the selection, else hand and Socket twist (K)";
     if widgets::button(ui, "Key", tooltip, why) {
         actions.push(EditAction::Key(channels));
     }
-    let tooltip = "Key all that shapes the rig, and all that has keys (Shift+K)";
+    let tooltip = "Key every channel of the pose (Shift+K)";
     if widgets::button(ui, "Key all", tooltip, None) {
         actions.push(EditAction::Key(session.all_channels()));
     }
@@ -175,8 +173,8 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         egui::Button::selectable(false, text).frame_when_inactive(true)
     };
     let tooltip = match on {
-        true => "Every edit makes keys where the time is. Press to end that",
-        false => "Let every edit make keys where the time is",
+        true => "Stop adding keys with every edit",
+        false => "Add keys at the playhead with every edit",
     };
     if ui.add(button).on_hover_text(tooltip).clicked() {
         actions.push(PlaybackAction::SetAutoKey(!on));
@@ -192,7 +190,7 @@ fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         speed: 0.01,
         width: 52.0,
         digits: 2,
-        tooltip: "Seconds of the timeline in one of yours: 0.1 to 4",
+        tooltip: "Set the playback speed, 0.1 to 4",
     };
     speed.show_free(ui, roomy, actions, PlaybackAction::SetSpeed);
     frame_rate(ui, session, actions);
@@ -219,8 +217,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
     let response = response.response;
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Frame rate"));
-    response
-        .on_hover_text("Frames in a second: where times snap to, and what is saved as pictures");
+    response.on_hover_text("Set frames per second, for snapping and export");
 }
 
 fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
@@ -236,11 +233,11 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         tooltip,
     };
     let is_editing = session.is_editing();
-    let start = figure("Start", timeline.start, "When the timeline starts");
+    let start = figure("Start", timeline.start, "Set the start of the timeline");
     start.show(ui, roomy, is_editing, actions, |start| {
         EditAction::SetTimeline(Timeline { start, ..timeline })
     });
-    let end = figure("End", timeline.end, "When the timeline ends");
+    let end = figure("End", timeline.end, "Set the end of the timeline");
     end.show(ui, roomy, is_editing, actions, |end| {
         EditAction::SetTimeline(Timeline { end, ..timeline })
     });
@@ -248,10 +245,10 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
 
 fn curves(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let on = session.preferences().curves;
-    let button = egui::Button::selectable(on, "Curves").frame_when_inactive(true);
+    let button = egui::Button::selectable(on, "Graph editor").frame_when_inactive(true);
     let tooltip = match on {
-        true => "Show the keys in lanes again",
-        false => "Show how the selected channels go between their keys",
+        true => "Show keys in a dope sheet",
+        false => "Show the selected channels as curves",
     };
     if ui.add(button).on_hover_text(tooltip).clicked() {
         actions.push(ViewAction::ShowGraphEditor(!on));

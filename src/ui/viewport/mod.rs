@@ -92,7 +92,7 @@ fn invite(ui: &mut Ui, rect: Rect) {
     let line = |text: &str, size: f32| Label::new(RichText::new(text).size(size)).selectable(false);
     let at = Rect::from_center_size(rect.center_top() + vec2(0.0, 64.0), vec2(360.0, 24.0));
     ui.put(at, line("Click to place the first joint", 18.0));
-    ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next one", 13.5));
+    ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
 /// Says which joint the pointer is on.

@@ -9,8 +9,8 @@ use crate::ui::widgets::{self, euler_sliders};
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     let spaces = [
-        (HandSpace::Lower, "Follow forearm", "The hand turns with the lower limb"),
-        (HandSpace::World, "Keep in world", "The hand keeps its orientation however the arm moves"),
+        (HandSpace::Lower, "Follow forearm", "Turn the hand with the Lower limb"),
+        (HandSpace::World, "Keep in world", "Keep the world orientation of the hand"),
     ];
     ui.horizontal(|ui| {
         for (space, name, tooltip) in spaces {
@@ -20,13 +20,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     });
     let tooltip = match arm.wrist.space {
-        HandSpace::Lower => "How the hand is turned on the forearm",
-        HandSpace::World => "How the hand is turned in the world",
+        HandSpace::Lower => "Rotate the hand relative to the forearm",
+        HandSpace::World => "Rotate the hand in world space",
     };
     euler_sliders(
         ui,
         session,
-        "Hand turn",
+        "Hand rotation",
         tooltip,
         arm.wrist.angles,
         actions,
@@ -34,9 +34,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     );
     widgets::pair(ui, "Forearm roll τ", |ui| {
         let roll = format!("{:.1}°", arm.roll(session.pose()).to_degrees());
-        ui.label(RichText::new(roll).monospace()).on_hover_text(
-            "How far the hand is turned about the forearm, whole turns included; spread along it, as \
-             its stripes show",
-        );
+        ui.label(RichText::new(roll).monospace())
+            .on_hover_text("Hand rotation about the forearm, spread along its stripes");
     });
 }

@@ -29,9 +29,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut aside = Actions::new();
     let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
-    let reference = |ui: &mut Ui| socket_twist::reference(ui, session, &mut aside);
-    widgets::section_with(ui, "Elbow", reference, |ui| socket_twist::ui(ui, session, actions));
     actions.extend(aside);
+    widgets::section(ui, "Socket twist", |ui| socket_twist::ui(ui, session, actions));
     widgets::section(ui, "Root", |ui| root(ui, session, actions));
     widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));
@@ -50,7 +49,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         default: seed,
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
-        tooltip: "Where the Cursor is, and so the hand is asked to be, relative to the Root",
+        tooltip: "Move the Cursor, the hand's target, relative to the Root",
         disabled,
     };
     match arm.goal {
@@ -60,7 +59,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 value: pin,
                 default: arm.root + seed,
                 range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
-                tooltip: "Where the Cursor is pinned, in the world",
+                tooltip: "Move the Cursor, the hand's target, in world space",
                 ..hand
             };
             pinned.show(ui, session, actions, EditAction::SetPin);
@@ -70,10 +69,9 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn pin(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut pinned = session.arm().is_pinned();
-    let check = ui.checkbox(&mut pinned, "Pinned to the world").on_hover_text(
-        "The hand stays where it is when the Root moves, as on the edge of a table; else it goes \
-         with the Root",
-    );
+    let check = ui
+        .checkbox(&mut pinned, "Pinned to world")
+        .on_hover_text("Keep the hand in place when the Root moves");
     if check.changed() {
         actions.push(EditAction::PinHand(pinned));
     }
@@ -87,8 +85,7 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         default: Vec3::ZERO,
         range: ROOT_RANGE * session.arm_unit(),
         step: session.arm_unit(),
-        tooltip: "Where the Root, the shoulder, is in the world; the arm moves with it, but for a \
-                  hand that is pinned",
+        tooltip: "Move the Root, the shoulder, in world space",
         disabled: None,
     };
     root.show(ui, session, actions, EditAction::SetRoot);
@@ -102,7 +99,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         name: "Upper length",
         label: "Upper d_1",
         colour: Some(style::colour(palette.upper)),
-        tooltip: "The Upper Limb, from shoulder to elbow",
+        tooltip: "Set the length from shoulder to elbow",
         value: bones.upper(),
         range,
         default: seed.upper(),
@@ -114,7 +111,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         name: "Lower length",
         label: "Lower d_2",
         colour: Some(style::colour(palette.lower)),
-        tooltip: "The Lower Limb, from elbow to hand",
+        tooltip: "Set the length from elbow to hand",
         value: bones.lower(),
         range,
         default: seed.lower(),

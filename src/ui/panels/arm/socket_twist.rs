@@ -1,22 +1,21 @@
-//! Which way the elbow points: its spin, and what that is measured from.
+//! The Socket twist and its reference.
 
 use core::f32::consts::TAU;
 
-use egui::{ComboBox, Label, RichText, Ui};
+use egui::{ComboBox, Ui};
 
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::labels;
-use crate::ui::widgets::{PointSliders, Slider};
+use crate::ui::widgets::{self, PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     let slider = Slider {
-        name: "Elbow spin",
-        label: "Spin",
-        tooltip: "How far the Socket is turned about the Pointer from the reference: it takes the \
-                  elbow around and leaves the hand",
+        name: "Socket twist",
+        label: "Twist",
+        tooltip: "Turn the elbow about the Pointer; the hand stays",
         value: arm.twist.to_degrees(),
         range: (0.0, TAU.to_degrees()),
         default: 0.0,
@@ -27,31 +26,30 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     slider
         .show(ui, session, actions, |degrees| EditAction::SetTwist((degrees % 360.0).to_radians()));
+    reference(ui, session, actions);
     if arm.twist_reference == TwistReferenceKind::Pole {
         pole(ui, session, actions);
     }
 }
 
-/// What the spin is measured from, to choose.
-pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// The frame that the twist is measured from, to choose.
+fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let chosen = session.arm().twist_reference;
-    let combo = ComboBox::from_id_salt("swivel").selected_text(chosen.name());
-    let response = combo.show_ui(ui, |ui| {
-        for twist_reference in TwistReferenceKind::ALL {
-            let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
-            let item = item.on_hover_text(labels::twist_reference(twist_reference));
-            if item.clicked() && twist_reference != chosen {
-                actions.push(EditAction::SetTwistReference(twist_reference));
+    widgets::pair(ui, "Twist reference", |ui| {
+        let combo = ComboBox::from_id_salt("twist reference").selected_text(chosen.name());
+        let response = combo.show_ui(ui, |ui| {
+            for twist_reference in TwistReferenceKind::ALL {
+                let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
+                let item = item.on_hover_text(labels::twist_reference(twist_reference));
+                if item.clicked() && twist_reference != chosen {
+                    actions.push(EditAction::SetTwistReference(twist_reference));
+                }
             }
-        }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Twist reference"));
+        response.on_hover_text(labels::twist_reference(chosen));
     });
-    let response = response.response;
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Measured from"));
-    response.on_hover_text(format!(
-        "What the spin is measured from. {}",
-        labels::twist_reference(chosen)
-    ));
-    ui.add(Label::new(RichText::new("from").weak()).selectable(false));
 }
 
 fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -63,7 +61,7 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         default: Arm::default().pole,
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
-        tooltip: "What the elbow points at, relative to the Root; it can be dragged in the view",
+        tooltip: "Move the Pole, the point that the elbow turns towards",
         disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
     };
     pole.show(ui, session, actions, EditAction::SetPole);

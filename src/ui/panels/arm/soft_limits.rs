@@ -29,8 +29,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let slider = Slider {
         name: "Softness",
         label: "Softness",
-        tooltip: "The hand lags behind the Cursor before it comes to a limit, so that the elbow does \
-                  not snap; 0 is exact, and stops dead",
+        tooltip: "Slow the hand near its limits so that the elbow does not snap",
         value: softness,
         range: (0.0, MOST_SOFT),
         default: seed.softness(),
@@ -41,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let slider = Slider {
         name: "Stretch",
         label: "Stretch",
-        tooltip: "How many times as long the limbs may become to bring the hand to the Cursor",
+        tooltip: "Let the limbs stretch up to this factor",
         value: stretch,
         range: (1.0, MOST_STRETCHED),
         default: seed.max_stretch(),
@@ -49,11 +48,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ..Slider::default()
     };
     slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
-    let tooltip = "How far the elbow is open at least: the hand comes no nearer to the shoulder";
+    let tooltip = "Keep the elbow open by at least this angle";
     let slider = Slider {
-        label: "φ_min",
+        label: "Min. φ",
         range: (0.0, 179.0),
-        ..angle_slider("Smallest elbow angle", tooltip, angle)
+        ..angle_slider("Minimum elbow angle", tooltip, angle)
     };
     slider.show(ui, session, actions, |degrees| set(softness, stretch, degrees.to_radians()));
 }

@@ -34,7 +34,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         widgets::section(ui, "Reach", |ui| reach_meter::ui(ui, session));
         widgets::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
         widgets::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
-        widgets::section(ui, "Swivel references", |ui| twist_references::ui(ui, session, actions));
+        widgets::section(ui, "Twist references", |ui| twist_references::ui(ui, session, actions));
         widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
         widgets::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
     });
@@ -54,85 +54,100 @@ fn pointer(session: &Session) -> [FormulaRow; 4] {
     let cursor = if arm.is_led_by_hand() { arm.cursor() } else { pose.hand };
     [
         FormulaRow {
-            symbol: "θ_z",
+            symbol: "Yaw θ_z",
             formula: "atan2(z_c, x_c)",
             value: degrees(pose.yaw()),
-            meaning: "How far the Pointer is turned about the vertical, from x towards z",
+            meaning: "Angle of the Pointer about the vertical, from x towards z",
             colour: None,
         },
         FormulaRow {
-            symbol: "h_c",
+            symbol: "Level h_c",
             formula: "hypot(x_c, z_c)",
             value: length(arm, cursor.x.hypot(cursor.z)),
-            meaning: "How far the cursor is from the vertical through the root",
+            meaning: "Horizontal distance from the Root to the Cursor (x_c, y_c, z_c)",
             colour: None,
         },
         FormulaRow {
-            symbol: "θ_y",
+            symbol: "Pitch θ_y",
             formula: "atan2(y_c, h_c)",
             value: degrees(pose.pitch()),
-            meaning: "How far the Pointer rises above the xz-plane",
+            meaning: "Angle of the Pointer above the xz-plane",
             colour: None,
         },
         FormulaRow {
-            symbol: "D",
+            symbol: "Distance D",
             formula: match arm.soft_reach.is_hard() {
-                true => "|c| within limits",
-                false => "|c| softened",
+                true => "|c|, limited",
+                false => "|c|, softened",
             },
             value: length(arm, pose.distance),
-            meaning: "From shoulder to hand: the cursor's distance, held between the two limits",
+            meaning: "Distance from shoulder to hand: the Cursor's, within the limits",
             colour: None,
         },
     ]
 }
 
-fn elbow(ui: &Ui, session: &Session) -> [FormulaRow; 6] {
+fn elbow(ui: &Ui, session: &Session) -> [FormulaRow; 8] {
     let (arm, pose) = (session.arm(), session.pose());
     let bones = arm.bones;
+    let [upper, lower] = [bones.upper(), bones.lower()].map(|length| length * pose.stretch);
+    let (outer, difference) = (upper + lower, upper - lower);
     let palette = style::palette(ui);
     [
         FormulaRow {
-            symbol: "d_1",
+            symbol: "Upper d_1",
             formula: "",
-            value: length(arm, bones.upper() * pose.stretch),
-            meaning: "Length of the Upper Limb",
+            value: length(arm, upper),
+            meaning: "Length of the Upper limb",
             colour: Some(style::colour(palette.upper)),
         },
         FormulaRow {
-            symbol: "d_2",
+            symbol: "Lower d_2",
             formula: "",
-            value: length(arm, bones.lower() * pose.stretch),
-            meaning: "Length of the Lower Limb",
+            value: length(arm, lower),
+            meaning: "Length of the Lower limb",
             colour: Some(style::colour(palette.lower)),
         },
         FormulaRow {
-            symbol: "h_e",
+            symbol: "Sum L",
+            formula: "d_1 + d_2",
+            value: length(arm, outer),
+            meaning: "Reach of the straight arm",
+            colour: None,
+        },
+        FormulaRow {
+            symbol: "Difference δ",
+            formula: "d_1 − d_2",
+            value: length(arm, difference),
+            meaning: "Difference of the limb lengths; its size is the inner limit",
+            colour: None,
+        },
+        FormulaRow {
+            symbol: "Along h_e",
             formula: "(D + δ L / D) / 2",
             value: length(arm, pose.along),
-            meaning: "How far along the Pointer the elbow is. L is the sum of the lengths, δ their \
-                      difference",
+            meaning: "Distance of the elbow along the Pointer",
             colour: None,
         },
         FormulaRow {
-            symbol: "o_e",
+            symbol: "Out o_e",
             formula: "Heron's formula",
             value: length(arm, pose.out),
-            meaning: "How far out from the Pointer the elbow is: twice the triangle's area over D",
+            meaning: "Distance of the elbow from the Pointer: twice the triangle's area over D",
             colour: None,
         },
         FormulaRow {
-            symbol: "θ_e",
+            symbol: "Shoulder θ_e",
             formula: "atan2(o_e, h_e)",
             value: degrees(pose.shoulder_angle()),
-            meaning: "At the shoulder, between Pointer and Upper Limb",
+            meaning: "Angle at the shoulder, between Pointer and Upper limb",
             colour: None,
         },
         FormulaRow {
-            symbol: "φ",
-            formula: "at the elbow",
+            symbol: "Elbow angle φ",
+            formula: "",
             value: degrees(pose.elbow_angle()),
-            meaning: "The inner angle at the elbow: 180° straight, 0° folded",
+            meaning: "Inner angle at the elbow: 180° straight, 0° folded",
             colour: None,
         },
     ]

@@ -22,12 +22,12 @@ const LISTED: usize = 3;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let spikes = session.pops().spikes();
-    ui.weak("Elbow speed / cursor speed");
+    ui.weak("Elbow speed / Cursor speed");
     show(ui, session.pops(), &spikes);
     if spikes.is_empty() {
         ui.label(match session.pops().samples().len() {
-            0 => "Drag the hand, or play: what pops is named here.",
-            _ => "No pops: the elbow goes calmly with the cursor.",
+            0 => "Drag the hand or press play to record elbow pops.",
+            _ => "No pops: the elbow moves smoothly.",
         });
     }
     let mut offered: Vec<PopFix> = Vec::new();
@@ -37,7 +37,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let changes = Change::ALL.into_iter().filter(|change| is_marked(session.pops(), *change));
     let changes: Vec<_> = changes.map(Change::name).collect();
     if !changes.is_empty() {
-        ui.weak(format!("Dotted: {} changed, apart from pops", changes.join(", ")));
+        ui.weak(format!("Dotted lines, not pops: {} changed", changes.join(", ")));
     }
 }
 
@@ -49,7 +49,7 @@ fn is_marked(pops: &Pops, change: Change) -> bool {
 fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
     if !spike.stands(arm) {
-        ui.weak(format!("{text} – since then changed"));
+        ui.weak(format!("{text} – settings have changed since"));
         return;
     }
     ui.label(RichText::new(text));
@@ -85,7 +85,7 @@ fn describe(spike: &Spike) -> String {
                 TwistReference::Limb => "the vertical",
                 TwistReference::Pole(_) => "the pole",
                 TwistReference::Stereographic(_) | TwistReference::Transport => {
-                    "what the map leaves out, −x"
+                    "straight behind, −x"
                 }
             };
             let degrees = nearest.to_degrees();
@@ -93,32 +93,33 @@ fn describe(spike: &Spike) -> String {
         }
         Pop::Straight => format!("the arm reached its outer limit ({times})"),
         Pop::Folded => format!("the arm folded up ({times})"),
-        Pop::Shoulder => format!("the cursor passed the shoulder ({times})"),
+        Pop::Shoulder => format!("the Cursor passed the shoulder ({times})"),
     }
 }
 
 /// A button's name and what it does.
 fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
     match pop_fix {
-        PopFix::Measure(TwistReferenceKind::Transport) => (
-            "Carry it along",
-            "The elbow's side goes along with the Pointer by the least turn: no direction is \
-             singular, but a closed way does not bring it back"
-                .to_owned(),
-        ),
+        PopFix::Measure(TwistReferenceKind::Transport) => {
+            ("Use Transport", "Use the Transport twist reference, which never flips".to_owned())
+        }
         PopFix::Measure(_) => (
-            "Measure from the map",
-            "The elbow's spin is measured from a map of all directions that leaves out only the \
-             one behind, −x; the elbow stays"
-                .to_owned(),
+            "Use Stereographic",
+            "Use the Stereographic twist reference, which flips only at −x".to_owned(),
         ),
         PopFix::Soften(soft_reach) => (
-            if now.softness() == 0.0 { "Soften the reach" } else { "Soften it more" },
-            format!("Softness {:.2}: the hand lags behind near the limits", soft_reach.softness()),
+            if now.softness() == 0.0 { "Add softness" } else { "Add more softness" },
+            format!(
+                "Set softness to {:.2} to slow the hand near its limits",
+                soft_reach.softness()
+            ),
         ),
         PopFix::KeepOpen(soft_reach) => (
-            "Keep the elbow open",
-            format!("Smallest elbow angle {:.0}°", soft_reach.min_elbow_angle().to_degrees()),
+            "Keep elbow open",
+            format!(
+                "Set the minimum elbow angle to {:.0}°",
+                soft_reach.min_elbow_angle().to_degrees()
+            ),
         ),
     }
 }
@@ -129,14 +130,13 @@ fn why_none(pop: Pop, arm: &Arm) -> String {
             let least = arm.soft_reach.least_distance(arm.bones);
             match least > 1e-3 * arm.bones.outer_limit() {
                 true => format!(
-                    "No remedy: from one side to the other the hand must jump by twice the least \
-                     reach, {}.",
+                    "No fix: the hand must jump by twice the inner limit, {}.",
                     arm.length_in_words(2.0 * least)
                 ),
-                false => "No remedy: the whole arm must turn about.".to_owned(),
+                false => "No fix: the whole arm must turn around.".to_owned(),
             }
         }
-        _ => "No remedy: all that helps is done already.".to_owned(),
+        _ => "No fix: every remedy is in use.".to_owned(),
     }
 }
 
@@ -167,11 +167,7 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
         [.., last] => format!("Pops: {}, the last one {}", spikes.len(), name(last.pop)),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-    response.on_hover_text(
-        "How many times as far as the cursor the elbow went, step by step; a drag or what was \
-         played ends where the line does. Above the dashed line, twice what a calm arm needs, it \
-         is a pop. Dotted: something else changed",
-    );
+    response.on_hover_text("Elbow speed over Cursor speed per step; above the dashed line it pops");
 }
 
 #[derive(Clone, Copy)]

@@ -21,7 +21,7 @@ const EXAMPLE_STRETCH: f32 = 1.5;
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let arm = session.arm();
     let curves = ReachCurve::all(ui, arm);
-    ui.weak("Actual reach / asked reach");
+    ui.weak("Hand distance / Cursor distance");
     let shown = show(ui, arm, &curves);
     let said = reading(arm, arm.cursor().length());
     let name = format!("Reach curve: {said}");
@@ -35,7 +35,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     ui.label(said);
     ui.weak(note(arm.soft_reach));
     if arm.influence < 1.0 {
-        ui.weak("As the hand alone would have it: the angles lead too");
+        ui.weak("Shown for IK alone, without the FK blend");
     }
 }
 
@@ -62,9 +62,9 @@ impl ReachCurve {
             Self { name, soft_reach, is_own, colour, style }
         };
         [
-            curve("none".to_owned(), with(0.0, 1.0), ui.visuals().text_color(), LineStyle::Solid),
+            curve("off".to_owned(), with(0.0, 1.0), ui.visuals().text_color(), LineStyle::Solid),
             curve(
-                format!("soft {softer:.2}"),
+                format!("softness {softer:.2}"),
                 with(softer, 1.0),
                 style::colour(palette.accent),
                 LineStyle::Dashed { length: 7.0 },
@@ -182,15 +182,15 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
 fn reading(arm: &Arm, asked: f32) -> String {
     let asked = asked.min(f32::MAX);
     let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, asked);
-    format!("Asked {asked:.1}, actual {distance:.1}, slope {slope:.2}")
+    format!("Cursor at {asked:.1}: hand at {distance:.1}, slope {slope:.2}")
 }
 
 /// Which of the curves is the arm's own, and which are only examples.
 fn note(own: SoftReach) -> &'static str {
     match (own.softness() > 0.0, own.max_stretch() > 1.0) {
-        (false, false) => "Hard arm: soft and stretch are examples",
-        (true, false) => "Soft arm: stretch is an example",
-        (false, true) => "Stretching arm: soft is an example",
-        (true, true) => "This arm is soft and stretches",
+        (false, false) => "Soft limits are off; the dashed curves show what they would do",
+        (true, false) => "Softness is on; the dotted curve shows what stretch would do",
+        (false, true) => "Stretch is on; the dashed curve shows what softness would do",
+        (true, true) => "Softness and stretch are on",
     }
 }

@@ -31,7 +31,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 6.0, ui.visuals().extreme_bg_color);
     TriangleDrawing::new(ui, rect, arm, pose).paint(&painter, ui);
-    response.on_hover_text("The arm seen straight onto its own plane, to scale");
+    response.on_hover_text("The arm in its own plane, to scale");
 }
 
 /// Where everything is on screen.

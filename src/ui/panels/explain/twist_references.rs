@@ -15,7 +15,7 @@ use crate::ui::{labels, style};
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     if !arm.is_led_by_hand() {
-        ui.weak("The joints' own angles lead: nothing is measured.");
+        ui.weak("Not used in FK: switch to IK to compare references.");
         return;
     }
     table(ui, arm, session.transport_path().transported());
@@ -23,8 +23,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     transport_path(ui, session, actions);
     let display = session.shown().display;
     let shown = [
-        (Overlay::References, "As ghosts", "The arm as the other references would have it"),
-        (Overlay::Globe, "Globe of gains", "Where the hand would be when the elbow flips: hot"),
+        (Overlay::References, "Ghosts", "Show the arm with the other twist references"),
+        (Overlay::Globe, "Singularity globe", "Colour the outer limit by how fast the elbow turns"),
     ];
     ui.horizontal(|ui| {
         for (layer, name, tooltip) in shown {
@@ -45,7 +45,7 @@ fn legend(ui: &mut Ui) {
     const STEPS: usize = 64;
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let summary = "Gain, from calm at 0 to hot at 8 and more";
+    let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, summary));
     let (palette, painter) = (style::palette(ui), ui.painter());
     let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
@@ -72,7 +72,7 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
     let own = arm.solve().pose;
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
-        ui.label(RichText::new("Measured from").weak());
+        ui.label(RichText::new("Twist reference").weak());
         for heading in ["Elbow", "Gain"] {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.label(RichText::new(heading).weak());
@@ -90,8 +90,8 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
             let apart = turn_in_words(own.elbow_turn_to(&pose));
             let gain = arm.reference_of(twist_reference).gain(own.facing);
             for (value, tooltip) in [
-                (apart, "How far its elbow is turned from the arm's, with the same spin"),
-                (gain_in_words(gain), "How far the elbow turns for every degree of the Pointer"),
+                (apart, "Elbow rotation from the current elbow at the same twist"),
+                (gain_in_words(gain), "Elbow degrees per degree of the Pointer"),
             ] {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     ui.label(RichText::new(value).monospace()).on_hover_text(tooltip);
@@ -103,15 +103,14 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
 }
 
 fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    widgets::pair(ui, "Holonomy", |ui| {
-        if widgets::button(ui, "Start here", "Carries along from here", None) {
+    ui.label("Holonomy (elbow turn after a closed loop)");
+    widgets::pair(ui, "", |ui| {
+        if widgets::button(ui, "Reset", "Restart the loop from the current pose", None) {
             actions.push(ViewAction::ResetTransport);
         }
         let turned = turn_in_words(session.transport_path().holonomy());
         ui.label(RichText::new(turned).monospace()).on_hover_text(
-            "What was carried along the hand's way is turned by so much against what goes straight: \
-             the solid angle that the way goes around. A hand that comes back does not bring its \
-             elbow back",
+            "Elbow rotation after the hand's path so far: its solid angle about the shoulder",
         );
     });
 }

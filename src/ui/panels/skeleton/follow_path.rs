@@ -15,8 +15,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn slithers(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut slithers = session.skeleton_rig().follow_path.is_some();
-    let tooltip = "The first chain of joints follows its head along a wavy ring, like a snake";
-    if ui.checkbox(&mut slithers, "Slither").on_hover_text(tooltip).changed() {
+    let tooltip = "Move the first chain along a wavy ring, like a snake";
+    if ui.checkbox(&mut slithers, "Follow path").on_hover_text(tooltip).changed() {
         let follow_path = first(session.skeleton_rig().reach());
         actions.push(EditAction::SetFollowPath(slithers.then_some(follow_path)));
     }
@@ -43,20 +43,40 @@ fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mu
         step,
         ..Slider::default()
     };
-    let tooltip = "How far from the middle the way is";
-    slider("Ring", "Ring", tooltip, follow_path.radius, (0.0, 2.0 * reach), first.radius, "", step)
-        .show(ui, session, actions, |radius| set(FollowPath { radius, ..follow_path }));
-    let tooltip = "How far the waves go to either side";
+    let tooltip = "Set the radius of the ring";
+    slider(
+        "Radius",
+        "Radius",
+        tooltip,
+        follow_path.radius,
+        (0.0, 2.0 * reach),
+        first.radius,
+        "",
+        step,
+    )
+    .show(ui, session, actions, |radius| set(FollowPath { radius, ..follow_path }));
+    let tooltip = "Set the height of the waves";
     let range = (0.0, 0.5 * reach);
-    slider("Amplitude", "Waves", tooltip, follow_path.amplitude, range, first.amplitude, "", step)
-        .show(ui, session, actions, |amplitude| set(FollowPath { amplitude, ..follow_path }));
-    let tooltip = "How many waves there are once around";
+    slider(
+        "Amplitude",
+        "Amplitude",
+        tooltip,
+        follow_path.amplitude,
+        range,
+        first.amplitude,
+        "",
+        step,
+    )
+    .show(ui, session, actions, |amplitude| set(FollowPath { amplitude, ..follow_path }));
+    let tooltip = "Set the number of waves around the ring";
     let waves = follow_path.waves as f32;
-    slider("Number of waves", "Count", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0)
-        .show(ui, session, actions, |waves| {
-            set(FollowPath { waves: waves.round().clamp(0.0, 1000.0) as u32, ..follow_path })
-        });
-    let tooltip = "How long the head takes once around";
+    slider("Waves", "Waves", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0).show(
+        ui,
+        session,
+        actions,
+        |waves| set(FollowPath { waves: waves.round().clamp(0.0, 1000.0) as u32, ..follow_path }),
+    );
+    let tooltip = "Set the time for one round";
     slider("Period", "Period", tooltip, follow_path.period, (1.0, 60.0), first.period, " s", 1.0)
         .show(ui, session, actions, |period| set(FollowPath { period, ..follow_path }));
 }

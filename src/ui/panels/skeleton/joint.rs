@@ -10,21 +10,21 @@ use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 
-const STIFF: &str = "The limit leaves no room";
-const SLITHERS: &str = "The joints follow the head; switch Slither off to turn them";
+const STIFF: &str = "The limits leave one angle only";
+const SLITHERS: &str = "Switch off Follow path to rotate joints";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
     if session.selection().len() > 1 {
         let count = session.selection().len();
-        ui.weak(format!("{count} joints are selected; this is the last of them."));
+        ui.weak(format!("{count} joints selected; this is the last one."));
     }
     rotation(ui, session, index, joint, actions);
     limits(ui, session, index, joint, actions);
     bone(ui, session, index, joint, actions);
     parent(ui, session, index, joint, actions);
     let mut locked = joint.locked;
-    let tooltip = "Solvers do not turn a locked joint; these sliders do";
+    let tooltip = "Keep solvers from rotating this joint";
     if ui.checkbox(&mut locked, "Locked").on_hover_text(tooltip).changed() {
         actions.push(EditAction::SetLocked { joint: index, locked });
     }
@@ -45,9 +45,9 @@ fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions
         let slithers = session.skeleton_rig().follow_path.map(|_| SLITHERS);
         let slider = Slider {
             name: &format!("Rotation {label}"),
-            label: &format!("Turn {label}"),
+            label: &format!("Rotate {label}"),
             colour: Some(style::colour(colours[axis])),
-            tooltip: &format!("Euler angle about {label}; x is applied first, then y, then z"),
+            tooltip: &format!("Rotate about {label} (Euler order x, y, z)"),
             value: shown[axis].to_degrees(),
             range,
             default: 0.0,
@@ -71,7 +71,7 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let mut limited = limit.is_some();
-            let tooltip = format!("Whether the angle about {label} goes only so far");
+            let tooltip = format!("Limit the rotation about {label}");
             let name = format!("Limit {label}");
             if ui.checkbox(&mut limited, name).on_hover_text(tooltip).changed() {
                 let wide = Limit { min: -PI / 2.0, max: PI / 2.0 };
@@ -79,11 +79,11 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
             }
             let Some(limit) = limit else { return };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                angle(ui, session, actions, &format!("{label} to"), limit.max, &|max| {
+                angle(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
                     set(Some(Limit { min: limit.min.min(max), max }))
                 });
                 ui.weak("to");
-                angle(ui, session, actions, &format!("{label} from"), limit.min, &|min| {
+                angle(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
                     set(Some(Limit { min, max: limit.max.max(min) }))
                 });
             });
@@ -100,7 +100,7 @@ fn angle(
     value: f32,
     set: &dyn Fn(f32) -> EditAction,
 ) {
-    let tooltip = "How far the angle can go";
+    let tooltip = "Set the end of the range";
     NumberField { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
         ui,
         session,
@@ -111,7 +111,7 @@ fn angle(
 
 fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let step = session.shown().cell() * 0.1;
-    let tooltip = "From the joint's base to its tip, in its own space";
+    let tooltip = "Set the vector from base to tip, in joint space";
     widgets::pair(ui, "Bone", |ui| {
         for axis in (0..3).rev() {
             let name = format!("Bone {}", AXES[axis]);
@@ -133,7 +133,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
     });
     let length = joint.axis.length();
     widgets::pair(ui, "Length", |ui| {
-        let tooltip = "How long the bone is; its direction stays";
+        let tooltip = "Set the bone length; the direction stays";
         NumberField {
             name: "Length",
             value: length,
@@ -170,6 +170,6 @@ fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
         });
         let response = response.response;
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Parent"));
-        response.on_hover_text("What the joint hangs from; it stays where it is");
+        response.on_hover_text("Change the parent; the joint stays in place");
     });
 }

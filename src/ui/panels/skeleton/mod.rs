@@ -28,8 +28,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     }
     widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
-    widgets::section(ui, "Place", |ui| place(ui, session, actions));
-    widgets::section(ui, "Motion", |ui| follow_path::ui(ui, session, actions));
+    widgets::section(ui, "Translation", |ui| place(ui, session, actions));
+    widgets::section(ui, "Path", |ui| follow_path::ui(ui, session, actions));
 }
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -41,7 +41,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         default: Vec3::ZERO,
         range: 2.0 * rig.reach(),
         step: session.shown().cell() * 0.1,
-        tooltip: "Where the skeleton's own origin is, in the world; its targets stay",
+        tooltip: "Move the skeleton in world space; targets stay",
         disabled: None,
     };
     place.show(ui, session, actions, EditAction::SetTranslation);

@@ -55,7 +55,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
     if rows.is_empty() {
-        ui.weak("No joints yet: add a root.");
+        ui.weak("No joints. Add a root to start.");
     }
 }
 
@@ -205,19 +205,18 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let none = selected.is_none().then_some(NONE_SELECTED);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
-        let tooltip = "Add a joint at the tip of the selected one, else of the last (A). \
-                       Ctrl+click in the view puts its tip there";
+        let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
         if widgets::button(ui, "Add child", tooltip, None) {
             actions.push(EditAction::AddJoint { tip: None });
         }
-        if widgets::button(ui, "Add root", "Begin another tree with a point that is locked", None) {
+        if widgets::button(ui, "Add root", "Add a root joint, the start of another tree", None) {
             actions.push(EditAction::AddRoot);
         }
-        let tooltip = "Delete the selected joints; asks whether their children stay (Delete)";
+        let tooltip = "Delete the selected joints (Delete)";
         if widgets::button(ui, "Delete", tooltip, none) {
             actions.push(commands::delete(session));
         }
-        if widgets::button(ui, "Rename…", "Give the selected joint another name (F2)", none)
+        if widgets::button(ui, "Rename…", "Rename the selected joint (F2)", none)
             && let Some(joint) = selected
         {
             actions.push(commands::rename(session, joint));
@@ -231,8 +230,8 @@ fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let none = selected.is_none().then_some(NONE_SELECTED);
     let has_target = selected.is_some_and(|joint| session.skeleton_rig().target(joint).is_some());
     let (name, tooltip) = match has_target {
-        true => ("Remove target", "Let the joint's tip go where it will (T)"),
-        false => ("Add target", "Ask for a place for the joint's tip (T)"),
+        true => ("Remove target", "Remove the target of the selected joint (T)"),
+        false => ("Add target", "Add a target for the selected joint's tip (T)"),
     };
     if widgets::button(ui, name, tooltip, none) {
         actions.extend(commands::toggle_target(session));

@@ -16,25 +16,25 @@ const PATHS: [(TargetPath, &str); 3] = [
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     if rig.targets.is_empty() {
-        ui.weak("No targets yet: select a joint and add one.");
+        ui.weak("No targets. Select a joint and press T.");
     }
     for target in &rig.targets {
         let Some(joint) = rig.skeleton.joint(target.joint) else { continue };
         widgets::pair(ui, "", |ui| {
             let residual = residual(session, target);
             ui.label(RichText::new(format::short(residual)).monospace())
-                .on_hover_text("From the tip to its target");
+                .on_hover_text("Distance from tip to target");
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let mut enabled = target.enabled;
                 let name = format!("Target of {}", joint.name);
-                let check = ui.checkbox(&mut enabled, "").on_hover_text("Whether solvers mind it");
+                let check = ui.checkbox(&mut enabled, "").on_hover_text("Enable this target");
                 ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
                 if check.changed() {
                     actions.push(EditAction::SetTarget(Target { enabled, ..*target }));
                 }
                 let selected = session.selected() == Some(target.joint);
                 let label = egui::Button::selectable(selected, &joint.name).truncate();
-                if ui.add(label).on_hover_text("Select its joint").clicked() {
+                if ui.add(label).on_hover_text("Select the joint of this target").clicked() {
                     actions.push(SelectAction::Joints(vec![target.joint]));
                 }
             });
@@ -56,7 +56,7 @@ pub(in crate::ui) fn selected(
     let step = session.shown().cell() * 0.1;
     place(ui, session, target, step, actions);
     widgets::pair(ui, "Weight", |ui| {
-        let tooltip = "How much it counts beside other targets";
+        let tooltip = "Weigh this target against the others";
         let field = NumberField {
             name: "Weight",
             value: target.weight,
@@ -83,14 +83,14 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         default: session.skeleton_pose().tip(target.joint),
         range: 1.5 * session.skeleton_rig().reach(),
         step,
-        tooltip: "Where the tip is asked to be, in the world",
+        tooltip: "Move the target in world space",
         disabled: None,
     };
     place.show(ui, session, actions, |home| EditAction::SetTarget(Target { home, ..target }));
 }
 
 fn moves(ui: &mut Ui, target: Target, actions: &mut Actions) {
-    widgets::pair(ui, "Moves", |ui| {
+    widgets::pair(ui, "Motion", |ui| {
         let now = PATHS.iter().find(|(path, _)| *path == target.motion.path);
         let combo = ComboBox::from_id_salt("moves").selected_text(now.map_or("", |now| now.1));
         let response = combo.show_ui(ui, |ui| {
@@ -103,15 +103,15 @@ fn moves(ui: &mut Ui, target: Target, actions: &mut Actions) {
             }
         });
         let response = response.response;
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Moves"));
-        response.on_hover_text("How the target moves by itself while the time goes on");
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Motion"));
+        response.on_hover_text("Move the target along a path during playback");
     });
 }
 
 fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
     let set = |motion| EditAction::SetTarget(Target { motion, ..target });
     widgets::pair(ui, "Radius", |ui| {
-        let (value, tooltip) = (target.motion.radius, "How far it goes to either side");
+        let (value, tooltip) = (target.motion.radius, "Set the radius of the path");
         NumberField {
             name: "Radius",
             value,
@@ -123,7 +123,7 @@ fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &m
         .show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
     });
     widgets::pair(ui, "Period", |ui| {
-        let (value, tooltip) = (target.motion.period, "How long once around takes");
+        let (value, tooltip) = (target.motion.period, "Set the time for one round");
         NumberField { name: "Period", value, unit: " s", step: 0.1, digits: 2, tooltip }.show(
             ui,
             session,

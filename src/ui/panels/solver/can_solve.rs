@@ -6,11 +6,11 @@ use crate::session::Session;
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton_rig();
     if rig.follow_path.is_some() {
-        Some("The joints follow the head; there is nothing to solve")
+        Some("Switch off Follow path to solve")
     } else if rig.targets.is_empty() {
-        Some("There is no target; add one to a joint")
+        Some("Add a target to a joint first")
     } else if !rig.targets.iter().any(|target| target.enabled) {
-        Some("Every target is switched off")
+        Some("Enable a target first")
     } else {
         None
     }

@@ -12,13 +12,13 @@ use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.comparison() else {
-        let tooltip = "From the present pose to the same targets: each as a ghost in its colour";
+        let tooltip = "Run every solver from this pose, each as a coloured ghost";
         if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
             actions.push(SolverAction::Compare(true));
         }
         return;
     };
-    let tooltip = "Take the ghosts away; the skeleton stays as it is";
+    let tooltip = "Remove the ghosts; the pose stays";
     if widgets::button(ui, "End race", tooltip, None) {
         actions.push(SolverAction::Compare(false));
     }

@@ -68,10 +68,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             format::short(report.error),
             report.iterations
         ),
-        None => "Convergence: nothing solved yet".to_owned(),
+        None => "Convergence: no solver run yet".to_owned(),
     };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &said));
-    response.on_hover_text("Error over iterations; the dashed line is the tolerance");
+    response.on_hover_text("Error over iterations, dashed: tolerance");
 }
 
 /// Iteration and logarithm of the error, for every solver that has run.

@@ -54,7 +54,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let set = |options| EditAction::SetSolver(options);
     widgets::pair(ui, "Iterations per frame", |ui| {
         let value = rig.iterations_per_frame as f32;
-        let tooltip = "How many iterations a running solver makes between two pictures";
+        let tooltip = "Set the iterations of a running solver per frame";
         NumberField {
             name: "Iterations per frame",
             value,
@@ -67,10 +67,10 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             EditAction::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
         });
     });
-    widgets::pair(ui, "Iterations at most", |ui| {
+    widgets::pair(ui, "Maximum iterations", |ui| {
         let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
-        let tooltip = "After so many a solver gives up";
-        NumberField { name: "Iterations at most", value, unit: "", step: 1.0, digits: 0, tooltip }
+        let tooltip = "Stop the solver after this many iterations";
+        NumberField { name: "Maximum iterations", value, unit: "", step: 1.0, digits: 0, tooltip }
             .show(ui, session, actions, |value| {
                 let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
                 set(SolverOptions { iterations, ..options })
@@ -79,8 +79,8 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     tolerance(ui, session, actions);
     match options.method {
         Method::DampedLeastSquares => {
-            widgets::pair(ui, "Damping", |ui| {
-                let tooltip = "λ, in chain lengths: more is calmer and slower";
+            widgets::pair(ui, "Damping λ", |ui| {
+                let tooltip = "Set the damping λ, in chain lengths: more is stabler, slower";
                 let value = options.damping;
                 NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }
                     .show(ui, session, actions, |damping| {
@@ -90,7 +90,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
         Method::TransposeFixed => {
             widgets::pair(ui, "Step", |ui| {
-                let tooltip = "The step's length, in parts of the one that is always stable";
+                let tooltip = "Set the step, as a fraction of the largest stable one";
                 NumberField {
                     name: "Step length",
                     value: options.step,
@@ -105,14 +105,14 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
     }
     let mut free = options.root == Root::Free;
-    let tooltip = "Whether the roots may move, as a snake's head does";
+    let tooltip = "Let the solver move the roots";
     if ui.checkbox(&mut free, "Free root").on_hover_text(tooltip).changed() {
         let root = if free { Root::Free } else { Root::Fixed };
         actions.push(set(SolverOptions { root, ..options }));
     }
     let mut follow = session.preferences().follow;
-    let tooltip = "Solve at once while a target is dragged; switch it off to watch the solver run";
-    if ui.checkbox(&mut follow, "Follow while dragged").on_hover_text(tooltip).changed() {
+    let tooltip = "Solve fully while a target is dragged";
+    if ui.checkbox(&mut follow, "Solve during drags").on_hover_text(tooltip).changed() {
         actions.push(SolverAction::SetFollow(follow));
     }
 }
@@ -122,7 +122,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::pair(ui, "Tolerance", |ui| {
         let auto = 1e-4 * session.skeleton_rig().reach();
         if let Some(tolerance) = options.tolerance {
-            let tooltip = "How near every tip must come, in the world";
+            let tooltip = "Set the distance at which a tip has converged";
             let step = 0.05 * tolerance;
             let short = |value: f64| format::short(value as f32);
             NumberField { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
@@ -131,7 +131,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 });
         }
         let mut is_auto = options.tolerance.is_none();
-        let tooltip = "A ten-thousandth of the chain's length";
+        let tooltip = "Use 1/10,000 of the chain length";
         if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
             let tolerance = (!is_auto).then_some(auto);
             actions.push(EditAction::SetSolver(SolverOptions { tolerance, ..options }));
@@ -149,14 +149,14 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let [run, step, reset] = columns else { return };
         let running = session.is_running();
         let name = if running { "Pause solver" } else { "Run" };
-        if wide(run, name, "Iterate until it is there (R)", disabled) {
+        if wide(run, name, "Iterate until converged (R)", disabled) {
             actions.push(SolverAction::Run(!running));
         }
-        if wide(step, "Step", "One iteration (S)", disabled) {
+        if wide(step, "Step", "Run one iteration (S)", disabled) {
             actions.push(EditAction::StepSolver);
         }
         let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
-        if wide(reset, "Reset", "Back to the pose before the solver ran", nothing) {
+        if wide(reset, "Reset", "Restore the pose before the solver run", nothing) {
             actions.push(EditAction::ResetSolver);
         }
     });
@@ -175,13 +175,13 @@ fn report(ui: &mut Ui, session: &Session) {
     widgets::pair(ui, "Iterations", |ui| {
         let made = status.map(|status| status.report.iterations);
         value(ui, made.filter(|made| *made > 0).map_or_else(none, |made| made.to_string()))
-            .on_hover_text("Iterations of the run that led to this pose")
+            .on_hover_text("Iterations of the last solver run")
     });
     widgets::pair(ui, "Error", |ui| {
         value(ui, status.map_or_else(none, |status| format::short(status.report.error)))
-            .on_hover_text("The largest distance from a tip to its target, in the world")
+            .on_hover_text("Largest distance from a tip to its target")
     });
-    widgets::pair(ui, "State", |ui| {
+    widgets::pair(ui, "Status", |ui| {
         ui.label(status.map_or("no target", |status| status.state.describe()))
     });
 }
