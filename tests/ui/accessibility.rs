@@ -21,7 +21,7 @@ fn every_slider_tells_its_value_and_its_range() {
     for (slider, value) in SLIDERS.into_iter().zip(values) {
         let node = bench.node(Role::Slider, slider).accesskit_node();
         let range = match slider {
-            "Elbow spin" => (0.0, 360.0),
+            "Socket twist" => (0.0, 360.0),
             "Upper length" | "Lower length" => (10.0, 1000.0),
             _ => (-500.0, 500.0),
         };
@@ -155,7 +155,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 #[test]
 fn the_viewport_is_an_image_that_says_how_the_arm_stands() {
     let bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
-    let name = "Viewport. Too far: the arm is straight and points at the cursor, 100.0 short.";
+    let name = "Viewport. Too far: the arm is straight and points at the Cursor, 100.0 short.";
     let rect = bench.rect(Role::Image, name);
     assert_eq!(rect, bench.viewport());
 }

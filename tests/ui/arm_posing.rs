@@ -52,12 +52,12 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     bench.click(Role::Button, "FK");
     assert_eq!(bench.session().arm().influence, 0.0);
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
-    assert!(bench.says("Arm · FK") && bench.says("FK: the joints' own angles place the hand."));
+    assert!(bench.says("Arm · FK") && bench.says("FK (joint angles → hand): the angles place the hand."));
     bench.enter("Elbow bend", "60");
     assert!((bench.session().pose().elbow_angle().to_degrees() - 120.0).abs() < 0.01);
     bench.enter("Shoulder yaw", "0");
     bench.enter("Shoulder pitch", "0");
-    bench.enter("Shoulder twist", "0");
+    bench.enter("Shoulder roll", "0");
     let elbow = bench.session().pose().elbow;
     assert!(elbow.distance(Vec3::X * 200.0) < 1e-3, "{elbow}");
     let pose = *bench.session().pose();
@@ -84,13 +84,13 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
     let mut bench =
         Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles), EditAction::SetBend(0.5)]);
     let angles = bench.session().pose().elbow_angle();
-    bench.enter("IK weight", "1");
+    bench.enter("IK influence", "1");
     let hand = bench.session().pose().elbow_angle();
-    bench.enter("IK weight", "0.5");
+    bench.enter("IK influence", "0.5");
     let between = bench.session().pose().elbow_angle();
     assert!((between - 0.5 * (angles + hand)).abs() < 1e-4);
     assert!(bench.says("Arm · 50 % IK") && bench.says("Between FK and IK"));
-    bench.enter("IK weight", "3");
+    bench.enter("IK influence", "3");
     assert!(bench.says("The IK weight must be from 0 to 1, not 3"));
     assert_eq!(bench.session().arm().influence, 0.5);
 }
@@ -147,7 +147,7 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
 fn a_pinned_hand_stays_when_the_root_moves() {
     let mut bench = Bench::new();
     let before = bench.session().arm().cursor_world();
-    bench.click(Role::CheckBox, "Pinned to the world");
+    bench.click(Role::CheckBox, "Pinned to world");
     bench.enter("Root x", "80");
     bench.enter("Root y", "-30.5");
     assert_eq!(bits(bench.session().arm().cursor_world()), bits(before));
@@ -156,7 +156,7 @@ fn a_pinned_hand_stays_when_the_root_moves() {
     bench.enter("Hand z", "10");
     assert_eq!(bench.session().arm().cursor_world().z, 10.0, "it is set in the world");
     let pose = *bench.session().pose();
-    bench.click(Role::CheckBox, "Pinned to the world");
+    bench.click(Role::CheckBox, "Pinned to world");
     assert!(apart(&pose, bench.session().pose()) < 1e-3);
     let cursor = bench.cursor_place();
     bench.apply([EditAction::PinHand(true)]);
@@ -174,7 +174,7 @@ fn the_elbow_is_measured_from_elsewhere_and_stays() {
         ("Transport", TwistReferenceKind::Transport),
         ("Limb", TwistReferenceKind::Limb),
     ] {
-        pick(&mut bench, "Measured from", name);
+        pick(&mut bench, "Twist reference", name);
         assert_eq!(bench.session().arm().twist_reference, twist_reference);
         assert!(apart(&pose, bench.session().pose()) < 5e-3, "{name}");
         assert_eq!(
@@ -208,11 +208,11 @@ fn the_pole_is_dragged_in_the_view_and_taken_back() {
 #[test]
 fn the_four_references_stand_beside_each_other() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
-    for name in ["Stereographic", "Transport", "Holonomy"] {
+    for name in ["Stereographic", "Transport", "Holonomy (elbow turn after a closed loop)"] {
         assert!(bench.says(name), "{name}");
     }
     assert!(bench.says("300.00"), "the gain of the limb's, straight above");
-    for (name, layer) in [("As ghosts", Overlay::References), ("Globe of gains", Overlay::Globe)] {
+    for (name, layer) in [("Ghosts", Overlay::References), ("Singularity globe", Overlay::Globe)] {
         reveal(&mut bench, Role::CheckBox, name);
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
@@ -225,8 +225,8 @@ fn the_four_references_stand_beside_each_other() {
         bench.apply([EditAction::SetHand(hand * 300.0)]);
     }
     assert!(bench.says("+90.0°"), "an octant's solid angle");
-    reveal(&mut bench, Role::Button, "Start here");
-    bench.click(Role::Button, "Start here");
+    reveal(&mut bench, Role::Button, "Reset");
+    bench.click(Role::Button, "Reset");
     assert!(!bench.says("+90.0°"));
 }
 
@@ -237,7 +237,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     bench.click(Role::DisclosureTriangle, "Soft limits");
     bench.enter("Softness", "0.25");
     bench.enter("Stretch", "1.5");
-    bench.enter("Smallest elbow angle", "20");
+    bench.enter("Minimum elbow angle", "20");
     let soft_reach = bench.session().arm().soft_reach;
     assert_eq!((soft_reach.softness(), soft_reach.max_stretch()), (0.25, 1.5));
     assert!((soft_reach.min_elbow_angle().to_degrees() - 20.0).abs() < 1e-4);
@@ -246,7 +246,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     bench.click(Role::DisclosureTriangle, "Soft limits");
     bench.click(Role::DisclosureTriangle, "Hand orientation");
     for degrees in ["100", "200", "270"] {
-        bench.enter("Hand turn x", degrees);
+        bench.enter("Hand rotation x", degrees);
     }
     assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
     bench.click(Role::RadioButton, "Keep in world");
@@ -259,9 +259,9 @@ fn every_control_of_the_posing_has_a_tooltip() {
     for (role, name) in [
         (Role::Button, "IK"),
         (Role::Button, "FK"),
-        (Role::Slider, "IK weight"),
-        (Role::CheckBox, "Pinned to the world"),
-        (Role::ComboBox, "Measured from"),
+        (Role::Slider, "IK influence"),
+        (Role::CheckBox, "Pinned to world"),
+        (Role::ComboBox, "Twist reference"),
         (Role::Slider, "Pole y"),
     ] {
         assert!(has_tooltip(&mut bench, role, name), "{name}");

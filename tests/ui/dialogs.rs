@@ -34,7 +34,7 @@ fn f1_lists_the_keys_and_esc_closes_the_list() {
     bench.settle();
     assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
     for text in
-        ["Front, right, top", "arrows, Shift+arrows, Page keys", "Along an axis, in a plane"]
+        ["Front, right, top", "arrows, Shift+arrows, Page keys", "Lock to an axis, a plane"]
     {
         assert!(bench.says(text), "{text}");
     }
@@ -56,7 +56,7 @@ fn a_picture_is_saved_where_the_typed_path_says() {
     for by_enter in [true, false] {
         let mut bench = Bench::new();
         bench.choose(&["File", "Save picture…"]);
-        assert!(bench.node(Role::TextInput, "Save the viewport as PNG to").is_focused());
+        assert!(bench.node(Role::TextInput, "PNG file").is_focused());
         bench.key_with(CTRL, Key::A);
         bench.type_text("out/a b.png");
         let path = "out/a b.png".to_owned();
@@ -90,8 +90,8 @@ fn without_a_path_nothing_can_be_saved() {
         bench.wait(0.5);
         bench.move_to(save);
         bench.wait(1.0);
-        assert!(bench.says("There is no path yet"), "the tooltip says why");
-        bench.focus(Role::TextInput, "Save the viewport as PNG to");
+        assert!(bench.says("Enter a path first"), "the tooltip says why");
+        bench.focus(Role::TextInput, "PNG file");
         bench.key(Key::Enter);
         bench.settle();
         assert_eq!(bench.effects(), []);

@@ -99,7 +99,7 @@ fn a_document_with_keys_is_saved_opened_again_and_the_same() {
     ]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     bench.settle();
-    bench.focus(Role::TextInput, "Save the document to");
+    bench.focus(Role::TextInput, "Document file");
     bench.key_with(Modifiers::COMMAND, Key::A);
     bench.type_text(path.to_str().expect("a path"));
     bench.key(Key::Enter);

@@ -256,7 +256,7 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);
     assert!(bench.says("ik-arm ended before the changes of lost.json were saved. They are kept."));
-    bench.click(Role::Button, "Open it");
+    bench.click(Role::Button, "Recover");
     bench.settle();
     assert_eq!(bench.session().document(), &document);
     assert!(bench.session().is_unsaved() && bench.session().has_settled_recovery());
@@ -264,7 +264,7 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     assert_eq!(bench.effects(), [Effect::Save("/a/lost.json".into())]);
 
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
-    bench.click(Role::Button, "Discard it");
+    bench.click(Role::Button, "Discard");
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
     assert!(bench.session().has_settled_recovery());
 }

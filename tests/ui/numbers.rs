@@ -101,16 +101,16 @@ fn the_elbow_spin_wraps() {
     for (typed, shown) in
         [("370", 10.0), ("-10", 350.0), ("725", 5.0), ("360", 0.0), ("90°", 90.0), ("-360", 0.0)]
     {
-        bench.enter("Elbow spin", typed);
-        let spin = value(bench.session().arm(), "Elbow spin");
+        bench.enter("Socket twist", typed);
+        let spin = value(bench.session().arm(), "Socket twist");
         assert!((spin - shown).abs() < 1e-3, "{typed} gives {spin}");
         assert!((0.0..TAU).contains(&bench.session().arm().twist));
     }
-    bench.focus(Role::Slider, "Elbow spin");
+    bench.focus(Role::Slider, "Socket twist");
     bench.key(Key::ArrowLeft);
-    assert!((value(bench.session().arm(), "Elbow spin") - 359.0).abs() < 1e-3);
+    assert!((value(bench.session().arm(), "Socket twist") - 359.0).abs() < 1e-3);
     bench.key(Key::PageUp);
-    assert!((value(bench.session().arm(), "Elbow spin") - 9.0).abs() < 1e-3);
+    assert!((value(bench.session().arm(), "Socket twist") - 9.0).abs() < 1e-3);
     assert_eq!(bits(bench.hand()), bits(Arm::default().cursor()));
 }
 

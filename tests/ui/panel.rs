@@ -13,7 +13,7 @@ pub const SLIDERS: [&str; 9] = [
     "Hand x",
     "Hand y",
     "Hand z",
-    "Elbow spin",
+    "Socket twist",
     "Root x",
     "Root y",
     "Root z",
@@ -48,14 +48,14 @@ pub const MENUS: [(&str, &[&str]); 4] = [
             "Back",
             "Left",
             "Bottom",
-            "Perspective / orthographic",
+            "Toggle orthographic",
             "Frame selection",
             "Frame all",
             "Light theme",
             "Dark theme",
             "Explain panel",
             "Timeline",
-            "Curves",
+            "Graph editor",
         ],
     ),
     ("Help", &["Shortcuts", "About"]),
@@ -197,16 +197,16 @@ fn the_explain_panel_closes_and_opens_from_the_view_menu() {
 #[test]
 fn the_explain_panel_says_in_a_sentence_how_the_arm_stands() {
     for (hand, reach, sentence) in [
-        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "Reached: the hand is at the cursor."),
+        (Vec3::new(250.0, 120.0, 60.0), Reach::Reached, "Reached: the hand is at the Cursor."),
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,
-            "Too far: the arm is straight and points at the cursor, 37.2 short.",
+            "Too far: the arm is straight and points at the Cursor, 37.2 short.",
         ),
         (
             Vec3::new(60.0, 0.0, 0.0),
             Reach::TooClose,
-            "Too close: the arm is folded and points past the cursor, by 40.0.",
+            "Too close: the arm is folded and overshoots the Cursor by 40.0.",
         ),
     ] {
         let bench = Bench::after([EditAction::SetHand(hand)]);

@@ -73,11 +73,11 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"));
     assert!(bench.says("Pole: the Pointer passed within 3."));
     let (elbow, hand) = (bench.session().pose().elbow, bench.hand());
-    bench.click(Role::Button, "Measure from the map");
+    bench.click(Role::Button, "Use Stereographic");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Stereographic);
     assert!(bench.session().pose().elbow.distance(elbow) < 0.01 && bench.hand() == hand);
     assert!(bench.says("since then changed"));
-    assert!(!bench.shows(Role::Button, "Measure from the map"), "it is done");
+    assert!(!bench.shows(Role::Button, "Use Stereographic"), "it is done");
     over_the_top(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
 }
@@ -91,7 +91,7 @@ fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
     };
     behind(&mut bench);
     assert!(bench.says("of what the map leaves out"));
-    bench.click(Role::Button, "Carry it along");
+    bench.click(Role::Button, "Use Transport");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Transport);
     behind(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
@@ -102,7 +102,7 @@ fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
     let mut bench = from_the_front();
     out_straight(&mut bench);
     assert!(bench.says("Straight: the arm reached its outer limit"));
-    bench.click(Role::Button, "Soften the reach");
+    bench.click(Role::Button, "Add softness");
     assert_eq!(bench.session().arm().soft_reach, softened(0.25));
     out_straight(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Straight"), "no other one");
@@ -115,14 +115,14 @@ fn a_hand_dragged_to_the_inner_limit_pops_there() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(170.0, 10.0, 0.0), Vec3::new(92.0, 10.0, 0.0), 26);
     assert!(bench.says("Inner limit: the arm folded up"));
-    assert!(bench.shows(Role::Button, "Soften the reach"));
+    assert!(bench.shows(Role::Button, "Add softness"));
 }
 
 #[test]
 fn a_hand_dragged_past_the_shoulder_has_no_button_but_a_reason() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0), 20);
-    assert!(bench.says("Shoulder: the cursor passed the shoulder"));
+    assert!(bench.says("Shoulder: the Cursor passed the shoulder"));
     assert!(bench.says("must jump by twice the least reach, 200.0"));
 }
 
@@ -132,7 +132,7 @@ fn one_remedy_is_offered_once() {
     over_the_top(&mut bench);
     over_the_top(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 2, the last one Pole"));
-    let _ = bench.node(Role::Button, "Measure from the map");
+    let _ = bench.node(Role::Button, "Use Stereographic");
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
 
 /// The two sections as they are painted, and nothing around them.
 fn sections(bench: &mut Bench) -> RgbaImage {
-    let first = bench.rect(Role::Label, "Actual reach / asked reach");
+    let first = bench.rect(Role::Label, "Hand distance / Cursor distance");
     let [left, top] = [first.left() - 10.0, first.top() - 30.0].map(|at| at as u32);
     let picture = bench.harness.render().expect("a picture");
     let (width, height) = (picture.width() - left, picture.height() - top - 40);

@@ -38,7 +38,7 @@ fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
         (0.0, 1.5, 900.0, 750.0, 0.0),
     ] {
         let bench = bench(softness, stretch, asked);
-        let said = format!("Asked {asked:.1}, actual {actual:.1}, slope {slope:.2}");
+        let said = format!("Cursor at {asked:.1}: hand at {actual:.1}, slope {slope:.2}");
         assert!(bench.shows(Role::Label, &said), "{said}");
         assert!(bench.shows(Role::Image, &format!("Reach curve: {said}")), "{said}");
     }
@@ -47,10 +47,10 @@ fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
 #[test]
 fn its_lines_are_named_and_examples_are_called_that() {
     for (softness, stretch, names, note) in [
-        (0.0, 1.0, ["none", "soft 0.50", "stretch 1.50"], "soft and stretch are examples"),
-        (0.3, 1.0, ["none", "soft 0.30", "stretch 1.50"], "stretch is an example"),
-        (0.0, 1.2, ["none", "soft 0.50", "stretch 1.20"], "soft is an example"),
-        (0.4, 1.3, ["none", "soft 0.40", "stretch 1.30"], "This arm is soft and stretches"),
+        (0.0, 1.0, ["off", "softness 0.50", "stretch 1.50"], "Soft limits are off; the dashed curves show what they would do"),
+        (0.3, 1.0, ["off", "softness 0.30", "stretch 1.50"], "the dotted curve shows what stretch would do"),
+        (0.0, 1.2, ["off", "softness 0.50", "stretch 1.20"], "the dashed curve shows what softness would do"),
+        (0.4, 1.3, ["off", "softness 0.40", "stretch 1.30"], "Softness and stretch are on"),
     ] {
         let bench = bench(softness, stretch, 300.0);
         for name in names {
@@ -76,12 +76,12 @@ fn hovering_reads_the_curve_at_the_pointer() {
     for part in [0.3, 0.5, 0.95] {
         bench.move_to(rect.left_center() + vec2(rect.width() * part, 0.0));
         bench.wait(0.7);
-        let texts = bench.harness.query_all_by_label_contains("Asked ");
+        let texts = bench.harness.query_all_by_label_contains("Cursor at ");
         let texts = texts.filter_map(|node| {
             let node = node.accesskit_node();
             node.label().or(node.value())
         });
-        let mut others = texts.filter(|text| !text.contains("Asked 300.0"));
+        let mut others = texts.filter(|text| !text.contains("Cursor at 300.0"));
         let text = others.next_back().expect("a tooltip");
         let numbers: Vec<f32> = text
             .split(|letter: char| !letter.is_ascii_digit() && letter != '.')

@@ -32,9 +32,9 @@ fn typed(bench: &Bench, prompt: &str) -> String {
 #[test]
 fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selects_its_text() {
     for (modifiers, key, prompt) in [
-        (CTRL, Key::S, "Save the document to"),
-        (CTRL, Key::O, "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf"),
-        (CTRL, Key::P, "Save the viewport as PNG to"),
+        (CTRL, Key::S, "Document file"),
+        (CTRL, Key::O, "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf"),
+        (CTRL, Key::P, "PNG file"),
         (CTRL, Key::E, "To"),
     ] {
         let mut bench = human();
@@ -385,7 +385,7 @@ fn quitting_during_an_export_asks() {
     assert!(!job.progress.is_cancelled());
     bench.key_with(CTRL, Key::Q);
     bench.wait(0.2);
-    bench.click_at(bench.rect(Role::Button, "Stop the export and quit").center());
+    bench.click_at(bench.rect(Role::Button, "Cancel export and quit").center());
     bench.wait(0.2);
     assert!(job.progress.is_cancelled());
     assert_eq!(bench.effects(), [Effect::Quit]);
@@ -403,7 +403,7 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     assert!(matches!(effects[..], [Effect::Open { .. }]));
     let why = "/nowhere/walk.bvh: there is no such file".to_owned();
     bench.apply([FileAction::NotOpened { path: "/nowhere/walk.bvh".into(), why: why.clone() }]);
-    let prompt = "Open a document, a .js3d scene of Scotty3D, a .bvh, .glb or .gltf";
+    let prompt = "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf";
     assert_eq!(typed(&bench, prompt), "/nowhere/walk.bvh");
     assert!(bench.shows(Role::Alert, &why), "in the dialog");
     bench.key(Key::Escape);
@@ -445,7 +445,7 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     bench.key(Key::Enter);
     bench.settle();
     assert!(bench.shows(Role::Alert, "Another joint has this name"));
-    assert_eq!(typed(&bench, "The joint's name"), "neck", "what was typed is kept");
+    assert_eq!(typed(&bench, "Joint name"), "neck", "what was typed is kept");
     bench.type_text("2");
     bench.key(Key::Enter);
     bench.settle();

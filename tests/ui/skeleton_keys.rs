@@ -39,7 +39,7 @@ fn enter_field(bench: &mut Bench, name: &str, text: &str, key: Key) {
 
 #[test]
 fn escape_in_a_number_leaves_it_and_the_selection_alone() {
-    for field in ["Length", "Bone x", "Weight", "Iterations at most", "Rotation x value"] {
+    for field in ["Length", "Bone x", "Weight", "Maximum iterations", "Rotation x value"] {
         let mut bench = tree();
         let before = (bench.session().document().clone(), bench.session().selection().to_vec());
         enter_field(&mut bench, field, "7", Key::Escape);
@@ -65,7 +65,7 @@ fn escape_in_a_number_lets_a_running_solver_run() {
 
 #[test]
 fn escape_closes_a_list_and_leaves_the_selection() {
-    for combo in ["Parent", "Moves", "Method"] {
+    for combo in ["Parent", "Motion", "Method"] {
         let mut bench = tree();
         let before = bench.session().selection().to_vec();
         bench.node(Role::ComboBox, combo).scroll_to_me();
@@ -117,8 +117,8 @@ fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
         "Bone y",
         "Bone z",
         "Length",
-        "x from",
-        "x to",
+        "x minimum",
+        "x maximum",
         "Weight",
         "Tolerance",
         "Damping",
@@ -138,7 +138,7 @@ fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
 fn a_number_can_be_typed_with_its_unit() {
     let mut bench = tree();
     bench.click(Role::CheckBox, "Limit x");
-    enter_field(&mut bench, "x to", "30°", Key::Enter);
+    enter_field(&mut bench, "x maximum", "30°", Key::Enter);
     let joint = bench.session().selected().expect("one");
     let limit = bench.session().skeleton().joints()[joint].limits[0].expect("limited");
     assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
@@ -149,7 +149,7 @@ fn what_is_not_a_number_changes_no_field() {
     for typed in ["nan", "inf", "", "x"] {
         let mut bench = tree();
         let before = bench.session().document().clone();
-        for field in ["Length", "Bone y", "Iterations per frame", "Iterations at most"] {
+        for field in ["Length", "Bone y", "Iterations per frame", "Maximum iterations"] {
             enter_field(&mut bench, field, typed, Key::Enter);
             assert_eq!(bench.session().document(), &before, "{field} {typed:?}");
         }
@@ -191,7 +191,7 @@ fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     }
     bench.key_with(CTRL, Key::A);
     bench.key(Key::Escape);
-    bench.click(Role::Button, "Bind pose");
+    bench.click(Role::Button, "Reset to bind pose");
     bench.apply([SolverAction::Compare(true)]);
     assert!(bench.session().skeleton().joints().is_empty());
     assert_eq!(bench.session().dialog(), None);
@@ -243,7 +243,7 @@ fn the_list_of_keys_fits_a_small_window() {
     bench.wait(0.5);
     let window = bench.rect(Role::Dialog, "Shortcuts");
     assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL).contains_rect(window), "{window:?}");
-    for text in ["Turn", "Take back a drag", "Enter, Esc or right button", "Ctrl+A, Esc"] {
+    for text in ["Orbit", "Cancel a drag", "Enter, Esc or right button", "Ctrl+A, Esc"] {
         let rect = bench.rect(Role::Label, text);
         assert!(window.contains_rect(rect), "{text}: {rect:?}");
     }
@@ -252,9 +252,9 @@ fn the_list_of_keys_fits_a_small_window() {
 #[test]
 fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
     let mut bench = example("snake");
-    bench.node(Role::CheckBox, "Slither").scroll_to_me();
+    bench.node(Role::CheckBox, "Follow path").scroll_to_me();
     bench.settle();
-    bench.click(Role::CheckBox, "Slither");
+    bench.click(Role::CheckBox, "Follow path");
     assert_eq!(bench.session().skeleton_rig().follow_path, None);
     bench.apply([SelectAction::Joints(vec![1])]);
     bench.enter("Rotation x", "10");

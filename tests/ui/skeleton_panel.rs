@@ -307,7 +307,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
 fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
-    bench.click_at(bench.rect(Role::ComboBox, "Moves").center());
+    bench.click_at(bench.rect(Role::ComboBox, "Motion").center());
     bench.wait(0.1);
     let at = bench.rect(Role::Button, "Circle").center();
     bench.click_at(at);

@@ -22,7 +22,7 @@ pub fn value(arm: &Arm, slider: &str) -> f32 {
         "Hand x" => arm.cursor().x,
         "Hand y" => arm.cursor().y,
         "Hand z" => arm.cursor().z,
-        "Elbow spin" => arm.twist.to_degrees(),
+        "Socket twist" => arm.twist.to_degrees(),
         "Root x" => arm.root.x,
         "Root y" => arm.root.y,
         "Root z" => arm.root.z,

@@ -109,7 +109,7 @@ fn before_the_first_frame_there_is_nothing_to_tell() {
 #[test]
 fn nothing_moves_when_the_figures_change_their_widths() {
     let places = |bench: &Bench| {
-        let names = ["Solve", "Total", "GPU", "Frames a second", "Bytes uploaded"];
+        let names = ["Solve", "Total", "GPU", "Frames per second", "Bytes uploaded"];
         names.map(|name| bench.rect(Role::Label, name))
     };
     let mut bench = opened(LARGE, machine(240, true));

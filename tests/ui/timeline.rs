@@ -67,7 +67,7 @@ fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
     assert_eq!(times(&bench, Channel::Twist), [1.5]);
     assert!(times(&bench, Channel::Upper).is_empty());
     assert!(bench.shows(Role::Button, "Key of Hand at 1.50 s"));
-    assert!(bench.shows(Role::Button, "Channel Elbow spin"));
+    assert!(bench.shows(Role::Button, "Channel Socket twist"));
     bench.click(Role::Button, "Key all");
     for channel in Channel::OF_ARM {
         let expected = if channel.shapes(bench.session().arm()) { &[1.5][..] } else { &[] };
@@ -301,7 +301,7 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
     bench.enter("Hand x", "77");
     assert_eq!(bench.hand().x, 77.0);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
-    assert!(bench.says("Hand is changed here, not keyed: press K to keep it"));
+    assert!(bench.says("Hand: unkeyed change, press K or it is lost when the time changes"));
     bench.click(Role::Button, "Next key");
     bench.click(Role::Button, "Previous key");
     bench.apply([PlaybackAction::SetTime(3.0)]);
@@ -400,10 +400,10 @@ fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
         |bench: &Bench| bench.session().selected_channels().iter().copied().collect::<Vec<_>>();
     assert_eq!(selected(&bench), [Channel::Hand]);
     bench.hold(Modifiers::SHIFT);
-    bench.click(Role::Button, "Channel Elbow spin");
+    bench.click(Role::Button, "Channel Socket twist");
     bench.hold(Modifiers::NONE);
     assert_eq!(selected(&bench), [Channel::Hand, Channel::Twist]);
-    bench.click(Role::Button, "Channel Elbow spin");
+    bench.click(Role::Button, "Channel Socket twist");
     assert_eq!(selected(&bench), [Channel::Twist]);
     bench.apply([PlaybackAction::SetTime(7.0)]);
     bench.click(Role::Button, "Key");
@@ -434,7 +434,7 @@ fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
     assert_eq!(times(&bench, Channel::Hand), [2.0, 3.0, 5.0]);
     let name = bench.rect(Role::Button, "Channel Hand").center();
     right_click(&mut bench, name);
-    bench.click(Role::Button, "Delete channel's keys");
+    bench.click(Role::Button, "Delete all keys of channel");
     assert!(times(&bench, Channel::Hand).is_empty());
     assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0]);
 }
@@ -458,12 +458,12 @@ fn a_screen_reader_selects_keys_and_goes_through_the_time() {
 fn the_curves_can_be_dragged_through_the_time() {
     let mut bench = keyed();
     let (from, to) = (place(&bench, 1.0), place(&bench, 4.0));
-    bench.click(Role::Button, "Curves");
+    bench.click(Role::Button, "Graph editor");
     assert!(bench.session().preferences().curves);
-    let middle = bench.rect(Role::Image, "Curves of Hand, Elbow spin").center().y;
+    let middle = bench.rect(Role::Image, "Curves of Hand, Socket twist").center().y;
     bench.drag_and_drop(PointerButton::Primary, pos2(from.x, middle), pos2(to.x, middle));
     assert_eq!(bench.session().time(), 4.0);
-    bench.click(Role::Button, "Curves");
+    bench.click(Role::Button, "Graph editor");
     assert!(bench.shows(Role::Button, "Channel Hand"));
 }
 

@@ -80,7 +80,7 @@ fn space_plays_and_pauses_the_arm_too() {
     assert!(!bench.session().is_playing(), "a checkbox has a use for it");
     let mut bench = Bench::with_timeline(LARGE);
     bench.key(Key::Space);
-    assert!(!bench.session().is_playing() && bench.says("Nothing moves yet"));
+    assert!(!bench.session().is_playing() && bench.says("Nothing to play"));
 }
 
 #[test]

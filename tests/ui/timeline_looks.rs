@@ -93,7 +93,7 @@ const CONTROLS: [(Role, &str); 17] = [
     (Role::ComboBox, "Frame rate"),
     (Role::SpinButton, "Start"),
     (Role::SpinButton, "End"),
-    (Role::Button, "Curves"),
+    (Role::Button, "Graph editor"),
     (Role::Slider, "Timeline ruler"),
 ];
 
@@ -159,7 +159,7 @@ fn every_control_of_the_timeline_has_a_tooltip() {
         (Role::Button, "Channel Hand"),
         (Role::Button, "Key of Hand at 1.00 s"),
         (Role::Button, "Keys at 2.00 s"),
-        (Role::Image, "Hand is changed here, not keyed: press K to keep it"),
+        (Role::Image, "Hand: unkeyed change, press K or it is lost when the time changes"),
     ];
     for (role, name) in CONTROLS.into_iter().chain(more) {
         assert!(has_tooltip(&mut bench, role, name), "{name}");
@@ -188,7 +188,7 @@ fn what_cannot_act_is_disabled() {
 fn the_curves_are_those_of_the_selected_channels_or_of_the_whole_rig() {
     let mut bench = bench(LARGE, [ViewAction::ShowGraphEditor(true)]);
     bench.apply([SelectAction::Channels(Vec::new())]);
-    assert!(bench.shows(Role::Image, "Curves of Hand, Elbow spin, Upper length"));
+    assert!(bench.shows(Role::Image, "Curves of Hand, Socket twist, Upper length"));
     bench.apply([SelectAction::Channels(vec![Channel::Upper])]);
     assert!(bench.shows(Role::Image, "Curves of Upper length"));
     assert!(bench.harness.query_all_by_label_contains("Curve of Hand").next().is_none());

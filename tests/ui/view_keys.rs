@@ -52,7 +52,7 @@ fn five_toggles_f_frames_the_arm_home_frames_all() {
 
 #[test]
 fn view_keys_do_nothing_while_a_field_or_a_slider_has_the_keyboard() {
-    for (role, name) in [(Role::SpinButton, "Hand x value"), (Role::Slider, "Elbow spin")] {
+    for (role, name) in [(Role::SpinButton, "Hand x value"), (Role::Slider, "Socket twist")] {
         let mut bench = Bench::new();
         bench.focus(role, name);
         bench.type_text("1375");
@@ -146,7 +146,7 @@ fn the_view_menu_does_what_the_keys_do() {
         assert_eq!(bench.session().camera(), &Camera::default().along(view));
     }
     let mut bench = Bench::new();
-    bench.choose(&["View", "Perspective / orthographic"]);
+    bench.choose(&["View", "Toggle orthographic"]);
     assert!(bench.session().camera().orthographic);
     bench.choose(&["View", "Frame all"]);
     assert_eq!(bench.session().camera().target, Vec3::ZERO);
