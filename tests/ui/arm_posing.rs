@@ -52,7 +52,10 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     bench.click(Role::Button, "FK");
     assert_eq!(bench.session().arm().influence, 0.0);
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
-    assert!(bench.says("Arm · FK") && bench.says("FK (joint angles → hand): the angles place the hand."));
+    assert!(
+        bench.says("Arm · FK")
+            && bench.says("FK (joint angles → hand): the angles place the hand.")
+    );
     bench.enter("Elbow bend", "60");
     assert!((bench.session().pose().elbow_angle().to_degrees() - 120.0).abs() < 0.01);
     bench.enter("Shoulder yaw", "0");
