@@ -97,18 +97,3 @@ impl Drag {
         }
     }
 }
-
-impl Grip {
-    /// Name of the undo step of its drag.
-    pub(super) fn label(self) -> &'static str {
-        match self {
-            Self::Hand(_) => "Move hand",
-            Self::Pole(_) => "Move pole",
-            Self::Shoulder(_) => "Turn shoulder",
-            Self::Bend => "Bend elbow",
-            Self::Target(..) => "Move target",
-            Self::Tip(..) => "Pose joints",
-            Self::Ring(..) => "Turn joint",
-        }
-    }
-}

@@ -1,5 +1,11 @@
-use super::{EditAction, PoseMode};
+use super::{EditAction, Grip, PoseMode};
 use crate::document::{Channel, Overlay, RigKind};
+
+/// Name of the undo step of a solver run.
+pub(super) const SOLVE: &str = "Solve";
+
+/// Name of a transaction without edits.
+pub(super) const CHANGE: &str = "Change";
 
 impl EditAction {
     /// Name of its undo step, as in "Undo Move hand".
@@ -56,6 +62,21 @@ impl EditAction {
             Self::PasteKeys => "Paste keys",
             Self::SetTimeline(_) => "Change timeline",
             Self::SetMetres(_) => "Change unit",
+        }
+    }
+}
+
+impl Grip {
+    /// Name of the undo step of its drag.
+    pub(super) fn label(self) -> &'static str {
+        match self {
+            Self::Hand(_) => "Move hand",
+            Self::Pole(_) => "Move pole",
+            Self::Shoulder(_) => "Turn shoulder",
+            Self::Bend => "Bend elbow",
+            Self::Target(..) => "Move target",
+            Self::Tip(..) => "Pose joints",
+            Self::Ring(..) => "Turn joint",
         }
     }
 }

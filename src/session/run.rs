@@ -1,4 +1,4 @@
-use super::{Comparison, Session, SolverRun};
+use super::{Comparison, Session, SolverRun, edit_label};
 
 /// Solvers at work.
 impl Session {
@@ -46,7 +46,7 @@ impl Session {
     /// Makes a step of what a running solver has done by now.
     pub(super) fn end_run(&mut self) {
         if let Some(before) = self.run_before.take() {
-            self.remember("Solve", before);
+            self.remember(edit_label::SOLVE, before);
         }
     }
 

@@ -2,7 +2,7 @@ use core::fmt::Display;
 use std::collections::BTreeSet;
 
 use super::history::State;
-use super::{Drag, Session};
+use super::{Drag, Session, edit_label};
 use crate::document::{Arm, Channel, Document, TwistReferenceKind};
 use crate::kinematics::skeleton::Skeleton;
 
@@ -223,7 +223,7 @@ impl Session {
 
     pub(super) fn commit_edit(&mut self) {
         if let Some(edit) = self.edit.take() {
-            self.remember(edit.name.unwrap_or("Change"), edit.before);
+            self.remember(edit.name.unwrap_or(edit_label::CHANGE), edit.before);
             self.begin_run();
         }
     }
@@ -270,8 +270,8 @@ impl Session {
     /// What Undo would take back, as in "Undo move hand".
     pub fn undo_name(&self) -> Option<&'static str> {
         match (&self.edit, &self.run_before) {
-            (Some(edit), _) => Some(edit.name.unwrap_or("Change")),
-            (None, Some(_)) => Some("Solve"),
+            (Some(edit), _) => Some(edit.name.unwrap_or(edit_label::CHANGE)),
+            (None, Some(_)) => Some(edit_label::SOLVE),
             (None, None) => self.history.undo_name(),
         }
     }

@@ -1,0 +1,187 @@
+//! Every edit is one labelled step that undo and redo bring back to the last byte of a file.
+#![cfg(feature = "document")]
+
+use glam::Vec3;
+use ik_arm::document::{
+    Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+};
+use ik_arm::io::to_json;
+use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
+use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::session::{
+    EditAction, PlaybackAction, PoseMode, SelectAction, Session, TransactionAction,
+};
+
+/// Joints of the Human: one with a target, one without, and a leaf.
+const AIMED: usize = 8;
+const INNER: usize = 3;
+const LEAF: usize = 18;
+/// A channel that no other example changes.
+const KEYED: Channel = Channel::Overlay(Overlay::Shadow);
+
+/// The examples of every variant; a variant without examples does not compile.
+macro_rules! examples {
+    ($($name:ident: [$($example:expr),+ $(,)?];)*) => {
+        fn examples() -> Vec<EditAction> {
+            vec![$($($example),+),*]
+        }
+
+        fn name(edit: &EditAction) -> &'static str {
+            match edit {
+                $(EditAction::$name { .. } => stringify!($name)),*
+            }
+        }
+
+        const NAMES: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+examples! {
+    SetHand: [EditAction::SetHand(Vec3::new(100.0, 200.0, -50.0))];
+    SetTwist: [EditAction::SetTwist(-0.5)];
+    SetRoot: [EditAction::SetRoot(Vec3::X * 20.0)];
+    SetPin: [EditAction::SetPin(Vec3::Y * 90.0)];
+    PinHand: [EditAction::PinHand(true)];
+    SetTwistReference: [
+        EditAction::SetTwistReference(TwistReferenceKind::Pole),
+        EditAction::SetTwistReference(TwistReferenceKind::Transport),
+    ];
+    SetPole: [EditAction::SetPole(Vec3::Z * 77.0)];
+    SetSoftReach: [
+        EditAction::SetSoftReach(SoftReach::new(0.3, 1.2, 0.1).expect("a soft reach")),
+    ];
+    SetInfluence: [EditAction::SetInfluence(0.5)];
+    SwitchPoseMode: [EditAction::SwitchPoseMode(PoseMode::Angles)];
+    SetShoulder: [EditAction::SetShoulder(Vec3::new(0.1, 0.2, 0.3))];
+    SetBend: [EditAction::SetBend(1.25)];
+    SetWrist: [EditAction::SetWrist(Vec3::new(0.3, 0.2, 0.1))];
+    SetWristSpace: [EditAction::SetWristSpace(HandSpace::World)];
+    SetUpper: [EditAction::SetUpper(180.0)];
+    SetLower: [EditAction::SetLower(310.0)];
+    ResetPose: [EditAction::ResetPose];
+    ResetAll: [EditAction::ResetAll];
+    ShowOverlay: [
+        EditAction::ShowOverlay(Overlay::Globe, true),
+        EditAction::ShowOverlay(Overlay::Labels, false),
+    ];
+    ShowRig: [EditAction::ShowRig(RigKind::Skeleton)];
+    AddChild: [EditAction::AddChild { parent: LEAF, tip: Some(Vec3::ONE) }];
+    AddJoint: [EditAction::AddJoint { tip: None }];
+    AddRoot: [EditAction::AddRoot];
+    DeleteJoints: [
+        EditAction::DeleteJoints(vec![AIMED]),
+        EditAction::DeleteJoints(vec![INNER, LEAF]),
+    ];
+    DissolveJoints: [EditAction::DissolveJoints(vec![INNER])];
+    RenameJoint: [EditAction::RenameJoint { joint: INNER, name: "renamed".to_owned() }];
+    ReparentJoint: [EditAction::ReparentJoint { joint: AIMED, parent: None }];
+    SetRotation: [EditAction::SetRotation { joint: INNER, rotation: Vec3::splat(0.2) }];
+    SetAxis: [EditAction::SetAxis { joint: INNER, axis: Vec3::splat(0.3) }];
+    SetLimit: [EditAction::SetLimit {
+        joint: INNER,
+        axis: 1,
+        limit: Some(Limit { min: -0.1, max: 0.1 }),
+    }];
+    SetLocked: [
+        EditAction::SetLocked { joint: INNER, locked: true },
+        EditAction::SetLocked { joint: AIMED, locked: true },
+    ];
+    SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath {
+        radius: 1.0,
+        amplitude: 0.2,
+        waves: 3,
+        period: 5.0,
+    }))];
+    SetTranslation: [EditAction::SetTranslation(Vec3::X)];
+    AddTarget: [EditAction::AddTarget(INNER)];
+    RemoveTarget: [EditAction::RemoveTarget(AIMED)];
+    SetTarget: [EditAction::SetTarget(Target::new(AIMED, Vec3::Z * 3.0, 1.0))];
+    SetSolver: [EditAction::SetSolver(SolverOptions {
+        method: Method::Fabrik,
+        damping: 0.3,
+        ..SolverOptions::default()
+    })];
+    SetIterationsPerFrame: [EditAction::SetIterationsPerFrame(17)];
+    StepSolver: [EditAction::StepSolver];
+    ResetSolver: [EditAction::ResetSolver];
+    Key: [
+        EditAction::Key(vec![Channel::Hand]),
+        EditAction::Key(vec![Channel::Twist]),
+        EditAction::Key(vec![Channel::Upper, Channel::Lower]),
+    ];
+    DeleteKeys: [EditAction::DeleteKeys(vec![(KEYED, 0.0)])];
+    ClearChannels: [EditAction::ClearChannels(vec![KEYED])];
+    MoveKeys: [EditAction::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5 }];
+    PasteKeys: [EditAction::PasteKeys];
+    SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25 })];
+    SetMetres: [EditAction::SetMetres(Some(2.0))];
+}
+
+/// The arm with the Human behind it, changed so that every edit has something to do.
+fn session() -> Session {
+    let mut session = Session::default();
+    for edit in [
+        // Both cameras are saved, and not undone.
+        EditAction::ShowRig(RigKind::Skeleton),
+        EditAction::ShowRig(RigKind::Arm),
+        EditAction::SetTwist(1.0),
+        EditAction::SetWrist(Vec3::new(0.1, -0.4, 0.2)),
+        EditAction::ShowOverlay(Overlay::Axes, true),
+        EditAction::SetTarget(Target::new(AIMED, Vec3::new(1.0, 2.0, 3.0), 1.0)),
+        EditAction::StepSolver,
+        EditAction::Key(vec![KEYED]),
+    ] {
+        session.apply(edit);
+    }
+    session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
+    session.apply(SelectAction::CopyKeys);
+    session.apply(PlaybackAction::SetTime(1.0));
+    session
+}
+
+#[test]
+fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes() {
+    let bytes = |session: &Session| to_json(session.document()).expect("saved");
+    for edit in examples() {
+        let mut session = session();
+        let (before, label) = (bytes(&session), edit.label());
+        session.apply(edit.clone());
+        let after = bytes(&session);
+        assert!(before != after, "{} changes the document: {:?}", name(&edit), session.message());
+        assert_eq!(session.undo_name(), Some(label));
+        session.apply(TransactionAction::Undo);
+        assert!(bytes(&session) == before, "undo of {}", name(&edit));
+        assert_eq!(session.redo_name(), Some(label));
+        assert_eq!(session.message(), Some(&*format!("Undid {label}")));
+        session.apply(TransactionAction::Redo);
+        assert!(bytes(&session) == after, "redo of {}", name(&edit));
+    }
+}
+
+#[test]
+fn every_edit_in_a_transaction_is_cancelled_to_the_same_bytes() {
+    let bytes = |session: &Session| to_json(session.document()).expect("saved");
+    for edit in examples() {
+        let mut session = session();
+        let (before, last) = (bytes(&session), session.undo_name());
+        session.apply(TransactionAction::Begin);
+        session.apply(edit.clone());
+        assert_eq!(session.undo_name(), Some(edit.label()));
+        session.apply(TransactionAction::Cancel);
+        assert!(bytes(&session) == before, "cancelled {}", name(&edit));
+        assert_eq!(session.undo_name(), last);
+    }
+}
+
+#[test]
+fn labels_are_in_sentence_case_and_every_variant_has_an_example() {
+    let all = examples();
+    for variant in NAMES {
+        assert!(all.iter().any(|edit| name(edit) == *variant), "{variant}");
+    }
+    for edit in all {
+        let label = edit.label();
+        assert!(label.starts_with(char::is_uppercase) && !label.ends_with('.'), "{label}");
+    }
+}
