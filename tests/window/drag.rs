@@ -1,12 +1,10 @@
-use crate::places::Places;
-use crate::screen::{Program, changed};
+use crate::open;
+use crate::screen::changed;
 
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (_folder, places, program) = open();
     let first = program.at_rest();
 
     program.drag(places.thumb, places.rail_end);

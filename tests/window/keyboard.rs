@@ -1,12 +1,10 @@
-use crate::places::Places;
-use crate::screen::{Program, changed};
+use crate::open;
+use crate::screen::changed;
 
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_number_that_is_typed_moves_the_hand() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (_folder, places, program) = open();
     program.mouse_to(places.number);
     let before = program.at_rest();
 

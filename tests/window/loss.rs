@@ -2,6 +2,7 @@
 
 use image::RgbImage;
 
+use crate::open_to_debug;
 use crate::places::Places;
 use crate::recovery::{change, document_of, kept};
 use crate::screen::{Program, SIZE, changed, wait_for};
@@ -42,9 +43,7 @@ fn is_same_above_the_status(a: &RgbImage, b: &RgbImage) -> bool {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_intact() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open_to_debug(folder.path(), "1");
+    let (_folder, places, program) = open_to_debug("1");
     let first = program.at_rest();
     program.drag(places.thumb, places.rail_end);
     program.wait_until("the elbow follows", |now| changed(&first, now, places.elbow, 40.0) > 300);
@@ -76,8 +75,7 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let program = Program::open_to_debug(folder.path(), "fail-devices:2");
+    let (_folder, _, program) = open_to_debug("fail-devices:2");
     let before = expected(&program);
     lose_device(&program);
     assert_comes_back(&program, &before);
@@ -88,9 +86,7 @@ fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_all_kept() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open_to_debug(folder.path(), "fail-devices:3");
+    let (folder, places, program) = open_to_debug("fail-devices:3");
     change(&program, &places);
     lose_device(&program);
     assert_eq!(program.end(), Some(1));

@@ -12,3 +12,19 @@ mod places;
 mod recovery;
 mod screen;
 mod typing;
+
+use places::Places;
+use screen::Program;
+use tempfile::TempDir;
+
+/// The program in a window, with a folder for its settings and the places of its widgets.
+fn open() -> (TempDir, Places, Program) {
+    open_to_debug("")
+}
+
+/// The same with `IK_ARM_DEBUG` set to `debug`.
+fn open_to_debug(debug: &str) -> (TempDir, Places, Program) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = Program::open_to_debug(folder.path(), debug);
+    (folder, Places::new(), program)
+}

@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use ik_arm::document::Document;
 
+use crate::open;
 use crate::places::Places;
 use crate::screen::{Program, changed, wait_for};
 
@@ -30,9 +31,7 @@ pub fn change(program: &Program, places: &Places) {
 #[test]
 #[ignore = "needs a display of its own"]
 fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_starts_again() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     change(&program, &places);
     assert!(kept(folder.path()).is_empty(), "half a minute is not over");
     program.terminate();

@@ -5,7 +5,7 @@ use std::path::Path;
 use ik_arm::document::{AxisView, Camera, Document};
 use ik_arm::io;
 
-use crate::places::Places;
+use crate::open;
 use crate::screen::{Program, wait_for};
 
 /// Saves the document by the keyboard alone, without a pause, and reads the file.
@@ -29,9 +29,7 @@ fn saved_again(program: &Program, path: &Path) -> Document {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_file_name_typed_after_a_click_in_the_view_is_the_file_name() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     program.click(places.empty);
     // Each of its letters is a shortcut of the view or the skeleton, too.
     let path = folder.path().join("start-157-fraks.json");
@@ -43,9 +41,7 @@ fn a_file_name_typed_after_a_click_in_the_view_is_the_file_name() {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_joint_that_was_clicked_is_named_by_the_keyboard() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     program.click(places.skeleton_switch);
     program.at_rest();
     program.click(places.head);
@@ -71,9 +67,7 @@ fn a_joint_that_was_clicked_is_named_by_the_keyboard() {
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_quick_ctrl_1_looks_from_the_back_each_time() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     program.click(places.empty);
     let path = folder.path().join("view.json");
     saved_to(&program, &path);
@@ -90,9 +84,7 @@ fn a_quick_ctrl_1_looks_from_the_back_each_time() {
 #[test]
 #[ignore = "needs a display of its own"]
 fn nothing_behind_save_changes_answers() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     let first = program.at_rest();
     program.drag(places.thumb, places.rail_end);
     program.click(places.empty);
@@ -121,9 +113,7 @@ fn nothing_behind_save_changes_answers() {
 #[test]
 #[ignore = "needs a display of its own"]
 fn an_export_does_not_overwrite_a_file_by_enter_alone() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let places = Places::new();
-    let program = Program::open(folder.path());
+    let (folder, places, program) = open();
     program.click(places.empty);
     let path = folder.path().join("precious.csv");
     std::fs::write(&path, "precious").expect("written");
