@@ -3,7 +3,6 @@
 use image::RgbImage;
 
 use crate::open_to_debug;
-use crate::places::Places;
 use crate::recovery::{change, document_of, kept};
 use crate::screen::{Program, SIZE, changed, wait_for};
 
