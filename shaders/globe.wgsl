@@ -14,7 +14,7 @@ struct Globe {
     singular: f32, // how many directions are: none, the axis, or both its ends
     ramp: array<vec4f, 5>, // from gain 0, evenly in the logarithm of 1 + gain
     line: vec4f,
-    hot: f32, // the gain at the ramp's end
+    max_gain: f32, // at the end of the ramp
 }
 
 @group(1) @binding(0) var<uniform> globe: Globe;
@@ -43,7 +43,7 @@ fn gain(pointer: vec3f) -> f32 {
 
 // The colour of a gain, by the logarithm of 1 + gain.
 fn ramp(level: f32) -> vec4f {
-    let at = level / log(1.0 + globe.hot) * 4.0;
+    let at = level / log(1.0 + globe.max_gain) * 4.0;
     let first = mix(globe.ramp[0], globe.ramp[1], saturate(at));
     let second = mix(first, globe.ramp[2], saturate(at - 1.0));
     let third = mix(second, globe.ramp[3], saturate(at - 2.0));

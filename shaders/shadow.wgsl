@@ -52,7 +52,7 @@ fn fragment(g: Ground) -> @location(0) vec4f {
     let miss = length(away - KEY_DIRECTION * height) - radius;
     let softness = radius * CONTACT + height * LIGHT_WIDTH;
     let shade = 1.0 - smoothstep(-softness, softness, miss);
-    let faded = shade * (1.0 - saturate(height / (view.stage_radius * 1.6)));
+    let faded = shade * (1.0 - saturate(height / (view.planes_radius * 1.6)));
     let above = select(0.0, 1.0, view.eye.y > 0.0);
     return vec4f(0.0, 0.0, 0.0, faded * view.shadow_strength * presence(g.point, FLOOR_RADIUS) * above);
 }

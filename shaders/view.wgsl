@@ -11,8 +11,8 @@ struct View {
     pixel_scale: f32,
     up: vec3f,
     shadow_strength: f32,
-    stage_centre: vec3f,
-    stage_radius: f32,
+    planes_centre: vec3f,
+    planes_radius: f32,
     size: vec2f,
     cell: f32, // of the grids
     padding: f32,
@@ -89,7 +89,7 @@ const WALL_RADIUS = 1.0;
 
 // 1 in the middle of the stage, fading to 0 at `radius` stage radii.
 fn presence(point: vec3f, radius: f32) -> f32 {
-    let out = (point - view.stage_centre) / (view.stage_radius * radius);
+    let out = (point - view.planes_centre) / (view.planes_radius * radius);
     let near = 1.0 - saturate(dot(out, out));
     return near * near;
 }

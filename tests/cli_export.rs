@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, Timeline};
-use ik_arm::export::{ExportError, Options, export};
+use ik_arm::export::{ExportError, ExportOptions, export};
 use ik_arm::io::{self, Example, FileBatch, Progress};
 use tempfile::TempDir;
 
@@ -219,7 +219,7 @@ fn a_batch_that_is_dropped_leaves_nothing() {
 #[test]
 fn what_is_cancelled_leaves_no_file() {
     let desk = Desk::moving();
-    let options = Options { size: (40, 40), ..Options::default() };
+    let options = ExportOptions { size: (40, 40), ..ExportOptions::default() };
     for name in ["a.bvh", "a.csv", "a.png", "a_##.png", "a.apng"] {
         let progress = Progress::default();
         progress.cancel();
@@ -234,7 +234,7 @@ fn what_is_cancelled_on_its_way_leaves_no_file() {
     let desk = Desk::moving();
     let mut document = moving();
     document.timeline.end = 100.0;
-    let options = Options { size: (40, 40), fps: Some(1000), ..Options::default() };
+    let options = ExportOptions { size: (40, 40), fps: Some(1000), ..ExportOptions::default() };
     for name in ["a_##.png", "a.apng"] {
         let progress = Progress::default();
         let stopped = std::thread::scope(|scope| {
@@ -317,7 +317,7 @@ fn an_ending_that_is_not_known_is_an_error_that_lists_those_that_are() {
         let output = desk.run(out, &[]);
         assert_eq!(output.status.code(), Some(1));
         let said = complaint(&output);
-        assert!(said.ends_with("they are .glb, .bvh, .csv, .png, .apng"), "{said}");
+        assert!(said.ends_with("must be one of .glb, .bvh, .csv, .png, .apng"), "{said}");
     }
     let output = desk.run("a.csv", &[]);
     assert_eq!(output.status.code(), Some(1));

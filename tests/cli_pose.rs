@@ -275,7 +275,7 @@ fn a_skeleton_that_is_not_there_is_an_error_that_lists_those_that_are() {
 
 #[test]
 fn a_document_that_shows_the_arm_points_to_solve() {
-    let expected = " shows the arm, which `ik-arm solve` poses; pose is for skeletons";
+    let expected = " shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms";
     assert_eq!(Scene::example("arm").refusal(&[]), expected);
 }
 
@@ -293,7 +293,7 @@ fn a_pose_beyond_all_numbers_is_an_error() {
     let scene = Scene::new(&format!(
         r#"{{"scene":{{"skinned_meshes":{{"X":{{"skeleton":{{"bones":[{bones}]}}}}}}}}}}"#
     ));
-    let expected = ": \"bone_1\" is beyond 3.4028235e38; bring it nearer to 0";
+    let expected = ": joint \"bone_1\" must lie within ±3.4028235e38";
     assert_eq!(scene.refusal(&[]), expected);
 }
 

@@ -49,7 +49,7 @@ fn every_argument_changes_the_picture() {
     let plain = picture(&[]);
     for arguments in [
         ["--hand", "-100,200,-50"],
-        ["--elbow-spin", "-90"],
+        ["--twist", "-90"],
         ["--root", "-50,80,-20"],
         ["--upper", "350"],
         ["--lower", "120.5"],
@@ -76,7 +76,7 @@ fn extreme_arms_are_drawn() {
         ["--hand", "3e38,3e38,-3e38", "--upper", "3e38"],
         ["--hand", "0,0,0", "--upper", "300"],
         ["--hand", "1e-38,0,0", "--lower", "1e-30"],
-        ["--root", "1e30,0,-1e30", "--elbow-spin", "1e30"],
+        ["--root", "1e30,0,-1e30", "--twist", "1e30"],
     ] {
         picture(&arguments);
     }
@@ -92,7 +92,7 @@ fn an_argument_that_means_nothing_is_a_usage_error_that_says_what_would_be_right
         (["--hand", "1,2,x"], "three numbers"),
         (["--hand", "nan,0,0"], "three numbers"),
         (["--root", "1e39,0,0"], "three numbers"),
-        (["--elbow-spin", "inf"], "number"),
+        (["--twist", "inf"], "number"),
         (["--upper", "0"], "above 0"),
         (["--lower", "-3"], "above 0"),
         (["--guides", "cursor,elbow"], "cursor, pointer, inner, outer"),
@@ -276,7 +276,7 @@ fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
         [&scene, "--upper", "200"],
         [&scene, "--lower", "300"],
         [&scene, "--root", "0,0,0"],
-        [&scene, "--elbow-spin", "0"],
+        [&scene, "--twist", "0"],
     ] {
         let output = render(&folder.path().join("out.png"), &arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

@@ -7,7 +7,7 @@ use common::Random;
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::render::{Gpu, Picture, Solver};
+use ik_arm::render::{Gpu, PictureRenderer, CrowdSolver};
 use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Session, ViewAction};
@@ -37,7 +37,7 @@ fn elbow_angle(elbow: DVec3, hand: DVec3) -> f64 {
 /// Asks `arrays` of the device and of the batch solver, and compares: hands and lengths to 1e-5 of the
 /// arm, elbows too where they are well bent.
 fn agree(gpu: &Gpu, bones: TwoBone, arrays: &mut CrowdArrays) {
-    let mut solver = Solver::new(gpu).expect("compute shaders");
+    let mut solver = CrowdSolver::new(gpu).expect("compute shaders");
     solver.reserve(gpu, arrays.len() as u32);
     solver.solve(gpu, bones, arrays).expect("a device");
     let [elbows, hands] = solver.read(gpu).expect("poses");
@@ -220,8 +220,8 @@ fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
     assert_eq!(session.undo_name(), None);
 }
 
-fn picture(gpu: &Gpu) -> Picture<'_> {
-    Picture::of_size(gpu, 320, 200).expect("a canvas")
+fn picture(gpu: &Gpu) -> PictureRenderer<'_> {
+    PictureRenderer::of_size(gpu, 320, 200).expect("a canvas")
 }
 
 fn near() -> Camera {
@@ -235,7 +235,7 @@ fn behind() -> Camera {
     Camera { target: camera.target - back * 30_000.0, ..camera }
 }
 
-fn draw(picture: &mut Picture<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
+fn draw(picture: &mut PictureRenderer<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
     let document = Document { camera, ..Document::default() };
     let overlays = Overlays { crowd: Some(*crowd), ..Overlays::default() };
     picture.draw(&Scene::new(&document, &overlays, Theme::Dark)).expect("a picture")

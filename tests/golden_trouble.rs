@@ -11,7 +11,7 @@ use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
 use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Facing;
-use ik_arm::render::Picture;
+use ik_arm::render::PictureRenderer;
 use ik_arm::rig::Cone;
 use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
 use ik_arm::session::Overlays;
@@ -87,7 +87,7 @@ fn bare(globe: Globe, theme: Theme, camera: Camera) -> Scene {
 
 fn picture(scene: &Scene, side: u32) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Picture::new(&gpu, side, side, 1.0).draw(scene).expect("drawn")
+    PictureRenderer::new(&gpu, side, side, 1.0).draw(scene).expect("drawn")
 }
 
 /// The colours of a pixel of the globe as they are to be, if it has any that are smooth there: the
@@ -248,7 +248,7 @@ fn the_ramp_of_gains_reads_without_its_hues() {
         let palette = Palette::new(theme);
         let background = lightness(palette.sky_bottom.mixed(palette.sky_top, 0.5).channels());
         let ramp: Vec<_> = (0..=40)
-            .map(|step| palette.gain(((step as f32 / 40.0) * Palette::HOT.ln_1p()).exp_m1()))
+            .map(|step| palette.gain(((step as f32 / 40.0) * Palette::MAX_GAIN.ln_1p()).exp_m1()))
             .collect();
         let contrast = |colour: &Colour| {
             (lightness(colour.channels()) - background).abs() * colour.channels()[3]
@@ -257,7 +257,7 @@ fn the_ramp_of_gains_reads_without_its_hues() {
         assert!(contrasts.windows(2).all(|pair| pair[1] > pair[0]), "{theme:?}: {contrasts:?}");
         assert_eq!(palette.gain(0.0), palette.gains[0]);
         assert_eq!(palette.gain(f32::NAN), palette.gains[0]);
-        for hot in [Palette::HOT, 100.0, f32::INFINITY] {
+        for hot in [Palette::MAX_GAIN, 100.0, f32::INFINITY] {
             assert_eq!(palette.gain(hot), palette.gains[Palette::GAINS - 1]);
         }
     }
@@ -296,16 +296,16 @@ fn stripes_that_are_straight_and_that_wind() {
 fn stripes_wind_right_handed_from_base_to_tip() {
     const SIDE: u32 = 400;
     const STRIPES: f32 = 5.0;
-    let (place, shape) = Cone::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
+    let (transform, shape) = Cone::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
     for winding in [270_f32, -270.0, 500.0].map(f32::to_radians) {
         // Turned so that its +y is the world's, whatever +y the cone was given.
-        let place = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..place };
+        let transform = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..transform };
         let camera = Camera { target: Vec3::ZERO, distance: 300.0, ..Document::default().camera };
         let mut scene =
             bare(globe(TwistReference::Transport), Theme::Light, camera.along(AxisView::Front));
         scene.globe = None;
         let (colour, stripes) = (Colour([200, 200, 200, 255]), Some(winding));
-        scene.solids.push(Solid { place, shape, colour, stripes });
+        scene.solids.push(Solid { transform, shape, colour, stripes });
         let drawn = picture(&scene, SIDE);
         let projection = scene.camera.projection(1.0);
         for step in 5..95 {
@@ -349,12 +349,12 @@ fn a_hand_from_its_palm_and_from_its_back() {
 #[test]
 fn a_hand_is_as_long_as_it_is_told_and_has_its_thumb_where_a_right_hand_has() {
     let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -1.1, 2.0);
-    let place = Affine3A::from_rotation_translation(turn, Vec3::new(7.0, -3.0, 12.0));
+    let transform = Affine3A::from_rotation_translation(turn, Vec3::new(7.0, -3.0, 12.0));
     for size in [0.5, 100.0] {
         let mut scene = scene(&Document::default(), Theme::Dark);
         let before = (scene.balls.len(), scene.solids.len());
-        scene.add_hand(place, size, scene.palette.joint);
-        let local = |point: Vec3| place.inverse().transform_point3(point) / size;
+        scene.add_hand(transform, size, scene.palette.joint);
+        let local = |point: Vec3| transform.inverse().transform_point3(point) / size;
         let balls: Vec<_> = scene.balls[before.0..]
             .iter()
             .map(|ball| (local(ball.centre), ball.radius / size))

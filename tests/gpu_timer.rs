@@ -1,4 +1,4 @@
-//! How long the device works on a frame, by its own clock.
+//! The time of frames on the device.
 //!
 //! These tests fail on an adapter without a clock; Mesa's llvmpipe has one, and `WGPU_ADAPTER_NAME`
 //! chooses it.
@@ -7,13 +7,13 @@
 use std::time::{Duration, Instant};
 
 use ik_arm::document::{Document, Theme};
-use ik_arm::render::{Canvas, Gpu, GpuTimer, Lap, Renderer};
+use ik_arm::render::{Canvas, Gpu, GpuTimer, TimedPass, Renderer};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 
 const SIZE: (u32, u32) = (640, 400);
 
-/// Draws a picture and waits for it: how long that took, and the frame with what the stopwatch says.
+/// Draws a picture and waits for it. Returns the time that took, and what the timer reports.
 fn timed(
     gpu: &Gpu,
     renderer: &mut Renderer,
@@ -26,7 +26,7 @@ fn timed(
     let started = Instant::now();
     renderer.upload(gpu, &scene, SIZE, 1.0);
     gpu_timer.start();
-    let drawn = renderer.encode(gpu, &canvas, Some(gpu_timer.lap(Lap::Scene)));
+    let drawn = renderer.encode(gpu, &canvas, Some(gpu_timer.pass(TimedPass::Scene)));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     gpu_timer.stop(&mut encoder, frame);
     gpu.queue.submit([drawn, encoder.finish()]);
@@ -36,18 +36,18 @@ fn timed(
     (took, gpu_timer.read(gpu))
 }
 
-fn gpu_and_stopwatch() -> (Gpu, GpuTimer) {
+fn gpu_and_timer() -> (Gpu, GpuTimer) {
     let gpu = Gpu::headless().expect("a graphics adapter");
     let name = gpu.name();
     let has_clock = gpu.adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
     assert!(has_clock, "{name} has no clock: choose another adapter with WGPU_ADAPTER_NAME");
-    let gpu_timer = GpuTimer::new(&gpu).expect("an adapter with a clock has a stopwatch");
+    let gpu_timer = GpuTimer::new(&gpu).expect("an adapter with a clock has a timer");
     (gpu, gpu_timer)
 }
 
 #[test]
 fn a_frame_is_timed_within_the_time_that_it_took() {
-    let (gpu, mut gpu_timer) = gpu_and_stopwatch();
+    let (gpu, mut gpu_timer) = gpu_and_timer();
     let mut renderer = Renderer::new(&gpu);
     for frame in 0..12 {
         let (took, read) = timed(&gpu, &mut renderer, &mut gpu_timer, frame);
@@ -60,7 +60,7 @@ fn a_frame_is_timed_within_the_time_that_it_took() {
 
 #[test]
 fn frames_that_nobody_reads_are_left_out_and_nothing_waits() {
-    let (gpu, mut gpu_timer) = gpu_and_stopwatch();
+    let (gpu, mut gpu_timer) = gpu_and_timer();
     let mut read = 0;
     for frame in 0..20 {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -71,7 +71,7 @@ fn frames_that_nobody_reads_are_left_out_and_nothing_waits() {
     }
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("done");
     while let Some((frame, time)) = gpu_timer.read(&gpu) {
-        assert!(frame < 20 && time == Duration::ZERO, "no lap was run");
+        assert!(frame < 20 && time == Duration::ZERO, "no pass was timed");
         read += 1;
     }
     assert!(read > 0);

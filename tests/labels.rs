@@ -6,7 +6,7 @@ mod pictures;
 use glam::Vec3;
 use ik_arm::document::{Display, Document, Overlay, RigKind, Theme};
 use ik_arm::kinematics::skeleton::{Joint, Skeleton};
-use ik_arm::render::{Canvas, Gpu, Picture, Renderer};
+use ik_arm::render::{Canvas, Gpu, PictureRenderer, Renderer};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 use image::RgbaImage;
@@ -98,7 +98,7 @@ fn a_thousand_different_letters_are_drawn_at_any_scale() {
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         let scene = named(&names);
         for (side, scale) in [(600, 1.0), (1200, 3.0), (300, 20.0)] {
-            let drawn = Picture::new(&gpu, side, side, scale).draw(&scene).expect("drawn");
+            let drawn = PictureRenderer::new(&gpu, side, side, scale).draw(&scene).expect("drawn");
             assert!(lit(&drawn) > 1000, "{} lit at {scale}", lit(&drawn));
         }
     }

@@ -8,25 +8,27 @@ use ik_arm::document::{
     Channel, Display, Document, Overlay, TargetPath, Theme, TwistReferenceKind,
 };
 use ik_arm::io::Example;
-use ik_arm::scene::Scene;
+use ik_arm::scene::{Scene, SceneBuilder};
 use ik_arm::session::{
     Action, EditAction, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
 };
 
 /// What the window does between two frames, with what it keeps for it.
-struct Stage {
+struct Bench {
     session: Session,
     overlays: Overlays,
+    builder: SceneBuilder,
     scene: Scene,
     shown: Scene,
 }
 
-impl Stage {
+impl Bench {
     fn new(document: Document) -> Self {
         let session = Session::with_document(Preferences::default(), document);
         let overlays = session.overlays();
-        let scene = Scene::new(session.shown(), &overlays, Theme::Dark);
-        Self { session, overlays, shown: scene.clone(), scene }
+        let mut builder = SceneBuilder::default();
+        let scene = builder.build(session.shown(), &overlays, Theme::Dark);
+        Self { session, overlays, builder, shown: scene.clone(), scene }
     }
 
     /// Takes an action and makes the next scene: how often memory was taken for it, and whether it is
@@ -37,7 +39,12 @@ impl Stage {
         self.session.overlays();
         let counted = measure(|| {
             self.session.write_overlays(&mut self.overlays);
-            self.scene.refill(self.session.shown(), &self.overlays, Theme::Dark);
+            self.builder.refill(
+                &mut self.scene,
+                self.session.shown(),
+                &self.overlays,
+                Theme::Dark,
+            );
         });
         let has_changed = self.scene != self.shown;
         std::mem::swap(&mut self.scene, &mut self.shown);
@@ -72,7 +79,7 @@ fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
             document.key(Channel::Pin, time);
         }
         // Within reach, out of it, too close, and turned.
-        Stage::new(document).assert_takes_nothing(&[
+        Bench::new(document).assert_takes_nothing(&[
             Action::from(EditAction::SetHand(Vec3::new(250.0, 120.0, 60.0))),
             EditAction::SetHand(Vec3::new(-900.5, 120.25, 60.0)).into(),
             EditAction::SetHand(Vec3::new(12.0, -40.0, 9.0)).into(),
@@ -98,10 +105,10 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
         document.skeleton_mut().set_rotation(3, turned).expect("a joint");
         document.key(Channel::Rotation(3), time);
     }
-    let mut stage = Stage::new(document);
-    stage.session.apply(SelectAction::Joints(vec![joints - 1]));
-    assert!(stage.session.overlays().trail.len() > 10, "a motion path");
-    stage.assert_takes_nothing(&[
+    let mut bench = Bench::new(document);
+    bench.session.apply(SelectAction::Joints(vec![joints - 1]));
+    assert!(bench.session.overlays().trail.len() > 10, "a motion path");
+    bench.assert_takes_nothing(&[
         Action::from(PlaybackAction::SetTime(0.1)),
         PlaybackAction::SetTime(0.6).into(),
         EditAction::StepSolver.into(),
@@ -116,12 +123,12 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
 #[test]
 fn solvers_that_race_take_no_memory() {
     let opened = Example::find("human").expect("an example").open().expect("it opens");
-    let mut stage = Stage::new(opened.document);
-    stage.session.apply(SolverAction::Compare(true));
-    stage.frame(PlaybackAction::Advance(0.0).into());
+    let mut bench = Bench::new(opened.document);
+    bench.session.apply(SolverAction::Compare(true));
+    bench.frame(PlaybackAction::Advance(0.0).into());
     for frame in 1..8 {
         let (taken, has_changed) =
-            stage.frame(PlaybackAction::Advance(f64::from(frame) / 60.0).into());
+            bench.frame(PlaybackAction::Advance(f64::from(frame) / 60.0).into());
         assert!(has_changed && (frame < 3 || taken == 0), "frame {frame}: {taken}");
     }
 }
@@ -130,12 +137,13 @@ fn solvers_that_race_take_no_memory() {
 fn a_snake_on_its_way_takes_no_memory() {
     let opened = Example::find("snake").expect("an example").open().expect("it opens");
     let times = [0.1, 0.4, 1.7, 2.3].map(|time| PlaybackAction::SetTime(time).into());
-    Stage::new(opened.document).assert_takes_nothing(&times);
+    Bench::new(opened.document).assert_takes_nothing(&times);
 }
 
 #[test]
 fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
     let mut scene: Option<Scene> = None;
+    let mut builder = SceneBuilder::default();
     for example in Example::ALL {
         let mut document = example.open().expect("it opens").document;
         for layers in [document.display, Overlay::all().collect(), Display::from_iter([])] {
@@ -144,7 +152,7 @@ fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
                 let overlays = Overlays::new(&document, 0.3);
                 let anew = Scene::new(&document, &overlays, theme);
                 let scene = scene.get_or_insert_with(|| anew.clone());
-                scene.refill(&document, &overlays, theme);
+                builder.refill(scene, &document, &overlays, theme);
                 assert_eq!(*scene, anew, "{}", example.name);
                 for (label, same) in scene.labels.iter().zip(&anew.labels) {
                     assert_eq!(scene.text(label), anew.text(same));

@@ -244,9 +244,9 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
             assert!(camera.is_valid(), "{camera:?}");
         }
         let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
-        assert!(scene.stage.centre.is_finite() && scene.stage.radius.is_finite());
+        assert!(scene.planes.centre.is_finite() && scene.planes.radius.is_finite());
         assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
-        assert!(scene.solids.iter().all(|solid| solid.place.is_finite()));
+        assert!(scene.solids.iter().all(|solid| solid.transform.is_finite()));
     }
 }
 

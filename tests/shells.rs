@@ -6,7 +6,7 @@ mod pictures;
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::twist::TwistReference;
-use ik_arm::render::Picture;
+use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Ball, Colour, Globe, Scene, Shell};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
@@ -115,7 +115,7 @@ const SIDE: u32 = 240;
 
 fn square(scene: &Scene) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Picture::new(&gpu, SIDE, SIDE, 1.0).draw(scene).expect("drawn")
+    PictureRenderer::new(&gpu, SIDE, SIDE, 1.0).draw(scene).expect("drawn")
 }
 
 /// Colour at a pixel, from the sides of the shells that its ray meets, from the farthest to the

@@ -3,14 +3,14 @@ use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Icon, Window, WindowAttributes};
 
-use super::window::TITLE;
+use super::title::TITLE;
 
 const APP_ID: &str = "ik-arm";
 const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
-const SMALLEST: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
+const MIN_SIZE: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
 const ICON: &[u8] = include_bytes!("../../assets/icon-64.png");
 
-/// What the window is opened with: where and how large it was last, its name and its icon.
+/// Attributes of the window: its last position and size, title and icon.
 pub(super) fn attributes(
     event_loop: &ActiveEventLoop,
     last: Option<WindowSettings>,
@@ -18,14 +18,14 @@ pub(super) fn attributes(
     let attributes = Window::default_attributes()
         .with_title(TITLE)
         .with_inner_size(size(event_loop, last))
-        .with_min_inner_size(SMALLEST)
+        .with_min_inner_size(MIN_SIZE)
         .with_window_icon(icon())
-        // Shown once a screen reader can read it.
+        // Shown after AccessKit is initialized, which needs a hidden window.
         .with_visible(false);
     named(attributes)
 }
 
-/// As large as it was last, as far as the screen goes.
+/// Last size of the window, limited to the screens.
 fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSize<f64> {
     let Some(mut last) = last else {
         return SIZE;
@@ -38,8 +38,8 @@ fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSi
     last.clamp_size_to_sane_values(largest.unwrap_or(egui::Vec2::INFINITY));
     let points = last.inner_size_points();
     LogicalSize::new(
-        f64::from(points.x).max(SMALLEST.width),
-        f64::from(points.y).max(SMALLEST.height),
+        f64::from(points.x).max(MIN_SIZE.width),
+        f64::from(points.y).max(MIN_SIZE.height),
     )
 }
 

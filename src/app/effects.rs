@@ -2,15 +2,16 @@ use std::path::{Path, PathBuf};
 
 use winit::event_loop::EventLoopProxy;
 
-use super::UserEvent;
-use super::jobs::{self, Shot};
-use super::window::{AppWindow, pixels};
+use super::background;
+use super::user_event::UserEvent;
+use super::viewport_picture::ViewportPicture;
+use super::window::AppWindow;
 use crate::io;
 use crate::session::{Action, Effect, FileAction, Session};
 
-/// What the session asks of the world outside.
+/// Effects of actions outside the session.
 impl AppWindow {
-    /// Does what the session is told from elsewhere than the panels.
+    /// Applies an action that does not come from the panels.
     pub fn act(
         &mut self,
         action: Action,
@@ -24,28 +25,27 @@ impl AppWindow {
         }
     }
 
-    /// What the viewport shows.
-    fn shot(&self, session: &Session) -> Shot {
+    fn viewport_picture(&self, session: &Session) -> ViewportPicture {
         let scale = self.egui.egui_ctx().pixels_per_point();
-        Shot {
+        ViewportPicture {
             document: session.shown().clone(),
             overlays: session.overlays(),
             theme: session.preferences().theme,
-            size: pixels(self.viewport, scale),
+            size: self.viewport_pixels(scale),
             scale,
         }
     }
 
-    /// Until an export that was cancelled has left no file.
+    /// Waits until a cancelled export has removed its files.
     pub fn await_export(&mut self) {
         if let Some(thread) = self.exporting.take()
             && thread.join().is_err()
         {
-            log::error!("an export ended by a fault");
+            log::error!("an export panicked");
         }
     }
 
-    /// Whether the program is to end.
+    /// Carries out an effect and returns whether the program is to end.
     pub(super) fn carry_out(
         &mut self,
         effect: Effect,
@@ -55,21 +55,21 @@ impl AppWindow {
         match effect {
             Effect::CopyText(text) => self.egui.egui_ctx().copy_text(text),
             Effect::SavePicture(path) => {
-                let shot = self.shot(session);
-                jobs::save_picture(shot, PathBuf::from(path), proxy.clone());
+                let picture = self.viewport_picture(session);
+                background::save_picture(picture, PathBuf::from(path), proxy.clone());
             }
             Effect::Export(export) => {
                 let document = session.document().clone();
-                let shot = self.shot(session);
-                let (job, thread) = jobs::export(export, document, &shot, proxy.clone());
+                let picture = self.viewport_picture(session);
+                let (job, thread) = background::export(export, document, &picture, proxy.clone());
                 self.exporting = Some(thread);
                 session.apply(FileAction::ExportStarted(job));
             }
             Effect::ChoosePath(dialog) => {
                 let path = session.full_path(&dialog, dialog.path().unwrap_or(Path::new("")));
-                jobs::choose_path(dialog, &path, proxy.clone());
+                background::choose_path(dialog, &path, proxy.clone());
             }
-            Effect::Open { path, skeleton } => jobs::open(path, skeleton, proxy.clone()),
+            Effect::Open { path, skeleton } => background::open(path, skeleton, proxy.clone()),
             Effect::Save(path) => {
                 let saved = match io::save(session.document(), &path) {
                     Ok(()) => FileAction::Saved(path),

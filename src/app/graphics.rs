@@ -1,66 +1,45 @@
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::epaint::{ImageDelta, TextureAtlas};
 use egui::{Context, TextureId};
-use thiserror::Error;
 use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
 use winit::window::Window;
 
-use super::UserEvent;
-use crate::render::{Canvas, Counts, Gpu, GpuError, GpuTimer, Lap, Renderer};
+use super::graphics_error::GraphicsError;
+use super::user_event::UserEvent;
+use crate::render::{Canvas, Counts, CrowdError, Gpu, GpuTimer, Renderer, TimedPass};
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
-/// Why nothing can be drawn in the window.
-#[derive(Debug, Error)]
-pub enum GraphicsError {
-    #[error("the window cannot be drawn in: {0}")]
-    Surface(#[from] wgpu::CreateSurfaceError),
-    #[error("the graphics adapter {0} cannot draw in this window")]
-    Unsupported(String),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error("the window's surface was lost, and so was the one after it")]
-    SurfaceLost,
-    #[error("the window's surface gives no frame")]
-    NoFrame,
-    #[error("the graphics device failed: {0}")]
-    Device(String),
-    #[error("the graphics failed by a fault: {0}")]
-    Fault(String),
-    #[error("the graphics device failed, as IK_ARM_DEBUG asks for")]
-    Asked,
-}
-
-/// All that lives on the graphics device: lost with it, and made anew.
+/// Everything that lives on the graphics device: lost with it, and created again.
 pub(super) struct Graphics {
     pub(super) egui_renderer: egui_wgpu::Renderer,
     renderer: Renderer,
-    picture: Shown,
+    picture: SceneTexture,
     pub(super) gpu_timer: Option<GpuTimer>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
-    /// Whether the surface still works but should be configured anew.
-    pub(super) stale: bool,
+    /// Whether the surface still works but should be configured again.
+    pub(super) is_stale: bool,
     pub(super) gpu: Gpu,
-    /// Why the device is good for nothing more, from when it is.
-    fault: Arc<OnceLock<String>>,
+    /// Error of the last crowd that was drawn.
+    crowd_error: Option<CrowdError>,
 }
 
-/// The scene as it was last drawn, for the panels to show.
-struct Shown {
+/// The last scene that was drawn, as a texture for the panels.
+struct SceneTexture {
     canvas: Canvas,
     texture: TextureId,
     scene: Option<Scene>,
-    /// Whether the scene is on the canvas.
-    drawn: bool,
+    /// Whether the canvas shows the scene.
+    is_drawn: bool,
 }
 
 impl Graphics {
-    /// The window must have no other: it has one surface at a time. The panels find their letters
-    /// there, whatever they have drawn before.
+    /// Creates the graphics of a window that has none, since a window has one surface at a time. The panels'
+    /// font atlas is uploaded completely.
     pub fn new(
         display: OwnedDisplayHandle,
         window: &Arc<Window>,
@@ -76,18 +55,12 @@ impl Graphics {
             let gpu = Gpu::new(instance, Some(&surface))?;
             Ok::<_, GraphicsError>((gpu, surface))
         })?;
-        let fault = Arc::new(OnceLock::new());
-        let found = Arc::clone(&fault);
-        gpu.on_fault(move |why| {
-            if found.set(why).is_ok() {
-                // Nobody hears it once the window is closed.
-                let _ = proxy.send_event(UserEvent::GraphicsFailed);
-            }
-        });
+        // Fails only after the window is closed.
+        gpu.on_failure(move || drop(proxy.send_event(UserEvent::GraphicsFailed)));
         let config = configuration(&gpu, &surface, window)?;
         let mut egui_renderer =
             egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
-        upload_letters(&mut egui_renderer, &gpu, panels);
+        upload_font_atlas(&mut egui_renderer, &gpu, panels);
         let canvas = Canvas::new(&gpu, 1, 1);
         let texture = egui_renderer.register_native_texture(
             &gpu.device,
@@ -97,13 +70,13 @@ impl Graphics {
         let graphics = Self {
             egui_renderer,
             renderer: Renderer::new(&gpu),
-            picture: Shown { canvas, texture, scene: None, drawn: false },
+            picture: SceneTexture { canvas, texture, scene: None, is_drawn: false },
             gpu_timer: GpuTimer::new(&gpu),
             surface,
             config,
-            stale: false,
+            is_stale: false,
             gpu,
-            fault,
+            crowd_error: None,
         };
         graphics.check()?;
         Ok(graphics)
@@ -111,36 +84,36 @@ impl Graphics {
 
     /// # Errors
     ///
-    /// If the device is good for nothing more, as far as it has said so.
+    /// If the device has failed, as far as it has reported so.
     pub fn check(&self) -> Result<(), GraphicsError> {
-        self.fault.get().map_or(Ok(()), |why| Err(GraphicsError::Device(why.clone())))
+        Ok(self.gpu.check()?)
     }
 
-    /// How long the crowd took that is shown, if there is one.
+    /// Times of the crowd, if one is shown.
     pub fn crowd_times(&self) -> Option<CrowdTimes> {
-        self.renderer.crowd_times()
+        self.renderer.crowd_times().ok().flatten()
     }
 
-    /// The picture of the scene, among egui's.
+    /// The scene's texture in egui.
     pub fn picture(&self) -> TextureId {
         self.picture.texture
     }
 
-    /// Whether the device measures how long it works.
+    /// Whether the device measures its times.
     pub fn has_clock(&self) -> bool {
         self.gpu_timer.is_some()
     }
 
-    /// A frame and how long the device worked on it, if that is known by now.
+    /// A frame and the device's time for it, if known by now.
     pub fn read_clock(&mut self) -> Option<(u64, Duration)> {
-        // A device that is lost says so when it is asked, and has no buffers left to read.
+        // A lost device reports so when polled, and its buffers cannot be read.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.check().ok()?;
         self.gpu_timer.as_mut()?.read(&self.gpu)
     }
 
-    /// Draws the scene for the panels to show, if it is not what they show already; leaves another
-    /// one for it, to be refilled. What is in it, and what was uploaded for it now.
+    /// Draws the scene unless it is on the canvas already, and returns the number of things in it and of
+    /// bytes uploaded now. Keeps the scene and leaves the previous one in its place, to be refilled.
     pub fn draw_scene(
         &mut self,
         scene: &mut Scene,
@@ -152,17 +125,22 @@ impl Graphics {
         }
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
-            self.picture.drawn = false;
+            self.picture.is_drawn = false;
             self.show_canvas();
         }
-        if self.picture.drawn && self.picture.scene.as_ref() == Some(scene) {
+        if self.picture.is_drawn && self.picture.scene.as_ref() == Some(scene) {
             return Counts { uploaded: 0, ..self.renderer.counts() };
         }
         let canvas = &self.picture.canvas;
         self.renderer.upload(&self.gpu, scene, canvas.size(), scale);
-        let lap = self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.lap(Lap::Scene));
-        self.gpu.queue.submit([self.renderer.encode(&self.gpu, canvas, lap)]);
-        self.picture.drawn = true;
+        let crowd_error = self.renderer.crowd_times().err();
+        if self.crowd_error != crowd_error {
+            crowd_error.iter().for_each(|error| log::error!("{error}"));
+            self.crowd_error = crowd_error;
+        }
+        let timestamps = self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.pass(TimedPass::Scene));
+        self.gpu.queue.submit([self.renderer.encode(&self.gpu, canvas, timestamps)]);
+        self.picture.is_drawn = true;
         match &mut self.picture.scene {
             Some(shown) => std::mem::swap(shown, scene),
             None => self.picture.scene = Some(scene.clone()),
@@ -170,7 +148,7 @@ impl Graphics {
         self.renderer.counts()
     }
 
-    /// Lets the panels show a new canvas under the same name.
+    /// Replaces the texture in egui by that of a new canvas.
     fn show_canvas(&mut self) {
         self.egui_renderer.update_egui_texture_from_wgpu_texture(
             &self.gpu.device,
@@ -181,21 +159,21 @@ impl Graphics {
     }
 }
 
-/// Draws, or makes what draws. A device that dies meanwhile lets `wgpu` and `egui_wgpu` panic here
-/// and there, where they get no memory or no answer from it: one more way to fail.
+/// Runs graphics code and turns panics into errors: `wgpu` and `egui_wgpu` panic in many places if the
+/// device is lost meanwhile.
 pub(super) fn guarded<T>(
     draw: impl FnOnce() -> Result<T, GraphicsError>,
 ) -> Result<T, GraphicsError> {
-    panic::catch_unwind(AssertUnwindSafe(draw)).unwrap_or_else(|fault| {
-        let said = fault.downcast_ref::<String>().map(String::as_str);
-        let said = said.or_else(|| fault.downcast_ref().copied());
-        Err(GraphicsError::Fault(said.unwrap_or("it says nothing").to_owned()))
+    panic::catch_unwind(AssertUnwindSafe(draw)).unwrap_or_else(|panic| {
+        let message = panic.downcast_ref::<String>().map(String::as_str);
+        let message = message.or_else(|| panic.downcast_ref().copied());
+        Err(GraphicsError::Panic(message.unwrap_or("no message").to_owned()))
     })
 }
 
-/// egui tells what changes in its letters, and a new renderer has none to change.
-fn upload_letters(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Context) {
-    // egui has fonts from its first frame on.
+/// Uploads egui's whole font atlas: egui itself sends only changes, which a new renderer cannot apply.
+fn upload_font_atlas(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Context) {
+    // egui has no fonts before its first frame.
     if panels.cumulative_pass_nr() == 0 {
         return;
     }
@@ -204,7 +182,7 @@ fn upload_letters(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Contex
     renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
 }
 
-/// egui blends in what is stored, so the format does not convert.
+/// Configuration of the surface. Its format does not convert to sRGB, since egui blends in sRGB.
 fn configuration(
     gpu: &Gpu,
     surface: &wgpu::Surface<'_>,
@@ -219,7 +197,7 @@ fn configuration(
         .ok_or_else(unsupported)?;
     let formats = surface.get_capabilities(&gpu.adapter).formats;
     config.format = egui_wgpu::preferred_framebuffer_format(&formats).map_err(|_| unsupported())?;
-    // At the screen's own pace, and never torn; every surface has it.
+    // Waits for vsync without tearing; every surface supports it.
     config.present_mode = wgpu::PresentMode::Fifo;
     config.desired_maximum_frame_latency = 1;
     surface.configure(&gpu.device, &config);

@@ -7,27 +7,27 @@ use egui_wgpu::ScreenDescriptor;
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
-use super::graphics::{Graphics, GraphicsError};
-use crate::render::Lap;
+use super::graphics::Graphics;
+use super::graphics_error::GraphicsError;
+use crate::render::TimedPass;
 
-/// What became of a frame.
+/// Outcome of a frame.
 pub(super) enum Presented {
     Shown,
-    /// The surface has no place for it now. After how long to try again; without, the system says
-    /// when.
+    /// The surface accepts no frame now. Retry after this time, or when the system requests a redraw.
     Later(Option<Duration>),
 }
 
-/// What the surface gives to draw on; [`Presented::Later`] if nothing.
+/// A surface texture, or the reason for [`Presented::Later`].
 enum Acquired {
     Frame(wgpu::SurfaceTexture),
     Later(Option<Duration>),
 }
 
-/// The panels' way to the screen.
+/// Drawing the panels on the surface.
 impl Graphics {
-    /// Frames that nobody sees come no faster.
-    pub const PAUSE: Duration = Duration::from_millis(100);
+    /// Time between frames that are not visible.
+    pub const HIDDEN_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
     pub fn update_textures(
         &mut self,
@@ -46,7 +46,7 @@ impl Graphics {
         }
     }
 
-    /// A window of no size, as a minimised one is, keeps what it has.
+    /// Resizes the surface. A minimised window has no size and keeps its surface.
     pub fn resize(&mut self, size: PhysicalSize<u32>) {
         if size.width > 0 && size.height > 0 {
             let longest = self.gpu.longest_side();
@@ -56,12 +56,12 @@ impl Graphics {
         }
     }
 
-    /// Draws the panels on the surface and shows it; `drawn` is how many frames there have been. How
-    /// much of the time went by in waiting, too.
+    /// Draws the panels on the surface and presents it. Returns the time spent waiting for the surface, too.
+    /// `drawn` is the number of earlier frames.
     ///
     /// # Errors
     ///
-    /// If nothing can be drawn any more, as far as the device says so; see [`Self::finish`].
+    /// If the surface or the device has failed, as far as the device has reported so; see [`Self::finish`].
     pub fn present(
         &mut self,
         panels: &[ClippedPrimitive],
@@ -69,15 +69,15 @@ impl Graphics {
         window: &Arc<Window>,
         drawn: u64,
     ) -> Result<(Presented, Duration), GraphicsError> {
-        if std::mem::take(&mut self.stale) {
+        if std::mem::take(&mut self.is_stale) {
             self.surface.configure(&self.gpu.device, &self.config);
         }
-        let asked = Instant::now();
+        let start = Instant::now();
         let frame = match self.acquire(window)? {
             Acquired::Frame(frame) => frame,
-            Acquired::Later(again) => return Ok((Presented::Later(again), asked.elapsed())),
+            Acquired::Later(again) => return Ok((Presented::Later(again), start.elapsed())),
         };
-        let mut waited = asked.elapsed();
+        let mut waited = start.elapsed();
         self.check()?;
         let screen = ScreenDescriptor {
             size_in_pixels: [self.config.width, self.config.height],
@@ -106,7 +106,7 @@ impl Graphics {
                     store: wgpu::StoreOp::Store,
                 },
             })],
-            timestamp_writes: self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.lap(Lap::Panels)),
+            timestamp_writes: self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.pass(TimedPass::Panels)),
             ..Default::default()
         });
         self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
@@ -119,28 +119,25 @@ impl Graphics {
             gpu_timer.fetch();
         }
         window.pre_present_notify();
-        let handed_over = Instant::now();
+        let presenting = Instant::now();
         self.gpu.queue.present(frame);
-        waited += handed_over.elapsed();
+        waited += presenting.elapsed();
         self.check()?;
         Ok((Presented::Shown, waited))
     }
 
-    /// Waits until the device has done all that it was told.
+    /// Waits until the device has executed all commands.
     ///
     /// # Errors
     ///
-    /// If it does not do it.
+    /// If it fails or does not respond within ten seconds.
     pub fn finish(&self) -> Result<(), GraphicsError> {
         let timeout = Some(Duration::from_secs(10));
-        self.gpu
-            .device
-            .poll(wgpu::PollType::Wait { submission_index: None, timeout })
-            .map_err(|error| GraphicsError::Device(error.to_string()))?;
+        self.gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout })?;
         self.check()
     }
 
-    /// What the surface lacks is mended once.
+    /// Acquires a surface texture. An outdated or lost surface is renewed once.
     fn acquire(&mut self, window: &Arc<Window>) -> Result<Acquired, GraphicsError> {
         use wgpu::CurrentSurfaceTexture as Current;
         let mut current = self.surface.get_current_texture();
@@ -155,15 +152,15 @@ impl Graphics {
         match current {
             Current::Success(frame) => Ok(Acquired::Frame(frame)),
             Current::Suboptimal(frame) => {
-                self.stale = true;
+                self.is_stale = true;
                 Ok(Acquired::Frame(frame))
             }
-            Current::Outdated | Current::Timeout => Ok(Acquired::Later(Some(Self::PAUSE))),
-            // Nobody sees it; the system says when somebody does.
+            Current::Outdated | Current::Timeout => Ok(Acquired::Later(Some(Self::HIDDEN_FRAME_INTERVAL))),
+            // The system requests a redraw once the window is visible.
             Current::Occluded => Ok(Acquired::Later(None)),
             Current::Lost => Err(GraphicsError::SurfaceLost),
             Current::Validation => {
-                // A lost device says so when it is asked.
+                // A lost device reports so when polled.
                 let _ = self.gpu.device.poll(wgpu::PollType::Poll);
                 self.check()?;
                 Err(GraphicsError::NoFrame)
@@ -172,8 +169,8 @@ impl Graphics {
     }
 
     fn renew_surface(&mut self, window: &Arc<Window>) -> Result<(), GraphicsError> {
-        log::warn!("the window's surface was lost and is made anew");
-        // The old one goes before the new one is configured: a window is shown one at a time.
+        log::warn!("the window's surface was lost and is created again");
+        // Drops the old surface before the new one is configured, since a window has one at a time.
         self.surface = self.gpu.instance.create_surface(Arc::clone(window))?;
         self.resize(window.inner_size());
         Ok(())

@@ -1,5 +1,5 @@
-//! Nothing is lost: the document is kept every half minute and at a crash, and what another run of
-//! the program kept and never came back for is found at the next start.
+//! Recovery of unsaved changes: the document is backed up every half minute and at a crash, and a run finds
+//! the backups of runs that did not end cleanly.
 
 use std::fs::{self, File};
 use std::io;
@@ -12,147 +12,147 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use winit::event_loop::EventLoopProxy;
 
-use super::UserEvent;
+use super::user_event::UserEvent;
 use crate::document::Document;
 use crate::io::{self as files, SaveError};
 use crate::session::Session;
 
-/// How old what is kept can be.
-const PERIOD: Duration = Duration::from_secs(30);
+/// Maximum age of a backup.
+const INTERVAL: Duration = Duration::from_secs(30);
 
-/// A document that is kept, and where it is saved.
+/// A document and its file.
 #[derive(Clone)]
-pub(super) struct Kept {
+pub(super) struct Backup {
     pub document: Document,
     pub file: Option<PathBuf>,
 }
 
-/// As it stands on the disk.
+/// A backup on disk.
 #[derive(Serialize, Deserialize)]
-struct KeptFile {
+struct BackupFile {
     file: Option<PathBuf>,
-    /// In the program's own format.
+    /// The document as JSON.
     document: String,
 }
 
-/// What another run left.
-pub(super) struct Found {
-    pub kept: Kept,
-    /// Where it is.
+/// The backup of a run that did not end cleanly.
+pub(super) struct RecoveredFile {
+    pub backup: Backup,
+    /// Path of the backup.
     pub path: PathBuf,
 }
 
-/// Why what is not saved is not kept.
+/// Reasons why there is no backup.
 #[derive(Debug, Error)]
-pub(super) enum LeaveError {
-    #[error("there is no folder for it")]
-    NoPlace,
+pub(super) enum BackupError {
+    #[error("there is no folder for backups")]
+    NoFolder,
     #[error(transparent)]
     Save(#[from] SaveError),
 }
 
-/// The place of this run, which no other takes for left behind while its lock is held.
-struct Place {
+/// Backup path of this run. Other runs ignore the backup while the lock is held.
+struct BackupSlot {
     path: PathBuf,
     lock: PathBuf,
     _held: File,
 }
 
-/// Keeps the document of this run.
+/// Backs up the document of this run.
 pub(super) struct Recovery {
-    place: Option<Arc<Place>>,
-    /// What a crash writes; nothing where all is saved.
-    newest: Arc<Mutex<Option<Kept>>>,
-    /// Which document `newest` is.
-    noted: Option<u64>,
-    /// Which document is on the disk.
-    written: Option<u64>,
-    /// When the document began to differ from what is on the disk.
+    slot: Option<Arc<BackupSlot>>,
+    /// Backup that a crash writes; `None` if there are no unsaved changes.
+    newest: Arc<Mutex<Option<Backup>>>,
+    /// Revision of `newest`.
+    newest_revision: Option<u64>,
+    /// Revision on disk.
+    written_revision: Option<u64>,
+    /// Time since which the document differs from the one on disk.
     since: Option<Instant>,
-    /// Which document is being written, and whether that worked.
+    /// Revision that is being written, and the thread, which returns whether it was written.
     writing: Option<(u64, JoinHandle<bool>)>,
 }
 
 impl Recovery {
-    /// Begins to keep; where there is no place for it, nothing is kept and the reason is logged.
+    /// Takes a backup slot. If that fails, logs the reason and makes no backups.
     pub fn start() -> Self {
-        let place = folder().and_then(|folder| match Place::take(&folder) {
-            Ok(place) => Some(Arc::new(place)),
+        let slot = folder().and_then(|folder| match BackupSlot::take(&folder) {
+            Ok(slot) => Some(Arc::new(slot)),
             Err(error) => {
-                log::warn!("nothing can be kept in {}: {error}", folder.display());
+                log::warn!("no backups can be written to {}: {error}", folder.display());
                 None
             }
         });
         let newest = Arc::new(Mutex::new(None));
-        if let Some(place) = &place {
-            write_at_crash(Arc::clone(place), Arc::clone(&newest));
+        if let Some(slot) = &slot {
+            write_at_crash(Arc::clone(slot), Arc::clone(&newest));
         }
-        Self { place, newest, noted: None, written: None, since: None, writing: None }
+        Self { slot, newest, newest_revision: None, written_revision: None, since: None, writing: None }
     }
 
-    /// What another run left, the newest first.
-    pub fn find(&self) -> Option<Found> {
-        let mut left: Vec<(SystemTime, PathBuf)> = fs::read_dir(folder()?)
+    /// Finds the newest backup of the runs that did not end cleanly.
+    pub fn find(&self) -> Option<RecoveredFile> {
+        let mut backups: Vec<(SystemTime, PathBuf)> = fs::read_dir(folder()?)
             .ok()?
             .filter_map(|entry| {
                 let entry = entry.ok()?;
                 let path = entry.path();
-                forget_empty(&path);
-                let is_kept = path.extension().is_some_and(|extension| extension == "json");
+                remove_stale_lock(&path);
+                let is_backup = path.extension().is_some_and(|extension| extension == "json");
                 let modified = entry.metadata().ok()?.modified().ok()?;
-                (is_kept && !is_held(&path.with_extension("lock"))).then_some((modified, path))
+                (is_backup && !is_held(&path.with_extension("lock"))).then_some((modified, path))
             })
             .collect();
-        left.sort();
-        let read = |path: PathBuf| match Kept::read(&path) {
-            Ok(kept) => Some(Found { kept, path }),
+        backups.sort();
+        let read = |path: PathBuf| match Backup::read(&path) {
+            Ok(backup) => Some(RecoveredFile { backup, path }),
             Err(error) => {
-                log::warn!("what {} keeps cannot be opened: {error}", path.display());
+                log::warn!("the backup {} cannot be opened: {error}", path.display());
                 None
             }
         };
-        left.into_iter().rev().find_map(|(_, path)| read(path))
+        backups.into_iter().rev().find_map(|(_, path)| read(path))
     }
 
-    /// Follows the session. When to look again, if something waits to be written.
-    pub fn follow(
+    /// Writes a backup if one is due. Returns the time of the next call, if a backup is pending.
+    pub fn update(
         &mut self,
         session: &Session,
         proxy: &EventLoopProxy<UserEvent>,
     ) -> Option<Instant> {
-        let place = Arc::clone(self.place.as_ref()?);
+        let slot = Arc::clone(self.slot.as_ref()?);
         if !session.is_unsaved() {
-            self.forget();
+            self.discard();
             return None;
         }
-        self.follow_writing();
+        self.finish_writing();
         let revision = session.revision();
-        // A change under way goes on without another number.
+        // An open transaction changes the document but not its revision.
         let is_changing = session.is_changing();
-        if self.noted != Some(revision) {
-            self.note(session);
+        if self.newest_revision != Some(revision) {
+            self.set_newest(session);
         }
-        if self.written == Some(revision) && !is_changing {
+        if self.written_revision == Some(revision) && !is_changing {
             self.since = None;
             return None;
         }
-        let due = *self.since.get_or_insert_with(Instant::now) + PERIOD;
+        let due = *self.since.get_or_insert_with(Instant::now) + INTERVAL;
         if Instant::now() < due || self.writing.is_some() {
             return Some(due.max(Instant::now() + Duration::from_millis(100)));
         }
         if is_changing {
-            self.note(session);
+            self.set_newest(session);
         }
         self.since = None;
-        let kept = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let backup = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         let proxy = proxy.clone();
         let writing = thread::spawn(move || {
-            let written = kept.write(&place.path);
+            let written = backup.write(&slot.path);
             let is_written = written.is_ok();
-            // Nobody hears it once the window is closed.
+            // Fails only after the window is closed.
             let _ = proxy.send_event(match written {
-                Ok(()) => UserEvent::Kept,
-                Err(error) => UserEvent::Report(Err(format!("Not kept safe: {error}"))),
+                Ok(()) => UserEvent::BackedUp,
+                Err(error) => UserEvent::Report(Err(format!("Not backed up: {error}"))),
             });
             is_written
         });
@@ -160,76 +160,75 @@ impl Recovery {
         None
     }
 
-    /// What a crash writes is the document as it is now.
-    fn note(&mut self, session: &Session) {
-        self.noted = Some(session.revision());
+    /// Sets the backup that a crash writes to the current document.
+    fn set_newest(&mut self, session: &Session) {
+        self.newest_revision = Some(session.revision());
         let file = session.file().map(Path::to_owned);
-        let kept = Kept { document: session.document().clone(), file };
-        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(kept);
+        let backup = Backup { document: session.document().clone(), file };
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(backup);
     }
 
-    /// What could not be written is tried again after a while.
-    fn follow_writing(&mut self) {
+    /// Notes whether the writing thread has succeeded; after a failure the next backup is due as usual.
+    fn finish_writing(&mut self) {
         if self.writing.as_ref().is_some_and(|(_, writing)| writing.is_finished())
             && let Some((revision, writing)) = self.writing.take()
             && writing.join().is_ok_and(|is_written| is_written)
         {
-            self.written = Some(revision);
+            self.written_revision = Some(revision);
         }
     }
 
-    /// Whether a document is on the disk.
+    /// Whether a revision is on disk.
     pub fn has(&self, revision: u64) -> bool {
-        self.written == Some(revision)
+        self.written_revision == Some(revision)
     }
 
-    /// Lets go of what is saved, or not wanted.
-    fn forget(&mut self) {
+    /// Removes the backup.
+    fn discard(&mut self) {
         if let Some((_, writing)) = self.writing.take() {
             let _ = writing.join();
         }
         self.since = None;
-        self.written = None;
-        if self.noted.take().is_none() {
+        self.written_revision = None;
+        if self.newest_revision.take().is_none() {
             return;
         }
         *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = None;
-        if let Some(place) = &self.place {
-            let _ = fs::remove_file(&place.path);
+        if let Some(slot) = &self.slot {
+            let _ = fs::remove_file(&slot.path);
         }
     }
 
-    /// Writes what is not saved, for the next start to find when this run has ended. Where, if
-    /// there is anything.
-    pub fn leave(&mut self, session: &Session) -> Result<Option<PathBuf>, LeaveError> {
+    /// Writes unsaved changes for the next start to find, and returns the path; `None` if there are none.
+    pub fn leave(&mut self, session: &Session) -> Result<Option<PathBuf>, BackupError> {
         if !session.is_unsaved() {
             return Ok(None);
         }
         if let Some((_, writing)) = self.writing.take() {
             let _ = writing.join();
         }
-        self.note(session);
-        // Not kept in a place any more, it is not taken away at the end.
-        let place = self.place.take().ok_or(LeaveError::NoPlace)?;
-        if let Some(kept) = self.newest.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
-            kept.write(&place.path)?;
+        self.set_newest(session);
+        // Without a slot, `end` does not remove the backup.
+        let slot = self.slot.take().ok_or(BackupError::NoFolder)?;
+        if let Some(backup) = self.newest.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
+            backup.write(&slot.path)?;
         }
-        Ok(Some(place.path.clone()))
+        Ok(Some(slot.path.clone()))
     }
 
-    /// The program ends as it should.
+    /// Removes the backup and its lock, at a clean end.
     pub fn end(&mut self) {
-        self.forget();
-        if let Some(place) = self.place.take() {
-            let _ = fs::remove_file(&place.lock);
+        self.discard();
+        if let Some(slot) = self.slot.take() {
+            let _ = fs::remove_file(&slot.lock);
         }
     }
 }
 
-impl Place {
+impl BackupSlot {
     fn take(folder: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
-        // Numbers of processes come again; times do not.
+        // Process ids are reused; times are not.
         let started = SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default().as_millis();
         let path = folder.join(format!("{started}-{}.json", std::process::id()));
         let lock = path.with_extension("lock");
@@ -239,49 +238,49 @@ impl Place {
     }
 }
 
-impl Kept {
+impl Backup {
     fn read(path: &Path) -> Result<Self, Box<dyn std::error::Error>> {
-        let KeptFile { file, document } = serde_json::from_str(&fs::read_to_string(path)?)?;
+        let BackupFile { file, document } = serde_json::from_str(&fs::read_to_string(path)?)?;
         let name = path.display().to_string();
         Ok(Self { document: files::parse(&name, &document, None)?.document, file })
     }
 
     fn write(&self, path: &Path) -> Result<(), SaveError> {
         let document = files::to_json(&self.document)?;
-        let json = serde_json::to_string(&KeptFile { file: self.file.clone(), document })?;
+        let json = serde_json::to_string(&BackupFile { file: self.file.clone(), document })?;
         Ok(files::write(path, json.as_bytes())?)
     }
 }
 
-/// Whether a run of the program holds a lock.
+/// Whether a running program holds a lock.
 fn is_held(lock: &Path) -> bool {
     File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)))
 }
 
-/// A run that was ended with nothing to keep left its lock alone.
-fn forget_empty(lock: &Path) {
+/// Removes the lock of a run that ended without a backup.
+fn remove_stale_lock(lock: &Path) {
     let is_lock = lock.extension().is_some_and(|extension| extension == "lock");
     if is_lock && !lock.with_extension("json").exists() && !is_held(lock) {
         let _ = fs::remove_file(lock);
     }
 }
 
-/// Takes away what another run left, once it is open or not wanted.
+/// Removes the backup of another run.
 pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(path.with_extension("lock"));
 }
 
-/// A panic, and a signal to end, write what is newest.
-fn write_at_crash(place: Arc<Place>, newest: Arc<Mutex<Option<Kept>>>) {
+/// Writes the newest backup at a panic and at a termination signal.
+fn write_at_crash(slot: Arc<BackupSlot>, newest: Arc<Mutex<Option<Backup>>>) {
     let write = move || {
-        // Not lock, which would wait for ever if the panic is where it is held.
-        if let Ok(kept) = newest.try_lock()
-            && let Some(kept) = kept.as_ref()
+        // Not lock, which would deadlock if this thread panicked while it held it.
+        if let Ok(backup) = newest.try_lock()
+            && let Some(backup) = backup.as_ref()
         {
-            match kept.write(&place.path) {
-                Ok(()) => log::error!("the document is kept in {}", place.path.display()),
-                Err(error) => log::error!("the document could not be kept: {error}"),
+            match backup.write(&slot.path) {
+                Ok(()) => log::error!("unsaved changes are in {}", slot.path.display()),
+                Err(error) => log::error!("unsaved changes are lost: {error}"),
             }
         }
     };
@@ -292,7 +291,7 @@ fn write_at_crash(place: Arc<Place>, newest: Arc<Mutex<Option<Kept>>>) {
         std::process::exit(130);
     });
     if let Err(error) = handled {
-        log::warn!("signals to end are not heeded: {error}");
+        log::warn!("termination signals cannot be handled: {error}");
     }
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {

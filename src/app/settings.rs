@@ -7,22 +7,22 @@ use serde::{Deserialize, Serialize};
 use crate::io;
 use crate::session::Preferences;
 
-/// What is kept from one start to the next: preferences, recent files, the window's
-/// place, the panels' layout.
+/// Everything that is saved when the program ends: preferences, recent files, position of the window, layout
+/// of the panels.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Settings {
     pub preferences: Preferences,
-    /// Files that were opened or saved, the last one first.
+    /// Files that were opened or saved, the latest first.
     pub recent: Vec<PathBuf>,
-    /// Of the last export or picture.
+    /// Folder of the last export or picture.
     pub export_folder: Option<PathBuf>,
     pub window: Option<WindowSettings>,
     pub layout: IdTypeMap,
 }
 
 impl Settings {
-    /// Settings that cannot be read are as at first; the reason is logged.
+    /// Loads the settings; if they cannot be read, logs the reason and returns the defaults.
     pub fn load() -> Self {
         let Some(path) = path().filter(|path| path.exists()) else {
             return Self::default();
@@ -30,15 +30,15 @@ impl Settings {
         let read = std::fs::read_to_string(&path).map_err(|error| error.to_string());
         read.and_then(|text| ron::from_str(&text).map_err(|error| error.to_string()))
             .unwrap_or_else(|error| {
-                log::warn!("{} is not read: {error}", path.display());
+                log::warn!("cannot read {}: {error}", path.display());
                 Self::default()
             })
     }
 
-    /// Settings that cannot be written are lost; the reason is logged.
+    /// Saves the settings, or logs the reason why they cannot be saved.
     pub fn save(&self) {
         if let (Some(path), Err(error)) = (path(), self.try_save()) {
-            log::warn!("{} is not written: {error}", path.display());
+            log::warn!("cannot write {}: {error}", path.display());
         }
     }
 

@@ -1,4 +1,3 @@
-use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -12,51 +11,53 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
 use super::attributes::attributes;
-use super::debug::Debug;
-use super::failures::Failures;
-use super::graphics::{Graphics, GraphicsError, guarded};
-use super::laps::laps;
+use super::debug_options::DebugOptions;
+use super::device_retries::DeviceRetries;
+use super::error::AppError;
+use super::graphics::{Graphics, guarded};
+use super::graphics_error::GraphicsError;
 use super::present::Presented;
 use super::settings::Settings;
-use super::{AppError, UserEvent};
-use crate::scene::Scene;
+use super::stopwatch::stopwatch;
+use super::title::{TITLE, title};
+use super::user_event::UserEvent;
+use crate::scene::{Scene, SceneBuilder};
 use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
 use crate::ui::{self, FrameTime, Machine, style};
 
-pub(super) const TITLE: &str = "ik-arm";
-
-/// When the next frame is due.
+/// Time of the next frame.
 pub(super) enum Repaint {
     OnInput,
     At(Instant),
     Quit,
-    /// There is nothing left to draw with.
+    /// The graphics are lost for good.
     Failed(GraphicsError),
 }
 
-/// The window with all that draws in it.
+/// The window with everything that draws in it.
 pub(super) struct AppWindow {
-    /// Nothing while they are lost.
+    /// `None` while they are lost.
     pub(super) graphics: Option<Graphics>,
-    failures: Failures,
-    /// When lost graphics are made anew.
-    dark_until: Instant,
-    debug: Debug,
+    retries: DeviceRetries,
+    /// Time at which lost graphics are created again.
+    retry_at: Instant,
+    debug: DebugOptions,
     pub(super) window: Arc<Window>,
     pub(super) egui: egui_winit::State,
     machine: Machine,
     overlays: Overlays,
-    /// The scene as it is to be drawn; the memory is that of the one before last.
+    builder: SceneBuilder,
+    /// The next scene, in the memory of the one before last.
     scene: Option<Scene>,
-    /// What has been typed since a file dialog was asked for.
+    /// Key presses since a file dialog was requested.
     held_keys: Vec<Event>,
-    /// When the last frame began, if it asked for another one at once.
+    /// Start of the last frame, if it requested another one at once.
     moving_since: Option<Instant>,
     frames: u64,
     title: String,
-    /// Where the scene is, in points.
+    /// Rectangle of the scene in points.
     pub(super) viewport: Rect,
-    /// Whether the program is to end at the next frame.
+    /// Whether the program ends at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
 }
@@ -84,7 +85,7 @@ impl AppWindow {
         egui.init_accesskit(event_loop, &window, proxy);
         window.set_visible(true);
         window.request_redraw();
-        let debug = Debug::from_env();
+        let debug = DebugOptions::from_env();
         let machine = Machine {
             adapter: graphics.gpu.name(),
             has_clock: graphics.has_clock(),
@@ -92,13 +93,14 @@ impl AppWindow {
         };
         Ok(Self {
             graphics: Some(graphics),
-            failures: Failures::default(),
-            dark_until: Instant::now(),
+            retries: DeviceRetries::default(),
+            retry_at: Instant::now(),
             debug,
             window,
             egui,
             machine,
             overlays: Overlays::default(),
+            builder: SceneBuilder::default(),
             scene: None,
             held_keys: Vec::new(),
             moving_since: None,
@@ -114,12 +116,12 @@ impl AppWindow {
         self.window.request_redraw();
     }
 
-    /// How many frames have been drawn.
+    /// Number of frames drawn.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Whether the event asks for a frame.
+    /// Passes an event to egui and returns whether it needs a frame.
     pub fn on_event(&mut self, event: &WindowEvent) -> bool {
         if self.debug.destroys_device(event)
             && let Some(graphics) = &self.graphics
@@ -151,7 +153,7 @@ impl AppWindow {
         }
     }
 
-    /// What to keep for the next start.
+    /// Settings for the next start.
     pub fn settings(&self, session: &Session) -> Settings {
         let ctx = self.egui.egui_ctx();
         Settings {
@@ -163,7 +165,7 @@ impl AppWindow {
         }
     }
 
-    /// Takes the input, lets the session follow, and draws what it is then: all in one frame.
+    /// Runs one frame: takes the input, applies the actions of the panels, and draws.
     pub fn redraw(
         &mut self,
         event_loop: &ActiveEventLoop,
@@ -184,7 +186,7 @@ impl AppWindow {
             output.textures_delta.clear();
             return Repaint::Quit;
         }
-        self.entitle(session);
+        self.update_title(session);
         let platform = std::mem::take(&mut output.platform_output);
         self.egui.handle_platform_output(&self.window, platform);
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
@@ -195,12 +197,12 @@ impl AppWindow {
                 self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
                 log::trace!("frame {} drawn", self.frames);
-                self.failures.forget();
+                self.retries.reset();
                 delay
             }
-            // What moves would go on as fast as it can, were it not seen.
+            // Motion that is not visible needs few frames.
             Ok(Presented::Later(again)) => {
-                let delay = delay.map(|delay| delay.max(Graphics::PAUSE));
+                let delay = delay.map(|delay| delay.max(Graphics::HIDDEN_FRAME_INTERVAL));
                 delay.into_iter().chain(again).min()
             }
             Err(error) => return self.lose(error),
@@ -208,7 +210,7 @@ impl AppWindow {
         delay.and_then(|delay| started.checked_add(delay)).map_or(Repaint::OnInput, Repaint::At)
     }
 
-    /// Makes graphics anew that were lost. What to do instead of a frame, if there are none.
+    /// Creates lost graphics again. Returns what to do instead of a frame, if there are none.
     fn restore(
         &mut self,
         event_loop: &ActiveEventLoop,
@@ -218,15 +220,15 @@ impl AppWindow {
         if let Some(graphics) = &self.graphics {
             return graphics.check().err().map(|error| self.lose(error));
         }
-        if Instant::now() < self.dark_until {
-            return Some(Repaint::At(self.dark_until));
+        if Instant::now() < self.retry_at {
+            return Some(Repaint::At(self.retry_at));
         }
         let display = event_loop.owned_display_handle();
-        let made = guarded(|| match self.debug.fails_device() {
-            true => Err(GraphicsError::Asked),
+        let created = guarded(|| match self.debug.fails_device() {
+            true => Err(GraphicsError::Requested),
             false => Graphics::new(display, &self.window, self.egui.egui_ctx(), proxy.clone()),
         });
-        let graphics = match made {
+        let graphics = match created {
             Ok(graphics) => self.graphics.insert(graphics),
             Err(error) => return Some(self.lose(error)),
         };
@@ -234,27 +236,27 @@ impl AppWindow {
         self.machine.has_clock = graphics.has_clock();
         self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
         session.apply(ShellAction::Report(
-            "The graphics device was lost and has been made anew; nothing is lost.".to_owned(),
+            "The graphics device was lost and created again; the document is unchanged".to_owned(),
         ));
         None
     }
 
-    /// Lets go of graphics that have failed, to make them anew.
+    /// Drops failed graphics and schedules their creation.
     fn lose(&mut self, error: GraphicsError) -> Repaint {
-        log::error!("{error}");
         self.drop_graphics();
-        let Some(pause) = self.failures.pause() else {
+        let Some(pause) = self.retries.next_pause() else {
             return Repaint::Failed(error);
         };
-        self.dark_until = Instant::now() + pause;
-        Repaint::At(self.dark_until)
+        log::error!("{error}");
+        self.retry_at = Instant::now() + pause;
+        Repaint::At(self.retry_at)
     }
 
-    /// Not even to be dropped is safe for what was in use when the device was lost.
+    /// Drops the graphics, which may panic after the device is lost.
     pub fn drop_graphics(&mut self) {
-        let lost = self.graphics.take();
+        let graphics = self.graphics.take();
         let dropped = guarded(|| {
-            drop(lost);
+            drop(graphics);
             Ok(())
         });
         if let Err(error) = dropped {
@@ -262,8 +264,8 @@ impl AppWindow {
         }
     }
 
-    /// Runs the panels on one key press or mouse button after the other, so that each meets what the
-    /// one before it has opened.
+    /// Runs the panels once for each key press or mouse button, so that each sees the effects of the one
+    /// before.
     fn run(
         &mut self,
         mut input: RawInput,
@@ -272,7 +274,7 @@ impl AppWindow {
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut events = std::mem::take(&mut self.held_keys);
         if !session.is_asking() {
-            // The system's dialog had the keyboard.
+            // Typed while the system's dialog had the focus.
             events.clear();
         }
         events.append(&mut input.events);
@@ -287,23 +289,23 @@ impl AppWindow {
             };
             let dropped_files = std::mem::take(&mut input.dropped_files);
             let stroke = RawInput { events, dropped_files, ..input.clone() };
-            let (shown, rect, asked) = self.run_stroke(stroke, session, frame);
-            output.append(shown);
+            let (run, rect, new_effects) = self.run_stroke(stroke, session, frame);
+            output.append(run);
             viewport = rect;
-            effects.extend(asked);
+            effects.extend(new_effects);
         }
         (output, viewport, effects)
     }
 
-    /// Runs the panels, applies their actions, and if there were any, runs the panels once more, so
-    /// that none shows the state before.
+    /// Runs the panels and applies their actions. If there were any, runs the panels again, so that none shows
+    /// an outdated state.
     fn run_stroke(
         &mut self,
         input: RawInput,
         session: &mut Session,
         frame: &mut FrameTime,
     ) -> (FullOutput, Rect, Vec<Effect>) {
-        let mut lap = laps();
+        let mut lap = stopwatch();
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
         let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
@@ -326,22 +328,15 @@ impl AppWindow {
         (output, viewport, effects)
     }
 
-    /// Says what is open.
-    fn entitle(&mut self, session: &Session) {
-        let unsaved = if session.is_unsaved() { "*" } else { "" };
-        let name = session.file().and_then(Path::file_name).map(OsStr::to_string_lossy);
-        let title = match name {
-            Some(name) => format!("{name}{unsaved} – {TITLE}"),
-            None if session.is_unsaved() => format!("untitled* – {TITLE}"),
-            None => TITLE.to_owned(),
-        };
+    fn update_title(&mut self, session: &Session) {
+        let title = title(session.file(), session.is_unsaved());
         if title != self.title {
             self.window.set_title(&title);
             self.title = title;
         }
     }
 
-    /// Draws the scene, and the panels around it.
+    /// Draws the scene and the panels.
     fn draw(
         &mut self,
         session: &Session,
@@ -350,9 +345,10 @@ impl AppWindow {
     ) -> Result<Presented, GraphicsError> {
         let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
             output;
-        // Taken out first: egui panics where they are dropped unheeded.
+        // Taken out first: egui panics if they are dropped.
         let changed = std::mem::take(&mut textures.set);
         let freed = std::mem::take(&mut textures.free);
+        let pixels = self.viewport_pixels(scale);
         let Some(graphics) = &mut self.graphics else {
             return Ok(Presented::Later(None));
         };
@@ -364,12 +360,12 @@ impl AppWindow {
                 Ok(Presented::Later(None))
             });
         }
-        let mut lap = laps();
+        let mut lap = stopwatch();
         let (document, theme) = (session.shown(), session.preferences().theme);
         session.write_overlays(&mut self.overlays);
         match &mut self.scene {
-            Some(scene) => scene.refill(document, &self.overlays, theme),
-            None => self.scene = Some(Scene::new(document, &self.overlays, theme)),
+            Some(scene) => self.builder.refill(scene, document, &self.overlays, theme),
+            None => self.scene = Some(self.builder.build(document, &self.overlays, theme)),
         }
         frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);
@@ -383,7 +379,7 @@ impl AppWindow {
             graphics.update_textures(changed);
             if let Some(scene) = &mut self.scene {
                 machine.counts =
-                    Some(graphics.draw_scene(scene, pixels(self.viewport, scale), scale));
+                    Some(graphics.draw_scene(scene, pixels, scale));
             }
             frame.encode += lap();
             let drawn = machine.times.drawn();
@@ -391,15 +387,16 @@ impl AppWindow {
             frame.wait += waited;
             frame.encode += lap().saturating_sub(waited);
             graphics.free_textures(freed);
-            if self.failures.is_trying() && matches!(presented, Presented::Shown) {
+            if self.retries.is_retrying() && matches!(presented, Presented::Shown) {
                 graphics.finish()?;
             }
             Ok(presented)
         })
     }
-}
 
-pub(super) fn pixels(viewport: Rect, scale: f32) -> (u32, u32) {
-    let side = |length: f32| (length * scale).round().max(1.0) as u32;
-    (side(viewport.width()), side(viewport.height()))
+    /// Width and height of the viewport in pixels.
+    pub(super) fn viewport_pixels(&self, scale: f32) -> (u32, u32) {
+        let side = |length: f32| (length * scale).round().max(1.0) as u32;
+        (side(self.viewport.width()), side(self.viewport.height()))
+    }
 }

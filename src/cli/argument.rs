@@ -1,4 +1,4 @@
-//! What arguments stand for.
+//! Values of arguments that more than one command takes.
 
 use std::str::FromStr;
 
@@ -7,43 +7,48 @@ use glam::Vec3;
 use thiserror::Error;
 
 use crate::document::{Display, Overlay, Theme};
+use crate::export::ExportOptions;
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 
-/// Why an argument is not what it stands for.
+/// Rule that the text of an argument breaks. The command line names the argument and its text.
 #[derive(Debug, Error, PartialEq)]
 pub enum ArgumentError {
-    #[error("{0:?} is not a size; it must be like 1280x800, each side 1 to {max}", max = Size::MAX)]
-    Size(String),
-    #[error("{0:?} is not a point; it must be three numbers like 250,120,60")]
-    Point(String),
-    #[error("{0:?} is not a number that a 32-bit float can hold")]
-    Number(String),
-    #[error("{0:?} is not a finite number of seconds")]
-    Time(String),
+    #[error("size must be like 1280x800, each side 1 to {max}", max = ExportOptions::MAX_SIDE)]
+    Size,
+    #[error("point must be three numbers like 250,120,60")]
+    Point,
+    #[error("number must be finite and fit a 32-bit float")]
+    Number,
+    #[error("time must be a finite number of seconds")]
+    Time,
     #[error(transparent)]
     Length(#[from] LengthError),
-    #[error("{0:?} is not a guide; they are cursor, pointer, inner, outer, or none alone")]
+    #[error("guides must be some of cursor, pointer, inner, outer, or none alone, got {0:?}")]
     Guide(String),
 }
 
+/// Width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
+pub struct SizeArgument {
     pub width: u32,
     pub height: u32,
 }
 
+/// A finite number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number(pub f32);
+pub struct NumberArgument(pub f32);
 
-/// Seconds.
+/// Finite time in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Time(pub f64);
+pub struct TimeArgument(pub f64);
 
+/// Length of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Length(pub f32);
+pub struct LengthArgument(pub f32);
 
+/// A point with finite coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point(pub Vec3);
+pub struct PointArgument(pub Vec3);
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum ThemeName {
@@ -51,77 +56,75 @@ pub enum ThemeName {
     Light,
 }
 
+/// Guides that are shown; all others are hidden.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Guides(Vec<Overlay>);
+pub struct GuidesArgument(Vec<Overlay>);
 
-impl Size {
-    const MAX: u32 = 8192;
-}
-
-impl FromStr for Size {
+impl FromStr for SizeArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let side = |text: &str| {
-            text.parse()
-                .ok()
-                .filter(|side| (1..=Self::MAX).contains(side) && !text.starts_with('+'))
+            text.parse().ok().filter(|side| {
+                (1..=ExportOptions::MAX_SIDE).contains(side) && !text.starts_with('+')
+            })
         };
         text.split_once('x')
             .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))
-            .ok_or_else(|| ArgumentError::Size(text.to_owned()))
+            .ok_or(ArgumentError::Size)
     }
 }
 
-impl FromStr for Number {
+impl FromStr for NumberArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let number = text.trim().parse().ok().filter(|number: &f32| number.is_finite());
-        number.map(Self).ok_or_else(|| ArgumentError::Number(text.to_owned()))
+        number.map(Self).ok_or(ArgumentError::Number)
     }
 }
 
-impl FromStr for Time {
+impl FromStr for TimeArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite());
-        time.map(Self).ok_or_else(|| ArgumentError::Time(text.to_owned()))
+        time.map(Self).ok_or(ArgumentError::Time)
     }
 }
 
-impl FromStr for Length {
+impl FromStr for LengthArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let Number(length) = text.parse()?;
+        let NumberArgument(length) = text.parse()?;
         TwoBone::new(length, length)
             .map(|bones| Self(bones.upper()))
             .map_err(|_| ArgumentError::Length(LengthError { bone: "limb", value: length }))
     }
 }
 
-impl FromStr for Point {
+impl FromStr for PointArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let numbers: Result<Vec<Number>, _> = text.split(',').map(str::parse).collect();
+        let numbers: Result<Vec<NumberArgument>, _> = text.split(',').map(str::parse).collect();
         match numbers.as_deref() {
             Ok([x, y, z]) => Ok(Self(Vec3::new(x.0, y.0, z.0))),
-            _ => Err(ArgumentError::Point(text.to_owned())),
+            _ => Err(ArgumentError::Point),
         }
     }
 }
 
-impl Guides {
+impl GuidesArgument {
+    /// A display with these guides shown, the other guides hidden and the rest unchanged.
     pub fn shown_in(&self, display: Display) -> Display {
         let show = |display: Display, guide| display.with(guide, self.0.contains(&guide));
         Overlay::GUIDES.into_iter().fold(display, show)
     }
 }
 
-impl FromStr for Guides {
+impl FromStr for GuidesArgument {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {

@@ -1,4 +1,4 @@
-//! `ik-arm examples`: the scenes that come with the program.
+//! `ik-arm examples`: the built-in example scenes.
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -7,17 +7,18 @@ use std::process::ExitCode;
 use clap::builder::PossibleValuesParser;
 use thiserror::Error;
 
+use super::report::fail;
 use crate::io::{self as files, Example, WriteError};
 
 #[derive(clap::Args)]
-#[command(after_help = "Without NAME it lists them. With NAME it prints that scene as a document:
+#[command(after_help = "Without NAME it lists the examples. With NAME it prints one as a document:
   ik-arm examples human > human.json
   ik-arm examples human | ik-arm pose --solver dls -")]
-pub struct Args {
-    /// Which one to print
+pub struct ExamplesArgs {
+    /// Example to print
     #[arg(value_name = "NAME", value_parser = names())]
     name: Option<String>,
-    /// Write it to a file instead
+    /// Write it to this file instead of standard output
     #[arg(short, long, value_name = "FILE", requires = "name")]
     output: Option<PathBuf>,
 }
@@ -26,26 +27,26 @@ fn names() -> PossibleValuesParser {
     PossibleValuesParser::new(Example::ALL.map(|example| example.name))
 }
 
-/// Why there is no example.
+/// Reasons why no example is written.
 #[derive(Debug, Error)]
-enum Failure {
+enum ExamplesError {
     #[error(transparent)]
     File(#[from] WriteError),
     #[error("cannot write to standard output: {0}")]
     Write(#[from] io::Error),
 }
 
-pub fn run(args: &Args) -> ExitCode {
-    match show(args) {
+pub fn run(args: &ExamplesArgs) -> ExitCode {
+    match print(args) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+        Err(ExamplesError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(failure) => super::fail(&failure),
+        Err(error) => fail(&error),
     }
 }
 
-fn show(args: &Args) -> Result<(), Failure> {
+fn print(args: &ExamplesArgs) -> Result<(), ExamplesError> {
     let mut stdout = io::stdout().lock();
     let Some(example) = args.name.as_deref().and_then(Example::find) else {
         let width = Example::ALL.map(|example| example.name.len()).into_iter().max().unwrap_or(0);

@@ -1,25 +1,30 @@
-//! The command line: solve, pose, render, export, examples, gui.
+//! The command line: one module per subcommand.
 
 mod argument;
 mod examples;
 mod export;
+mod gui;
 mod open;
 mod pose;
 mod quiet;
 mod render;
+mod report;
 mod solve;
 
-use std::io::{self, Write as _};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::app;
+use examples::ExamplesArgs;
+use export::ExportArgs;
+use gui::GuiArgs;
+use pose::PoseArgs;
+use render::RenderArgs;
+use solve::SolveArgs;
 
-/// A 3D inverse-kinematics arm to pose, look into and understand.
+/// Pose arms and skeletons by inverse kinematics (IK) and see how it works.
 ///
-/// Without a command it opens the window.
+/// Opens the window if no command is given.
 #[derive(Parser)]
 #[command(name = "ik-arm", version)]
 struct Cli {
@@ -29,23 +34,23 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Solve poses, one JSON object per line in, one per line out
-    Solve(solve::Args),
-    /// Pose a file's skeleton at a time, solved or as it stands, and print it as JSON
-    Pose(pose::Args),
-    /// Draw the arm or a file to a picture, without a window
-    Render(render::Args),
-    /// Write a file's motion or pictures for other programs: .glb, .bvh, .csv, .png, .apng
-    Export(export::Args),
-    /// List the scenes that come with the program, or print one
-    Examples(examples::Args),
+    /// Solve arm poses: one JSON object per line in, one per line out
+    Solve(SolveArgs),
+    /// Print the pose of a file's skeleton as JSON, after solving its targets if asked
+    Pose(PoseArgs),
+    /// Draw the arm, a file or a crowd to a PNG, without a window
+    Render(RenderArgs),
+    /// Export a file's motion or pictures: .glb, .bvh, .csv, .png, .apng
+    Export(ExportArgs),
+    /// List the built-in example scenes, or print one
+    Examples(ExamplesArgs),
     /// Open the window (also without a command)
     Gui(GuiArgs),
 }
 
-/// Runs the program with the process's own arguments.
+/// Runs the program with the arguments of its process.
 pub fn run() -> ExitCode {
-    // rfd logs an error where the system has no file dialog; ours asks instead.
+    // rfd logs an error where the system has no file dialog; the program's own dialog asks instead.
     let filter = env_logger::Env::default().default_filter_or("error,rfd=off");
     env_logger::Builder::from_env(filter).init();
     let command = Cli::parse().command;
@@ -58,45 +63,7 @@ pub fn run() -> ExitCode {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
-        Some(Command::Gui(args)) => gui(&args),
-        None => gui(&GuiArgs::default()),
+        Some(Command::Gui(args)) => gui::run(&args),
+        None => gui::run(&GuiArgs::default()),
     }
-}
-
-#[derive(clap::Args, Default)]
-struct GuiArgs {
-    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, to open in it
-    #[arg(value_name = "FILE")]
-    file: Option<PathBuf>,
-    /// Which of a scene's skeletons
-    #[arg(long, value_name = "NAME", requires = "file")]
-    skeleton: Option<String>,
-}
-
-fn gui(args: &GuiArgs) -> ExitCode {
-    let mut document = None;
-    if let Some(path) = &args.file {
-        match open::open(path, args.skeleton.as_deref()) {
-            // A file of another program is opened, not saved over.
-            Ok(opened) => {
-                let file = opened.skeletons.is_empty().then(|| path.clone());
-                document = Some((opened.document, file));
-            }
-            Err(error) => return fail(&error),
-        }
-    }
-    match app::run(document) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&error),
-    }
-}
-
-fn fail(error: &dyn std::error::Error) -> ExitCode {
-    say(error);
-    ExitCode::FAILURE
-}
-
-fn say(what: &dyn std::fmt::Display) {
-    // Not eprintln!, which panics where stderr cannot be written.
-    let _ = writeln!(io::stderr(), "ik-arm: {what}");
 }

@@ -1,11 +1,12 @@
-use std::io::{self, Write as _};
+use std::io;
 use std::path::Path;
 
+use super::report::say;
 use crate::io::{OpenError, Opened, open as open_file, read};
 
 const STANDARD_INPUT: &str = "-";
 
-/// What a file is called in messages.
+/// Name of a file in messages.
 pub fn name(path: &Path) -> String {
     if path == Path::new(STANDARD_INPUT) {
         return "standard input".to_owned();
@@ -13,7 +14,7 @@ pub fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Opens a file, or standard input where it is `-`; says what is odd in it.
+/// Opens a file, or standard input for `-`, and prints its warnings.
 pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
     let opened = if path == Path::new(STANDARD_INPUT) {
         read(&name(path), io::stdin().lock(), skeleton)?
@@ -21,7 +22,7 @@ pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
         open_file(path, skeleton)?
     };
     for warning in &opened.warnings {
-        let _ = writeln!(io::stderr(), "ik-arm: {}, {warning}", name(path));
+        say(&format_args!("{}, {warning}", name(path)));
     }
     Ok(opened)
 }

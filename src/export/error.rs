@@ -1,35 +1,46 @@
 use thiserror::Error;
 
-use super::Format;
+use super::format::FormatError;
 use crate::io::{Cancelled, GlbError, MotionError, WriteError};
 use crate::render::{DrawError, GpuError};
 
-/// Why there is no file.
+/// Reasons why no file is exported.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ExportError {
+    /// The export was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{path}: its ending names no format that is known; they are {}", Format::endings())]
-    Ending { path: String },
+    /// The path selects no format.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// glTF cannot hold the document.
     #[error(transparent)]
     Glb(GlbError),
+    /// The motion cannot be exported.
     #[error(transparent)]
     Motion(MotionError),
-    #[error("the time of a picture is {0}; it must be a finite number of seconds")]
+    /// The time of a single picture is not finite.
+    #[error("time must be a finite number of seconds, got {0}")]
     Time(f64),
+    /// There is no graphics device for pictures.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// A picture could not be drawn.
     #[error(transparent)]
     Draw(#[from] DrawError),
-    #[error("the picture could not be made a PNG: {0}")]
+    /// A picture could not be encoded.
+    #[error("cannot encode PNG: {0}")]
     Png(#[from] png::EncodingError),
-    #[error("{0} frames are more than an animated picture holds")]
+    /// An animated picture has too many frames.
+    #[error("an animated PNG holds at most {max} frames, got {0}", max = u32::MAX)]
     Frames(usize),
+    /// The file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
-/// That it was to stop is said in one way only.
+/// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
 impl From<GlbError> for ExportError {
     fn from(error: GlbError) -> Self {
         match error {
@@ -39,7 +50,7 @@ impl From<GlbError> for ExportError {
     }
 }
 
-/// Likewise.
+/// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
 impl From<MotionError> for ExportError {
     fn from(error: MotionError) -> Self {
         match error {

@@ -1,30 +1,37 @@
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use super::ExportError;
+use thiserror::Error;
 
-/// What kind of file an export makes.
+use super::numbered_name::NumberedName;
+
+/// File format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// glTF in one file.
+    /// Binary glTF.
     Glb,
+    /// Biovision hierarchy: joints and their motion.
     Bvh,
-    /// Where the joints are, as a table.
+    /// Joint positions as a table.
     Csv,
     /// One picture.
     Png,
-    /// A picture for each frame, each in a file of its own.
+    /// One picture file per frame.
     PngSequence,
     /// All frames in one animated picture.
     Apng,
 }
 
-/// What in a file's name stands for the digits of a frame's number.
-const DIGIT: char = '#';
+/// A path whose extension is not that of a [`Format`].
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{path}: extension must be one of {}", extensions())]
+pub struct FormatError {
+    path: String,
+}
 
 impl Format {
-    /// The endings of files, with what they mean.
-    pub const ENDINGS: [(&'static str, Self); 5] = [
+    /// File extensions with their formats.
+    pub const EXTENSIONS: [(&'static str, Self); 5] = [
         ("glb", Self::Glb),
         ("bvh", Self::Bvh),
         ("csv", Self::Csv),
@@ -32,81 +39,40 @@ impl Format {
         ("apng", Self::Apng),
     ];
 
-    /// What a file's name asks for: its ending, and whether it has `#`s.
+    /// Format that a file name selects by its extension and, for PNG, by whether it contains `#`.
     ///
     /// # Errors
     ///
-    /// Refuses an ending that is not known.
-    pub fn of(path: &Path) -> Result<Self, ExportError> {
-        let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-        let is_asked = |(known, _): &(&str, Self)| ending.eq_ignore_ascii_case(known);
-        match Self::ENDINGS.into_iter().find(is_asked) {
-            Some((_, Self::Png)) if Numbered::new(path).is_some() => Ok(Self::PngSequence),
+    /// If the extension is unknown.
+    pub fn of(path: &Path) -> Result<Self, FormatError> {
+        let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+        let is_it = |(known, _): &(&str, Self)| extension.eq_ignore_ascii_case(known);
+        match Self::EXTENSIONS.into_iter().find(is_it) {
+            Some((_, Self::Png)) if NumberedName::new(path).is_some() => Ok(Self::PngSequence),
             Some((_, format)) => Ok(format),
-            None => Err(ExportError::Ending { path: path.display().to_string() }),
+            None => Err(FormatError { path: path.display().to_string() }),
         }
     }
 
+    /// Whether it consists of pictures.
     pub fn is_picture(self) -> bool {
         matches!(self, Self::Png | Self::PngSequence | Self::Apng)
     }
-
-    /// All endings, as a message has them.
-    pub(super) fn endings() -> String {
-        Self::ENDINGS.map(|(ending, _)| format!(".{ending}")).join(", ")
-    }
 }
 
-/// A file's name with a place for a number: its last run of `#`.
-pub struct Numbered {
-    before: String,
-    digits: usize,
-    after: String,
+fn extensions() -> String {
+    Format::EXTENSIONS.map(|(extension, _)| format!(".{extension}")).join(", ")
 }
 
-impl Numbered {
-    /// Nothing where the name has no `#`, or is no Unicode.
-    pub fn new(path: &Path) -> Option<Self> {
-        let name = path.file_name()?.to_str()?;
-        let end = name.rfind(DIGIT)? + DIGIT.len_utf8();
-        let (run, after) = name.split_at_checked(end)?;
-        let before = run.trim_end_matches(DIGIT);
-        Some(Self {
-            before: before.to_owned(),
-            digits: run.len() - before.len(),
-            after: after.to_owned(),
-        })
-    }
-
-    /// Whether a file is called like one of the sequence.
-    fn is_name(&self, name: &OsStr) -> bool {
-        let digits = name.to_str().and_then(|name| {
-            name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())
-        });
-        digits.is_some_and(|digits| {
-            digits.len() >= self.digits && digits.bytes().all(|digit| digit.is_ascii_digit())
-        })
-    }
-
-    /// The name of a number, with zeros before it.
-    pub fn name(&self, number: usize) -> OsString {
-        /// More zeros than any number needs.
-        const MOST_DIGITS: usize = 64;
-        let Self { before, after, .. } = self;
-        let digits = self.digits.min(MOST_DIGITS);
-        format!("{before}{number:0digits$}{after}").into()
-    }
-}
-
-/// The file that an export to this path would overwrite, the first of several.
+/// The file that an export to this path would overwrite, or the first of them for a sequence.
 pub fn existing(path: &Path) -> Option<PathBuf> {
     let is_sequence = matches!(Format::of(path), Ok(Format::PngSequence));
-    let Some(numbered) = Numbered::new(path).filter(|_| is_sequence) else {
+    let Some(numbered) = NumberedName::new(path).filter(|_| is_sequence) else {
         return path.exists().then(|| path.to_owned());
     };
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
-    let found = files.flatten().filter(|file| numbered.is_name(&file.file_name()));
+    let found = files.flatten().filter(|file| numbered.contains(&file.file_name()));
     found.map(|file| file.path()).min()
 }
 
@@ -115,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_ending_says_the_format() {
+    fn the_extension_selects_the_format() {
         for (path, format) in [
             ("a.glb", Format::Glb),
             ("b/a.BVH", Format::Bvh),
@@ -130,14 +96,6 @@ mod tests {
             let error = Format::of(Path::new(path)).expect_err("no format").to_string();
             assert!(error.contains(".glb, .bvh, .csv, .png, .apng"), "{error}");
         }
-    }
-
-    #[test]
-    fn a_number_stands_where_the_last_signs_are() {
-        let name = |path: &str, number| Numbered::new(Path::new(path)).map(|it| it.name(number));
-        assert_eq!(name("x/walk_####.png", 7), Some("walk_0007.png".into()));
-        assert_eq!(name("#a##b.png", 12345), Some("#a12345b.png".into()));
-        assert_eq!(name("x#/a.png", 1), None);
     }
 
     #[test]

@@ -1,72 +1,52 @@
-//! Files for other programs, made of a document: motions, tables, pictures.
+//! Files for other programs, made from a document: motions, tables, pictures.
 //!
-//! An export may take long: [`export`] runs where nobody waits for it, with a document and a device
-//! of its own, says how far it is, and stops when it is told to. A file is there whole or not at
-//! all, and so is a sequence of files.
+//! An export may take long. [`export`] is meant for a thread of its own: it works on its own document and
+//! graphics device, reports its progress, and can be cancelled. A file or sequence of files is written
+//! completely or not at all.
 
 mod error;
-mod film;
 mod format;
+mod numbered_name;
+mod options;
+mod pictures;
 
 use std::path::Path;
 
 pub use error::ExportError;
-pub use format::{Format, existing};
+pub use format::{Format, FormatError, existing};
+pub use options::ExportOptions;
 
-use crate::document::{Document, Theme};
-use crate::io::{self, BvhUnit, Exported, Progress};
+use numbered_name::NumberedName;
 
-/// What there is to choose; each counts for the formats that have it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    /// How many frames there are in a second; the timeline's own if nothing is said.
-    pub fps: Option<u32>,
-    /// Pixels across and down of a picture.
-    pub size: (u32, u32),
-    /// Of a picture.
-    pub theme: Theme,
-    /// When a single picture is taken, in seconds; at the timeline's start if nothing is said.
-    pub time: Option<f64>,
-    /// What BVH is measured in.
-    pub unit: BvhUnit,
-}
+use crate::document::Document;
+use crate::io::{self, Exported, Progress};
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            fps: None,
-            size: (1280, 800),
-            theme: Theme::Dark,
-            time: None,
-            unit: BvhUnit::default(),
-        }
-    }
-}
-
-/// Writes a document to a file of the [`Format`] that its name asks for, and returns what the
-/// document has and the file cannot say.
+/// Writes a document to a file whose extension selects the [`Format`], and returns notes on what the
+/// format cannot hold.
 ///
 /// # Errors
 ///
-/// If it is to stop, the format is not known, the document has what the format cannot hold at all,
-/// or the file cannot be written. There is no file then, or the one from before.
+/// If it is cancelled, the format is unknown or cannot hold the document, or the file cannot be written.
+/// The path then holds no file, or the previous one.
 pub fn export(
     document: &Document,
     path: &Path,
-    options: &Options,
+    options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
     let format = Format::of(path)?;
     progress.step(0, 1)?;
+    if let (Format::PngSequence, Some(name)) = (format, NumberedName::new(path)) {
+        return pictures::sequence(document, path, &name, options, progress);
+    }
     let Exported { bytes, notes } = match format {
         Format::Glb => {
             Exported { bytes: io::glb(document, options.fps, progress)?, notes: Vec::new() }
         }
         Format::Bvh => io::to_bvh(document, options.fps, options.unit, progress)?,
         Format::Csv => io::to_csv(document, options.fps, progress)?,
-        Format::Png => film::still(document, options, progress)?,
-        Format::PngSequence => return film::sequence(document, path, options, progress),
-        Format::Apng => return film::animation(document, path, options, progress),
+        Format::Png | Format::PngSequence => pictures::still(document, options, progress)?,
+        Format::Apng => return pictures::animation(document, path, options, progress),
     };
     io::write(path, &bytes)?;
     Ok(notes)

@@ -19,7 +19,7 @@ impl Backdrop {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let pipeline = pipeline::build(
             gpu,
-            &pipeline::Kind {
+            &pipeline::PipelineDescriptor {
                 label: "backdrop",
                 shader: SHADER,
                 fragment: "fragment",

@@ -2,7 +2,7 @@ use super::Gpu;
 
 /// What a shader reads or writes at a place of a group.
 #[derive(Clone, Copy)]
-pub(super) enum Slot {
+pub(super) enum BindingKind {
     Uniform,
     Read,
     Write,
@@ -13,16 +13,16 @@ pub(super) fn layout(
     gpu: &Gpu,
     label: &str,
     stages: wgpu::ShaderStages,
-    slots: &[Slot],
+    slots: &[BindingKind],
 ) -> wgpu::BindGroupLayout {
-    let entry = |(binding, slot): (u32, &Slot)| wgpu::BindGroupLayoutEntry {
+    let entry = |(binding, slot): (u32, &BindingKind)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: stages,
         ty: wgpu::BindingType::Buffer {
             ty: match slot {
-                Slot::Uniform => wgpu::BufferBindingType::Uniform,
-                Slot::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                Slot::Write => wgpu::BufferBindingType::Storage { read_only: false },
+                BindingKind::Uniform => wgpu::BufferBindingType::Uniform,
+                BindingKind::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                BindingKind::Write => wgpu::BufferBindingType::Storage { read_only: false },
             },
             has_dynamic_offset: false,
             min_binding_size: None,

@@ -1,56 +1,50 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-use ab_glyph::{Font as _, FontRef, GlyphId, OutlinedGlyph, PxScale, ScaleFont as _};
+use ab_glyph::{Font as _, FontRef, GlyphId, OutlinedGlyph, ScaleFont as _};
 use glam::Vec2;
 use unicode_normalization::UnicodeNormalization as _;
 use unicode_normalization::char::is_combining_mark;
 
 use super::SystemFace;
 use super::atlas::Atlas;
+use super::font_face::FontFace;
+use super::ignored_letters::is_ignored;
 
-/// Letters of labels, each drawn once at one size when it is first needed: from the fonts in the
-/// program, or else from the one that `find` returns. A letter that no font has is a box.
+/// Glyphs of labels at one size, each rasterized when it is first needed: from the built-in fonts, or else
+/// from the face that `find` returns. A letter that no font has is drawn as a box.
 ///
-/// Letters are not shaped: each stands to the right of the one before, and none is joined to another.
+/// Text is not shaped: glyphs run from left to right and are never joined.
 #[derive(Debug)]
 pub(super) struct Font {
     pub atlas: Atlas,
-    faces: Vec<Face>,
+    faces: Vec<FontFace>,
     find: fn(char) -> Option<SystemFace>,
     pixels_per_em: f32,
-    letters: HashMap<char, Letter>,
-    missing: Letter,
-    /// Hash of the texts that the atlas was last emptied for and could not hold.
+    glyphs: HashMap<char, Glyph>,
+    missing: Glyph,
+    /// Hash of the last texts that did not fit the emptied atlas.
     overflow: Option<u64>,
 }
 
-#[derive(Debug)]
-struct Face {
-    /// Number of the system's face; `None` for a font in the program.
-    number: Option<u16>,
-    font: FontRef<'static>,
-    scale: PxScale,
-}
-
 #[derive(Clone, Copy, Debug)]
-struct Letter {
-    /// Face and glyph, by which pairs are kerned.
-    glyph: Option<(usize, GlyphId)>,
+struct Glyph {
+    /// Face and glyph index, for kerning; `None` for a box.
+    id: Option<(usize, GlyphId)>,
     advance: f32,
-    image: Option<Image>,
-    /// Whether the atlas had no room, so that a box stands for it.
+    image: Option<GlyphImage>,
+    /// Whether it is drawn as a box because the atlas was full.
     is_left_out: bool,
 }
 
-/// Part of the atlas, and where it stands beside the pen.
+/// Rectangle of the atlas, and the offset at which it is drawn.
 #[derive(Clone, Copy, Debug)]
-struct Image {
+struct GlyphImage {
     source: Rectangle,
     from_pen: Vec2,
 }
 
-/// In pixels, y down.
+/// A rectangle in pixels, y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rectangle {
     pub at: Vec2,
@@ -58,50 +52,50 @@ pub(super) struct Rectangle {
 }
 
 impl Font {
-    /// Fonts in the program; each is asked for what the ones before it lack.
+    /// Built-in fonts in order of preference.
     const BUILT_IN: [&[u8]; 2] =
         [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR];
-    /// Drawn at once, so that a number that changes needs nothing new.
+    /// Letters that are rasterized first, so that changing numbers need no new ones.
     const FIRST: core::ops::RangeInclusive<char> = ' '..='~';
-    /// Number of letters that are kept.
-    const MOST_LETTERS: usize = 1 << 14;
+    /// Maximum number of glyphs.
+    const MAX_GLYPHS: usize = 1 << 14;
 
-    /// `size` is the height of a line, `longest` the longest side of an atlas, both in pixels.
+    /// Creates a font from the height of a line and the maximum side of an atlas, both in pixels.
     pub fn new(size: f32, longest: u32, find: fn(char) -> Option<SystemFace>) -> Self {
-        const NARROWEST: u32 = 512;
-        const TALLEST: u32 = 4096;
-        const LETTERS_IN_A_ROW: f32 = 32.0;
-        // A box fits into any atlas.
+        const MIN_WIDTH: u32 = 512;
+        const MAX_HEIGHT: u32 = 4096;
+        const GLYPHS_PER_ROW: f32 = 32.0;
+        // So that a box fits any atlas.
         let size = size.min(longest as f32 / 4.0);
-        let row = (size * LETTERS_IN_A_ROW) as u32;
-        let width = row.checked_next_power_of_two().unwrap_or(longest).max(NARROWEST).min(longest);
+        let row = (size * GLYPHS_PER_ROW) as u32;
+        let width = row.checked_next_power_of_two().unwrap_or(longest).max(MIN_WIDTH).min(longest);
         let mut font = Self {
-            atlas: Atlas::new(width, TALLEST.min(longest)),
+            atlas: Atlas::new(width, MAX_HEIGHT.min(longest)),
             faces: Vec::new(),
             find,
             pixels_per_em: size,
-            letters: HashMap::new(),
-            missing: Letter { glyph: None, advance: 0.0, image: None, is_left_out: false },
+            glyphs: HashMap::new(),
+            missing: Glyph { id: None, advance: 0.0, image: None, is_left_out: false },
             overflow: None,
         };
         for data in Self::BUILT_IN {
             let face = FontRef::try_from_slice(data)
-                .unwrap_or_else(|_| unreachable!("the font in the program is a font"));
+                .unwrap_or_else(|_| unreachable!("the built-in fonts are valid"));
             if font.faces.is_empty() {
                 let units = face.units_per_em().unwrap_or_else(|| face.height_unscaled());
                 font.pixels_per_em = size * units / face.height_unscaled();
             }
-            font.add_face(None, face);
+            font.faces.push(FontFace::new(None, face, font.pixels_per_em));
         }
         font.fill();
         font
     }
 
-    /// Draws the letters of texts that are not in the atlas. If it has no room for them all, it is
-    /// emptied for these texts; what does not fit even then is a box. So the same texts look the same
-    /// whatever was drawn before.
+    /// Rasterizes all glyphs of the texts that are not in the atlas. If they do not fit, the atlas is
+    /// emptied first; glyphs that do not fit even then become boxes. Thus the texts look the same whatever
+    /// was drawn before.
     pub fn prepare<'a>(&mut self, texts: impl Iterator<Item = &'a str> + Clone) {
-        if self.hold(texts.clone()) {
+        if self.rasterize_all(texts.clone()) {
             return;
         }
         let mut hasher = DefaultHasher::new();
@@ -110,50 +104,50 @@ impl Font {
         if self.overflow != Some(hash) {
             self.overflow = Some(hash);
             self.atlas.clear();
-            self.letters.clear();
+            self.glyphs.clear();
             self.fill();
-            self.hold(texts);
+            self.rasterize_all(texts);
         }
     }
 
-    /// The letters of a text whose baseline starts at `pen`: where each stands, and its source.
+    /// Glyphs of a text whose baseline starts at `pen`: rectangles in the picture and in the atlas.
     pub fn lay_out<'a>(
         &'a self,
         text: &'a str,
         mut pen: Vec2,
     ) -> impl Iterator<Item = (Rectangle, Rectangle)> + use<'a> {
         let mut last = None;
-        shown(text).filter_map(move |letter| {
-            let drawn = self.letters.get(&letter).unwrap_or(&self.missing);
-            pen.x += self.kern(last, drawn.glyph);
-            last = drawn.glyph;
+        visible_letters(text).filter_map(move |letter| {
+            let drawn = self.glyphs.get(&letter).unwrap_or(&self.missing);
+            pen.x += self.kern(last, drawn.id);
+            last = drawn.id;
             let start = pen.round();
             pen.x += drawn.advance;
             let image = drawn.image?;
-            let stands = Rectangle { at: start + image.from_pen, size: image.source.size };
-            Some((stands, image.source))
+            let target = Rectangle { at: start + image.from_pen, size: image.source.size };
+            Some((target, image.source))
         })
     }
 
-    /// Draws what an empty atlas begins with.
+    /// Rasterizes the first glyphs into an empty atlas.
     fn fill(&mut self) {
-        self.missing = self.draw_box();
+        self.missing = self.rasterize_box();
         for letter in Self::FIRST {
-            let drawn = self.draw(letter);
-            self.letters.insert(letter, drawn);
+            let drawn = self.rasterize(letter);
+            self.glyphs.insert(letter, drawn);
         }
     }
 
-    /// Draws the letters that are new. Whether all of the texts are there.
-    fn hold<'a>(&mut self, texts: impl Iterator<Item = &'a str>) -> bool {
+    /// Rasterizes the new glyphs of the texts. Returns whether all glyphs fit.
+    fn rasterize_all<'a>(&mut self, texts: impl Iterator<Item = &'a str>) -> bool {
         let mut all = true;
-        for letter in texts.flat_map(shown) {
-            if let Some(drawn) = self.letters.get(&letter) {
+        for letter in texts.flat_map(visible_letters) {
+            if let Some(drawn) = self.glyphs.get(&letter) {
                 all &= !drawn.is_left_out;
-            } else if self.letters.len() < Self::MOST_LETTERS {
-                let drawn = self.draw(letter);
+            } else if self.glyphs.len() < Self::MAX_GLYPHS {
+                let drawn = self.rasterize(letter);
                 all &= !drawn.is_left_out;
-                self.letters.insert(letter, drawn);
+                self.glyphs.insert(letter, drawn);
             } else {
                 all = false;
             }
@@ -171,7 +165,7 @@ impl Font {
         }
     }
 
-    fn draw(&mut self, letter: char) -> Letter {
+    fn rasterize(&mut self, letter: char) -> Glyph {
         if letter.is_whitespace() {
             return self.space(letter);
         }
@@ -182,28 +176,28 @@ impl Font {
             Some((face, self.faces[face].outline(letter)?))
         });
         match found {
-            Some((face, outline)) => self.draw_outline(letter, face, &outline),
+            Some((face, outline)) => self.rasterize_outline(letter, face, &outline),
             None => self.missing,
         }
     }
 
-    fn draw_outline(&mut self, letter: char, face: usize, outline: &OutlinedGlyph) -> Letter {
+    fn rasterize_outline(&mut self, letter: char, face: usize, outline: &OutlinedGlyph) -> Glyph {
         let bounds = outline.px_bounds();
         let size = (bounds.width() as u32, bounds.height() as u32);
         let Some(at) = self.atlas.place(size) else {
-            return Letter { is_left_out: true, ..self.missing };
+            return Glyph { is_left_out: true, ..self.missing };
         };
         outline.draw(|x, y, cover| self.atlas.set((at.0 + x, at.1 + y), cover));
-        let Face { font, scale, .. } = &self.faces[face];
+        let FontFace { font, scale, .. } = &self.faces[face];
         let id = font.glyph_id(letter);
         let advance = font.as_scaled(*scale).h_advance(id);
-        // A mark stands over the letter before it, also in a font where each letter is as wide.
+        // A combining mark is drawn over the letter before it, even in a monospaced font.
         let (back, advance) =
             if is_combining_mark(letter) { (advance, 0.0) } else { (0.0, advance) };
-        Letter {
-            glyph: Some((face, id)),
+        Glyph {
+            id: Some((face, id)),
             advance,
-            image: Some(Image {
+            image: Some(GlyphImage {
                 source: rectangle(at, size),
                 from_pen: Vec2::new(bounds.min.x - back, bounds.min.y),
             }),
@@ -211,21 +205,21 @@ impl Font {
         }
     }
 
-    /// As wide as the font has it; an ideographic one as wide as an ideograph.
-    fn space(&self, letter: char) -> Letter {
+    /// A space as wide as in the font; an ideographic space as wide as an em.
+    fn space(&self, letter: char) -> Glyph {
         const IDEOGRAPHIC: char = '\u{3000}';
-        let Face { font, scale, .. } = &self.faces[0];
+        let FontFace { font, scale, .. } = &self.faces[0];
         let has_letter = font.glyph_id(letter) != GlyphId(0);
         let id = font.glyph_id(if has_letter { letter } else { ' ' });
         let advance = match letter {
             IDEOGRAPHIC => self.pixels_per_em,
             _ => font.as_scaled(*scale).h_advance(id),
         };
-        Letter { glyph: Some((0, id)), advance, image: None, is_left_out: false }
+        Glyph { id: Some((0, id)), advance, image: None, is_left_out: false }
     }
 
     /// An upright rectangle as high as a capital letter.
-    fn draw_box(&mut self) -> Letter {
+    fn rasterize_box(&mut self) -> Glyph {
         const SIZE: Vec2 = Vec2::new(0.5, 0.7);
         const SIDE_BEARING: f32 = 0.08;
         const STROKE: f32 = 1.0 / 14.0;
@@ -241,76 +235,32 @@ impl Font {
                 self.atlas.set((at.0 + x, at.1 + y), cover);
             }
             let from_pen = Vec2::new(bearing, -size.y);
-            Image { source: rectangle(at, (width, height)), from_pen }
+            GlyphImage { source: rectangle(at, (width, height)), from_pen }
         });
         let advance = size.x + 2.0 * bearing;
-        Letter { glyph: None, advance, image, is_left_out: false }
+        Glyph { id: None, advance, image, is_left_out: false }
     }
 
-    /// Index of the system's face that has a letter.
+    /// Index of the system's face for a letter.
     fn system_face(&mut self, letter: char) -> Option<usize> {
         let SystemFace { number, data, index } = (self.find)(letter)?;
         let known = self.faces.iter().position(|face| face.number == Some(number));
         known.or_else(|| {
             let font = FontRef::try_from_slice_and_index(data, index).ok()?;
-            self.add_face(Some(number), font);
+            self.faces.push(FontFace::new(Some(number), font, self.pixels_per_em));
             Some(self.faces.len() - 1)
         })
     }
 
-    /// At the size at which all faces have as many pixels in an em.
-    fn add_face(&mut self, number: Option<u16>, font: FontRef<'static>) {
-        let height = font.height_unscaled();
-        let units = font.units_per_em().unwrap_or(height);
-        let scale = PxScale::from(self.pixels_per_em * height / units);
-        self.faces.push(Face { number, font, scale });
-    }
-}
-
-impl Face {
-    fn outline(&self, letter: char) -> Option<OutlinedGlyph> {
-        let id = self.font.glyph_id(letter);
-        if id == GlyphId(0) {
-            return None;
-        }
-        self.font.outline_glyph(id.with_scale(self.scale))
-    }
 }
 
 fn rectangle((x, y): (u32, u32), (width, height): (u32, u32)) -> Rectangle {
     Rectangle { at: Vec2::new(x as f32, y as f32), size: Vec2::new(width as f32, height as f32) }
 }
 
-/// The letters of a text that take room, with their marks as part of them where there is such a
-/// letter: "u" and a diaeresis are "ü".
-fn shown(text: &str) -> impl Iterator<Item = char> + Clone {
+/// Visible letters of a text in normalization form C: "u" and a combining diaeresis become "ü".
+fn visible_letters(text: &str) -> impl Iterator<Item = char> + Clone {
     text.nfc().filter(|letter| !is_ignored(*letter))
-}
-
-/// Whether a letter shows nothing in any font: control characters, and Unicode's
-/// Default_Ignorable_Code_Point, such as joiners, direction marks and variation selectors.
-fn is_ignored(letter: char) -> bool {
-    letter.is_control()
-        || matches!(
-            letter,
-            '\u{ad}'
-                | '\u{34f}'
-                | '\u{61c}'
-                | '\u{115f}'..='\u{1160}'
-                | '\u{17b4}'..='\u{17b5}'
-                | '\u{180b}'..='\u{180f}'
-                | '\u{200b}'..='\u{200f}'
-                | '\u{202a}'..='\u{202e}'
-                | '\u{2060}'..='\u{206f}'
-                | '\u{3164}'
-                | '\u{fe00}'..='\u{fe0f}'
-                | '\u{feff}'
-                | '\u{ffa0}'
-                | '\u{fff0}'..='\u{fff8}'
-                | '\u{1bca0}'..='\u{1bca3}'
-                | '\u{1d173}'..='\u{1d17a}'
-                | '\u{e0000}'..='\u{e0fff}'
-        )
 }
 
 #[cfg(test)]
@@ -509,15 +459,15 @@ mod tests {
     #[test]
     fn the_number_of_letters_that_are_kept_has_an_end() {
         let mut font = without_system_fonts(10.0);
-        let letters: Vec<_> = ('\u{20000}'..).take(3 * Font::MOST_LETTERS).collect();
+        let letters: Vec<_> = ('\u{20000}'..).take(3 * Font::MAX_GLYPHS).collect();
         for some in letters.chunks(1000) {
             let text: String = some.iter().collect();
             assert_eq!(lay_out(&mut font, &text).len(), some.len());
-            assert!(font.letters.len() <= Font::MOST_LETTERS);
+            assert!(font.glyphs.len() <= Font::MAX_GLYPHS);
         }
         let all: String = letters.iter().collect();
         assert_eq!(lay_out(&mut font, &all).len(), letters.len());
-        assert!(font.letters.len() <= Font::MOST_LETTERS);
+        assert!(font.glyphs.len() <= Font::MAX_GLYPHS);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
-use super::order::Side;
+use super::sphere_order::SphereSide;
 use super::uniforms::Uniforms;
 use super::{Gpu, pipeline};
 use crate::scene::{Colour, Globe, Palette, Scene};
@@ -17,24 +17,24 @@ const SIDES: u32 = 2;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct Uniform {
+struct GlobeData {
     centre: Vec3,
     radius: f32,
     axis: Vec3,
     singular: f32,
     ramp: [Vec4; Palette::GAINS],
     line: Vec4,
-    hot: f32,
+    max_gain: f32,
     padding: [f32; 3],
 }
 
-const _: () = assert!(size_of::<Uniform>() == 2 * 16 + Palette::GAINS * 16 + 2 * 16);
+const _: () = assert!(size_of::<GlobeData>() == 2 * 16 + Palette::GAINS * 16 + 2 * 16);
 
 /// Draws the sides of the globe of gains.
 #[derive(Debug)]
 pub(super) struct Globes {
     pipeline: wgpu::RenderPipeline,
-    uniforms: Uniforms<Uniform>,
+    uniforms: Uniforms<GlobeData>,
     shown: bool,
 }
 
@@ -43,7 +43,7 @@ impl Globes {
         let uniforms = Uniforms::new(gpu, "globe");
         let pipeline = pipeline::build(
             gpu,
-            &pipeline::Kind {
+            &pipeline::PipelineDescriptor {
                 label: "globe",
                 shader: SHADER,
                 fragment: "fragment",
@@ -62,17 +62,17 @@ impl Globes {
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         let globe = scene.globe.filter(Globe::has_size);
         self.shown = globe.is_some();
-        globe.map_or(0, |globe| self.uniforms.upload(gpu, Uniform::new(&globe, &scene.palette)))
+        globe.map_or(0, |globe| self.uniforms.upload(gpu, GlobeData::new(&globe, &scene.palette)))
     }
 
     pub fn triangles(&self) -> u32 {
         if self.shown { 2 * SIDES } else { 0 }
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, side: Side) {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, side: SphereSide) {
         let instance = match side {
-            Side::Far => 0,
-            Side::Near => 1,
+            SphereSide::Far => 0,
+            SphereSide::Near => 1,
         };
         if self.shown {
             pass.set_pipeline(&self.pipeline);
@@ -82,7 +82,7 @@ impl Globes {
     }
 }
 
-impl Uniform {
+impl GlobeData {
     fn new(globe: &Globe, palette: &Palette) -> Self {
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
         let mut singular = globe.singular();
@@ -93,7 +93,7 @@ impl Uniform {
             axis: singular.next().unwrap_or(Vec3::Y),
             ramp: palette.gains.map(screen),
             line: screen(palette.guide),
-            hot: Palette::HOT,
+            max_gain: Palette::MAX_GAIN,
             padding: [0.0; 3],
         }
     }

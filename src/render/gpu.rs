@@ -1,48 +1,66 @@
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
-/// A graphics device and the way to it.
+/// A graphics device with its queue, adapter and instance.
 #[derive(Clone, Debug)]
 pub struct Gpu {
+    /// The instance that the adapter belongs to.
     pub instance: wgpu::Instance,
+    /// The physical device and its driver.
     pub adapter: wgpu::Adapter,
+    /// The logical device.
     pub device: wgpu::Device,
+    /// The command queue of the device.
     pub queue: wgpu::Queue,
+    /// Set once the device is lost or out of memory.
+    failure: Arc<OnceLock<DeviceError>>,
 }
 
-/// Why there is nothing to draw with.
+/// Reasons why there is no graphics device.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum GpuError {
+    /// No adapter supports what is needed.
     #[error(
         "no graphics adapter was found ({0})\n\
-         Install a Vulkan driver; without a graphics card, a software one will do:\n  \
+         Install a Vulkan driver; without a graphics card, install a software one:\n  \
          Debian, Ubuntu:  apt install mesa-vulkan-drivers libvulkan1\n  \
          Fedora:          dnf install mesa-vulkan-drivers vulkan-loader\n  \
          Arch:            pacman -S vulkan-swrast vulkan-icd-loader"
     )]
     NoAdapter(#[from] wgpu::RequestAdapterError),
-    #[error(
-        "no graphics adapter is called {wanted:?}, as WGPU_ADAPTER_NAME asks for; here are {found:?}"
-    )]
-    NoSuchAdapter { wanted: String, found: Vec<String> },
-    #[error("the graphics adapter {adapter} gives no device: {source}")]
-    NoDevice { adapter: String, source: wgpu::RequestDeviceError },
+    /// No adapter has the name in `WGPU_ADAPTER_NAME`.
+    #[error("WGPU_ADAPTER_NAME must name one of the adapters {found:?}, got {wanted:?}")]
+    NoSuchAdapter {
+        /// Name in the environment variable.
+        wanted: String,
+        /// Names of all adapters.
+        found: Vec<String>,
+    },
+    /// The adapter's driver refused to create a device.
+    #[error("the graphics adapter {adapter} provides no device: {source}")]
+    NoDevice {
+        /// Name of the adapter.
+        adapter: String,
+        /// The driver's error.
+        source: wgpu::RequestDeviceError,
+    },
 }
 
-/// The device could not do what it was told.
-#[derive(Debug, Error)]
-#[error("the device could not draw the picture: {0}")]
+/// Failure of a graphics device.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("the graphics device failed: {0}")]
 pub struct DeviceError(String);
 
 impl Gpu {
-    /// A device that draws pictures without a window.
+    /// Creates a device that draws without a window.
     ///
     /// `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several.
     ///
     /// # Errors
     ///
-    /// If there is no adapter, or it gives no device.
+    /// If there is no adapter, or it provides no device.
     pub fn headless() -> Result<Self, GpuError> {
         Self::with_gl_as_fallback(|backends| {
             let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
@@ -51,12 +69,12 @@ impl Gpu {
         })
     }
 
-    /// Makes something of all backends but OpenGL, and if that fails, of all: OpenGL's drivers write
-    /// to standard error even where it is not chosen. `WGPU_BACKEND` limits the backends.
+    /// Calls `make` with all backends except OpenGL and, if that fails, with all: OpenGL drivers write
+    /// to standard error even if they are not chosen. `WGPU_BACKEND` limits the backends.
     ///
     /// # Errors
     ///
-    /// The last of `make`'s.
+    /// The last error of `make`.
     pub(crate) fn with_gl_as_fallback<T, E>(
         mut make: impl FnMut(wgpu::Backends) -> Result<T, E>,
     ) -> Result<T, E> {
@@ -68,11 +86,11 @@ impl Gpu {
         make(without_gl).or_else(|_| make(all))
     }
 
-    /// A device that can show what it draws on `surface`, if there is one.
+    /// Creates a device that can present to `surface`, if one is given.
     ///
     /// # Errors
     ///
-    /// If there is no such adapter, or it gives no device.
+    /// If there is no such adapter, or it provides no device.
     pub fn new(
         instance: wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -80,70 +98,84 @@ impl Gpu {
         let adapter = adapter(&instance, surface)?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ik-arm"),
-            // To time frames, where the adapter has a clock.
+            // For GpuTimer.
             required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|source| GpuError::NoDevice { adapter: adapter.get_info().name, source })?;
-        let gpu = Self { instance, adapter, device, queue };
-        gpu.on_fault(|why| log::error!("the graphics device failed: {why}"));
+        let gpu = Self { instance, adapter, device, queue, failure: Arc::default() };
+        gpu.on_failure(|| {});
         Ok(gpu)
     }
 
-    /// Has it told, from whatever thread notices it, why the device is good for nothing more: it is
-    /// lost, or has no memory left. Where it only finds fault with what it is told, that is logged.
-    /// Takes the place of what was to be told before.
-    pub fn on_fault(&self, tell: impl Fn(String) + Send + Sync + 'static) {
-        let tell = Arc::new(tell);
-        let lost = Arc::clone(&tell);
+    /// Sets a callback that runs once, on any thread, when the device is lost or out of memory.
+    /// It replaces the previous callback; [`Gpu::check`] returns the reason. Validation errors, which
+    /// are mistakes in this program, are logged.
+    pub fn on_failure(&self, callback: impl Fn() + Send + Sync + 'static) {
+        let failure = Arc::clone(&self.failure);
+        let fail = Arc::new(move |reason: String| {
+            if failure.set(DeviceError(reason)).is_ok() {
+                callback();
+            }
+        });
+        let lose = Arc::clone(&fail);
         self.device.set_device_lost_callback(move |reason, message| {
-            lost(format!("it was lost ({reason:?}) {message}").trim_end().to_owned());
+            lose(format!("lost ({reason:?}) {message}").trim_end().to_owned());
         });
         self.device.on_uncaptured_error(Arc::new(move |error| match error {
             wgpu::Error::Validation { .. } => log::error!("graphics: {error}"),
             wgpu::Error::OutOfMemory { .. } | wgpu::Error::Internal { .. } => {
-                tell(error.to_string());
+                fail(error.to_string());
             }
         }));
     }
 
-    /// The adapter's name and the interface it is reached by: "llvmpipe (Vulkan)".
+    /// Checks that the device still works.
+    ///
+    /// # Errors
+    ///
+    /// If the device is lost or out of memory, as far as it has reported so.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        self.failure.get().map_or(Ok(()), |failure| Err(failure.clone()))
+    }
+
+    /// Names of the adapter and its backend, like "llvmpipe (Vulkan)".
     pub fn name(&self) -> String {
         let info = self.adapter.get_info();
         format!("{} ({})", info.name, info.backend)
     }
 
-    /// The longest side that a picture can have here.
+    /// Maximum width and height of a texture in pixels.
     pub fn longest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// Does what tells the device something, and says if it could not do it.
+    /// Runs `work`, which sends commands to the device, and returns the device's errors.
     ///
     /// # Errors
     ///
-    /// If the device finds fault with it.
-    pub fn watched<T>(&self, telling: impl FnOnce() -> T) -> Result<T, DeviceError> {
-        let faults = [
+    /// If the device rejects a command, is lost or out of memory.
+    pub fn watched<T>(&self, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
+        let scopes = [
             wgpu::ErrorFilter::Internal,
             wgpu::ErrorFilter::Validation,
             wgpu::ErrorFilter::OutOfMemory,
         ]
-        .map(|kind| self.device.push_error_scope(kind));
-        let told = telling();
-        // Every scope is closed, whatever the others have found.
-        let found = faults.into_iter().rev().filter_map(|fault| pollster::block_on(fault.pop()));
-        match found.collect::<Vec<_>>().first() {
+        .map(|filter| self.device.push_error_scope(filter));
+        let result = work();
+        // Every scope is closed, whether or not another has caught an error.
+        let caught = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+        match caught.collect::<Vec<_>>().first() {
             Some(error) => Err(DeviceError(error.to_string())),
-            None => Ok(told),
+            None => self.check().map(|()| result),
         }
     }
 }
 
-/// The one that `WGPU_ADAPTER_NAME` names, or else the best. So does `wgpu::util`, which panics where
-/// there is none of that name.
+/// The adapter that `WGPU_ADAPTER_NAME` names, or else the best one. `wgpu::util` has the same function
+/// but panics if no adapter has the name.
 fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,

@@ -4,54 +4,55 @@ use std::time::Duration;
 
 use super::Gpu;
 
-/// What is timed on the device.
+/// A render pass that is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lap {
+pub enum TimedPass {
+    /// The 3D scene.
     Scene,
+    /// The panels.
     Panels,
 }
 
-/// Measures how long the device works on frames, where the adapter can: see [`GpuTimer::new`].
+/// Measures the device's time for each frame with timestamp queries.
 ///
-/// The device writes down when each lap begins and ends; what it wrote is fetched some frames later,
-/// when it has done so, and never waited for. A frame that comes while all that is on its way is full
-/// is not measured.
+/// The device writes timestamps at the start and end of each pass. They are read back some frames later,
+/// without waiting. While all readbacks are in use, frames are not measured.
 #[derive(Debug)]
 pub struct GpuTimer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    readers: [Reader; 3],
-    /// Which laps are run in this frame.
-    run: [bool; LAPS],
+    readbacks: [TimestampReadback; 3],
+    /// Passes of the current frame.
+    passes: [bool; PASSES],
     nanoseconds_per_tick: f64,
 }
 
-const LAPS: usize = 2;
-/// Begin and end of a lap.
+const PASSES: usize = 2;
+/// Timestamps per pass: start and end.
 const STAMPS: u32 = 2;
 const STAMP: u64 = wgpu::QUERY_SIZE as u64;
-/// Where the stamps of a lap begin in a buffer, from one lap to the next.
+/// Distance in bytes between the timestamps of two passes in a buffer.
 const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
-const SIZE: u64 = STRIDE * LAPS as u64;
+const SIZE: u64 = STRIDE * PASSES as u64;
 
-/// A frame's stamps on their way.
+/// Buffer for the timestamps of a frame, until they are read.
 #[derive(Debug)]
-struct Reader {
+struct TimestampReadback {
     buffer: wgpu::Buffer,
     frame: u64,
-    run: [bool; LAPS],
+    passes: [bool; PASSES],
     state: Arc<AtomicU8>,
 }
 
 const FREE: u8 = 0;
-/// In the orders of a frame that is not submitted yet.
+/// Part of commands that are not submitted yet.
 const WRITTEN: u8 = 1;
 const FETCHING: u8 = 2;
 const FETCHED: u8 = 3;
 const FAILED: u8 = 4;
 
 impl GpuTimer {
-    /// Nothing where the adapter has no clock.
+    /// Creates the timer; `None` if the adapter has no timestamp queries.
     pub fn new(gpu: &Gpu) -> Option<Self> {
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
@@ -64,40 +65,40 @@ impl GpuTimer {
                 mapped_at_creation: false,
             })
         };
-        let reader = |_| Reader {
+        let readback = |_| TimestampReadback {
             buffer: buffer(
-                "timestamps, read",
+                "timestamps, read back",
                 wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             ),
             frame: 0,
-            run: [false; LAPS],
+            passes: [false; PASSES],
             state: Arc::new(AtomicU8::new(FREE)),
         };
         Some(Self {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("timestamps"),
                 ty: wgpu::QueryType::Timestamp,
-                count: STAMPS * LAPS as u32,
+                count: STAMPS * PASSES as u32,
             }),
             resolved: buffer(
                 "timestamps",
                 wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
             ),
-            readers: std::array::from_fn(reader),
-            run: [false; LAPS],
+            readbacks: std::array::from_fn(readback),
+            passes: [false; PASSES],
             nanoseconds_per_tick: f64::from(gpu.queue.get_timestamp_period()),
         })
     }
 
-    /// Begins a frame: no lap is run yet.
+    /// Starts a frame.
     pub fn start(&mut self) {
-        self.run = [false; LAPS];
+        self.passes = [false; PASSES];
     }
 
-    /// What a render pass needs to be a lap.
-    pub fn lap(&mut self, lap: Lap) -> wgpu::RenderPassTimestampWrites<'_> {
-        self.run[lap as usize] = true;
-        let first = STAMPS * lap as u32;
+    /// Timestamp writes for a pass.
+    pub fn pass(&mut self, pass: TimedPass) -> wgpu::RenderPassTimestampWrites<'_> {
+        self.passes[pass as usize] = true;
+        let first = STAMPS * pass as u32;
         wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
             beginning_of_pass_write_index: Some(first),
@@ -105,53 +106,52 @@ impl GpuTimer {
         }
     }
 
-    /// Ends a frame, by orders that come behind those of its laps.
+    /// Ends a frame. The encoder must be submitted after the passes.
     pub fn stop(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
-        let is_free = |reader: &&mut Reader| reader.state.load(Ordering::Acquire) == FREE;
-        let Some(reader) = self.readers.iter_mut().find(is_free) else {
+        let is_free = |readback: &&mut TimestampReadback| readback.state.load(Ordering::Acquire) == FREE;
+        let Some(readback) = self.readbacks.iter_mut().find(is_free) else {
             return;
         };
-        for lap in (0..LAPS).filter(|lap| self.run[*lap]) {
-            let first = STAMPS * lap as u32;
-            let to = STRIDE * lap as u64;
+        for pass in (0..PASSES).filter(|pass| self.passes[*pass]) {
+            let first = STAMPS * pass as u32;
+            let to = STRIDE * pass as u64;
             encoder.resolve_query_set(&self.queries, first..first + STAMPS, &self.resolved, to);
         }
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &reader.buffer, 0, SIZE);
-        (reader.frame, reader.run) = (frame, self.run);
-        reader.state.store(WRITTEN, Ordering::Release);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &readback.buffer, 0, SIZE);
+        (readback.frame, readback.passes) = (frame, self.passes);
+        readback.state.store(WRITTEN, Ordering::Release);
     }
 
-    /// Asks for what the orders wrote that have been submitted by now.
+    /// Starts reading back the timestamps of submitted frames.
     pub fn fetch(&self) {
-        for reader in &self.readers {
-            if reader.state.load(Ordering::Acquire) != WRITTEN {
+        for readback in &self.readbacks {
+            if readback.state.load(Ordering::Acquire) != WRITTEN {
                 continue;
             }
-            reader.state.store(FETCHING, Ordering::Release);
-            let state = Arc::clone(&reader.state);
-            reader.buffer.slice(..).map_async(wgpu::MapMode::Read, move |fetched| {
+            readback.state.store(FETCHING, Ordering::Release);
+            let state = Arc::clone(&readback.state);
+            readback.buffer.slice(..).map_async(wgpu::MapMode::Read, move |fetched| {
                 let next = if fetched.is_ok() { FETCHED } else { FAILED };
                 state.store(next, Ordering::Release);
             });
         }
     }
 
-    /// A frame and how long the device worked on it, if that is known by now of one that has not been
-    /// told; waits for nothing.
+    /// A frame and the device's time for it, if known by now. Returns each frame once and never waits.
     pub fn read(&mut self, gpu: &Gpu) -> Option<(u64, Duration)> {
-        // What comes of it is told to the callbacks; a lost device says so elsewhere.
+        // Its results go to callbacks, and so does the loss of the device.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         let period = self.nanoseconds_per_tick;
-        self.readers.iter().find_map(|reader| match reader.state.load(Ordering::Acquire) {
+        self.readbacks.iter().find_map(|readback| match readback.state.load(Ordering::Acquire) {
             FETCHED => {
-                let ticks = reader.ticks();
-                reader.buffer.unmap();
-                reader.state.store(FREE, Ordering::Release);
+                let ticks = readback.ticks();
+                readback.buffer.unmap();
+                readback.state.store(FREE, Ordering::Release);
                 let seconds = ticks? as f64 * period * 1e-9;
-                Some((reader.frame, Duration::try_from_secs_f64(seconds).ok()?))
+                Some((readback.frame, Duration::try_from_secs_f64(seconds).ok()?))
             }
             FAILED => {
-                reader.state.store(FREE, Ordering::Release);
+                readback.state.store(FREE, Ordering::Release);
                 None
             }
             _ => None,
@@ -159,8 +159,8 @@ impl GpuTimer {
     }
 }
 
-impl Reader {
-    /// What all laps took together; nothing from a clock that went back.
+impl TimestampReadback {
+    /// Sum of the passes' durations in ticks; `None` if the clock went backwards.
     fn ticks(&self) -> Option<u64> {
         let mapped = self.buffer.get_mapped_range(..).ok()?;
         let stamp = |at: u64| {
@@ -168,8 +168,8 @@ impl Reader {
             let bytes = mapped.get(at..at + STAMP as usize)?;
             Some(u64::from_le_bytes(bytes.try_into().ok()?))
         };
-        (0..LAPS).filter(|lap| self.run[*lap]).try_fold(0, |sum: u64, lap| {
-            let begin = STRIDE * lap as u64;
+        (0..PASSES).filter(|pass| self.passes[*pass]).try_fold(0, |sum: u64, pass| {
+            let begin = STRIDE * pass as u64;
             sum.checked_add(stamp(begin + STAMP)?.checked_sub(stamp(begin)?)?)
         })
     }

@@ -10,24 +10,24 @@ pub(super) const SHADER: &str =
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
-struct Instance {
+struct LineInstance {
     from: Vec3,
     to: Vec3,
     colour: [f32; 4],
     dashed: f32,
 }
 
-const _: () = assert!(size_of::<Instance>() == 44);
+const _: () = assert!(size_of::<LineInstance>() == 44);
 
 /// Draws lines.
 #[derive(Debug)]
-pub(super) struct Lines(Quads<Instance>);
+pub(super) struct Lines(Quads<LineInstance>);
 
 impl Lines {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::Kind {
+            &quads::QuadDescriptor {
                 label: "line",
                 shader: SHADER,
                 layouts: &[view],
@@ -39,7 +39,7 @@ impl Lines {
 
     /// How many bytes were sent.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
-        self.0.upload(gpu, scene.lines.iter().map(Instance::new))
+        self.0.upload(gpu, scene.lines.iter().map(LineInstance::new))
     }
 
     pub fn triangles(&self) -> u32 {
@@ -51,7 +51,7 @@ impl Lines {
     }
 }
 
-impl Instance {
+impl LineInstance {
     fn new(line: &Line) -> Self {
         let dashed = if line.dashed { 1.0 } else { 0.0 };
         Self { from: line.from, to: line.to, colour: line.colour.channels(), dashed }

@@ -1,56 +1,48 @@
 //! Draws a [`Scene`](crate::scene::Scene) with wgpu: the same code for the window, a PNG and the
 //! test images.
 //!
-//! A [`Renderer`] holds the pipelines and is made once for a device; a [`Canvas`] is what it draws
-//! on. Each thing drawn has one file here and one shader of the same name.
+//! A [`Renderer`] holds the pipelines and is created once per device; a [`Canvas`] is its render
+//! target. Each thing drawn has one file here and one shader of the same name.
 
 mod atlas;
 mod backdrop;
 mod canvas;
 mod compute;
 mod crowd;
+mod crowd_error;
+mod crowd_solver;
 mod font;
+mod font_face;
 mod globe;
+mod glyph_sheet;
 mod gpu;
 mod gpu_timer;
-mod instances;
+mod ignored_letters;
+mod instance_buffer;
 mod label;
 mod line;
 mod mesh;
-mod order;
 mod picture;
 mod pipeline;
 mod quads;
 mod renderer;
+mod shaders;
 mod shadow;
 mod shell;
 mod solid;
-mod solve;
+mod solid_mesh;
+mod sphere_order;
 mod spheres;
 mod system_fonts;
 mod uniforms;
 mod view;
 
 pub use canvas::{Canvas, ReadError};
+pub use crowd_error::CrowdError;
+pub use crowd_solver::CrowdSolver;
 pub use gpu::{DeviceError, Gpu, GpuError};
-pub use gpu_timer::{GpuTimer, Lap};
-pub use picture::{DrawError, Picture, SaveError, Timings, save};
+pub use gpu_timer::{GpuTimer, TimedPass};
+pub use picture::{DrawError, PictureRenderer, SavePictureError, Timings, save};
 pub use renderer::{Counts, Renderer};
-pub use solve::Solver;
+pub use shaders::shaders;
 pub use system_fonts::SystemFace;
-
-/// Every shader with the name of its file, whole as it is compiled.
-pub fn shaders() -> [(&'static str, &'static str); 10] {
-    [
-        ("arms", crowd::ARMS),
-        ("backdrop", backdrop::SHADER),
-        ("cull", crowd::CULL),
-        ("globe", globe::SHADER),
-        ("line", line::SHADER),
-        ("label", label::SHADER),
-        ("shadow", shadow::SHADER),
-        ("shell", shell::SHADER),
-        ("solid", solid::SHADER),
-        ("solve", solve::SHADER),
-    ]
-}

@@ -7,76 +7,103 @@ use thiserror::Error;
 
 use super::canvas::ReadError;
 use super::gpu::DeviceError;
-use super::{Canvas, Gpu, Renderer};
+use super::{Canvas, CrowdError, Gpu, Renderer};
 use crate::io::{self, WriteError};
+use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
-/// A scene drawn without a window.
+/// Draws scenes to images, without a window.
 #[derive(Debug)]
-pub struct Picture<'a> {
+pub struct PictureRenderer<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,
     canvas: Canvas,
     scale: f32,
 }
 
-/// How long frames took, each waited for: medians.
+/// Median times of frames. The device finishes each frame before the next one starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timings {
+    /// Number of frames.
     pub frames: u32,
-    /// Until the device had its orders.
+    /// Time until all commands are submitted.
     pub cpu: Duration,
-    /// Until it had carried them out.
+    /// Time until the device has executed them.
     pub frame: Duration,
-    /// What of it was the solving of a crowd, where there was one.
+    /// Part of it that solved the crowd; `None` without a crowd.
     pub solve: Option<Duration>,
 }
 
-/// Why there is no picture.
+/// Reasons why a picture is not drawn.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum DrawError {
-    #[error("a picture of {width}x{height} is larger than this device draws: {longest} at most")]
-    TooLarge { width: u32, height: u32, longest: u32 },
+    /// The device's textures are smaller.
+    #[error("picture sides must be at most {longest} on this graphics device, got {width}x{height}")]
+    TooLarge {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Limit of the device.
+        longest: u32,
+    },
+    /// The device failed while it drew.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// The picture could not be copied from the device.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// The device did not finish.
+    #[error("the graphics device did not finish the picture: {0}")]
+    Poll(#[from] wgpu::PollError),
 }
 
-/// Why a picture is not on the disk.
+/// Reasons why a picture is not saved.
 #[derive(Debug, Error)]
-pub enum SaveError {
-    #[error(transparent)]
-    Draw(#[from] DrawError),
+#[non_exhaustive]
+pub enum SavePictureError {
+    /// The file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    #[error("{path} could not be written: {source}")]
-    Encode { path: String, source: image::ImageError },
+    /// PNG encoding failed.
+    #[error("{path} could not be encoded: {source}")]
+    Encode {
+        /// File that was to be written.
+        path: String,
+        /// The encoder's error.
+        source: image::ImageError,
+    },
 }
 
-impl<'a> Picture<'a> {
+impl<'a> PictureRenderer<'a> {
+    /// Creates a renderer for pictures of one size. `scale` is the number of pixels per point: lines and
+    /// letters have their size in points.
     pub fn new(gpu: &'a Gpu, width: u32, height: u32, scale: f32) -> Self {
         Self { gpu, renderer: Renderer::new(gpu), canvas: Canvas::new(gpu, width, height), scale }
     }
 
-    /// Lines and letters are as large as in a window of 1280×800, in larger pictures larger.
+    /// Creates a renderer whose lines and letters look as in a window of 1280×800, scaled up in larger
+    /// pictures.
     ///
     /// # Errors
     ///
-    /// If the device cannot draw one so large.
+    /// If the picture is too large for the device, or the device fails.
     pub fn of_size(gpu: &'a Gpu, width: u32, height: u32) -> Result<Self, DrawError> {
-        const WINDOW: f32 = 800.0;
+        const WINDOW_HEIGHT: f32 = 800.0;
         let longest = gpu.longest_side();
         if width.max(height) > longest {
             return Err(DrawError::TooLarge { width, height, longest });
         }
-        let scale = (width.min(height) as f32 / WINDOW).max(1.0);
+        let scale = (width.min(height) as f32 / WINDOW_HEIGHT).max(1.0);
         Ok(gpu.watched(|| Self::new(gpu, width, height, scale))?)
     }
 
+    /// Draws a scene and reads the image back.
+    ///
     /// # Errors
     ///
-    /// If the device fails meanwhile.
+    /// If the device fails.
     pub fn draw(&mut self, scene: &Scene) -> Result<RgbaImage, DrawError> {
         let (gpu, renderer, canvas) = (self.gpu, &mut self.renderer, &self.canvas);
         let image = gpu.watched(|| {
@@ -86,22 +113,26 @@ impl<'a> Picture<'a> {
         Ok(image?)
     }
 
-    /// Whether there was a crowd in the scene that was drawn last, and it could be.
-    pub fn has_crowd(&self) -> bool {
-        self.renderer.crowd_times().is_some()
-    }
-
-    /// Draws the scenes that `scene` makes, the first, second and so on of `frames`, waiting for the
-    /// device each time.
+    /// Times of the crowd in the last scene; `None` without a crowd.
     ///
     /// # Errors
     ///
-    /// If the device fails meanwhile.
+    /// If the crowd could not be drawn.
+    pub fn crowd_times(&self) -> Result<Option<CrowdTimes>, CrowdError> {
+        self.renderer.crowd_times()
+    }
+
+    /// Draws `frames` scenes and waits for the device after each. `scene` makes the scene of a frame
+    /// number, starting at 0.
+    ///
+    /// # Errors
+    ///
+    /// If the device fails.
     pub fn time(
         &mut self,
         frames: u32,
         mut scene: impl FnMut(u32) -> Scene,
-    ) -> Result<Timings, ReadError> {
+    ) -> Result<Timings, DrawError> {
         let (mut cpu, mut frame, mut solve) = (Vec::new(), Vec::new(), Vec::new());
         for number in 0..frames {
             let start = Instant::now();
@@ -110,23 +141,24 @@ impl<'a> Picture<'a> {
             cpu.push(start.elapsed());
             self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
             frame.push(start.elapsed());
-            solve.extend(self.renderer.crowd_times().map(|times| times.solve));
+            solve.extend(self.renderer.crowd_times().ok().flatten().map(|times| times.solve));
         }
+        self.gpu.check()?;
         let solve = (!solve.is_empty()).then(|| median(solve));
         Ok(Timings { frames, cpu: median(cpu), frame: median(frame), solve })
     }
 }
 
-/// Writes a picture as PNG, whole or not at all: see [`io::write`].
+/// Writes a picture as PNG, completely or not at all: see [`io::write`].
 ///
 /// # Errors
 ///
-/// If the folder or the file cannot be written.
-pub fn save(image: &RgbaImage, path: &Path) -> Result<(), SaveError> {
+/// If the picture cannot be encoded or the file cannot be written.
+pub fn save(image: &RgbaImage, path: &Path) -> Result<(), SavePictureError> {
     let mut png = Cursor::new(Vec::new());
     image
         .write_to(&mut png, image::ImageFormat::Png)
-        .map_err(|source| SaveError::Encode { path: path.display().to_string(), source })?;
+        .map_err(|source| SavePictureError::Encode { path: path.display().to_string(), source })?;
     Ok(io::write(path, png.get_ref())?)
 }
 

@@ -1,7 +1,7 @@
 use super::{Canvas, Gpu};
 
 /// What makes one pipeline of the scene differ from another.
-pub(super) struct Kind<'a> {
+pub(super) struct PipelineDescriptor<'a> {
     pub label: &'static str,
     pub shader: &'static str,
     pub fragment: &'static str,
@@ -15,20 +15,20 @@ pub(super) struct Kind<'a> {
     pub opaque: bool,
 }
 
-pub(super) fn build(gpu: &Gpu, kind: &Kind<'_>) -> wgpu::RenderPipeline {
+pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::RenderPipeline {
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(kind.label),
-        source: wgpu::ShaderSource::Wgsl(kind.shader.into()),
+        label: Some(descriptor.label),
+        source: wgpu::ShaderSource::Wgsl(descriptor.shader.into()),
     });
-    let layouts: Vec<_> = kind.layouts.iter().copied().map(Some).collect();
-    let buffers: Vec<_> = kind.buffers.iter().cloned().map(Some).collect();
+    let layouts: Vec<_> = descriptor.layouts.iter().copied().map(Some).collect();
+    let buffers: Vec<_> = descriptor.buffers.iter().cloned().map(Some).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(kind.label),
+        label: Some(descriptor.label),
         bind_group_layouts: &layouts,
         immediate_size: 0,
     });
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(kind.label),
+        label: Some(descriptor.label),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
@@ -37,25 +37,25 @@ pub(super) fn build(gpu: &Gpu, kind: &Kind<'_>) -> wgpu::RenderPipeline {
             buffers: &buffers,
         },
         primitive: wgpu::PrimitiveState {
-            topology: kind.topology,
-            cull_mode: kind.cull,
+            topology: descriptor.topology,
+            cull_mode: descriptor.cull,
             ..Default::default()
         },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: Canvas::DEPTH,
-            depth_write_enabled: Some(kind.opaque && kind.depth != wgpu::CompareFunction::Always),
-            depth_compare: Some(kind.depth),
+            depth_write_enabled: Some(descriptor.opaque && descriptor.depth != wgpu::CompareFunction::Always),
+            depth_compare: Some(descriptor.depth),
             stencil: Default::default(),
             bias: Default::default(),
         }),
         multisample: wgpu::MultisampleState { count: Canvas::SAMPLES, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some(kind.fragment),
+            entry_point: Some(descriptor.fragment),
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: Canvas::FORMAT,
-                blend: (!kind.opaque).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                blend: (!descriptor.opaque).then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

@@ -2,11 +2,11 @@ use core::ops::Range;
 
 use bytemuck::Pod;
 
-use super::instances::Instances;
+use super::instance_buffer::InstanceBuffer;
 use super::{Gpu, pipeline};
 
-/// What makes one kind of quad differ from another.
-pub(super) struct Kind<'a> {
+/// Pipeline settings of one kind of quad.
+pub(super) struct QuadDescriptor<'a> {
     pub label: &'static str,
     pub shader: &'static str,
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
@@ -14,39 +14,39 @@ pub(super) struct Kind<'a> {
     pub depth: wgpu::CompareFunction,
 }
 
-/// Four-cornered things laid over the picture, one an instance; the shader places the corners.
+/// Draws one quad per instance, blended over the picture; the shader computes the corners.
 #[derive(Debug)]
 pub(super) struct Quads<T> {
     pipeline: wgpu::RenderPipeline,
-    instances: Instances<T>,
+    instances: InstanceBuffer<T>,
 }
 
 impl<T: Pod + PartialEq> Quads<T> {
-    pub fn new(gpu: &Gpu, kind: &Kind<'_>) -> Self {
+    pub fn new(gpu: &Gpu, descriptor: &QuadDescriptor<'_>) -> Self {
         let pipeline = pipeline::build(
             gpu,
-            &pipeline::Kind {
-                label: kind.label,
-                shader: kind.shader,
+            &pipeline::PipelineDescriptor {
+                label: descriptor.label,
+                shader: descriptor.shader,
                 fragment: "fragment",
-                layouts: kind.layouts,
+                layouts: descriptor.layouts,
                 buffers: &[wgpu::VertexBufferLayout {
                     array_stride: size_of::<T>() as u64,
                     step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: kind.attributes,
+                    attributes: descriptor.attributes,
                 }],
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,
-                depth: kind.depth,
+                depth: descriptor.depth,
                 opaque: false,
             },
         );
-        Self { pipeline, instances: Instances::new(kind.label) }
+        Self { pipeline, instances: InstanceBuffer::new(descriptor.label) }
     }
 
-    /// How many bytes were sent.
+    /// Sends what has changed and returns the number of bytes.
     pub fn upload(&mut self, gpu: &Gpu, instances: impl Iterator<Item = T>) -> u64 {
-        self.instances.upload(gpu, instances)
+        self.instances.upload_all(gpu, instances)
     }
 
     pub fn triangles(&self) -> u32 {
@@ -54,19 +54,19 @@ impl<T: Pod + PartialEq> Quads<T> {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw_some(pass, 0..self.instances.count());
+        self.draw_range(pass, 0..self.instances.count());
     }
 
-    /// Draws those of a part of the list, as far as there are any.
-    pub fn draw_some(&self, pass: &mut wgpu::RenderPass<'_>, part: Range<u32>) {
+    /// Draws a range of the instances, cut off at their number.
+    pub fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
         let Some((buffer, count)) = self.instances.get() else {
             return;
         };
-        let part = part.start..part.end.min(count);
-        if !part.is_empty() {
+        let range = range.start..range.end.min(count);
+        if !range.is_empty() {
             pass.set_pipeline(&self.pipeline);
             pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..4, part);
+            pass.draw(0..4, range);
         }
     }
 }

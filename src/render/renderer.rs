@@ -5,15 +5,15 @@ use super::line::Lines;
 use super::shadow::Shadows;
 use super::solid::Solids;
 use super::spheres::Spheres;
-use super::view::View;
-use super::{Canvas, Gpu};
+use super::view::ViewUniforms;
+use super::{Canvas, CrowdError, Gpu};
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
-/// Draws scenes. Made once for a device; its pipelines never change.
+/// Draws scenes. It is created once per device; its pipelines never change.
 #[derive(Debug)]
 pub struct Renderer {
-    view: View,
+    view: ViewUniforms,
     solids: Solids,
     backdrop: Backdrop,
     shadows: Shadows,
@@ -24,24 +24,28 @@ pub struct Renderer {
     counts: Counts,
 }
 
-/// What a renderer drew last.
+/// Numbers of things in the last scene, and of bytes sent for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Cones and balls.
     pub solids: u32,
+    /// Lines.
     pub lines: u32,
+    /// Labels.
     pub labels: u32,
+    /// Triangles.
     pub triangles: u32,
-    /// How many bytes were sent to the device, which keeps what does not change.
+    /// Bytes sent to the device. Only changes are sent.
     pub uploaded: u64,
 }
 
 impl Renderer {
-    /// How many lists, blocks of values and textures are kept on the device.
+    /// Number of lists, uniform blocks and textures on the device.
     pub const LISTS: usize = 7 + Solids::LISTS;
 
+    /// Creates the pipelines.
     pub fn new(gpu: &Gpu) -> Self {
-        let view = View::new(gpu);
+        let view = ViewUniforms::new(gpu);
         Self {
             solids: Solids::new(gpu, view.layout()),
             backdrop: Backdrop::new(gpu, view.layout()),
@@ -55,27 +59,30 @@ impl Renderer {
         }
     }
 
-    /// What was drawn last.
+    /// Counts of the last scene.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// How long the crowd took that was drawn last, if there was one.
-    pub fn crowd_times(&self) -> Option<CrowdTimes> {
+    /// Times of the crowd in the last scene; `None` without a crowd.
+    ///
+    /// # Errors
+    ///
+    /// If the crowd could not be drawn.
+    pub fn crowd_times(&self) -> Result<Option<CrowdTimes>, CrowdError> {
         self.crowds.times()
     }
 
-    /// Draws a scene and hands it to the device. `scale` is how many pixels a point has: lines and
-    /// letters are so many times as large.
+    /// Draws a scene and submits it to the device. `scale` is in pixels per point: lines and letters have
+    /// their size in points.
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         self.upload(gpu, scene, canvas.size(), scale);
         gpu.queue.submit([self.encode(gpu, canvas, None)]);
     }
 
-    /// Sends what the device does not have of a scene already, for a picture of some size. Once the
-    /// lists are as long as they get it takes no memory of its own; `wgpu` takes some for every list
-    /// of which anything is sent, however long it is, and there are never more than
-    /// [`Renderer::LISTS`].
+    /// Sends the changes since the last scene, for a picture of a size in pixels. Once all lists have grown to
+    /// their size it allocates nothing itself; `wgpu` allocates a constant amount for each of the at most
+    /// [`Renderer::LISTS`] lists that have changed.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
         let uploaded = self.view.upload(gpu, scene, size, scale)
             + self.solids.upload(gpu, scene, size)
@@ -104,8 +111,8 @@ impl Renderer {
             + self.labels.triangles()
     }
 
-    /// The orders to draw what was uploaded last. `wgpu` takes the memory that it needs for them:
-    /// as much for every picture, whatever is in it.
+    /// Encodes the commands that draw the last uploaded scene. `wgpu` allocates memory for them, which does
+    /// not depend on the scene.
     pub fn encode(
         &self,
         gpu: &Gpu,

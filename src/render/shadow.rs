@@ -10,22 +10,22 @@ pub(super) const SHADER: &str =
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
-struct Instance {
+struct ShadowInstance {
     base: Vec4,
     tip: Vec4,
 }
 
-const _: () = assert!(size_of::<Instance>() == 32);
+const _: () = assert!(size_of::<ShadowInstance>() == 32);
 
 /// Draws soft shadows on the ground.
 #[derive(Debug)]
-pub(super) struct Shadows(Quads<Instance>);
+pub(super) struct Shadows(Quads<ShadowInstance>);
 
 impl Shadows {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::Kind {
+            &quads::QuadDescriptor {
                 label: "shadow",
                 shader: SHADER,
                 layouts: &[view],
@@ -37,7 +37,7 @@ impl Shadows {
 
     /// How many bytes were sent.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
-        self.0.upload(gpu, scene.shadows.iter().map(Instance::new))
+        self.0.upload(gpu, scene.shadows.iter().map(ShadowInstance::new))
     }
 
     pub fn triangles(&self) -> u32 {
@@ -49,7 +49,7 @@ impl Shadows {
     }
 }
 
-impl Instance {
+impl ShadowInstance {
     fn new(shadow: &Shadow) -> Self {
         Self {
             base: shadow.base.extend(shadow.base_radius),

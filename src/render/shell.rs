@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
-use super::order::Side;
+use super::sphere_order::SphereSide;
 use super::quads::{self, Quads};
 use crate::scene::Shell;
 
@@ -16,24 +16,24 @@ pub(super) const SHADER: &str = concat!(
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
-struct Instance {
+struct ShellInstance {
     centre: Vec3,
     radius: f32,
     colour: [f32; 4],
     side: f32,
 }
 
-const _: () = assert!(size_of::<Instance>() == 36);
+const _: () = assert!(size_of::<ShellInstance>() == 36);
 
 /// Draws the sides of shells in the order in which they are given.
 #[derive(Debug)]
-pub(super) struct Shells(Quads<Instance>);
+pub(super) struct Shells(Quads<ShellInstance>);
 
 impl Shells {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::Kind {
+            &quads::QuadDescriptor {
                 label: "shell",
                 shader: SHADER,
                 layouts: &[view],
@@ -44,8 +44,8 @@ impl Shells {
     }
 
     /// Sends what has changed: how many bytes.
-    pub fn upload<'a>(&mut self, gpu: &Gpu, sides: impl Iterator<Item = (&'a Shell, Side)>) -> u64 {
-        self.0.upload(gpu, sides.map(|(shell, side)| Instance::new(shell, side)))
+    pub fn upload<'a>(&mut self, gpu: &Gpu, sides: impl Iterator<Item = (&'a Shell, SphereSide)>) -> u64 {
+        self.0.upload(gpu, sides.map(|(shell, side)| ShellInstance::new(shell, side)))
     }
 
     pub fn triangles(&self) -> u32 {
@@ -53,15 +53,15 @@ impl Shells {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sides: Range<u32>) {
-        self.0.draw_some(pass, sides);
+        self.0.draw_range(pass, sides);
     }
 }
 
-impl Instance {
-    fn new(shell: &Shell, side: Side) -> Self {
+impl ShellInstance {
+    fn new(shell: &Shell, side: SphereSide) -> Self {
         let side = match side {
-            Side::Near => -1.0,
-            Side::Far => 1.0,
+            SphereSide::Near => -1.0,
+            SphereSide::Far => 1.0,
         };
         let Shell { centre, radius, colour } = *shell;
         Self { centre, radius, colour: colour.channels(), side }

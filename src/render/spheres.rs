@@ -1,6 +1,6 @@
 use super::Gpu;
 use super::globe::Globes;
-use super::order::{Order, Side, Surface};
+use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
 use super::shell::Shells;
 use crate::scene::{Colour, Globe, Scene, Shell};
 
@@ -9,7 +9,7 @@ use crate::scene::{Colour, Globe, Scene, Shell};
 pub(super) struct Spheres {
     shells: Shells,
     globe: Globes,
-    order: Order,
+    order: SphereOrder,
     /// The shells that have a size, then the globe.
     spheres: Vec<Shell>,
     /// How many sides of shells are behind the globe's far side and behind its near one.
@@ -21,7 +21,7 @@ impl Spheres {
         Self {
             shells: Shells::new(gpu, view),
             globe: Globes::new(gpu, view),
-            order: Order::default(),
+            order: SphereOrder::default(),
             spheres: Vec::new(),
             behind_globe: [0; 2],
         }
@@ -35,8 +35,8 @@ impl Spheres {
         let shells = self.spheres.len();
         self.spheres.extend(scene.globe.filter(Globe::has_size).map(of_globe));
         let surfaces = self.order.sort(&projection, &self.spheres);
-        let is_shell = |surface: &&Surface| surface.sphere < shells;
-        self.behind_globe = [Side::Far, Side::Near].map(|side| {
+        let is_shell = |surface: &&SphereSurface| surface.sphere < shells;
+        self.behind_globe = [SphereSide::Far, SphereSide::Near].map(|side| {
             let behind = surfaces.iter().take_while(|it| is_shell(it) || it.side != side);
             behind.filter(is_shell).count() as u32
         });
@@ -52,9 +52,9 @@ impl Spheres {
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let [far, near] = self.behind_globe;
         self.shells.draw(pass, 0..far);
-        self.globe.draw(pass, Side::Far);
+        self.globe.draw(pass, SphereSide::Far);
         self.shells.draw(pass, far..near);
-        self.globe.draw(pass, Side::Near);
+        self.globe.draw(pass, SphereSide::Near);
         self.shells.draw(pass, near..u32::MAX);
     }
 }

@@ -5,10 +5,10 @@ use super::Gpu;
 use super::uniforms::Uniforms;
 use crate::scene::{Colour, Scene};
 
-/// What every shader of the scene sees, as `view.wgsl` has it.
+/// Uniforms that all shaders of a scene share: `View` in `view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct Uniform {
+struct ViewData {
     clip_from_world: Mat4,
     eye: Vec3,
     orthographic: f32,
@@ -18,8 +18,8 @@ struct Uniform {
     pixel_scale: f32,
     up: Vec3,
     shadow_strength: f32,
-    stage_centre: Vec3,
-    stage_radius: f32,
+    planes_centre: Vec3,
+    planes_radius: f32,
     size: Vec2,
     cell: f32,
     padding: f32,
@@ -31,13 +31,13 @@ struct Uniform {
     axes: [Vec4; 3],
 }
 
-const _: () = assert!(size_of::<Uniform>() == 64 + 5 * 16 + 16 + 8 * 16);
+const _: () = assert!(size_of::<ViewData>() == 64 + 5 * 16 + 16 + 8 * 16);
 
-/// The uniform on the device.
+/// The shared uniforms on the device.
 #[derive(Debug)]
-pub(super) struct View(Uniforms<Uniform>);
+pub(super) struct ViewUniforms(Uniforms<ViewData>);
 
-impl View {
+impl ViewUniforms {
     pub fn new(gpu: &Gpu) -> Self {
         Self(Uniforms::new(gpu, "view"))
     }
@@ -50,21 +50,22 @@ impl View {
         &self.0.group
     }
 
-    /// How many bytes were sent. `scale` is how many pixels a point has.
+    /// Sends the uniforms if they have changed and returns the number of bytes. `scale` is in pixels per
+    /// point.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
-        self.0.upload(gpu, Uniform::new(scene, size, scale))
+        self.0.upload(gpu, ViewData::new(scene, size, scale))
     }
 }
 
-impl Uniform {
-    /// How much of what is below the ground shows through it.
+impl ViewData {
+    /// Opacity of the ground.
     const GROUND_OPACITY: f32 = 0.55;
 
     fn new(scene: &Scene, (width, height): (u32, u32), scale: f32) -> Self {
-        let (palette, stage) = (&scene.palette, &scene.stage);
+        let (palette, planes) = (&scene.palette, &scene.planes);
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
-        let shown = [stage.grid_yz, stage.grid_xz, stage.grid_xy, stage.ground];
+        let shown = [planes.grid_yz, planes.grid_xz, planes.grid_xy, planes.ground];
         Self {
             clip_from_world: projection.clip_from_world,
             eye: projection.eye,
@@ -75,10 +76,10 @@ impl Uniform {
             pixel_scale: scale,
             up: projection.up,
             shadow_strength: palette.shadow,
-            stage_centre: stage.centre,
-            stage_radius: stage.radius,
+            planes_centre: planes.centre,
+            planes_radius: planes.radius,
             size: Vec2::new(width as f32, height as f32),
-            cell: stage.cell,
+            cell: planes.cell,
             padding: 0.0,
             shown: Vec4::from_array(shown.map(|shown| if shown { 1.0 } else { 0.0 })),
             sky_top: screen(palette.sky_top),

@@ -1,47 +1,40 @@
-use core::fmt::{Arguments, Write as _};
-
 use glam::Vec3;
 
-use super::{Colour, Scene};
+use super::Colour;
 
-/// Words beside a point; [`Scene::text`] has their letters.
+/// A label beside a point; [`Scene::text`](super::Scene::text) returns its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Label {
+    /// Point in the world.
     pub at: Vec3,
-    /// What the words must not cover: a ball of this radius around the point.
+    /// Radius of a ball around the point that the text does not cover.
     pub clearance: f32,
-    /// Whether the words stand above the ball's right side or below it.
-    pub side: Side,
-    pub words: Words,
+    /// Side of the ball on which the text is.
+    pub side: LabelSide,
+    /// Colour of the text.
     pub colour: Colour,
+    pub(super) text: TextRange,
 }
 
+/// Position of a label's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum LabelSide {
+    /// Above and to the right.
     Above,
+    /// Below and to the right.
     Below,
 }
 
-/// Where the words of a label are among the letters of its scene, which has them in one piece so that
-/// a label owns nothing.
+/// Byte range of a label's text in the text of its scene, which holds all labels' texts in one string so
+/// that refilling a scene allocates nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Words {
-    from: usize,
-    to: usize,
+pub(super) struct TextRange {
+    pub from: usize,
+    pub to: usize,
 }
 
-impl Scene {
-    /// What a label of this scene says; nothing for one of another scene.
-    pub fn text(&self, label: &Label) -> &str {
-        self.letters.get(label.words.from..label.words.to).unwrap_or_default()
-    }
-
-    /// Adds a label that says `text`, whatever its words are.
-    pub(super) fn add_label(&mut self, label: Label, text: Arguments<'_>) {
-        let from = self.letters.len();
-        // A string takes all that is written.
-        let _ = self.letters.write_fmt(text);
-        let words = Words { from, to: self.letters.len() };
-        self.labels.push(Label { words, ..label });
+impl Label {
+    pub(super) fn new(at: Vec3, clearance: f32, side: LabelSide, colour: Colour) -> Self {
+        Self { at, clearance, side, colour, text: TextRange::default() }
     }
 }

@@ -1,69 +1,48 @@
+use super::Colour;
 use crate::document::{Theme, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 
-/// A colour as a screen has it: sRGB, with opacity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Colour(pub [u8; 4]);
-
-impl Colour {
-    const fn rgb(hex: u32) -> Self {
-        let [_, r, g, b] = hex.to_be_bytes();
-        Self([r, g, b, 255])
-    }
-
-    /// As seen through: 0 is nothing, 1 the colour itself.
-    #[must_use]
-    pub fn with_opacity(self, opacity: f32) -> Self {
-        let [r, g, b, _] = self.0;
-        Self([r, g, b, (opacity * 255.0).round() as u8])
-    }
-
-    /// Part of the way to another colour, as a screen mixes them.
-    #[must_use]
-    pub fn mixed(self, other: Self, part: f32) -> Self {
-        let mix =
-            |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * part).round() as u8;
-        Self(std::array::from_fn(|channel| mix(self.0[channel], other.0[channel])))
-    }
-
-    /// Red, green, blue and opacity from 0 to 1, still sRGB.
-    pub fn channels(self) -> [f32; 4] {
-        self.0.map(|channel| f32::from(channel) / 255.0)
-    }
-}
-
-/// The colours of a theme. The two limbs' and the accent's are the panels' too.
+/// Colours of a theme. The panels share those of the two limbs and the accent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
+    /// The theme.
     pub theme: Theme,
-    /// Upper limb, d₁.
+    /// Upper limb.
     pub upper: Colour,
-    /// Lower limb, d₂.
+    /// Lower limb.
     pub lower: Colour,
+    /// Joints and the hand.
     pub joint: Colour,
     /// Cursor, Pointer and limits.
     pub guide: Colour,
+    /// Selection, trails and gaps.
     pub accent: Colour,
-    /// x, y, z.
+    /// x, y and z axis.
     pub axes: [Colour; 3],
+    /// Background at the top of the picture.
     pub sky_top: Colour,
+    /// Background at the bottom of the picture.
     pub sky_bottom: Colour,
+    /// Ground.
     pub ground: Colour,
+    /// Grid lines.
     pub grid: Colour,
+    /// Labels.
     pub text: Colour,
-    /// The ramp of [`Palette::gain`]: further and further from the background in lightness, and ever
-    /// less seen through, so that it reads without its hues. Steps are alike in Oklab.
+    /// Colour ramp of [`Palette::gain`]. Contrast with the background and opacity increase along it, so
+    /// that it is readable without hues; steps are equal in Oklab.
     pub gains: [Colour; Palette::GAINS],
-    /// How dark the darkest shadow is.
+    /// Opacity of the darkest shadow.
     pub shadow: f32,
 }
 
 impl Palette {
-    /// How many colours the ramp of gains is given by.
+    /// Number of colours in the ramp of gains.
     pub const GAINS: usize = 5;
-    /// The gain at which the ramp ends: what is beyond has its last colour.
-    pub const HOT: f32 = 8.0;
+    /// Gain at the end of the ramp; higher gains have its last colour.
+    pub const MAX_GAIN: f32 = 8.0;
 
+    /// The palette of a theme.
     pub fn new(theme: Theme) -> Self {
         match theme {
             Theme::Dark => Self {
@@ -101,7 +80,7 @@ impl Palette {
         }
     }
 
-    /// The colour that a swivel reference has wherever they are beside each other.
+    /// Colour of a twist reference where references are compared.
     pub fn twist_reference(&self, twist_reference: TwistReferenceKind) -> Colour {
         let [dark, light] = match twist_reference {
             TwistReferenceKind::Limb => [0xf2d06b, 0x866400],
@@ -112,7 +91,7 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// The colour that a solver has wherever solvers are beside each other.
+    /// Colour of a solver where solvers are compared.
     pub fn method(&self, method: Method) -> Colour {
         let [dark, light] = match method {
             Method::TransposeFixed => [0xc9a227, 0x7d6300],
@@ -125,12 +104,11 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// The colour of a [gain](crate::kinematics::twist::TwistReference::gain), as seen through as it is on
-    /// the globe: calm at 0, hot at [`Palette::HOT`] and beyond, evenly in the logarithm of 1 + gain
-    /// between.
+    /// Colour and opacity of a [gain](crate::kinematics::twist::TwistReference::gain) on the globe: the ramp
+    /// is linear in the logarithm of 1 + gain, from 0 to [`Palette::MAX_GAIN`].
     pub fn gain(&self, gain: f32) -> Colour {
         let last = Self::GAINS - 1;
-        let along = gain.max(0.0).ln_1p() / Self::HOT.ln_1p() * last as f32;
+        let along = gain.max(0.0).ln_1p() / Self::MAX_GAIN.ln_1p() * last as f32;
         let step = (along as usize).min(last - 1);
         self.gains[step].mixed(self.gains[step + 1], (along - step as f32).min(1.0))
     }

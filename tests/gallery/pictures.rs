@@ -37,8 +37,8 @@ fn grids_have_cells_as_small_beside_the_rig_as_the_seeds() {
     assert_eq!(Document::default().cell(), 100.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
-        let stage = Scene::new(&document, &Overlays::default(), Theme::Dark).stage;
-        let cells = stage.radius / stage.cell;
+        let planes = Scene::new(&document, &Overlays::default(), Theme::Dark).planes;
+        let cells = planes.radius / planes.cell;
         assert!((3.0..35.0).contains(&cells), "{}: {cells}", example.name);
     }
 }
@@ -48,7 +48,7 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
     let solids = scene.solids.iter().chain(&scene.guide_solids).flat_map(|solid| {
         let Cone { length, base_radius, tip_radius } = solid.shape;
         let shape = [length, base_radius, tip_radius];
-        solid.place.to_cols_array().into_iter().chain(shape)
+        solid.transform.to_cols_array().into_iter().chain(shape)
     });
     let round = |centre: Vec3, radius: f32| centre.extend(radius).to_array();
     let balls = scene.balls.iter().chain(&scene.guide_balls);
@@ -61,10 +61,10 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
         let ends = [(shadow.base, shadow.base_radius), (shadow.tip, shadow.tip_radius)];
         ends.into_iter().flat_map(move |(at, radius)| round(at, radius))
     });
-    let stage = round(scene.stage.centre, scene.stage.radius).into_iter().chain([scene.stage.cell]);
+    let planes = round(scene.planes.centre, scene.planes.radius).into_iter().chain([scene.planes.cell]);
     let view = scene.camera.projection(1.6).clip_from_world.to_cols_array();
     let placed = solids.chain(balls).chain(shells).chain(lines).chain(labels).chain(shadows);
-    placed.chain(stage).chain(view)
+    placed.chain(planes).chain(view)
 }
 
 /// Every hard case once: the rig covers a part of the picture, and not all of it.
@@ -72,7 +72,7 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
 #[test]
 fn every_hard_case_is_drawn() {
     let gpu = ik_arm::render::Gpu::headless().expect("a graphics adapter");
-    let mut picture = ik_arm::render::Picture::new(&gpu, 240, 150, 1.0);
+    let mut picture = ik_arm::render::PictureRenderer::new(&gpu, 240, 150, 1.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
         let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::{LazyLock, Mutex};
 
-use ik_arm::render::{Gpu, Picture};
+use ik_arm::render::{Gpu, PictureRenderer};
 use ik_arm::scene::Scene;
 use image::RgbaImage;
 
@@ -20,7 +20,7 @@ pub static GPU: LazyLock<Mutex<Gpu>> =
 
 pub fn draw(scene: &Scene) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Picture::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene).expect("drawn")
+    PictureRenderer::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene).expect("drawn")
 }
 
 fn path(name: &str) -> PathBuf {

@@ -9,13 +9,13 @@ use crate::{Broken, hold};
 
 pub fn all(session: &Session) -> Result<(), Broken> {
     let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
-    let stage = scene.stage;
-    let is_stage = stage.centre.is_finite() && stage.radius.is_finite() && stage.cell.is_finite();
-    hold!(is_stage, "the stage is finite: {stage:?}");
+    let planes = scene.planes;
+    let are_planes = planes.centre.is_finite() && planes.radius.is_finite() && planes.cell.is_finite();
+    hold!(are_planes, "the planes are finite: {planes:?}");
     for solid in scene.solids.iter().chain(&scene.guide_solids) {
-        let Solid { place, shape, .. } = solid;
+        let Solid { transform, shape, .. } = solid;
         let sizes = [shape.length, shape.base_radius, shape.tip_radius].into_iter().all(is_size);
-        hold!(place.is_finite() && sizes, "a solid is finite: {solid:?}");
+        hold!(transform.is_finite() && sizes, "a solid is finite: {solid:?}");
     }
     for ball in scene.balls.iter().chain(&scene.guide_balls) {
         let Ball { centre, radius, .. } = *ball;

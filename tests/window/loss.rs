@@ -91,7 +91,7 @@ fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_a
     assert_eq!(program.end(), Some(1));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
     let errors = program.errors();
-    assert!(errors.contains("three tries to make it anew failed"), "{errors}");
+    assert!(errors.contains("could not be created again in three attempts"), "{errors}");
     assert!(errors.contains(&first.display().to_string()), "{errors}");
     let hand = document_of(first).arm.cursor();
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");

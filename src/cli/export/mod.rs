@@ -1,6 +1,6 @@
 //! `ik-arm export`: a file's motion or pictures, for other programs.
 
-mod bar;
+mod progress_bar;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,49 +9,53 @@ use std::sync::Arc;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use super::argument::{Size, ThemeName, Time};
-use super::{open, say};
+use super::argument::{SizeArgument, ThemeName, TimeArgument};
+use super::open;
+use super::report::{fail, say};
 use crate::document::{Document, Timeline};
-use crate::export::{ExportError, Format, Options, export};
+use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{BvhUnit, OpenError, Progress};
+use progress_bar::run_with_bar;
 
 #[derive(clap::Args)]
-#[command(after_help = r#"The ending of OUT says what it is:
-  .glb        the shown rig as a skinned, animated model in metres: glTF in one file
-  .bvh        its joints and their motion, for programs that animate
-  .csv        where every joint is, a row for each frame
-  .png        a picture at --time
-  .png with # in its name, as walk_####.png: a picture for each frame, walk_0000.png and on
-  .apng       all frames in one animated picture
-Frames go from the start of the file's timeline to its end; where nothing moves there is one.
-What OUT cannot say is told on stderr. Ctrl+C stops it: nothing is written then, and it exits with 130."#)]
-pub struct Args {
-    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, or - for standard input
+#[command(after_help = r#"The extension of OUT selects the format:
+  .glb             skinned, animated model in metres (binary glTF)
+  .bvh             joints and their motion, for animation programs
+  .csv             positions of all joints, one row per frame
+  .png             one picture, at --time
+  .png with a #    one picture per frame: walk_####.png gives walk_0000.png, walk_0001.png, ...
+  .apng            all frames in one animated picture
+Frames run from the start of the file's timeline to its end. A file without motion has one frame.
+Whatever the format cannot hold is listed on stderr. Ctrl+C cancels: no file is written, and the
+exit code is 130."#)]
+pub struct ExportArgs {
+    /// File to export: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
+    /// standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where it goes
+    /// File to write
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Which skeleton of a scene; the first if nothing is said
+    /// Skeleton to export, if the file has several [default: the first]
     #[arg(long, value_name = "NAME")]
     skeleton: Option<String>,
-    /// How many frames in a second; the file's timeline says if nothing is said here
+    /// Frames per second [default: the timeline's]
     #[arg(
         long,
         value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::HIGHEST_FRAME_RATE))
     )]
     fps: Option<u32>,
-    /// Pixels across and down of a picture, each 1 to 8192 [default: 1280x800]
+    /// Picture width and height in pixels, each 1 to 8192 [default: 1280x800]
     #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
-    /// Of a picture [default: dark]
+    size: Option<SizeArgument>,
+    /// Colours of a picture [default: dark]
     #[arg(long, value_enum)]
     theme: Option<ThemeName>,
-    /// When a single picture is taken, in seconds [default: where the timeline starts]
+    /// Time of a single picture in seconds [default: the timeline's start]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
-    time: Option<Time>,
-    /// What lengths in .bvh are measured in; scene is as they are in the file [default: cm]
+    time: Option<TimeArgument>,
+    /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
     unit: Option<UnitName>,
 }
@@ -63,51 +67,51 @@ enum UnitName {
     Scene,
 }
 
-/// Why there is no file.
+/// Reasons why no file is written.
 #[derive(Debug, Error)]
-enum Failure {
+enum ExportCommandError {
     #[error(transparent)]
     Open(#[from] OpenError),
-    #[error("{0} is not for files of this kind: see ik-arm export --help")]
+    #[error("{0} does not apply to this format: see ik-arm export --help")]
     Argument(&'static str),
-    #[error("Ctrl+C could not be listened to: {0}")]
+    #[error("cannot handle Ctrl+C: {0}")]
     Signal(#[from] ctrlc::Error),
     #[error(transparent)]
     Export(#[from] ExportError),
 }
 
-/// What a shell says of a program that Ctrl+C has ended.
+/// Exit code that shells expect of a program ended by Ctrl+C.
 const INTERRUPTED: u8 = 130;
-/// As for other arguments that make no sense.
+/// Exit code of clap's usage errors.
 const USAGE: u8 = 2;
 
-pub fn run(args: &Args) -> ExitCode {
+pub fn run(args: &ExportArgs) -> ExitCode {
     match args.export() {
         Ok(notes) => {
             notes.iter().for_each(|note| say(note));
             ExitCode::SUCCESS
         }
-        Err(Failure::Export(ExportError::Cancelled(cancelled))) => {
+        Err(ExportCommandError::Export(ExportError::Cancelled(cancelled))) => {
             say(&format_args!("{cancelled}; {} is not written", args.output.display()));
             ExitCode::from(INTERRUPTED)
         }
-        Err(failure @ Failure::Argument(_)) => {
-            say(&failure);
+        Err(error @ ExportCommandError::Argument(_)) => {
+            say(&error);
             ExitCode::from(USAGE)
         }
-        Err(failure) => super::fail(&failure),
+        Err(error) => fail(&error),
     }
 }
 
-impl Args {
-    fn export(&self) -> Result<Vec<String>, Failure> {
-        // What is wrong with OUT is said before a long file is read.
-        self.check(Format::of(&self.output)?)?;
+impl ExportArgs {
+    fn export(&self) -> Result<Vec<String>, ExportCommandError> {
+        // Checked first: a long file would be read for nothing.
+        self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
         let document = open::open(&self.file, self.skeleton.as_deref())?.document;
         let progress = Arc::new(Progress::default());
         let interrupted = Arc::clone(&progress);
         ctrlc::set_handler(move || interrupted.cancel())?;
-        let notes = bar::shown(&progress, || self.write(&document, &progress))?;
+        let notes = run_with_bar(&progress, || self.write(&document, &progress))?;
         Ok(notes)
     }
 
@@ -115,31 +119,31 @@ impl Args {
         export(document, &self.output, &self.options(), progress)
     }
 
-    /// An argument that the format has no use for is a mistake.
-    fn check(&self, format: Format) -> Result<(), Failure> {
+    /// Refuses arguments that do not apply to the format.
+    fn check(&self, format: Format) -> Result<(), ExportCommandError> {
         let is_still = format == Format::Png;
-        for (is_given, is_of_use, argument) in [
+        for (is_given, applies, argument) in [
             (self.fps.is_some(), !is_still, "--fps"),
             (self.size.is_some(), format.is_picture(), "--size"),
             (self.theme.is_some(), format.is_picture(), "--theme"),
             (self.time.is_some(), is_still, "--time"),
             (self.unit.is_some(), format == Format::Bvh, "--unit"),
         ] {
-            if is_given && !is_of_use {
-                return Err(Failure::Argument(argument));
+            if is_given && !applies {
+                return Err(ExportCommandError::Argument(argument));
             }
         }
         Ok(())
     }
 
-    fn options(&self) -> Options {
-        let usual = Options::default();
-        Options {
+    fn options(&self) -> ExportOptions {
+        let defaults = ExportOptions::default();
+        ExportOptions {
             fps: self.fps,
-            size: self.size.map_or(usual.size, |size| (size.width, size.height)),
-            theme: self.theme.map_or(usual.theme, ThemeName::into),
+            size: self.size.map_or(defaults.size, |size| (size.width, size.height)),
+            theme: self.theme.map_or(defaults.theme, ThemeName::into),
             time: self.time.map(|time| time.0),
-            unit: self.unit.map_or(usual.unit, UnitName::into),
+            unit: self.unit.map_or(defaults.unit, UnitName::into),
         }
     }
 }

@@ -1,6 +1,6 @@
-//! `ik-arm pose`: a file's skeleton at a time, as it stands or solved, as one line of JSON.
+//! `ik-arm pose`: the pose of a file's skeleton at a time, solved or not, as one line of JSON.
 
-mod line;
+mod pose_line;
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -9,39 +9,42 @@ use std::process::ExitCode;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use thiserror::Error;
 
-use super::argument::Time;
+use super::argument::TimeArgument;
 use super::open;
+use super::report::fail;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
 use crate::kinematics::chain_ik::{self, Method, Report, SolveError, SolverOptions};
-use line::Line;
+use pose_line::PoseLine;
 
 #[derive(clap::Args)]
-#[command(after_help = r#"One line of JSON out, in the world:
+#[command(after_help = r#"The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
-    "tip":[x,y,z],"transform":[16 numbers, column after column]}, …],
+    "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
    "targets":[{"joint":N,"target":[x,y,z],"tip":[x,y,z],"error":E}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false}}
-Joints have the order and the numbers of the file; the targets are those that are enabled.
-Without --solver no tip is brought anywhere and the report is null. A solve that does not converge is no failure.
-A file that shows the arm has no pose here: `ik-arm solve` poses arms."#)]
-pub struct Args {
-    /// Document of ik-arm, .js3d scene of Scotty3D, .bvh, .glb or .gltf, or - for standard input
+Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
+tip to target. Without --solver nothing is solved and report is null. A solve that does not converge
+is not an error. For documents that show the arm use `ik-arm solve`."#)]
+pub struct PoseArgs {
+    /// File to pose: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
+    /// standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Which skeleton of a scene; the first if nothing is said
+    /// Skeleton to pose, if the file has several [default: the first]
     #[arg(long, value_name = "NAME")]
     skeleton: Option<String>,
-    /// When, in seconds: where keys, targets and what moves by itself are then
+    /// Time in seconds at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
-    time: Time,
-    /// Bring the tips to the targets
+    time: TimeArgument,
+    /// Solve the targets with this solver
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
-    /// At most so many iterations; what the file says, else the solver's own budget
+    /// Maximum number of iterations [default: the file's, else the solver's own]
     #[arg(long, value_name = "N", requires = "solver")]
     iterations: Option<u32>,
-    /// How near every tip must come to its target; what the file says, else 1e-4 of the chain
+    /// Largest distance between tip and target that counts as converged [default: the file's, else
+    /// 1e-4 of the chain length]
     #[arg(
         long,
         value_name = "T",
@@ -64,62 +67,62 @@ fn tolerance(text: &str) -> Result<f32, String> {
     let number = text.trim().parse().ok();
     number
         .filter(|tolerance: &f32| tolerance.is_finite() && *tolerance > 0.0)
-        .ok_or_else(|| format!("{text:?} is not a finite number above 0"))
+        .ok_or_else(|| "tolerance must be finite and above 0".to_owned())
 }
 
-/// Why there is no pose.
+/// Reasons why no pose is printed.
 #[derive(Debug, Error)]
-enum Failure {
+enum PoseCommandError {
     #[error(transparent)]
     Open(#[from] OpenError),
-    #[error("{0} shows the arm, which `ik-arm solve` poses; pose is for skeletons")]
+    #[error("{0} shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms")]
     Arm(String),
     #[error("{file}: {error}")]
     Solve { file: String, error: SolveError },
-    #[error("{file}: {name:?} is beyond 3.4028235e38; bring it nearer to 0")]
-    TooFar { file: String, name: String },
+    #[error("{file}: joint {name:?} must lie within ±3.4028235e38")]
+    Overflow { file: String, name: String },
     #[error("cannot write to standard output: {0}")]
     Write(#[from] io::Error),
 }
 
-pub fn run(args: &Args) -> ExitCode {
+pub fn run(args: &PoseArgs) -> ExitCode {
     match pose(args) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+        Err(PoseCommandError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(failure) => super::fail(&failure),
+        Err(error) => fail(&error),
     }
 }
 
-fn pose(args: &Args) -> Result<(), Failure> {
+fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let file = open::name(&args.file);
     let opened = open::open(&args.file, args.skeleton.as_deref())?;
     if opened.document.rig == RigKind::Arm {
-        return Err(Failure::Arm(file));
+        return Err(PoseCommandError::Arm(file));
     }
     let Opened { document, order, .. } = opened;
-    let Time(time) = args.time;
+    let TimeArgument(time) = args.time;
     let mut rig = document.at(time).skeleton_rig;
-    // As it stands then, where it moves by itself.
+    // Follow path moves the whole skeleton.
     rig.skeleton = rig.at(time);
     let report = match args.solver {
-        Some(method) => Some(solved(&mut rig, args, method, &order, &file)?),
+        Some(method) => Some(solve(&mut rig, args, method, &order, &file)?),
         None => None,
     };
-    let line = Line::new(&rig, &order, time, report)
-        .map_err(|name| Failure::TooFar { file, name: name.to_owned() })?;
+    let line = PoseLine::new(&rig, &order, time, report)
+        .map_err(|name| PoseCommandError::Overflow { file, name: name.to_owned() })?;
     let line = serde_json::to_string(&line).map_err(io::Error::from)?;
     Ok(writeln!(io::stdout(), "{line}")?)
 }
 
-fn solved(
+fn solve(
     rig: &mut SkeletonRig,
-    args: &Args,
+    args: &PoseArgs,
     method: Method,
     order: &[usize],
     file: &str,
-) -> Result<Report, Failure> {
+) -> Result<Report, PoseCommandError> {
     let options = SolverOptions {
         method,
         iterations: args.iterations.or(rig.solver.iterations),
@@ -129,11 +132,12 @@ fn solved(
     let targets = rig.goals(args.time.0);
     chain_ik::solve(rig.skeleton_mut(), &targets, &options).map_err(|error| {
         let file = file.to_owned();
-        Failure::Solve { file, error: numbered_as_in_file(error, order) }
+        PoseCommandError::Solve { file, error: with_file_indices(error, order) }
     })
 }
 
-fn numbered_as_in_file(mut error: SolveError, order: &[usize]) -> SolveError {
+/// Replaces joint indices by those of the file.
+fn with_file_indices(mut error: SolveError, order: &[usize]) -> SolveError {
     use SolveError::{Flat, NoJoint, Option, Point, TwoBone, TwoTargets, Weight};
     match &mut error {
         NoJoint(joint)

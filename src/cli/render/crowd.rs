@@ -1,65 +1,54 @@
-use std::io::IsTerminal as _;
-
-use indicatif::ProgressBar;
-use serde::Serialize;
-
-use super::{Args, RenderError, SolverName, View, milliseconds, print};
+use super::args::{RenderArgs, ViewName};
+use super::error::RenderCommandError;
+use super::frame_progress::FrameProgress;
+use super::timings::{CrowdTimingsLine, milliseconds, print};
 use crate::document::{Document, Theme};
 use crate::kinematics::two_bone::TwoBone;
-use crate::render::{self, Gpu, Picture};
-use crate::rig::{Crowd, SolvedBy};
+use crate::render::{self, Gpu, PictureRenderer};
+use crate::rig::Crowd;
 use crate::scene::Scene;
 use crate::session::Overlays;
 
-/// From one frame that is timed to the next, in seconds of the crowd.
+/// Time between two frames that are measured, in seconds of the crowd's motion.
 const STEP: f32 = 1.0 / 60.0;
 
-#[derive(Serialize)]
-struct CrowdLine<'a> {
-    arms: u32,
-    frames: u32,
-    solve_ms_median: f64,
-    frame_ms_median: f64,
-    adapter: &'a str,
-}
-
-pub fn render(args: &Args, arms: u32) -> Result<(), RenderError> {
+/// Draws a crowd of arms, measures it, or both.
+pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
     let crowd = Crowd {
         arms,
         bones: TwoBone::new(args.upper.0, args.lower.0)?,
         time: (args.time.0 % f64::from(Crowd::PERIOD)) as f32,
-        solved_by: match args.solve {
-            SolverName::Cpu => SolvedBy::Cpu,
-            SolverName::Gpu => SolvedBy::Gpu,
-        },
+        solved_by: args.solve.into(),
     };
     let document = document(args, &crowd);
     let theme = args.theme.into();
+    if scene(&document, crowd, theme).crowd.is_none() {
+        let (min, max) = (Scene::CROWD_RADII.start, Scene::CROWD_RADII.end);
+        let (upper, lower) = (args.upper.0, args.lower.0);
+        return Err(RenderCommandError::CrowdLength { min, max, upper, lower });
+    }
     let gpu = Gpu::headless()?;
-    let mut picture = Picture::of_size(&gpu, args.size.width, args.size.height)?;
+    let mut picture = PictureRenderer::of_size(&gpu, args.size.width, args.size.height)?;
     if let Some(path) = &args.output {
         let image = picture.draw(&scene(&document, crowd, theme))?;
-        if !picture.has_crowd() {
-            return Err(RenderError::NoCrowd(gpu.name()));
-        }
+        picture.crowd_times()?;
         render::save(&image, path)?;
     }
     if args.timings {
-        let progress = Progress::new(args.frames);
+        let progress = FrameProgress::new(args.frames);
         let timings = picture.time(args.frames, |frame| {
-            progress.tell(frame);
+            progress.show(frame);
             let time = crowd.time + frame as f32 * STEP;
             scene(&document, Crowd { time, ..crowd }, theme)
         })?;
-        progress.end();
-        let adapter = gpu.name();
-        let solve = timings.solve.ok_or_else(|| RenderError::NoCrowd(adapter.clone()))?;
-        print(&CrowdLine {
+        progress.finish();
+        picture.crowd_times()?;
+        print(&CrowdTimingsLine {
             arms,
             frames: timings.frames,
-            solve_ms_median: milliseconds(solve),
+            solve_ms_median: milliseconds(timings.solve.unwrap_or_default()),
             frame_ms_median: milliseconds(timings.frame),
-            adapter: &adapter,
+            adapter: &gpu.name(),
         })?;
     }
     Ok(())
@@ -70,36 +59,12 @@ fn scene(document: &Document, crowd: Crowd, theme: Theme) -> Scene {
     Scene::new(document, &overlays, theme)
 }
 
-/// Looks at all arms, from where it is said.
-fn document(args: &Args, crowd: &Crowd) -> Document {
+/// A document whose camera frames the whole crowd.
+fn document(args: &RenderArgs, crowd: &Crowd) -> Document {
     let mut document = Document::default();
     let (centre, radius) = crowd.bounds();
     let aspect = args.size.width as f32 / args.size.height as f32;
-    let view = args.view.unwrap_or(View::Perspective);
+    let view = args.view.unwrap_or(ViewName::Perspective);
     document.camera = view.camera().framing(centre, radius, aspect);
     document
-}
-
-/// How many frames are drawn: a bar in a terminal, else a line for each tenth.
-struct Progress {
-    bar: ProgressBar,
-    frames: u32,
-}
-
-impl Progress {
-    fn new(frames: u32) -> Self {
-        Self { bar: ProgressBar::new(u64::from(frames)), frames }
-    }
-
-    fn tell(&self, frame: u32) {
-        self.bar.set_position(u64::from(frame));
-        let tenth = (self.frames / 10).max(1);
-        if !std::io::stderr().is_terminal() && frame.is_multiple_of(tenth) {
-            eprintln!("frame {} of {}", frame + 1, self.frames);
-        }
-    }
-
-    fn end(&self) {
-        self.bar.finish_and_clear();
-    }
 }

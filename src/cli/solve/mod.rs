@@ -1,4 +1,5 @@
-//! `ik-arm solve`: poses as JSON Lines, each line on its own unless its twist is transported.
+//! `ik-arm solve`: arm poses as JSON Lines. Each line is solved by itself, unless its twist reference is
+//! transport.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -8,6 +9,7 @@ use std::process::ExitCode;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::report::fail;
 use crate::io::{LineError, solve_line};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -31,28 +33,28 @@ Each line out is a pose, with elbow and hand in the world:
 distance is from the shoulder to that hand. reference_gain is the largest ratio of the elbow's turn to
 the turn of the hand's direction; it is null where that has no bound.
 A bad line gives {"line":N,"error":"…"} in its place; the exit code is then 1."#)]
-pub struct Args {
-    /// File of poses, or - for standard input
+pub struct SolveArgs {
+    /// File with one JSON object per line; - reads standard input
     #[arg(value_name = "FILE", default_value = "-")]
     file: PathBuf,
 }
 
-pub fn run(args: &Args) -> ExitCode {
-    let solved = Input::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
+pub fn run(args: &SolveArgs) -> ExitCode {
+    let solved = LineReader::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
     match solved {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        // Whoever reads the poses has seen enough: `ik-arm solve | head` is no failure.
-        Err(Failure::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+        // The reader has closed its end: `ik-arm solve | head` succeeds.
+        Err(SolveCommandError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(failure) => super::fail(&failure),
+        Err(error) => fail(&error),
     }
 }
 
-/// Why a run ends before its input does.
+/// Reasons why a run ends before its input.
 #[derive(Debug, Error)]
-enum Failure {
+enum SolveCommandError {
     #[error("cannot open {name}: {error}")]
     Open { name: String, error: io::Error },
     #[error("cannot read {name}: {error}")]
@@ -61,34 +63,34 @@ enum Failure {
     Write(io::Error),
 }
 
-/// Answers every line and returns how many were bad.
-fn solve_lines(mut input: Input, output: impl Write) -> Result<u64, Failure> {
+/// Solves every line and returns the number of invalid ones.
+fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, SolveCommandError> {
     let mut output = BufWriter::new(output);
     let mut past = None;
-    let mut bad = 0;
+    let mut invalid = 0;
     loop {
-        // The next read may wait for whoever writes the lines, who may wait for the answers.
+        // The next read may block, and the program that writes the lines may wait for the answers.
         if !input.has_line() {
-            output.flush().map_err(Failure::Write)?;
+            output.flush().map_err(SolveCommandError::Write)?;
         }
-        let Some(line) = input.next_line()? else { return Ok(bad) };
+        let Some(line) = input.next_line()? else { return Ok(invalid) };
         if line.is_blank() {
             continue;
         }
         let written = match solve_line(line.content, &mut past) {
             Ok(answer) => write_line(&mut output, &answer),
             Err(error) => {
-                bad += 1;
-                write_line(&mut output, &BadLine { line: line.number, error: error.message() })
+                invalid += 1;
+                write_line(&mut output, &InvalidLine { line: line.number, error: error.message() })
             }
         };
-        written.map_err(Failure::Write)?;
+        written.map_err(SolveCommandError::Write)?;
     }
 }
 
-/// What stands in a bad line's place.
+/// Answer to an invalid line.
 #[derive(Serialize)]
-struct BadLine {
+struct InvalidLine {
     line: u64,
     error: String,
 }
@@ -98,24 +100,24 @@ fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()>
     output.write_all(b"\n")
 }
 
-/// Where the lines come from.
-struct Input {
+/// Reader of the input's lines.
+struct LineReader {
     name: String,
     reader: BufReader<Box<dyn Read>>,
-    /// The last line, with its end; reused from line to line.
+    /// The last line with its line ending; reused to avoid allocations.
     line: Vec<u8>,
     number: u64,
 }
 
-impl Input {
-    fn open(path: &Path) -> Result<Self, Failure> {
+impl LineReader {
+    fn open(path: &Path) -> Result<Self, SolveCommandError> {
         if path == Path::new("-") {
             return Ok(Self::new("standard input".to_owned(), Box::new(io::stdin().lock())));
         }
         let name = path.display().to_string();
         match File::open(path) {
             Ok(file) => Ok(Self::new(name, Box::new(file))),
-            Err(error) => Err(Failure::Open { name, error }),
+            Err(error) => Err(SolveCommandError::Open { name, error }),
         }
     }
 
@@ -124,23 +126,24 @@ impl Input {
         Self { name, reader, line: Vec::new(), number: 0 }
     }
 
-    /// Whether the next line is here already, whole.
+    /// Whether the whole next line is buffered.
     fn has_line(&self) -> bool {
         self.reader.buffer().contains(&b'\n')
     }
 
-    fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
+    fn next_line(&mut self) -> Result<Option<InputLine<'_>>, SolveCommandError> {
         match self.read_line() {
             Ok(true) => {
                 self.number += 1;
-                Ok(Some(Line::new(self.number, &self.line)))
+                Ok(Some(InputLine::new(self.number, &self.line)))
             }
             Ok(false) => Ok(None),
-            Err(error) => Err(Failure::Read { name: self.name.clone(), error }),
+            Err(error) => Err(SolveCommandError::Read { name: self.name.clone(), error }),
         }
     }
 
-    /// False at the end of the input. Of a line that is too long only the start is kept.
+    /// Reads one line and returns false at the end of the input. Only the start of a line that is too
+    /// long is kept.
     fn read_line(&mut self) -> io::Result<bool> {
         let longest = LineError::MAX_LENGTH + b"\r\n".len();
         self.line.clear();
@@ -152,13 +155,13 @@ impl Input {
     }
 }
 
-/// A line as it was read, without its end.
-struct Line<'a> {
+/// A line without its line ending.
+struct InputLine<'a> {
     number: u64,
     content: &'a [u8],
 }
 
-impl<'a> Line<'a> {
+impl<'a> InputLine<'a> {
     fn new(number: u64, read: &'a [u8]) -> Self {
         let content = read.strip_suffix(b"\n").unwrap_or(read);
         let content = content.strip_suffix(b"\r").unwrap_or(content);

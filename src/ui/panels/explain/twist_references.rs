@@ -49,7 +49,7 @@ fn legend(ui: &mut Ui) {
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, summary));
     let (palette, painter) = (style::palette(ui), ui.painter());
     let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
-    let end = Palette::HOT.ln_1p();
+    let end = Palette::MAX_GAIN.ln_1p();
     for step in 0..STEPS {
         let [from, to] = [step, step + 1].map(|step| step as f32 / STEPS as f32);
         let gain = (0.5 * (from + to) * end).exp_m1();
@@ -59,7 +59,7 @@ fn legend(ui: &mut Ui) {
         painter.rect_filled(part, 0.0, colour);
     }
     let font = FontId::proportional(12.0);
-    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::HOT, "8+")] {
+    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")] {
         let x = bar.left() + bar.width() * f32::ln_1p(gain) / end;
         let at = pos2(x, bar.bottom() + 3.0);
         let colour = ui.visuals().weak_text_color();

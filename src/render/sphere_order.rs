@@ -6,14 +6,14 @@ use crate::scene::Shell;
 
 /// One of the two sides of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Surface {
+pub(super) struct SphereSurface {
     /// Index of the sphere.
     pub sphere: usize,
-    pub side: Side,
+    pub side: SphereSide,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum SphereSide {
     Near,
     Far,
 }
@@ -26,22 +26,22 @@ pub(super) enum Side {
 /// length to both, and a ray from the eye crosses it at most once. Spheres that cut each other go by
 /// the same distance, although no order of whole sides is right for them.
 #[derive(Debug, Default)]
-pub(super) struct Order {
-    surfaces: Vec<Surface>,
+pub(super) struct SphereOrder {
+    surfaces: Vec<SphereSurface>,
     /// The spheres from the largest to the smallest.
     by_size: Vec<usize>,
 }
 
-impl Order {
+impl SphereOrder {
     /// Takes no memory if there were as many spheres before.
-    pub fn sort(&mut self, projection: &Projection, spheres: &[Shell]) -> &[Surface] {
+    pub fn sort(&mut self, projection: &Projection, spheres: &[Shell]) -> &[SphereSurface] {
         self.surfaces.clear();
         self.by_size.clear();
         self.by_size.extend(0..spheres.len());
         self.by_size.sort_unstable_by(|a, b| by_size(&spheres[*a], &spheres[*b]));
         for sphere in self.by_size.iter().copied() {
             let at = self.place(projection, spheres, sphere);
-            let sides = [Side::Far, Side::Near].map(|side| Surface { sphere, side });
+            let sides = [SphereSide::Far, SphereSide::Near].map(|side| SphereSurface { sphere, side });
             self.surfaces.splice(at..at, sides);
         }
         &self.surfaces
@@ -148,7 +148,7 @@ mod tests {
     }
 
     /// Where a ray meets the sides of the spheres, as a surface and how far along it is.
-    fn met(projection: &Projection, at: Vec2, shells: &[Shell]) -> Vec<(Surface, f64)> {
+    fn met(projection: &Projection, at: Vec2, shells: &[Shell]) -> Vec<(SphereSurface, f64)> {
         let ray = projection.ray(at);
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize());
         let sides = |(sphere, shell): (usize, &Shell)| {
@@ -156,8 +156,8 @@ mod tests {
             let middle = -from_centre.dot(direction);
             let miss = (from_centre + direction * middle).length_squared();
             let half = (f64::from(shell.radius).powi(2) - miss).sqrt();
-            [(Side::Near, middle - half), (Side::Far, middle + half)]
-                .map(|(side, along)| (Surface { sphere, side }, along))
+            [(SphereSide::Near, middle - half), (SphereSide::Far, middle + half)]
+                .map(|(side, along)| (SphereSurface { sphere, side }, along))
         };
         let all = shells.iter().enumerate().flat_map(sides);
         all.filter(|(_, along)| *along > 0.0 || projection.orthographic && along.is_finite())
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn every_ray_meets_the_sides_from_front_to_back() {
-        let (shells, mut order) = (shells(), Order::default());
+        let (shells, mut order) = (shells(), SphereOrder::default());
         let mut compared = 0;
         for camera in cameras() {
             let projection = camera.projection(1.5);
@@ -189,11 +189,11 @@ mod tests {
 
     #[test]
     fn the_order_does_not_depend_on_the_list() {
-        let (mut shells, mut order) = (shells(), Order::default());
+        let (mut shells, mut order) = (shells(), SphereOrder::default());
         shells.push(shell([95.0, 30.0, 0.0], 50.0)); // cuts others
         for camera in cameras() {
             let projection = camera.projection(1.5);
-            let sorted = |shells: &[Shell], order: &mut Order| -> Vec<_> {
+            let sorted = |shells: &[Shell], order: &mut SphereOrder| -> Vec<_> {
                 let surfaces = order.sort(&projection, shells).iter();
                 surfaces.map(|surface| (shells[surface.sphere], surface.side)).collect()
             };

@@ -1,18 +1,19 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::format::Numbered;
-use super::{ExportError, Options};
+use super::error::ExportError;
+use super::numbered_name::NumberedName;
+use super::options::ExportOptions;
 use crate::document::{Document, Theme};
 use crate::io::{self, Exported, FileBatch, Frames, Playback, Progress};
-use crate::render::{Gpu, Picture};
-use crate::scene::Scene;
+use crate::render::{Gpu, PictureRenderer};
+use crate::scene::SceneBuilder;
 use crate::session::Overlays;
 
-/// One picture.
+/// Encodes one picture.
 pub fn still(
     document: &Document,
-    options: &Options,
+    options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Exported, ExportError> {
     let time = options.time.unwrap_or(document.timeline.start);
@@ -20,59 +21,57 @@ pub fn still(
         return Err(ExportError::Time(time));
     }
     let gpu = Gpu::headless()?;
-    let mut film = Film::new(document, options, &gpu)?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
     progress.step(0, 1)?;
-    let bytes = png(options.size, &film.picture(time)?)?;
+    let bytes = png(options.size, &renderer.pixels(time)?)?;
     progress.step(1, 1)?;
     Ok(Exported { bytes, notes: Vec::new() })
 }
 
-/// A file for each frame, all or none.
+/// Writes one file per frame, all or none.
 pub fn sequence(
     document: &Document,
     path: &Path,
-    options: &Options,
+    name: &NumberedName,
+    options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
     let frames = Frames::of_picture(document, options.fps)?;
-    let Some(numbered) = Numbered::new(path) else {
-        return Err(ExportError::Ending { path: path.display().to_string() });
-    };
     let mut batch = FileBatch::beside(path)?;
     let gpu = Gpu::headless()?;
-    let mut film = Film::new(document, options, &gpu)?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
     for frame in 0..frames.count() {
         progress.step(frame, frames.count())?;
-        let pixels = film.picture(frames.time(frame))?;
-        batch.add(&numbered.name(frame), &png(options.size, &pixels)?)?;
+        let pixels = renderer.pixels(frames.time(frame))?;
+        batch.add(&name.with_number(frame), &png(options.size, &pixels)?)?;
     }
     progress.step(frames.count(), frames.count())?;
     batch.finish()?;
     Ok(Vec::new())
 }
 
-/// All frames in one animated PNG that plays for ever.
+/// Writes all frames to one animated PNG that loops for ever.
 pub fn animation(
     document: &Document,
     path: &Path,
-    options: &Options,
+    options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
-    const FOR_EVER: u32 = 0;
+    const LOOP_FOR_EVER: u32 = 0;
     let frames = Frames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
-    // Frame rates are at most 1000.
+    // Timeline::HIGHEST_FRAME_RATE is below.
     let rate = u16::try_from(frames.rate()).unwrap_or(u16::MAX);
     let gpu = Gpu::headless()?;
-    let mut film = Film::new(document, options, &gpu)?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
     io::write_with(path, |file| {
         let mut encoder = encoder(file, options.size);
-        encoder.set_animated(count, FOR_EVER)?;
+        encoder.set_animated(count, LOOP_FOR_EVER)?;
         encoder.set_frame_delay(1, rate)?;
         let mut writer = encoder.write_header()?;
         for frame in 0..frames.count() {
             progress.step(frame, frames.count())?;
-            writer.write_image_data(&film.picture(frames.time(frame))?)?;
+            writer.write_image_data(&renderer.pixels(frames.time(frame))?)?;
         }
         progress.step(frames.count(), frames.count())?;
         Ok::<(), ExportError>(writer.finish()?)
@@ -80,30 +79,32 @@ pub fn animation(
     Ok(Vec::new())
 }
 
-/// Takes pictures of a document, one after the other.
-struct Film<'a> {
+/// Draws a document at one time after another.
+struct FrameRenderer<'a> {
     playback: Playback,
     overlays: Overlays,
-    picture: Picture<'a>,
+    builder: SceneBuilder,
+    picture: PictureRenderer<'a>,
     theme: Theme,
 }
 
-impl<'a> Film<'a> {
-    fn new(document: &Document, options: &Options, gpu: &'a Gpu) -> Result<Self, ExportError> {
+impl<'a> FrameRenderer<'a> {
+    fn new(document: &Document, options: &ExportOptions, gpu: &'a Gpu) -> Result<Self, ExportError> {
         let (width, height) = options.size;
         Ok(Self {
             playback: Playback::new(document),
             overlays: Overlays::new(document, document.timeline.start),
-            picture: Picture::of_size(gpu, width, height)?,
+            builder: SceneBuilder::default(),
+            picture: PictureRenderer::of_size(gpu, width, height)?,
             theme: options.theme,
         })
     }
 
-    /// Rows from the top, four bytes for each pixel.
-    fn picture(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
+    /// RGBA pixels at a time, rows from the top.
+    fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
         let document = self.playback.at(time);
         self.overlays = std::mem::take(&mut self.overlays).at(document, time);
-        let scene = Scene::new(document, &self.overlays, self.theme);
+        let scene = self.builder.build(document, &self.overlays, self.theme);
         Ok(self.picture.draw(&scene)?.into_raw())
     }
 }

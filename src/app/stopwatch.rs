@@ -1,7 +1,7 @@
 use std::time::{Duration, Instant};
 
-/// Tells how long it is since it was last asked, or made.
-pub(super) fn laps() -> impl FnMut() -> Duration {
+/// Returns a function that returns the time since its last call, or since now for the first.
+pub fn stopwatch() -> impl FnMut() -> Duration {
     let mut last = Instant::now();
     move || {
         let now = Instant::now();

@@ -1,12 +1,12 @@
 use glam::Vec3;
 
-use super::Shadow;
+use crate::scene::Shadow;
 
-/// The part of a limb above y = 0: what is below casts no shadow on it.
+/// Cuts off the part of a limb below the ground, which casts no shadow on it.
 pub(super) fn above_ground(limb: Shadow) -> Option<Shadow> {
-    let at = |part: f32| {
-        let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * part;
-        (limb.base.lerp(limb.tip, part), radius)
+    let at = |fraction: f32| {
+        let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * fraction;
+        (limb.base.lerp(limb.tip, fraction), radius)
     };
     let (base_y, tip_y) = (limb.base.y, limb.tip.y);
     let crossing = base_y / (base_y - tip_y);

@@ -3,28 +3,27 @@ use std::env;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{KeyCode, PhysicalKey};
 
-/// Faults that `IK_ARM_DEBUG` asks for in the program's own tests: with any value F12 destroys the
-/// graphics device, as the reset of a driver does, and with `fail-devices:3` the first three devices
-/// that are created after a loss fail.
+/// Options of `IK_ARM_DEBUG`, for the program's own tests. With any value, F12 destroys the graphics device,
+/// like the reset of a driver; with `fail-devices:3`, the first three attempts to create it again fail.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(super) struct Debug {
-    is_on: bool,
+pub(super) struct DebugOptions {
+    is_enabled: bool,
     failing_devices: u32,
 }
 
-impl Debug {
+impl DebugOptions {
     pub fn from_env() -> Self {
         env::var("IK_ARM_DEBUG").map_or_else(|_| Self::default(), |value| Self::new(&value))
     }
 
     fn new(value: &str) -> Self {
         let count = value.strip_prefix("fail-devices:").and_then(|count| count.parse().ok());
-        Self { is_on: !value.is_empty(), failing_devices: count.unwrap_or(0) }
+        Self { is_enabled: !value.is_empty(), failing_devices: count.unwrap_or(0) }
     }
 
     /// Whether the event asks to destroy the graphics device.
     pub fn destroys_device(&self, event: &WindowEvent) -> bool {
-        self.is_on
+        self.is_enabled
             && matches!(
                 event,
                 WindowEvent::KeyboardInput {
@@ -38,7 +37,7 @@ impl Debug {
             )
     }
 
-    /// Whether the device that is created now fails.
+    /// Whether the device that is being created is to fail.
     pub fn fails_device(&mut self) -> bool {
         let fails = self.failing_devices > 0;
         self.failing_devices = self.failing_devices.saturating_sub(1);
@@ -51,17 +50,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_fails_unless_it_is_asked_for() {
-        let mut debug = Debug::new("");
-        assert!(!debug.is_on && !debug.fails_device());
+    fn nothing_is_enabled_by_default() {
+        let mut options = DebugOptions::new("");
+        assert!(!options.is_enabled && !options.fails_device());
     }
 
     #[test]
-    fn as_many_devices_fail_as_are_asked_for() {
-        let mut debug = Debug::new("fail-devices:2");
-        assert!(debug.is_on);
-        assert_eq!([(); 4].map(|()| debug.fails_device()), [true, true, false, false]);
-        assert!(!Debug::new("fail-devices:many").fails_device());
-        assert!(Debug::new("1").is_on && !Debug::new("1").fails_device());
+    fn the_requested_number_of_devices_fails() {
+        let mut options = DebugOptions::new("fail-devices:2");
+        assert!(options.is_enabled);
+        assert_eq!([(); 4].map(|()| options.fails_device()), [true, true, false, false]);
+        assert!(!DebugOptions::new("fail-devices:many").fails_device());
+        assert!(DebugOptions::new("1").is_enabled && !DebugOptions::new("1").fails_device());
     }
 }

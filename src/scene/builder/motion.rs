@@ -1,25 +1,24 @@
 use glam::Vec3;
 
-use super::{Ball, Colour, Line, Scene};
 use crate::document::{Document, RigKind};
 use crate::rig::Part;
+use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
 
-/// A frame's dot, as a part of the rig's reach.
-const DOT: f32 = 0.004;
-/// How thick the bones of a skin are, as a part of the rig's reach.
-const BONE: f32 = 0.008;
-/// How far the colour of the nearest skin is from the background's.
-const NEAREST: f32 = 0.7;
+/// Radius of a frame's dot, as a fraction of the rig's reach.
+const DOT_RADIUS: f32 = 0.004;
+/// Radius of an onion skin's bones, as a fraction of the rig's reach.
+const BONE_RADIUS: f32 = 0.008;
+/// Contrast of an opaque onion skin with the background: 0 is the background's colour.
+const CONTRAST: f32 = 0.7;
 
-/// Adds the way of the hand or joint, with a dot for every frame, and the rig as it stands before and
-/// after.
+/// Adds the trail of the hand or joint with a dot for every frame, and the onion skins.
 pub(super) fn add(scene: &mut Scene, document: &Document, overlays: &Overlays, reach: f32) {
-    add_trail(scene, overlays, DOT * reach);
+    add_trail(scene, overlays, DOT_RADIUS * reach);
     for skin in &overlays.onion_skins {
         let plain = if skin.past { scene.palette.joint } else { scene.palette.accent };
-        let colour = scene.palette.sky_top.mixed(plain, NEAREST * skin.opacity);
-        add_skin(scene, skin, document.rig, colour, BONE * reach);
+        let colour = scene.palette.sky_top.mixed(plain, CONTRAST * skin.opacity);
+        add_skin(scene, skin, document.rig, colour, BONE_RADIUS * reach);
     }
 }
 

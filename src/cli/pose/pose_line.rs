@@ -5,9 +5,9 @@ use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
 use crate::kinematics::skeleton::is_within_numbers;
 
-/// What is printed.
+/// Output of the command: one line of JSON.
 #[derive(Serialize)]
-pub struct Line<'a> {
+pub struct PoseLine<'a> {
     joints: Vec<JointLine<'a>>,
     targets: Vec<TargetLine>,
     report: Option<ReportLine>,
@@ -40,8 +40,12 @@ struct ReportLine {
     converged: bool,
 }
 
-impl<'a> Line<'a> {
-    /// A joint that floats cannot hold is named instead.
+impl<'a> PoseLine<'a> {
+    /// Reads joints and targets at a time, in the file's order.
+    ///
+    /// # Errors
+    ///
+    /// The name of a joint whose position overflows.
     pub fn new(
         rig: &'a SkeletonRig,
         order: &[usize],
@@ -91,7 +95,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// By way of f64, so that 90 is 90 again.
+/// Converts in f64, so that 90 degrees in the file print as 90; overflow is clamped to ±f32::MAX.
 fn degrees(radians: Vec3) -> Vec3 {
     let degrees = radians.as_dvec3() * 1_f64.to_degrees();
     degrees.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()

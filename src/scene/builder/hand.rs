@@ -1,11 +1,13 @@
 use glam::{Affine3A, Quat, Vec3};
 
-use super::{Ball, Colour, Scene};
+use crate::scene::{Ball, Colour, Scene};
 
-/// A finger in hand lengths: its knuckle, its three bones, how thick it is, and how it bends.
+/// A finger, in units of the hand length.
 struct Finger {
     knuckle: Vec3,
+    /// Lengths of the bones.
     bones: [f32; 3],
+    /// Radius at the knuckle.
     radius: f32,
     /// Radians to the little finger's side.
     spread: f32,
@@ -44,7 +46,7 @@ const FINGERS: [Finger; 4] = [
     },
 ];
 
-/// The thumb from the wrist to its tip: places and radii.
+/// Joints of the thumb from the wrist to its tip: positions and radii.
 const THUMB: [(Vec3, f32); 4] = [
     (Vec3::new(0.12, -0.02, -0.07), 0.105),
     (Vec3::new(0.27, -0.06, -0.225), 0.092),
@@ -52,39 +54,44 @@ const THUMB: [(Vec3, f32); 4] = [
     (Vec3::new(0.505, -0.07, -0.365), 0.062),
 ];
 
-/// A cuff around the wrist, of the lower limb's colour: its length and its radii.
+/// Length and radii of the cuff around the wrist.
 const CUFF: (f32, [f32; 2]) = (0.1, [0.165, 0.185]);
 
-/// How far apart the bones of the palm are at the wrist, to how far at the knuckles.
+/// Distance between the palm's bones at the wrist, as a fraction of that at the knuckles.
 const WRIST: f32 = 0.5;
+/// Radius of the palm's bones at the wrist.
 const PALM_RADIUS: f32 = 0.085;
-/// How thick the palm is at a knuckle, beside the finger.
+/// Radius of the palm at a knuckle divided by the finger's.
 const KNUCKLE: f32 = 1.15;
-/// A finger's tip is so thin beside its knuckle.
+/// Radius of a fingertip divided by that of its knuckle.
 const TAPER: f32 = 0.84;
 
-/// Adds a right hand: +x from the wrist to the fingertips, +y out of its back, +z to the little
-/// finger's side.
-pub(super) fn add(scene: &mut Scene, place: Affine3A, size: f32, colour: Colour) {
-    let mut hand = Hand { scene, place, size, colour };
-    for finger in &FINGERS {
-        hand.add_palm(finger);
-        hand.add_finger(finger);
+impl Scene {
+    /// Adds a right hand of cones and balls, with a cuff in the lower limb's colour. `transform` is rigid and
+    /// maps from the space of its wrist: +x is towards the fingertips, +y out of the back (the palm faces
+    /// −y), +z on the little finger's side (the thumb is at −z). `size` is the distance from the wrist to the
+    /// tip of the middle finger.
+    pub fn add_hand(&mut self, transform: Affine3A, size: f32, colour: Colour) {
+        let mut hand = Hand { scene: self, transform, size, colour };
+        for finger in &FINGERS {
+            hand.add_palm(finger);
+            hand.add_finger(finger);
+        }
+        hand.add_balls(&THUMB);
+        hand.add_cones(&THUMB);
+        hand.add_cuff();
     }
-    hand.add_balls(&THUMB);
-    hand.add_cones(&THUMB);
-    hand.add_cuff();
 }
 
 struct Hand<'a> {
     scene: &'a mut Scene,
-    place: Affine3A,
+    transform: Affine3A,
     size: f32,
     colour: Colour,
 }
 
 impl Hand<'_> {
-    /// The bone of the palm that a finger stands on.
+    /// Adds the palm's bone below a finger.
     fn add_palm(&mut self, finger: &Finger) {
         let wrist = Vec3::new(0.06, 0.0, finger.knuckle.z * WRIST);
         let joints = [(wrist, PALM_RADIUS), (finger.knuckle, finger.radius * KNUCKLE)];
@@ -102,29 +109,29 @@ impl Hand<'_> {
             let radius = finger.radius * (1.0 - (1.0 - TAPER) * (step + 1) as f32 / 3.0);
             joints[step + 1] = (joint, radius);
         }
-        // The knuckle's ball, which is larger, hides the first.
+        // The palm's ball covers the knuckle.
         self.add_balls(&joints[1..]);
         self.add_cones(&joints);
     }
 
     fn add_cuff(&mut self) {
         let (length, [base, tip]) = CUFF;
-        let at = |x: f32| self.place.transform_point3(Vec3::X * x * self.size);
+        let at = |x: f32| self.transform.transform_point3(Vec3::X * x * self.size);
         let colour = self.scene.palette.lower;
         self.scene.add_solid(at(0.0), at(length), base * self.size, tip * self.size, colour);
     }
 
     fn add_balls(&mut self, joints: &[(Vec3, f32)]) {
         for (point, radius) in joints {
-            let centre = self.place.transform_point3(*point * self.size);
+            let centre = self.transform.transform_point3(*point * self.size);
             let radius = radius * self.size;
             self.scene.balls.push(Ball { centre, radius, colour: self.colour });
         }
     }
 
-    /// From each joint to the next.
+    /// Adds cones between successive joints.
     fn add_cones(&mut self, joints: &[(Vec3, f32)]) {
-        let at = |point| self.place.transform_point3(point * self.size);
+        let at = |point| self.transform.transform_point3(point * self.size);
         for ends in joints.windows(2) {
             let [(base, base_radius), (tip, tip_radius)] = [ends[0], ends[1]];
             let (base_radius, tip_radius) = (base_radius * self.size, tip_radius * self.size);

@@ -1,12 +1,13 @@
 use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
-use super::{Ball, Globe, Label, Line, Scene, Shadow, Shell, Side, Solid, Words};
 use crate::document::{Arm, Display, Overlay, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmRig, Cone, Part};
+use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Shell, Solid};
 
-/// Balls cover the ends of the limbs they join, so that no gap shows however the elbow bends.
+/// Radii and sizes on an arm of thickness 1. The balls of the joints are as large as the limbs' ends, so that
+/// no gap shows when the elbow bends.
 const SHOULDER_BALL: f32 = 33.0;
 pub(super) const ELBOW_BALL: f32 = 33.0;
 const HAND_BALL: f32 = 22.0;
@@ -17,7 +18,7 @@ const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the limbs, the guides that are shown, their labels and the limbs' shadows.
+/// Adds the limbs, the guides that are shown, the labels and the shadows.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Display) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
@@ -51,18 +52,18 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
     }
 }
 
-/// `roll` is the forearm's at the hand, if stripes are to show it.
+/// Adds the two limbs. Stripes on the lower limb show its `roll`, in radians at the hand.
 fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>) {
     let palette = scene.palette;
     scene.solids.extend([
         Solid {
-            place: rig.world(Part::UpperLimb),
+            transform: rig.world(Part::UpperLimb),
             shape: rig.upper(),
             colour: palette.upper,
             stripes: None,
         },
         Solid {
-            place: rig.world(Part::LowerLimb),
+            transform: rig.world(Part::LowerLimb),
             shape: rig.lower(),
             colour: palette.lower,
             stripes: roll,
@@ -78,8 +79,8 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>)
 
 fn add_hand(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, thickness: f32) {
     let rotation = arm.hand_rotation(pose).as_mat3();
-    let place = Affine3A::from_mat3_translation(rotation, arm.root + pose.hand);
-    scene.add_hand(place, HAND * thickness, scene.palette.joint);
+    let transform = Affine3A::from_mat3_translation(rotation, arm.root + pose.hand);
+    scene.add_hand(transform, HAND * thickness, scene.palette.joint);
 }
 
 fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
@@ -87,24 +88,23 @@ fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
     scene.guide_balls.push(Ball { centre, radius, colour });
 }
 
-/// A pin that sticks in the Cursor: it holds the hand to the world.
+/// Adds a pin in the Cursor: the hand is pinned to the world.
 fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
     let colour = scene.palette.accent;
     let head = cursor + PIN * thickness;
-    let (place, shape) = Cone::between(cursor, head, 0.0, PIN_RADIUS * thickness);
-    scene.guide_solids.push(Solid { place, shape, colour, stripes: None });
+    let (transform, shape) = Cone::between(cursor, head, 0.0, PIN_RADIUS * thickness);
+    scene.guide_solids.push(Solid { transform, shape, colour, stripes: None });
     scene.guide_balls.push(Ball { centre: head, radius: PIN_HEAD * thickness, colour });
 }
 
-/// What the elbow points at, with a line from there.
+/// Adds the pole, and a line from the elbow to it.
 fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display: Display) {
     let (radius, colour) =
         (POLE_BALL * thickness, scene.palette.twist_reference(TwistReferenceKind::Pole));
     scene.guide_balls.push(Ball { centre: pole, radius, colour });
     scene.lines.push(Line { from: rig.origin(Part::Elbow), to: pole, colour, dashed: true });
     if display.shows(Overlay::Labels) {
-        let (clearance, side, words) = (radius, Side::Above, Words::default());
-        let label = Label { at: pole, clearance, side, words, colour };
+        let label = Label::new(pole, radius, LabelSide::Above, colour);
         scene.add_label(label, format_args!("Pole"));
     }
 }
@@ -113,50 +113,44 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
     let colour = scene.palette.guide;
     if display.shows(Overlay::Pointer) {
         scene.guide_solids.push(Solid {
-            place: rig.world(Part::Pointer),
+            transform: rig.world(Part::Pointer),
             shape: rig.pointer(),
             colour,
             stripes: None,
         });
     }
-    for (layer, part, radius) in [
+    for (overlay, part, radius) in [
         (Overlay::InnerLimit, Part::InnerLimit, rig.inner_limit()),
         (Overlay::OuterLimit, Part::OuterLimit, rig.outer_limit()),
     ] {
-        if display.shows(layer) && radius > 0.0 {
+        if display.shows(overlay) && radius > 0.0 {
             scene.shells.push(Shell { centre: rig.origin(part), radius, colour });
         }
     }
 }
 
-/// The way from the hand to a Cursor that it does not reach, with its length.
+/// Adds a line from the hand to a Cursor out of reach, labelled with its length.
 fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
     let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
-    let label = Label {
-        at: cursor,
-        clearance: CURSOR_BALL * thickness,
-        side: Side::Above,
-        words: Words::default(),
-        colour,
-    };
+    let label = Label::new(cursor, CURSOR_BALL * thickness, LabelSide::Above, colour);
     let (length, digits) = (hand.distance(cursor), arm.length_digits());
     scene.add_label(label, format_args!("{length:.digits$}"));
 }
 
-/// The elbow says what it is measured from where that is shown.
+/// Adds the joints' names, except the elbow's if it has the label of its twist reference.
 fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: bool) {
     let colour = scene.palette.text;
     let named = [
-        (Part::Root, SHOULDER_BALL, Side::Below, "Root"),
-        (Part::Elbow, ELBOW_BALL, Side::Above, "Elbow"),
-        (Part::Hand, HAND_BALL, Side::Below, "Hand"),
+        (Part::Root, SHOULDER_BALL, LabelSide::Below, "Root"),
+        (Part::Elbow, ELBOW_BALL, LabelSide::Above, "Elbow"),
+        (Part::Hand, HAND_BALL, LabelSide::Below, "Hand"),
     ];
     let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == Part::Elbow));
     for (part, radius, side, name) in named {
-        let (at, clearance, words) = (rig.origin(part), radius * thickness, Words::default());
-        scene.add_label(Label { at, clearance, side, words, colour }, format_args!("{name}"));
+        let label = Label::new(rig.origin(part), radius * thickness, side, colour);
+        scene.add_label(label, format_args!("{name}"));
     }
 }
 

@@ -2,78 +2,82 @@ use glam::Vec3;
 
 use super::scratch::Scratch;
 use super::shadow::above_ground;
-use super::{Ball, Colour, Label, Line, Scene, Shadow, Side, Words};
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
 use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
 
-/// A bone is drawn no thicker than this part of its length, and this part of the skeleton's reach,
-/// whatever its radius is.
-const THICKEST: (f32, f32) = (0.45, 0.028);
-/// But a bone's reach never makes it more slender than this part of its length, so that the first
-/// bones of a new skeleton are as thick as they will be when it is complete.
-const SLENDEREST: f32 = 0.07;
-/// A joint that is a point is drawn as large as this part of the skeleton's reach at most.
-const POINT: f32 = 0.02;
-/// How much a slender bone tapers to its tip; one that is shorter than so many of its radii does not,
-/// so that many of them make one smooth body.
+/// Maximum radius of a bone, as a fraction of its length and of the skeleton's reach.
+const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
+/// Fraction of a bone's length that the limit by reach never goes below, so that the first bones of a new
+/// skeleton are as thick as in the complete one.
+const MIN_LIMIT: f32 = 0.07;
+/// Maximum radius of a joint without length, as a fraction of the skeleton's reach.
+const POINT_RADIUS: f32 = 0.02;
+/// Radius of a slender bone's tip divided by that of its base.
 const TAPER: f32 = 0.6;
+/// Length of a bone in radii above which it tapers. Shorter ones do not, so that many of them form one smooth
+/// body.
 const SLENDER: f32 = 4.0;
-/// Ghosts are as thin beside a bone as this.
+/// Radius of a ghost's bone divided by that of the bone.
 const GHOST: f32 = 0.45;
-/// A target's ball, as a part of the skeleton's reach.
-const TARGET: f32 = 0.014;
-/// How many seconds a target's trail is long, and how finely it is drawn.
+/// Radius of a target, as a fraction of the skeleton's reach.
+const TARGET_RADIUS: f32 = 0.014;
+/// Duration of a target's trail in seconds, and its number of segments.
 const TRAIL: (f64, usize) = (1.2, 48);
 
-/// Where the ground's middle is, how far the skeleton reaches, and how wide a grid's cells are.
-pub(super) fn stage(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
+/// Centre of the ground, reach of the skeleton, and width of a grid cell.
+pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
     let reach = rig.reach_in(&mut scratch.distances);
     rig.skeleton.write_pose(&mut scratch.pose);
     let (centre, radius) = rig.bounds_with(reach, &scratch.pose, 0.0);
     (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::cell(reach))
 }
 
-/// Adds the bones, targets with their trails and gaps, ghosts, and the bones' shadows.
-pub(super) fn add(scene: &mut Scene, rig: &SkeletonRig, overlays: &Overlays, display: Display) {
-    let mut scratch = core::mem::take(&mut scene.scratch);
-    let Scratch { pose, distances, depths, are_leaves, named } = &mut scratch;
+/// Adds the bones with their shadows, ghosts of other solvers, targets with their trails, the follow path, and
+/// labels.
+pub(super) fn add(
+    scene: &mut Scene,
+    rig: &SkeletonRig,
+    overlays: &Overlays,
+    display: Display,
+    scratch: &mut Scratch,
+) {
+    let Scratch { pose, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
     rig.write_pose(overlays.time, pose);
     read_tree(skeleton.joints(), depths, are_leaves);
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
-    let figure = Figure { joints, pose, depths, are_leaves, reach, scale };
+    let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
     for joint in 0..joints.len() {
-        let colour = figure.colour(scene, joint, overlays);
-        figure.add_bone(scene, joint, colour);
+        let colour = drawn.colour(scene, joint, overlays);
+        drawn.add_bone(scene, joint, colour);
         if display.shows(Overlay::Shadow) {
-            figure.add_shadow(scene, joint);
+            drawn.add_shadow(scene, joint);
         }
     }
     for ghost in &overlays.ghosts {
         let colour = scene.palette.method(ghost.method);
-        Figure { pose: &ghost.pose, ..figure }.add_ghost(scene, colour);
+        DrawnSkeleton { pose: &ghost.pose, ..drawn }.add_ghost(scene, colour);
     }
     if display.shows(Overlay::Cursor) {
         for target in &rig.targets {
-            figure.add_target(scene, target, overlays);
+            drawn.add_target(scene, target, overlays);
         }
     }
     if let Some(follow_path) = &rig.follow_path
         && display.shows(Overlay::Pointer)
     {
-        add_way(scene, follow_path, skeleton, overlays.time);
+        add_follow_path(scene, follow_path, skeleton, overlays.time);
     }
     if display.shows(Overlay::Labels) {
-        figure.add_labels(scene, overlays, named);
+        drawn.add_labels(scene, overlays, labelled);
     }
-    scene.scratch = scratch;
 }
 
-/// Goes through all joints: how many bones are above each, where points do not count, and whether
-/// nothing hangs from it.
+/// Counts the bones above each joint, without those of no length, and finds the joints without children.
 fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
     depths.clear();
     depths.resize(joints.len(), 0);
@@ -88,32 +92,32 @@ fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<boo
     }
 }
 
-/// A posed skeleton with the measures that it is drawn by.
+/// A posed skeleton with the measures for drawing it.
 #[derive(Clone, Copy)]
-struct Figure<'a> {
+struct DrawnSkeleton<'a> {
     joints: &'a [Joint],
     pose: &'a SkeletonPose,
     depths: &'a [usize],
     are_leaves: &'a [bool],
-    /// In the world.
+    /// Reach in world units.
     reach: f32,
-    /// From the skeleton's units to the world's.
+    /// World units per unit of the skeleton.
     scale: f32,
 }
 
-impl Figure<'_> {
-    /// How thick a bone is drawn where it begins.
+impl DrawnSkeleton<'_> {
+    /// Radius of a bone at its base, as drawn.
     fn radius(&self, joint: usize) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
-        let (of_length, of_reach) = THICKEST;
-        let thickest = match length {
-            0.0 => POINT * self.reach,
+        let (of_length, of_reach) = MAX_RADIUS;
+        let limit = match length {
+            0.0 => POINT_RADIUS * self.reach,
             length => {
-                let of_reach = (of_reach * self.reach).max(SLENDEREST * length);
+                let of_reach = (of_reach * self.reach).max(MIN_LIMIT * length);
                 of_reach.min(of_length * length)
             }
         };
-        (self.joints[joint].radius * self.scale).clamp(0.25 * thickest, thickest)
+        (self.joints[joint].radius * self.scale).clamp(0.25 * limit, limit)
     }
 
     fn tip_radius(&self, joint: usize) -> f32 {
@@ -122,7 +126,7 @@ impl Figure<'_> {
         if length > SLENDER * radius { radius * TAPER } else { radius }
     }
 
-    /// Bones take turns in the limbs' colours from parent to child; the accent says selected.
+    /// Colour of a bone: the limbs' colours alternate from parent to child, and the accent marks the selection.
     fn colour(&self, scene: &Scene, joint: usize, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
         let plain =
@@ -170,11 +174,12 @@ impl Figure<'_> {
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
     }
 
-    /// A ball where the target is, its trail, and the gap to the tip that does not reach it.
+    /// Adds a target as a ball with its trail and, if the tip does not reach it, a line to the tip labelled with
+    /// the distance.
     fn add_target(&self, scene: &mut Scene, target: &Target, overlays: &Overlays) {
         let at = target.at(overlays.time);
         let tip = self.pose.tip(target.joint);
-        let radius = TARGET * self.reach;
+        let radius = TARGET_RADIUS * self.reach;
         let (guide, accent) = (scene.palette.guide, scene.palette.accent);
         let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
         scene.guide_balls.push(Ball { centre: at, radius, colour });
@@ -185,38 +190,33 @@ impl Figure<'_> {
         let gap = tip.distance(at);
         if gap > 1.5 * radius {
             scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
-            let (clearance, side, words) = (radius, Side::Above, Words::default());
-            let label = Label { at, clearance, side, words, colour: accent };
+            let label = Label::new(at, radius, LabelSide::Above, accent);
             let decimals = residual_decimals(self.reach);
             scene.add_label(label, format_args!("{gap:.decimals$}"));
         }
     }
 
-    /// The name of what is selected or pointed at.
-    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, named: &mut Vec<usize>) {
-        named.clear();
-        named.extend(overlays.selection.iter().copied().chain(overlays.pointed));
-        named.sort_unstable();
-        named.dedup();
-        for joint in named.iter().copied().filter(|joint| *joint < self.joints.len()) {
-            let label = Label {
-                at: self.pose.base(joint).midpoint(self.pose.tip(joint)),
-                clearance: self.radius(joint),
-                side: Side::Below,
-                words: Words::default(),
-                colour: scene.palette.text,
-            };
+    /// Adds the names of the selected joints and of the one under the mouse.
+    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<usize>) {
+        labelled.clear();
+        labelled.extend(overlays.selection.iter().copied().chain(overlays.pointed));
+        labelled.sort_unstable();
+        labelled.dedup();
+        for joint in labelled.iter().copied().filter(|joint| *joint < self.joints.len()) {
+            let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
+            let label =
+                Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);
             scene.add_label(label, format_args!("{}", self.joints[joint].name));
         }
     }
 }
 
-/// With how many digits behind the point a distance is written for a skeleton of such a reach.
+/// Number of decimals for distances, by the reach of the skeleton.
 fn residual_decimals(reach: f32) -> usize {
     (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize
 }
 
-/// Where a moving target has just been, fading.
+/// Adds the recent path of a moving target, which fades out.
 fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
     if target.motion.path == TargetPath::Still {
         return;
@@ -231,12 +231,12 @@ fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
     }
 }
 
-/// The way before a snake's head and behind its tail, once around.
-fn add_way(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
+/// Adds the curve that the skeleton follows, once around.
+fn add_follow_path(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
     let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
     let head = follow_path.head(time);
-    let way = || follow_path.trail(skeleton.transform(), height, head, head + 1.0);
+    let curve = || follow_path.trail(skeleton.transform(), height, head, head + 1.0);
     let colour = scene.palette.guide.with_opacity(0.35);
-    let pieces = way().zip(way().skip(1));
-    scene.lines.extend(pieces.map(|(from, to)| Line { from, to, colour, dashed: false }));
+    let segments = curve().zip(curve().skip(1));
+    scene.lines.extend(segments.map(|(from, to)| Line { from, to, colour, dashed: false }));
 }

@@ -1,20 +1,21 @@
 use core::fmt::{self, Display, Formatter};
 
-use super::{Ball, Label, Scene, Side, Words, arm};
+use super::arm;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::ArmRig;
+use crate::scene::{Ball, Label, LabelSide, Scene};
 
-/// On an arm as thick as the seed's.
-const LIMB: f32 = 7.0;
-const ELBOW: f32 = 13.0;
+/// Radii on an arm of thickness 1.
+const LIMB_RADIUS: f32 = 7.0;
+const ELBOW_RADIUS: f32 = 13.0;
 
-/// Elbows that are nearer to each other than this share a label: two would cover each other.
-const APART: f32 = 20.0 * core::f32::consts::PI / 180.0;
+/// Angle below which elbows share a label, since two labels would overlap.
+const SHARED_LABEL_ANGLE: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
-/// Adds the arm as every other swivel reference would have it with the same spin, thin, and how far
-/// each elbow is from the arm's. `transported` is what transport would measure from.
+/// Adds the arm with every other twist reference and the same twist, as thin ghosts whose labels show the
+/// angles between their elbows and the arm's. `transported` is the frame for transport.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedFrame>) {
     if !arm.is_led_by_hand() {
         return;
@@ -22,7 +23,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedF
     let own = arm.solve().pose;
     let mut ghosts = TwistReferenceKind::ALL.map(|twist_reference| {
         let pose = arm.pose_measured_from(twist_reference, transported);
-        Ghost {
+        ReferenceGhost {
             twist_reference,
             pose,
             turn: own.elbow_turn_to(&pose),
@@ -33,53 +34,50 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedF
     for ghost in ghosts.iter().filter(|ghost| !ghost.is_own) {
         ghost.add_limbs(scene, arm);
     }
-    for group in ghosts.chunk_by(|a, b| b.turn - a.turn < APART) {
+    for group in ghosts.chunk_by(|a, b| b.turn - a.turn < SHARED_LABEL_ANGLE) {
         add_label(scene, arm, group);
     }
 }
 
-struct Ghost {
+/// The arm with another twist reference.
+struct ReferenceGhost {
     twist_reference: TwistReferenceKind,
     pose: TwoBonePose,
-    /// How far its elbow is turned from the arm's.
+    /// Angle from the arm's elbow to its elbow, about the Pointer, in radians.
     turn: f32,
     is_own: bool,
 }
 
-impl Ghost {
+impl ReferenceGhost {
     fn add_limbs(&self, scene: &mut Scene, arm: &Arm) {
         let thickness = ArmRig::thickness(arm.bones);
         let colour = scene.palette.twist_reference(self.twist_reference);
         let [elbow, hand] = [self.pose.elbow, self.pose.hand].map(|point| arm.root + point);
-        let radius = LIMB * thickness;
+        let radius = LIMB_RADIUS * thickness;
         scene.add_solid(arm.root, elbow, radius, radius, colour);
         scene.add_solid(elbow, hand, radius, radius, colour);
-        scene.balls.push(Ball { centre: elbow, radius: ELBOW * thickness, colour });
+        scene.balls.push(Ball { centre: elbow, radius: ELBOW_RADIUS * thickness, colour });
     }
 }
 
-/// As in "Stereographic · Limb −17°", where the arm's own has no angle.
-fn add_label(scene: &mut Scene, arm: &Arm, group: &[Ghost]) {
+/// Adds a label like "Stereographic · Limb −17°"; the arm's own reference has no angle.
+fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
     let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
     let Some(ghost) = shown else { return };
     let (ball, colour) = match ghost.is_own {
         true => (arm::ELBOW_BALL, scene.palette.text),
-        false => (ELBOW, scene.palette.twist_reference(ghost.twist_reference)),
+        false => (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference)),
     };
-    let label = Label {
-        at: arm.root + ghost.pose.elbow,
-        clearance: ball * ArmRig::thickness(arm.bones),
-        side: Side::Above,
-        words: Words::default(),
-        colour,
-    };
-    scene.add_label(label, format_args!("{}", Names(group)));
+    let at = arm.root + ghost.pose.elbow;
+    let clearance = ball * ArmRig::thickness(arm.bones);
+    let label = Label::new(at, clearance, LabelSide::Above, colour);
+    scene.add_label(label, format_args!("{}", GhostNames(group)));
 }
 
-/// The names of elbows that share a label, the arm's own first.
-struct Names<'a>(&'a [Ghost]);
+/// Names of the references that share a label, the arm's own first.
+struct GhostNames<'a>(&'a [ReferenceGhost]);
 
-impl Display for Names<'_> {
+impl Display for GhostNames<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let own = self.0.iter().filter(|ghost| ghost.is_own);
         let others = self.0.iter().filter(|ghost| !ghost.is_own);

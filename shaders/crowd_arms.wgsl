@@ -1,0 +1,90 @@
+// Arms of a crowd, without meshes: vertices are computed from their indices. Near arms have round limbs
+// and joints, farther ones limbs with few sides, the farthest ones flat limbs that face the eye.
+
+struct Lod {
+    sides: u32, // of a limb
+    first: u32, // start of the level's list
+}
+
+@group(1) @binding(3) var<storage, read> visible: array<u32>;
+@group(2) @binding(0) var<uniform> lod: Lod;
+
+struct Surface {
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) @interpolate(flat) colour: vec3f,
+}
+
+struct Vertex {
+    position: vec3f,
+    normal: vec3f,
+}
+
+const TAU = 6.2831853;
+const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 1), vec2u(0, 1));
+const BALL = vec2u(10u, 5u); // around, from pole to pole
+const MIN_RADIUS = 0.4; // of a limb on screen, in pixels
+
+fn unit(v: vec3f, fallback: vec3f) -> vec3f {
+    let square = dot(v, v);
+    return select(fallback, v * inverseSqrt(square), square > 0.0);
+}
+
+fn limb_vertex(base: vec3f, tip: vec3f, index: u32) -> Vertex {
+    let axis = unit(tip - base, vec3f(0.0, 1.0, 0.0));
+    let cell = QUAD[index % 6u];
+    let place = mix(base, tip, f32(cell.y));
+    let radius = max(mix(crowd.base_radius, crowd.tip_radius, f32(cell.y)), MIN_RADIUS * pixel_at(place));
+    if lod.sides == 1u {
+        let towards = mix(crowd.eye - place, -crowd.forward, select(0.0, 1.0, crowd.pixel > 0.0));
+        let aside = unit(cross(towards, axis), normalize(view.right));
+        let normal = unit(cross(aside, axis), -crowd.forward);
+        let facing = select(normal, -normal, dot(normal, towards) < 0.0);
+        return Vertex(place + aside * radius * (1.0 - 2.0 * f32(cell.x)), facing);
+    }
+    let up = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(axis.y) > 0.9);
+    let y = normalize(cross(up, axis));
+    let z = cross(axis, y);
+    let turn = TAU * f32(index / 6u + cell.x) / f32(lod.sides);
+    let normal = y * cos(turn) + z * sin(turn);
+    return Vertex(place + normal * radius, normal);
+}
+
+fn ball_vertex(centre: vec3f, index: u32) -> Vertex {
+    let cell = QUAD[index % 6u];
+    let quad = vec2u(index / 6u % BALL.x, index / 6u / BALL.x) + cell;
+    let around = TAU * f32(quad.x) / f32(BALL.x);
+    let down = 0.5 * TAU * f32(quad.y) / f32(BALL.y);
+    let normal = vec3f(sin(down) * cos(around), cos(down), sin(down) * sin(around));
+    return Vertex(centre + normal * crowd.base_radius * JOINT_RADIUS, normal);
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Surface {
+    let arm = arm_at(visible[lod.first + instance]);
+    let limb = lod.sides * 6u; // vertices
+    var corner: Vertex;
+    var colour = crowd.joint.rgb;
+    if index < limb {
+        corner = limb_vertex(arm.shoulder, arm.elbow, index);
+        colour = crowd.upper.rgb;
+    } else if index < 2u * limb {
+        corner = limb_vertex(arm.elbow, arm.hand, index - limb);
+        colour = crowd.lower.rgb;
+    } else {
+        let ball = BALL.x * BALL.y * 6u;
+        let joint = (index - 2u * limb) / ball;
+        let centre = select(select(arm.hand, arm.elbow, joint == 1u), arm.shoulder, joint == 0u);
+        corner = ball_vertex(centre, (index - 2u * limb) % ball);
+    }
+    return Surface(view.clip_from_world * vec4f(corner.position, 1.0), corner.position, corner.normal, colour);
+}
+
+@fragment
+fn fragment(s: Surface) -> @location(0) vec4f {
+    let ray = pixel_ray(s.position.xy);
+    let along = dot(s.world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    let colour = fogged(lit(s.colour, normalize(s.normal)), s.position.xy, along);
+    return vec4f(behind_planes(colour, ray, along), 1.0);
+}

@@ -1,0 +1,30 @@
+// Culls the arms of a crowd and sorts the visible ones into one list per level of detail.
+
+@group(1) @binding(3) var<storage, read_write> visible: array<u32>; // one list per level
+@group(1) @binding(4) var<storage, read_write> draws: array<atomic<u32>>; // four arguments per level
+
+// Radii of a limb in pixels above which it is drawn round with joints, and round without.
+const LOD_RADII = vec2f(3.0, 0.7);
+
+@compute @workgroup_size(256)
+fn compute(@builtin(global_invocation_id) id: vec3u) {
+    let index = id.x;
+    if index >= crowd.arms {
+        return;
+    }
+    let arm = arm_at(index);
+    let least = min(arm.shoulder, min(arm.elbow, arm.hand));
+    let most = max(arm.shoulder, max(arm.elbow, arm.hand));
+    let middle = (least + most) * 0.5;
+    let radius = length(most - middle) + crowd.base_radius * JOINT_RADIUS;
+    for (var side = 0u; side < 5u; side++) {
+        let plane = crowd.planes[side];
+        if dot(plane.xyz, middle) + plane.w < -radius {
+            return;
+        }
+    }
+    let pixels = crowd.base_radius / pixel_at(middle);
+    let lod = select(select(2u, 1u, pixels > LOD_RADII.y), 0u, pixels > LOD_RADII.x);
+    let slot = atomicAdd(&draws[lod * 4u + 1u], 1u);
+    visible[lod * crowd.stride + slot] = index;
+}

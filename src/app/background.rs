@@ -1,0 +1,177 @@
+//! Jobs on threads of their own, which report to the window when they end.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use winit::event_loop::EventLoopProxy;
+
+use super::user_event::{PathChoice, UserEvent, send};
+use super::viewport_picture::ViewportPicture;
+use crate::document::Document;
+use crate::export::{self, ExportError, ExportOptions, Format};
+use crate::io::{self, OpenError, Opened, Progress};
+use crate::render::{self, Gpu, PictureRenderer};
+use crate::scene::Scene;
+use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, ShellAction};
+
+/// Saves a picture of the viewport, drawn on a device of its own.
+pub(super) fn save_picture(picture: ViewportPicture, path: PathBuf, proxy: EventLoopProxy<UserEvent>) {
+    thread::spawn(move || {
+        let result = match draw(&picture, &path) {
+            Ok(()) => Ok(format!("Saved {}", path.display())),
+            Err(error) => Err(format!("Not saved: {error}")),
+        };
+        send(&proxy, UserEvent::Report(result));
+    });
+}
+
+fn draw(picture: &ViewportPicture, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Gpu::headless()?;
+    let scene = Scene::new(&picture.document, &picture.overlays, picture.theme);
+    let (width, height) = picture.size;
+    let image = PictureRenderer::new(&gpu, width, height, picture.scale).draw(&scene)?;
+    Ok(render::save(&image, path)?)
+}
+
+/// Starts an export; the window shows its progress.
+pub(super) fn export(
+    export: Export,
+    document: Document,
+    picture: &ViewportPicture,
+    proxy: EventLoopProxy<UserEvent>,
+) -> (Job, JoinHandle<()>) {
+    let progress = Arc::new(Progress::default());
+    let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
+    let options = ExportOptions {
+        fps: Some(export.frame_rate),
+        size: export.size,
+        theme: picture.theme,
+        time: Some(picture.overlays.time),
+        ..ExportOptions::default()
+    };
+    let thread = thread::spawn(move || {
+        let write = || export::export(&document, &export.path, &options, &progress);
+        // Sent even after a panic: the window allows no other export before.
+        let result = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(write)) {
+            Ok(exported) => export_message(&export.path, exported),
+            Err(_) => Err("Not exported: the program failed (this is a bug)".to_owned()),
+        };
+        send(&proxy, UserEvent::Exported(result));
+    });
+    (job, thread)
+}
+
+fn export_message(path: &Path, exported: Result<Vec<String>, ExportError>) -> Result<String, String> {
+    match exported {
+        Ok(notes) => Ok(match &notes[..] {
+            [] => format!("Exported {}", path.display()),
+            [note] => format!("Exported {}; {note}", path.display()),
+            [first, rest @ ..] => {
+                format!("Exported {}; {first}, and {} more notes", path.display(), rest.len())
+            }
+        }),
+        Err(ExportError::Cancelled(_)) => Ok("Export cancelled; no file was left".to_owned()),
+        Err(error) => Err(format!("Not exported: {error}")),
+    }
+}
+
+/// Reads a file, which may be large.
+pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProxy<UserEvent>) {
+    thread::spawn(move || {
+        let read = Box::new(io::open(&path, skeleton.as_deref()));
+        send(&proxy, UserEvent::Opened { path, has_chosen_skeleton: skeleton.is_some(), read });
+    });
+}
+
+/// Actions for a file that was read: they show its document or its error, and ask which of several skeletons
+/// to open.
+pub(super) fn open_actions(
+    path: PathBuf,
+    has_chosen_skeleton: bool,
+    read: Result<Opened, OpenError>,
+) -> Actions {
+    let mut actions = Actions::new();
+    let Opened { document, warnings, skeletons, .. } = match read {
+        Ok(opened) => opened,
+        Err(error) => {
+            actions.push(FileAction::NotOpened { path, why: error.to_string() });
+            return actions;
+        }
+    };
+    let message = match &warnings[..] {
+        [] => format!("Opened {}", path.display()),
+        [one] => format!("Opened {}; {one}", path.display()),
+        [first, rest @ ..] => {
+            format!("Opened {}; {first}, and {} more warnings", path.display(), rest.len())
+        }
+    };
+    // A file of another program is opened but never overwritten by Save.
+    let file = skeletons.is_empty().then(|| path.clone());
+    actions.push(FileAction::Opened { document: Box::new(document), file });
+    actions.push(ShellAction::Report(message));
+    if skeletons.len() > 1 && !has_chosen_skeleton {
+        actions.push(ShellAction::OpenDialog(Dialog::ChooseSkeleton { path, names: skeletons }));
+    }
+    actions
+}
+
+/// Opens the system's file dialog in place of one of the program's, starting at `path`.
+pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
+    /// A system without dialogs answers like a user who cancels, but faster than any user.
+    const FASTEST_USER: Duration = Duration::from_millis(400);
+    let export_extensions = Format::EXTENSIONS.map(|(extension, _)| extension);
+    let (name, extensions): (_, &[&str]) = match &dialog {
+        Dialog::SavePicture { .. } => ("PNG", &["png"]),
+        Dialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
+        Dialog::SaveAs { .. } => ("Scene", &["json"]),
+        Dialog::Export(_) => ("Export", &export_extensions),
+        _ => return,
+    };
+    let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
+    if let Some(name) = path.file_name() {
+        system = system.set_file_name(name.to_string_lossy());
+    }
+    if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
+        system = system.set_directory(folder);
+    }
+    let asked = Instant::now();
+    let is_open = matches!(dialog, Dialog::Open { .. });
+    let (open, save) = match is_open {
+        true => (Some(system.pick_file()), None),
+        false => (None, Some(system.save_file())),
+    };
+    thread::spawn(move || {
+        let file = match (open, save) {
+            (Some(open), _) => pollster::block_on(open),
+            (None, Some(save)) => pollster::block_on(save),
+            (None, None) => None,
+        };
+        let choice = match file {
+            Some(file) => PathChoice::Path(file.path().to_owned()),
+            None if asked.elapsed() < FASTEST_USER => PathChoice::NoDialog,
+            None => PathChoice::Cancelled,
+        };
+        send(&proxy, UserEvent::Chosen(dialog, choice));
+    });
+}
+
+/// Action for the answer of the system's dialog; without one, the program's own dialog opens.
+pub(super) fn path_action(dialog: Dialog, choice: PathChoice) -> Option<Action> {
+    match (choice, dialog) {
+        (PathChoice::Path(path), Dialog::Open { .. }) => {
+            Some(FileAction::Open { path, skeleton: None }.into())
+        }
+        (PathChoice::Path(path), Dialog::SaveAs { .. }) => Some(FileAction::SaveAs(path).into()),
+        (PathChoice::Path(path), Dialog::SavePicture { .. }) => {
+            Some(FileAction::SavePicture(path.display().to_string()).into())
+        }
+        (PathChoice::Path(path), Dialog::Export(export)) => {
+            Some(ShellAction::OpenDialog(Dialog::Export(Export { path, ..export })).into())
+        }
+        (PathChoice::Path(_), _) => None,
+        (PathChoice::Cancelled, _) => Some(FileAction::ChoseNothing.into()),
+        (PathChoice::NoDialog, dialog) => Some(FileAction::NoSystemDialog(dialog).into()),
+    }
+}

@@ -1,0 +1,221 @@
+use std::path::PathBuf;
+use std::time::Instant;
+
+use winit::application::ApplicationHandler;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
+
+use super::background;
+use super::error::AppError;
+use super::graphics_error::GraphicsError;
+use super::recovery::{self, RecoveredFile, Recovery};
+use super::settings::Settings;
+use super::user_event::UserEvent;
+use super::window::{AppWindow, Repaint};
+use crate::document::Document;
+use crate::session::{Dialog, FileAction, Session, ShellAction};
+
+/// Opens the window, with a document and its file if given, and returns when it is closed.
+///
+/// # Errors
+///
+/// If there is no display or no graphics device, or the device is lost for good.
+pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError> {
+    let started = Instant::now();
+    let event_loop =
+        EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
+    let settings = Settings::load();
+    let mut session = Session::new(settings.preferences);
+    session.set_recent(settings.recent.clone());
+    session.set_export_folder(settings.export_folder.clone());
+    if let Some((document, file)) = document {
+        session.apply(FileAction::Opened { document: Box::new(document), file });
+    }
+    let recovery = Recovery::start();
+    let recovered = recovery.find();
+    if let Some(RecoveredFile { backup, .. }) = &recovered {
+        let (document, file) = (Box::new(backup.document.clone()), backup.file.clone());
+        session.apply(ShellAction::OpenDialog(Dialog::Recover { document, file }));
+    }
+    let mut app = App {
+        started,
+        proxy: event_loop.create_proxy(),
+        session,
+        settings,
+        recovery,
+        recovered,
+        state: AppState::Suspended,
+    };
+    event_loop.run_app(&mut app).map_err(AppError::EventLoop)?;
+    match app.state {
+        AppState::Failed(error) => Err(error),
+        AppState::Suspended | AppState::Active(_) => Ok(()),
+    }
+}
+
+struct App {
+    started: Instant,
+    proxy: EventLoopProxy<UserEvent>,
+    session: Session,
+    settings: Settings,
+    recovery: Recovery,
+    /// Unsaved document of a run that did not end cleanly.
+    recovered: Option<RecoveredFile>,
+    state: AppState,
+}
+
+enum AppState {
+    Suspended,
+    Active(Box<AppWindow>),
+    Failed(AppError),
+}
+
+impl App {
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        let AppState::Active(window) = &mut self.state else {
+            return;
+        };
+        let drawn = window.redraw(event_loop, &mut self.session, &self.proxy);
+        if window.frames() == 1 {
+            log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
+        }
+        let backup = self.recovery.update(&self.session, &self.proxy);
+        self.remove_settled_recovery();
+        let again = match drawn {
+            Repaint::Quit => return event_loop.exit(),
+            Repaint::Failed(error) => return self.give_up(event_loop, error),
+            Repaint::At(time) => Some(time),
+            Repaint::OnInput => None,
+        };
+        event_loop.set_control_flow(match again.into_iter().chain(backup).min() {
+            Some(time) => ControlFlow::WaitUntil(time),
+            None => ControlFlow::Wait,
+        });
+    }
+
+    /// Ends after the graphics device is lost for good, with unsaved changes kept for the next start.
+    fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
+        let recovery = match self.recovery.leave(&self.session) {
+            Ok(None) => "All changes are saved".to_owned(),
+            Ok(Some(path)) => format!(
+                "Unsaved changes are in {}\nik-arm offers to open them at its next start",
+                path.display()
+            ),
+            Err(error) => format!("Unsaved changes are lost: {error}"),
+        };
+        self.close();
+        self.state = AppState::Failed(AppError::GraphicsLost { source, recovery });
+        event_loop.exit();
+    }
+
+    /// Cancels an export, saves the settings and drops the graphics.
+    fn close(&mut self) {
+        self.session.apply(FileAction::CancelExport);
+        if let AppState::Active(window) = &mut self.state {
+            window.await_export();
+            log::info!("{} frames drawn", window.frames());
+            window.settings(&self.session).save();
+            window.drop_graphics();
+        }
+    }
+
+    /// Removes a recovered file once it was declined, or this run has it saved or backed up.
+    fn remove_settled_recovery(&mut self) {
+        let is_settled = self.session.has_settled_recovery();
+        let is_safe = !self.session.is_unsaved() || self.recovery.has(self.session.revision());
+        if is_settled
+            && is_safe
+            && let Some(RecoveredFile { path, .. }) = self.recovered.take()
+        {
+            recovery::remove(&path);
+        }
+    }
+}
+
+impl ApplicationHandler<UserEvent> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if matches!(self.state, AppState::Active(_)) {
+            return;
+        }
+        let settings = std::mem::take(&mut self.settings);
+        match AppWindow::open(event_loop, settings, self.proxy.clone()) {
+            Ok(window) => self.state = AppState::Active(Box::new(window)),
+            Err(error) => {
+                self.state = AppState::Failed(error);
+                event_loop.exit();
+            }
+        }
+    }
+
+    fn suspended(&mut self, _: &ActiveEventLoop) {
+        self.state = AppState::Suspended;
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, AppState::Active(window)) = (cause, &self.state)
+        {
+            window.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        // Not passed to egui, which would answer a redraw by requesting another.
+        if event == WindowEvent::RedrawRequested {
+            self.redraw(event_loop);
+            return;
+        }
+        let AppState::Active(window) = &mut self.state else {
+            return;
+        };
+        match &event {
+            WindowEvent::CloseRequested => {
+                match self.session.apply(FileAction::Quit) {
+                    Some(_) => event_loop.exit(),
+                    None => window.request_redraw(),
+                }
+                return;
+            }
+            WindowEvent::Resized(size) => window.resize(*size),
+            _ => {}
+        }
+        if window.on_event(&event) {
+            window.request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, event: UserEvent) {
+        let AppState::Active(window) = &mut self.state else {
+            return;
+        };
+        match event {
+            UserEvent::Accesskit(event) => window.on_accesskit(event),
+            UserEvent::BackedUp | UserEvent::GraphicsFailed => {}
+            UserEvent::Report(message) => {
+                self.session.apply(match message {
+                    Ok(message) => ShellAction::Report(message),
+                    Err(error) => ShellAction::Fail(error),
+                });
+            }
+            UserEvent::Exported(result) => {
+                self.session.apply(FileAction::ExportEnded(result));
+            }
+            UserEvent::Opened { path, has_chosen_skeleton, read } => {
+                for action in background::open_actions(path, has_chosen_skeleton, *read) {
+                    self.session.apply(action);
+                }
+            }
+            UserEvent::Chosen(dialog, choice) => {
+                if let Some(action) = background::path_action(dialog, choice) {
+                    window.act(action, &mut self.session, &self.proxy);
+                }
+            }
+        }
+        window.request_redraw();
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.recovery.end();
+        self.close();
+    }
+}

@@ -1,0 +1,47 @@
+use std::path::PathBuf;
+
+use winit::event_loop::EventLoopProxy;
+
+use crate::io::{OpenError, Opened};
+use crate::session::Dialog;
+
+/// Events that do not come from the window.
+#[derive(Debug)]
+pub enum UserEvent {
+    /// Request of a screen reader.
+    Accesskit(egui_winit::accesskit_winit::Event),
+    /// Message of a finished background job.
+    Report(Result<String, String>),
+    /// Message of a finished export.
+    Exported(Result<String, String>),
+    /// The recovery file is written.
+    BackedUp,
+    /// The graphics device failed.
+    GraphicsFailed,
+    /// Answer of the system's file dialog.
+    Chosen(Dialog, PathChoice),
+    /// A file was read; `has_chosen_skeleton` if one of its skeletons was asked for.
+    Opened { path: PathBuf, has_chosen_skeleton: bool, read: Box<Result<Opened, OpenError>> },
+}
+
+/// Answer to a request for a path.
+#[derive(Debug)]
+pub enum PathChoice {
+    Path(PathBuf),
+    Cancelled,
+    /// The system has no file dialog.
+    NoDialog,
+}
+
+impl From<egui_winit::accesskit_winit::Event> for UserEvent {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accesskit(event)
+    }
+}
+
+/// Sends an event to the window, which may have been closed.
+pub fn send(proxy: &EventLoopProxy<UserEvent>, event: UserEvent) {
+    if proxy.send_event(event).is_err() {
+        log::info!("the window was closed before a background job ended");
+    }
+}

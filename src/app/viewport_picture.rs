@@ -1,0 +1,13 @@
+use crate::document::{Document, Theme};
+use crate::session::Overlays;
+
+/// Everything that a picture of the viewport shows.
+pub struct ViewportPicture {
+    pub document: Document,
+    pub overlays: Overlays,
+    pub theme: Theme,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Pixels per point.
+    pub scale: f32,
+}

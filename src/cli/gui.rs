@@ -1,0 +1,36 @@
+//! `ik-arm gui`: opens the window.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::open;
+use super::report::fail;
+use crate::app;
+
+#[derive(clap::Args, Default)]
+pub struct GuiArgs {
+    /// File to open: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Skeleton to open, if the file has several [default: the first]
+    #[arg(long, value_name = "NAME", requires = "file")]
+    skeleton: Option<String>,
+}
+
+pub fn run(args: &GuiArgs) -> ExitCode {
+    let mut document = None;
+    if let Some(path) = &args.file {
+        match open::open(path, args.skeleton.as_deref()) {
+            // A file of another program is opened but never overwritten by Save.
+            Ok(opened) => {
+                let file = opened.skeletons.is_empty().then(|| path.clone());
+                document = Some((opened.document, file));
+            }
+            Err(error) => return fail(&error),
+        }
+    }
+    match app::run(document) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(&error),
+    }
+}

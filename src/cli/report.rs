@@ -1,0 +1,16 @@
+use std::error::Error;
+use std::fmt::Display;
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+/// Prints an error and returns the exit code of a failure.
+pub fn fail(error: &dyn Error) -> ExitCode {
+    say(error);
+    ExitCode::FAILURE
+}
+
+/// Prints a message to standard error.
+pub fn say(message: &dyn Display) {
+    // Not eprintln!, which panics where standard error cannot be written.
+    let _ = writeln!(io::stderr(), "ik-arm: {message}");
+}

@@ -1,0 +1,35 @@
+use crate::document::Theme;
+use crate::io::BvhUnit;
+
+/// Options of an export; each applies to the formats that have it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExportOptions {
+    /// Frames per second; `None` for the timeline's.
+    pub fps: Option<u32>,
+    /// Width and height of a picture in pixels.
+    pub size: (u32, u32),
+    /// Theme of a picture.
+    pub theme: Theme,
+    /// Time of a single picture in seconds; `None` for the timeline's start.
+    pub time: Option<f64>,
+    /// Length unit of BVH.
+    pub unit: BvhUnit,
+}
+
+impl ExportOptions {
+    /// Maximum width and height that the program offers for a picture. A graphics device may have a lower
+    /// limit.
+    pub const MAX_SIDE: u32 = 8192;
+}
+
+impl Default for ExportOptions {
+    fn default() -> Self {
+        Self {
+            fps: None,
+            size: (1280, 800),
+            theme: Theme::Dark,
+            time: None,
+            unit: BvhUnit::default(),
+        }
+    }
+}

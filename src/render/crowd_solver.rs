@@ -1,0 +1,177 @@
+use std::time::{Duration, Instant};
+
+use bytemuck::{Pod, Zeroable};
+
+use super::compute::{self, BindingKind};
+use super::{Gpu, ReadError};
+use crate::kinematics::two_bone::TwoBone;
+use crate::rig::CrowdArrays;
+
+pub(super) const SHADER: &str = include_str!("../../shaders/crowd_solver.wgsl");
+
+/// Arrays of a crowd's targets: Cursor x, y, z, cosine and sine of the twist.
+const TARGET_ARRAYS: u64 = 5;
+/// Arrays of a crowd's poses: elbow x, y, z, hand x, y, z.
+const POSE_ARRAYS: u64 = 6;
+const FLOAT: u64 = size_of::<f32>() as u64;
+
+/// A device that takes longer than this has hung.
+const TIMEOUT: wgpu::PollType =
+    wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(10)) };
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct CrowdSolverData {
+    arms: u32,
+    stride: u32,
+    upper: f32,
+    lower: f32,
+}
+
+const _: () = assert!(size_of::<CrowdSolverData>() == 16);
+
+/// Solves the arms of a crowd on the device, with the formulas of
+/// [`two_bone`](crate::kinematics::two_bone), or uploads poses that were solved on the CPU. Either way
+/// the poses are in a buffer that the crowd is drawn from.
+#[derive(Debug)]
+pub struct CrowdSolver {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    buffers: CrowdSolverBuffers,
+    arms: u32,
+}
+
+/// Buffers with room for `stride` arms; each array starts `stride` floats after the one before.
+#[derive(Debug)]
+struct CrowdSolverBuffers {
+    stride: u32,
+    targets: wgpu::Buffer,
+    poses: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl CrowdSolver {
+    /// Creates the pipeline; `None` if the adapter has no compute shaders.
+    pub fn new(gpu: &Gpu) -> Option<Self> {
+        let flags = gpu.adapter.get_downlevel_capabilities().flags;
+        if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+            return None;
+        }
+        let kinds = [BindingKind::Uniform, BindingKind::Read, BindingKind::Write];
+        let layout = compute::layout(gpu, "crowd solver", wgpu::ShaderStages::COMPUTE, &kinds);
+        let pipeline = compute::pipeline(gpu, "crowd solver", SHADER, &[Some(&layout)]);
+        let size = size_of::<CrowdSolverData>() as u64;
+        let uniform = compute::buffer(gpu, "crowd solver", size, wgpu::BufferUsages::UNIFORM);
+        let buffers = CrowdSolverBuffers::new(gpu, &layout, &uniform, 1);
+        Some(Self { pipeline, layout, uniform, buffers, arms: 0 })
+    }
+
+    /// Capacity in arms, which is also the distance between arrays in the buffers, in floats.
+    pub fn stride(&self) -> u32 {
+        self.buffers.stride
+    }
+
+    /// Elbows' x, y, z and hands' x, y, z, in Root space.
+    pub(super) fn poses(&self) -> &wgpu::Buffer {
+        &self.buffers.poses
+    }
+
+    /// Makes room for at least this many arms and returns whether that replaced the buffers.
+    pub fn reserve(&mut self, gpu: &Gpu, arms: u32) -> bool {
+        let is_small = self.buffers.stride < arms;
+        if is_small {
+            self.buffers = CrowdSolverBuffers::new(gpu, &self.layout, &self.uniform, arms);
+        }
+        is_small
+    }
+
+    /// Uploads the targets, solves the arms on the device, and returns the time from submission to
+    /// completion, without the upload. Needs [`reserve`](Self::reserve)d buffers.
+    ///
+    /// # Errors
+    ///
+    /// If the device does not finish within ten seconds.
+    ///
+    /// # Panics
+    ///
+    /// If the device is lost, as in every `wgpu` function that waits for it.
+    pub fn solve(
+        &mut self,
+        gpu: &Gpu,
+        bones: TwoBone,
+        arrays: &CrowdArrays,
+    ) -> Result<Duration, wgpu::PollError> {
+        let CrowdArrays { cursor: [x, y, z], cos, sin, .. } = arrays;
+        self.arms = arrays.len() as u32;
+        for (index, array) in [x, y, z, cos, sin].into_iter().enumerate() {
+            self.buffers.write(gpu, &self.buffers.targets, index, array);
+        }
+        let data = CrowdSolverData {
+            arms: self.arms,
+            stride: self.buffers.stride,
+            upper: bones.upper(),
+            lower: bones.lower(),
+        };
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&data));
+        gpu.queue.submit([]);
+        gpu.device.poll(TIMEOUT)?;
+
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("crowd solver") };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let group = (0, &self.buffers.group);
+        compute::run_for_each(&mut encoder, "crowd solver", &self.pipeline, group, self.arms);
+        let commands = encoder.finish();
+        let start = Instant::now();
+        gpu.queue.submit([commands]);
+        gpu.device.poll(TIMEOUT)?;
+        Ok(start.elapsed())
+    }
+
+    /// Uploads poses that were solved on the CPU. Needs [`reserve`](Self::reserve)d buffers.
+    pub fn upload_poses(&mut self, gpu: &Gpu, arrays: &CrowdArrays) {
+        self.arms = arrays.len() as u32;
+        for (index, array) in arrays.elbow.iter().chain(&arrays.hand).enumerate() {
+            self.buffers.write(gpu, &self.buffers.poses, index, array);
+        }
+    }
+
+    /// Waits for the device and reads the elbows and hands back.
+    ///
+    /// # Errors
+    ///
+    /// If the device fails.
+    pub fn read(&self, gpu: &Gpu) -> Result<[[Vec<f32>; 3]; 2], ReadError> {
+        let size = POSE_ARRAYS * u64::from(self.buffers.stride) * FLOAT;
+        let usage = wgpu::BufferUsages::MAP_READ;
+        let copy = compute::buffer(gpu, "crowd poses, read back", size, usage);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.buffers.poses, 0, &copy, 0, size);
+        gpu.queue.submit([encoder.finish()]);
+        let mapped = super::canvas::fetch(gpu, &copy)?;
+        let floats: &[f32] = bytemuck::cast_slice(&mapped);
+        let array = |index: usize| {
+            let first = index * self.buffers.stride as usize;
+            floats[first..first + self.arms as usize].to_vec()
+        };
+        Ok([[array(0), array(1), array(2)], [array(3), array(4), array(5)]])
+    }
+}
+
+impl CrowdSolverBuffers {
+    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, uniform: &wgpu::Buffer, stride: u32) -> Self {
+        let buffer = |label, arrays: u64| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            compute::buffer(gpu, label, arrays * u64::from(stride) * FLOAT, usage)
+        };
+        let targets = buffer("crowd targets", TARGET_ARRAYS);
+        let poses = buffer("crowd poses", POSE_ARRAYS);
+        let group = compute::group(gpu, "crowd solver", layout, &[uniform, &targets, &poses]);
+        Self { stride, targets, poses, group }
+    }
+
+    fn write(&self, gpu: &Gpu, buffer: &wgpu::Buffer, index: usize, array: &[f32]) {
+        let offset = index as u64 * u64::from(self.stride) * FLOAT;
+        gpu.queue.write_buffer(buffer, offset, bytemuck::cast_slice(array));
+    }
+}

@@ -1,0 +1,121 @@
+use super::font::Font;
+use super::{Gpu, SystemFace};
+
+/// Height of a line in points.
+pub(super) const LINE_HEIGHT: f32 = 15.0;
+
+/// A font at one scale, with its atlas as a texture.
+#[derive(Debug)]
+pub(super) struct GlyphSheet {
+    /// Pixels per point.
+    pub scale: f32,
+    pub font: Font,
+    texture: wgpu::Texture,
+    group: wgpu::BindGroup,
+}
+
+impl GlyphSheet {
+    pub fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+        scale: f32,
+    ) -> Self {
+        let font = Font::new(LINE_HEIGHT * scale, gpu.longest_side(), SystemFace::find);
+        let (texture, group) = texture(gpu, layout, sampler, font.atlas.size());
+        Self { scale, font, texture, group }
+    }
+
+    /// Binds the texture and its sampler.
+    pub fn group(&self) -> &wgpu::BindGroup {
+        &self.group
+    }
+
+    /// Sends the changed rows of the atlas and returns the number of bytes.
+    pub fn upload(
+        &mut self,
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+    ) -> u64 {
+        let (width, height) = self.font.atlas.size();
+        let mut changed = self.font.atlas.take_changed();
+        if changed.is_empty() {
+            return 0;
+        }
+        if self.texture.height() != height {
+            (self.texture, self.group) = texture(gpu, layout, sampler, (width, height));
+            changed = 0..height;
+        }
+        let pixels = self.font.atlas.rows(changed.clone());
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: changed.start, z: 0 },
+                ..self.texture.as_image_copy()
+            },
+            pixels,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(width),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d { width, height: changed.end - changed.start, depth_or_array_layers: 1 },
+        );
+        pixels.len() as u64
+    }
+}
+
+fn texture(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    sampler: &wgpu::Sampler,
+    (width, height): (u32, u32),
+) -> (wgpu::Texture, wgpu::BindGroup) {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("glyphs"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&Default::default());
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("glyphs"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&view),
+            },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) },
+        ],
+    });
+    (texture, group)
+}
+
+/// Layout of the bind group of every sheet.
+pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("glyphs"),
+        entries: &[
+            entry(
+                0,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+            ),
+            entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+        ],
+    })
+}

@@ -1,0 +1,17 @@
+use super::{backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, solid};
+
+/// Every complete shader with its name.
+pub fn shaders() -> [(&'static str, &'static str); 10] {
+    [
+        ("backdrop", backdrop::SHADER),
+        ("crowd_arms", crowd::ARMS),
+        ("crowd_cull", crowd::CULL),
+        ("crowd_solver", crowd_solver::SHADER),
+        ("globe", globe::SHADER),
+        ("label", label::SHADER),
+        ("line", line::SHADER),
+        ("shadow", shadow::SHADER),
+        ("shell", shell::SHADER),
+        ("solid", solid::SHADER),
+    ]
+}

@@ -1,0 +1,85 @@
+//! Fills a scene from a document: one file for each thing that is added.
+
+mod arm;
+mod axes;
+mod globe;
+mod hand;
+mod motion;
+mod references;
+mod scratch;
+mod shadow;
+mod skeleton;
+
+use super::{Palette, Planes, Scene};
+use crate::document::{Document, Overlay, RigKind, Theme};
+use crate::session::Overlays;
+use scratch::Scratch;
+
+/// Fills scenes from documents. It owns the buffers for intermediate results, so that refilling a scene
+/// allocates nothing once all buffers have grown to their size.
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    scratch: Scratch,
+}
+
+impl Scene {
+    /// Builds the scene of a document with its overlays.
+    pub fn new(document: &Document, overlays: &Overlays, theme: Theme) -> Self {
+        SceneBuilder::default().build(document, overlays, theme)
+    }
+}
+
+impl SceneBuilder {
+    /// Builds the scene of a document with its overlays.
+    pub fn build(&mut self, document: &Document, overlays: &Overlays, theme: Theme) -> Scene {
+        let mut scene = Scene::empty(document.camera, document.display, theme);
+        self.refill(&mut scene, document, overlays, theme);
+        scene
+    }
+
+    /// Replaces a scene by the one that [`build`](Self::build) returns, in the memory that it has.
+    pub fn refill(
+        &mut self,
+        scene: &mut Scene,
+        document: &Document,
+        overlays: &Overlays,
+        theme: Theme,
+    ) {
+        scene.clear();
+        let display = document.display;
+        let (centre, reach, cell) = match document.rig {
+            RigKind::Arm => {
+                let arm = &document.arm;
+                (arm.root, arm.bones.outer_limit(), arm.cell())
+            }
+            RigKind::Skeleton => skeleton::measure(&document.skeleton_rig, &mut self.scratch),
+        };
+        scene.camera = document.camera;
+        scene.palette = Palette::new(theme);
+        if let Some(crowd) = overlays.crowd {
+            if Scene::CROWD_RADII.contains(&crowd.bounds().1) {
+                scene.planes = Planes::around_crowd(&crowd, display);
+                scene.crowd = Some(crowd);
+            }
+            return;
+        }
+        scene.planes = Planes::around(centre, reach, cell, display);
+        if display.shows(Overlay::Axes) {
+            axes::add(scene, reach);
+        }
+        match document.rig {
+            RigKind::Arm => {
+                arm::add(scene, &document.arm, &document.arm.pose(), display);
+                if display.shows(Overlay::References) {
+                    references::add(scene, &document.arm, overlays.transported);
+                }
+            }
+            RigKind::Skeleton => {
+                let rig = &document.skeleton_rig;
+                skeleton::add(scene, rig, overlays, display, &mut self.scratch);
+            }
+        }
+        motion::add(scene, document, overlays, reach);
+        scene.remove_non_finite();
+    }
+}

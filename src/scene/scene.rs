@@ -1,0 +1,130 @@
+use core::fmt::{Arguments, Write as _};
+use core::ops::Range;
+
+use glam::Vec3;
+
+use super::label::TextRange;
+use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Shell, Solid};
+use crate::document::{Camera, Display, Theme};
+use crate::rig::{Cone, Crowd};
+
+/// Everything in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// View of the scene.
+    pub camera: Camera,
+    /// Colours of the background and the grids, and of what has no colour of its own.
+    pub palette: Palette,
+    /// Ground and grids.
+    pub planes: Planes,
+    /// Shadows on the ground, of what is above it.
+    pub shadows: Vec<Shadow>,
+    /// Cones and cylinders.
+    pub solids: Vec<Solid>,
+    /// Balls.
+    pub balls: Vec<Ball>,
+    /// Cones and cylinders that also show faintly through what hides them.
+    pub guide_solids: Vec<Solid>,
+    /// Balls that also show faintly through what hides them.
+    pub guide_balls: Vec<Ball>,
+    /// See-through spheres.
+    pub shells: Vec<Shell>,
+    /// Globe of gains.
+    pub globe: Option<Globe>,
+    /// Crowd that replaces the rig; the renderer solves it.
+    pub crowd: Option<Crowd>,
+    /// Lines.
+    pub lines: Vec<Line>,
+    /// Labels, drawn over everything else.
+    pub labels: Vec<Label>,
+    /// Texts of all labels, one after the other.
+    text: String,
+}
+
+impl Scene {
+    /// Radii of the crowds that are drawn. Outside, squared lengths overflow or underflow, also on the
+    /// device.
+    pub const CROWD_RADII: Range<f32> = 1e-12..1e15;
+
+    /// A scene of nothing but planes.
+    pub(super) fn empty(camera: Camera, display: Display, theme: Theme) -> Self {
+        Self {
+            camera,
+            palette: Palette::new(theme),
+            planes: Planes::around(Vec3::ZERO, 0.0, 1.0, display),
+            shadows: Vec::new(),
+            solids: Vec::new(),
+            balls: Vec::new(),
+            guide_solids: Vec::new(),
+            guide_balls: Vec::new(),
+            shells: Vec::new(),
+            globe: None,
+            crowd: None,
+            lines: Vec::new(),
+            labels: Vec::new(),
+            text: String::new(),
+        }
+    }
+
+    /// Empties all lists but keeps their memory.
+    pub(super) fn clear(&mut self) {
+        self.shadows.clear();
+        self.solids.clear();
+        self.balls.clear();
+        self.guide_solids.clear();
+        self.guide_balls.clear();
+        self.shells.clear();
+        self.globe = None;
+        self.crowd = None;
+        self.lines.clear();
+        self.labels.clear();
+        self.text.clear();
+    }
+
+    /// Text of a label of this scene; empty for a label of another scene.
+    pub fn text(&self, label: &Label) -> &str {
+        self.text.get(label.text.from..label.text.to).unwrap_or_default()
+    }
+
+    /// Adds a label with this text.
+    pub(super) fn add_label(&mut self, label: Label, text: Arguments<'_>) {
+        let from = self.text.len();
+        // Writing to a string never fails.
+        let _ = self.text.write_fmt(text);
+        let text = TextRange { from, to: self.text.len() };
+        self.labels.push(Label { text, ..label });
+    }
+
+    /// Adds a cone from base to tip.
+    pub(super) fn add_solid(
+        &mut self,
+        base: Vec3,
+        tip: Vec3,
+        base_radius: f32,
+        tip_radius: f32,
+        colour: Colour,
+    ) {
+        let (transform, shape) = Cone::between(base, tip, base_radius, tip_radius);
+        self.solids.push(Solid { transform, shape, colour, stripes: None });
+    }
+
+    /// Removes what is not finite.
+    pub(super) fn remove_non_finite(&mut self) {
+        for solids in [&mut self.solids, &mut self.guide_solids] {
+            solids.retain(|Solid { transform, shape, .. }| {
+                let sizes = [shape.length, shape.base_radius, shape.tip_radius];
+                transform.is_finite() && sizes.into_iter().all(f32::is_finite)
+            });
+        }
+        for balls in [&mut self.balls, &mut self.guide_balls] {
+            balls.retain(|ball| ball.centre.is_finite() && ball.radius.is_finite());
+        }
+        self.shells.retain(|shell| shell.centre.is_finite() && shell.radius.is_finite());
+        self.lines.retain(|line| line.from.is_finite() && line.to.is_finite());
+        self.labels.retain(|label| label.at.is_finite() && label.clearance.is_finite());
+        self.shadows.retain(|Shadow { base, base_radius, tip, tip_radius }| {
+            let ends = base.is_finite() && tip.is_finite();
+            ends && base_radius.is_finite() && tip_radius.is_finite()
+        });
+    }
+}
