@@ -7,7 +7,7 @@ use common::Random;
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::render::{Gpu, PictureRenderer, CrowdSolver};
+use ik_arm::render::{CrowdSolver, Gpu, PictureRenderer};
 use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Session, ViewAction};

@@ -193,7 +193,8 @@ fn a_limb_of_another_colour_is_noticed() {
 fn a_large_picture_is_the_same_picture() {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let scene = scene(&Document::default(), Theme::Dark);
-    let large = PictureRenderer::new(&gpu, SIZE.0 * 2, SIZE.1 * 2, 2.0).draw(&scene).expect("drawn");
+    let large =
+        PictureRenderer::new(&gpu, SIZE.0 * 2, SIZE.1 * 2, 2.0).draw(&scene).expect("drawn");
     let shrunk =
         image::imageops::resize(&large, SIZE.0, SIZE.1, image::imageops::FilterType::Triangle);
     let small = kept("default");

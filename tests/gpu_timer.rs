@@ -7,7 +7,7 @@
 use std::time::{Duration, Instant};
 
 use ik_arm::document::{Document, Theme};
-use ik_arm::render::{Canvas, Gpu, GpuTimer, TimedPass, Renderer};
+use ik_arm::render::{Canvas, Gpu, GpuTimer, Renderer, TimedPass};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 

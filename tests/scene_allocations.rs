@@ -39,12 +39,7 @@ impl Bench {
         self.session.overlays();
         let counted = measure(|| {
             self.session.write_overlays(&mut self.overlays);
-            self.builder.refill(
-                &mut self.scene,
-                self.session.shown(),
-                &self.overlays,
-                Theme::Dark,
-            );
+            self.builder.refill(&mut self.scene, self.session.shown(), &self.overlays, Theme::Dark);
         });
         let has_changed = self.scene != self.shown;
         std::mem::swap(&mut self.scene, &mut self.shown);

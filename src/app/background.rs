@@ -17,7 +17,11 @@ use crate::scene::Scene;
 use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, ShellAction};
 
 /// Saves a picture of the viewport, drawn on a device of its own.
-pub(super) fn save_picture(picture: ViewportPicture, path: PathBuf, proxy: EventLoopProxy<UserEvent>) {
+pub(super) fn save_picture(
+    picture: ViewportPicture,
+    path: PathBuf,
+    proxy: EventLoopProxy<UserEvent>,
+) {
     thread::spawn(move || {
         let result = match draw(&picture, &path) {
             Ok(()) => Ok(format!("Saved {}", path.display())),
@@ -63,7 +67,10 @@ pub(super) fn export(
     (job, thread)
 }
 
-fn export_message(path: &Path, exported: Result<Vec<String>, ExportError>) -> Result<String, String> {
+fn export_message(
+    path: &Path,
+    exported: Result<Vec<String>, ExportError>,
+) -> Result<String, String> {
     match exported {
         Ok(notes) => Ok(match &notes[..] {
             [] => format!("Exported {}", path.display()),

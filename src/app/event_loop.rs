@@ -153,7 +153,8 @@ impl ApplicationHandler<UserEvent> for App {
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, AppState::Active(window)) = (cause, &self.state)
+        if let (StartCause::ResumeTimeReached { .. }, AppState::Active(window)) =
+            (cause, &self.state)
         {
             window.request_redraw();
         }

@@ -106,7 +106,10 @@ impl Graphics {
                     store: wgpu::StoreOp::Store,
                 },
             })],
-            timestamp_writes: self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.pass(TimedPass::Panels)),
+            timestamp_writes: self
+                .gpu_timer
+                .as_mut()
+                .map(|gpu_timer| gpu_timer.pass(TimedPass::Panels)),
             ..Default::default()
         });
         self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
@@ -155,7 +158,9 @@ impl Graphics {
                 self.is_stale = true;
                 Ok(Acquired::Frame(frame))
             }
-            Current::Outdated | Current::Timeout => Ok(Acquired::Later(Some(Self::HIDDEN_FRAME_INTERVAL))),
+            Current::Outdated | Current::Timeout => {
+                Ok(Acquired::Later(Some(Self::HIDDEN_FRAME_INTERVAL)))
+            }
             // The system requests a redraw once the window is visible.
             Current::Occluded => Ok(Acquired::Later(None)),
             Current::Lost => Err(GraphicsError::SurfaceLost),

@@ -87,7 +87,14 @@ impl Recovery {
         if let Some(slot) = &slot {
             write_at_crash(Arc::clone(slot), Arc::clone(&newest));
         }
-        Self { slot, newest, newest_revision: None, written_revision: None, since: None, writing: None }
+        Self {
+            slot,
+            newest,
+            newest_revision: None,
+            written_revision: None,
+            since: None,
+            writing: None,
+        }
     }
 
     /// Finds the newest backup of the runs that did not end cleanly.

@@ -378,8 +378,7 @@ impl AppWindow {
             }
             graphics.update_textures(changed);
             if let Some(scene) = &mut self.scene {
-                machine.counts =
-                    Some(graphics.draw_scene(scene, pixels, scale));
+                machine.counts = Some(graphics.draw_scene(scene, pixels, scale));
             }
             frame.encode += lap();
             let drawn = machine.times.drawn();

@@ -50,7 +50,9 @@ mod tests {
 
     #[test]
     fn a_number_replaces_the_last_placeholder() {
-        let name = |path: &str, number| NumberedName::new(Path::new(path)).map(|it| it.with_number(number));
+        let name = |path: &str, number| {
+            NumberedName::new(Path::new(path)).map(|it| it.with_number(number))
+        };
         assert_eq!(name("x/walk_####.png", 7), Some("walk_0007.png".into()));
         assert_eq!(name("#a##b.png", 12345), Some("#a12345b.png".into()));
         assert_eq!(name("x#/a.png", 1), None);

@@ -89,7 +89,11 @@ struct FrameRenderer<'a> {
 }
 
 impl<'a> FrameRenderer<'a> {
-    fn new(document: &Document, options: &ExportOptions, gpu: &'a Gpu) -> Result<Self, ExportError> {
+    fn new(
+        document: &Document,
+        options: &ExportOptions,
+        gpu: &'a Gpu,
+    ) -> Result<Self, ExportError> {
         let (width, height) = options.size;
         Ok(Self {
             playback: Playback::new(document),

@@ -251,7 +251,6 @@ impl Font {
             Some(self.faces.len() - 1)
         })
     }
-
 }
 
 fn rectangle((x, y): (u32, u32), (width, height): (u32, u32)) -> Rectangle {

@@ -108,7 +108,8 @@ impl GpuTimer {
 
     /// Ends a frame. The encoder must be submitted after the passes.
     pub fn stop(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
-        let is_free = |readback: &&mut TimestampReadback| readback.state.load(Ordering::Acquire) == FREE;
+        let is_free =
+            |readback: &&mut TimestampReadback| readback.state.load(Ordering::Acquire) == FREE;
         let Some(readback) = self.readbacks.iter_mut().find(is_free) else {
             return;
         };

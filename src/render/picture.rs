@@ -39,7 +39,9 @@ pub struct Timings {
 #[non_exhaustive]
 pub enum DrawError {
     /// The device's textures are smaller.
-    #[error("picture sides must be at most {longest} on this graphics device, got {width}x{height}")]
+    #[error(
+        "picture sides must be at most {longest} on this graphics device, got {width}x{height}"
+    )]
     TooLarge {
         /// Width in pixels.
         width: u32,

@@ -43,7 +43,9 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: Canvas::DEPTH,
-            depth_write_enabled: Some(descriptor.opaque && descriptor.depth != wgpu::CompareFunction::Always),
+            depth_write_enabled: Some(
+                descriptor.opaque && descriptor.depth != wgpu::CompareFunction::Always,
+            ),
             depth_compare: Some(descriptor.depth),
             stencil: Default::default(),
             bias: Default::default(),

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
-use super::sphere_order::SphereSide;
 use super::quads::{self, Quads};
+use super::sphere_order::SphereSide;
 use crate::scene::Shell;
 
 pub(super) const SHADER: &str = concat!(
@@ -44,7 +44,11 @@ impl Shells {
     }
 
     /// Sends what has changed: how many bytes.
-    pub fn upload<'a>(&mut self, gpu: &Gpu, sides: impl Iterator<Item = (&'a Shell, SphereSide)>) -> u64 {
+    pub fn upload<'a>(
+        &mut self,
+        gpu: &Gpu,
+        sides: impl Iterator<Item = (&'a Shell, SphereSide)>,
+    ) -> u64 {
         self.0.upload(gpu, sides.map(|(shell, side)| ShellInstance::new(shell, side)))
     }
 

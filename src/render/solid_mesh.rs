@@ -54,8 +54,10 @@ fn position(vertex: &SolidVertex) -> Vec3 {
 /// A unit sphere.
 pub(super) fn ball(gpu: &Gpu, segments: u16) -> Mesh {
     let (points, indices) = mesh::sphere(segments);
-    let vertices: Vec<_> =
-        points.into_iter().map(|point| SolidVertex { along: 0.0, rim: point, normal: point }).collect();
+    let vertices: Vec<_> = points
+        .into_iter()
+        .map(|point| SolidVertex { along: 0.0, rim: point, normal: point })
+        .collect();
     Mesh::new(gpu, "ball", &vertices, &indices)
 }
 

@@ -41,7 +41,8 @@ impl SphereOrder {
         self.by_size.sort_unstable_by(|a, b| by_size(&spheres[*a], &spheres[*b]));
         for sphere in self.by_size.iter().copied() {
             let at = self.place(projection, spheres, sphere);
-            let sides = [SphereSide::Far, SphereSide::Near].map(|side| SphereSurface { sphere, side });
+            let sides =
+                [SphereSide::Far, SphereSide::Near].map(|side| SphereSurface { sphere, side });
             self.surfaces.splice(at..at, sides);
         }
         &self.surfaces

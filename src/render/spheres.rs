@@ -1,7 +1,7 @@
 use super::Gpu;
 use super::globe::Globes;
-use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
 use super::shell::Shells;
+use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
 use crate::scene::{Colour, Globe, Scene, Shell};
 
 /// Draws the see-through spheres, shells and globe, from back to front over everything solid.

@@ -61,7 +61,8 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
         let ends = [(shadow.base, shadow.base_radius), (shadow.tip, shadow.tip_radius)];
         ends.into_iter().flat_map(move |(at, radius)| round(at, radius))
     });
-    let planes = round(scene.planes.centre, scene.planes.radius).into_iter().chain([scene.planes.cell]);
+    let planes =
+        round(scene.planes.centre, scene.planes.radius).into_iter().chain([scene.planes.cell]);
     let view = scene.camera.projection(1.6).clip_from_world.to_cols_array();
     let placed = solids.chain(balls).chain(shells).chain(lines).chain(labels).chain(shadows);
     placed.chain(planes).chain(view)

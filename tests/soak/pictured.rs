@@ -10,7 +10,8 @@ use crate::{Broken, hold};
 pub fn all(session: &Session) -> Result<(), Broken> {
     let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
     let planes = scene.planes;
-    let are_planes = planes.centre.is_finite() && planes.radius.is_finite() && planes.cell.is_finite();
+    let are_planes =
+        planes.centre.is_finite() && planes.radius.is_finite() && planes.cell.is_finite();
     hold!(are_planes, "the planes are finite: {planes:?}");
     for solid in scene.solids.iter().chain(&scene.guide_solids) {
         let Solid { transform, shape, .. } = solid;

@@ -19,7 +19,9 @@ pub enum RenderCommandError {
     Draw(#[from] DrawError),
     #[error(transparent)]
     Crowd(#[from] CrowdError),
-    #[error("the lengths of a crowd's arms must be within {min:e} and {max:e}, got {upper} and {lower}")]
+    #[error(
+        "the lengths of a crowd's arms must be within {min:e} and {max:e}, got {upper} and {lower}"
+    )]
     CrowdLength { min: f32, max: f32, upper: f32, lower: f32 },
     #[error(transparent)]
     Save(#[from] SavePictureError),

@@ -40,7 +40,8 @@ pub struct SolveArgs {
 }
 
 pub fn run(args: &SolveArgs) -> ExitCode {
-    let solved = LineReader::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
+    let solved =
+        LineReader::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
     match solved {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,

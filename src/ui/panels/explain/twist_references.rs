@@ -59,7 +59,8 @@ fn legend(ui: &mut Ui) {
         painter.rect_filled(part, 0.0, colour);
     }
     let font = FontId::proportional(12.0);
-    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")] {
+    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")]
+    {
         let x = bar.left() + bar.width() * f32::ln_1p(gain) / end;
         let at = pos2(x, bar.bottom() + 3.0);
         let colour = ui.visuals().weak_text_color();
