@@ -33,7 +33,7 @@ fn cases(joints: usize) -> Vec<(Skeleton, [TipTarget; 1])> {
 
 /// From the skeleton to the skeleton, setting up included; to 1e-4 of the chain's length.
 fn whole(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("solve");
+    let mut group = criterion.benchmark_group("chain_ik");
     for joints in [2, 10, 30, 100] {
         let cases = cases(joints);
         for method in METHODS {

@@ -21,7 +21,7 @@ fn facings() -> Vec<Facing> {
 
 fn twist_reference(criterion: &mut Criterion) {
     let facings = facings();
-    let mut group = criterion.benchmark_group("swivel");
+    let mut group = criterion.benchmark_group("twist");
     group.throughput(Throughput::Elements(facings.len() as u64));
     let references = [
         ("limb", TwistReference::Limb),

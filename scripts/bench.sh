@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# bench.sh [--tables]: measures what docs/performance.md claims, and writes the tables between its marks
-# anew; or the tables alone, of what was measured last. Takes about half an hour on two cores, and a
-# machine that does nothing else meanwhile.
+# bench.sh [--tables]: runs the benchmarks and rewrites the tables between the marks of
+# docs/performance.md. With --tables it rewrites the tables from the last run. Takes about half an hour
+# on two cores of an otherwise idle machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -16,12 +16,12 @@ main() {
     require_tools "${tools[@]}"
     if [[ ${1:-} != --tables ]]; then
         cargo bench --locked --no-default-features --features parallel \
-            --bench two_bone --bench batch --bench curves --bench solve
+            --bench two_bone --bench batch --bench curves --bench chain_ik
         cargo build --locked --release
     fi
     local figures
     figures=$(mktemp)
-    # Into a file first: what fails must not leave half a page.
+    # Into a file first, so that a failure does not leave half a page.
     {
         machine
         batch_table
@@ -31,7 +31,7 @@ main() {
     } >"$figures"
     put_between_marks "$figures"
     rm "$figures"
-    echo "$page has the figures of this run."
+    echo "Wrote $page."
 }
 
 machine() {
@@ -43,7 +43,7 @@ machine() {
         "$(git rev-parse --short HEAD)"
 }
 
-# estimate BENCH: the median of a run, in ns; of a bench whose name has slashes or blanks, its folder.
+# estimate BENCH: median of a run in ns, by the bench's folder.
 estimate() {
     local file="$results/$1/new/estimates.json"
     python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["median"]["point_estimate"])' \
@@ -77,7 +77,7 @@ batch() {
 }
 
 other_table() {
-    printf '| what | median |\n| --- | --- |\n'
+    printf '| benchmark | median |\n| --- | --- |\n'
     python3 - "$results" <<'PYTHON'
 import json, pathlib, sys
 root = pathlib.Path(sys.argv[1])
@@ -90,7 +90,7 @@ def rows(group):
         time = json.loads(file.read_text())["median"]["point_estimate"] / elements
         found.append((name, time))
     return found
-for group in ("two_bone", "swivel", "spline", "solve", "iteration"):
+for group in ("two_bone", "twist", "spline", "chain_ik", "iteration"):
     for name, time in rows(group):
         shown = f"{time:.1f} ns" if time < 1e3 else f"{time / 1e3:.1f} µs" if time < 1e6 else f"{time / 1e6:.2f} ms"
         print(f"| {name} | {shown} |")
