@@ -1,4 +1,4 @@
-//! Actions that menus, keys and buttons have in common.
+//! Actions shared by menus, keys and buttons.
 
 use crate::document::{AxisView, Camera};
 use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
@@ -36,7 +36,7 @@ pub(in crate::ui) fn frame_all(session: &Session) -> ViewAction {
     ViewAction::GlideTo(session.framing_all())
 }
 
-/// Deletes the selected joints; asks first what becomes of children that are not selected too.
+/// Deletes the selected joints, or opens a dialog about children that are not selected.
 pub(in crate::ui) fn delete(session: &Session) -> Action {
     let joints = session.selection().to_vec();
     let is_left = |parent: Option<usize>| parent.is_some_and(|parent| joints.contains(&parent));
@@ -53,13 +53,13 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
     }
 }
 
-/// Asks for a joint's name.
+/// Opens the dialog that renames a joint.
 pub(in crate::ui) fn rename(session: &Session, joint: usize) -> ShellAction {
     let name = session.skeleton().joint(joint).map(|joint| joint.name.clone());
     ShellAction::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
 }
 
-/// Gives the selected joint a target, or takes it away.
+/// Adds or removes the target of the selected joint.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
     let joint = session.selected()?;
     Some(match session.skeleton_rig().target(joint) {

@@ -1,44 +1,44 @@
 use core::time::Duration;
 
-/// What one frame took, part by part.
+/// Durations of the stages of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameTime {
-    /// The session: actions, solvers, time.
+    /// Actions, solvers and playback.
     pub solve: Duration,
-    /// The panels, laid out and cut into triangles.
+    /// Layout and tessellation of the panels.
     pub panels: Duration,
     pub scene: Duration,
-    /// What the device is sent, and its orders.
+    /// Upload of changes and GPU commands.
     pub encode: Duration,
-    /// Until the screen, or the device with an earlier frame, let this one go on.
+    /// Waiting for vsync or the GPU.
     pub wait: Duration,
-    /// The device's own time, where its adapter measures it; it is known some frames later.
+    /// GPU time, known some frames later; `None` without timestamp queries.
     pub gpu: Option<Duration>,
-    /// Since the frame before began, where that one asked for this one at once.
+    /// Time since the previous frame began, if that frame requested this one at once.
     pub interval: Option<Duration>,
 }
 
 impl FrameTime {
-    /// All that the processor did for it.
+    /// CPU time.
     pub fn work(&self) -> Duration {
         self.solve + self.panels + self.scene + self.encode
     }
 
-    /// From its beginning until it was on its way to the screen.
+    /// Time from input to presentation.
     pub fn total(&self) -> Duration {
         self.work() + self.wait
     }
 }
 
-/// How long the last frames took. Takes no memory of its own as they go by.
+/// Durations of the last frames, in a ring buffer that never allocates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// A ring: frame n is at n modulo its length.
+    /// Frame n is at index n modulo the length.
     frames: [FrameTime; Self::MOST],
     drawn: u64,
 }
 
-/// Of many times, the one in the middle and the one that only a hundredth exceeds.
+/// Median and 99th percentile of durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeSpread {
     pub median: Duration,
@@ -52,7 +52,7 @@ impl Default for FrameTimes {
 }
 
 impl FrameTimes {
-    /// How many frames are kept.
+    /// Number of frames kept.
     pub const MOST: usize = 240;
 
     pub fn push(&mut self, frame: FrameTime) {
@@ -61,12 +61,12 @@ impl FrameTimes {
         self.drawn += 1;
     }
 
-    /// How many frames have been drawn in all; the next one is so called.
+    /// Number of frames drawn so far, which is the index of the next frame.
     pub fn drawn(&self) -> u64 {
         self.drawn
     }
 
-    /// What the device took for a frame, unless that is forgotten already.
+    /// Sets the GPU time of a frame, unless the frame is no longer kept.
     pub fn set_gpu(&mut self, frame: u64, time: Duration) {
         let is_kept = frame < self.drawn && self.drawn - frame <= Self::MOST as u64;
         if is_kept {
@@ -75,7 +75,7 @@ impl FrameTimes {
         }
     }
 
-    /// The frames that are kept, the first one first.
+    /// The kept frames, oldest first.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = &FrameTime> {
         let count = self.drawn.min(Self::MOST as u64);
         let first = self.drawn - count;
@@ -86,7 +86,7 @@ impl FrameTimes {
         self.frames().last()
     }
 
-    /// How a part of the frames is spread; nothing where no frame has it.
+    /// Median and 99th percentile of one duration; `None` if no frame has it.
     pub fn spread(&self, part: impl Fn(&FrameTime) -> Option<Duration>) -> Option<TimeSpread> {
         let mut times = [Duration::ZERO; Self::MOST];
         let mut count = 0;
@@ -96,12 +96,12 @@ impl FrameTimes {
         }
         let times = &mut times[..count];
         times.sort_unstable();
-        // The smallest that at least such a part of all does not exceed.
+        // Nearest-rank percentile.
         let at = |hundredths: usize| (count * hundredths).div_ceil(100).saturating_sub(1);
         Some(TimeSpread { median: *times.get(at(50))?, slowest: *times.get(at(99))? })
     }
 
-    /// How many frames a second there are while something moves, by the median.
+    /// Frames per second while something moves, from the median interval.
     pub fn per_second(&self) -> Option<f64> {
         let interval = self.spread(|frame| frame.interval)?.median.as_secs_f64();
         (interval > 0.0).then(|| interval.recip())

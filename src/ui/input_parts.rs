@@ -1,4 +1,4 @@
-//! The input of one frame, split at every key press and mouse button.
+//! The events of one frame, split at every key press and mouse button.
 
 use egui::{Event, Key};
 
@@ -28,8 +28,8 @@ pub fn strokes(events: Vec<Event>) -> Vec<Vec<Event>> {
     parts
 }
 
-/// Moves what is typed from a stroke to `held`, for the dialog that is about to open. Esc stays: it
-/// ends the waiting.
+/// Moves typed events to `held`, for the dialog that is about to open. Esc stays: it ends the
+/// wait.
 pub fn hold_typed(stroke: Vec<Event>, held: &mut Vec<Event>) -> Vec<Event> {
     let is_typed = |event: &Event| match event {
         Event::Key { key, .. } => *key != Key::Escape,
@@ -41,7 +41,7 @@ pub fn hold_typed(stroke: Vec<Event>, held: &mut Vec<Event>) -> Vec<Event> {
     rest
 }
 
-/// Releases of mouse buttons count too: clicks are read at the release.
+/// Releases of mouse buttons count too: a click is a release.
 fn is_press(event: &Event) -> bool {
     match event {
         Event::Key { pressed, .. } => *pressed,

@@ -1,10 +1,10 @@
-//! What channels are called.
+//! Names and tooltips of channels, overlays, twist references and solvers.
 
 use crate::document::{Channel, Overlay, RigKind, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 use crate::session::Session;
 
-/// As in "Hand" or "left_1 · rotation".
+/// Name of a channel, such as "Hand" or "left_1 · rotation".
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     let of_joint = |joint: usize, what: &str| {
         let name = session.skeleton().joint(joint).map_or("–", |joint| &joint.name);
@@ -28,13 +28,13 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Offset(joint) => of_joint(joint, "offset"),
         Channel::Target(joint) => of_joint(joint, "target"),
         Channel::Enabled(joint) => of_joint(joint, "target enabled"),
-        Channel::Overlay(layer) => {
-            format!("{} shown", overlay(session.rig(), layer).0)
+        Channel::Overlay(shown) => {
+            format!("{} shown", overlay(session.rig(), shown).0)
         }
     }
 }
 
-/// As in "1 key" or "3 keys".
+/// A number of keys, such as "1 key" or "3 keys".
 pub(in crate::ui) fn count_of_keys(count: usize) -> String {
     match count {
         1 => "1 key".to_owned(),
@@ -42,9 +42,9 @@ pub(in crate::ui) fn count_of_keys(count: usize) -> String {
     }
 }
 
-/// What a layer is called, and what it is.
-pub(in crate::ui) fn overlay(rig: RigKind, layer: Overlay) -> (&'static str, &'static str) {
-    match (rig, layer) {
+/// Name and tooltip of an overlay.
+pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &'static str) {
+    match (rig, overlay) {
         (RigKind::Skeleton, Overlay::Cursor) => {
             ("Targets", "Show targets, their paths and the gaps to them")
         }
@@ -80,7 +80,7 @@ pub(in crate::ui) fn overlay(rig: RigKind, layer: Overlay) -> (&'static str, &'s
     }
 }
 
-/// What a reference is.
+/// Tooltip of a twist reference.
 pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'static str {
     match twist_reference {
         TwistReferenceKind::Limb => "Measure from straight up; flips above and below the shoulder",
@@ -96,7 +96,7 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
     }
 }
 
-/// As panels and pictures call a solver.
+/// Name of a solver.
 pub(in crate::ui) fn method(method: Method) -> &'static str {
     match method {
         Method::TransposeFixed => "Jacobian transpose, fixed step",
@@ -108,7 +108,7 @@ pub(in crate::ui) fn method(method: Method) -> &'static str {
     }
 }
 
-/// What a solver does, and what it is good and bad at.
+/// Tooltip of a solver.
 pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
     match method {
         Method::TransposeFixed => "Descend the gradient with a fixed step: smooth but slow",

@@ -7,7 +7,7 @@ use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport
 use crate::document::RigKind;
 use crate::session::{Actions, Session};
 
-/// Shows everything. Returns where the scene is to be drawn, in points; `picture` is the scene as
+/// Shows all panels. Returns the rectangle of the viewport in points; `picture` is the scene as
 /// last drawn there.
 pub fn show(
     ui: &mut Ui,

@@ -1,20 +1,20 @@
-//! The machine that the panels run on.
+//! Measurements of the machine.
 
 use super::frame_times::FrameTimes;
 use crate::render::Counts;
 use crate::rig::CrowdTimes;
 
-/// What the panels show of the machine they run on.
+/// Measurements of the machine, for the panels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Machine {
-    /// The graphics adapter.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// Whether it measures its own time.
+    /// True if the adapter has timestamp queries.
     pub has_clock: bool,
-    /// How long the last drawn frames took.
+    /// Durations of the last frames.
     pub times: FrameTimes,
-    /// What is in the scene that was drawn last.
+    /// Contents of the scene that was drawn last.
     pub counts: Option<Counts>,
-    /// How long the crowd took that is shown.
+    /// Durations of the crowd that is shown.
     pub crowd: Option<CrowdTimes>,
 }

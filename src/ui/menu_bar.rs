@@ -20,9 +20,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rig = match session.rig() {
                 RigKind::Arm => match session.arm().influence {
-                    1.0 => "Arm · IK".to_owned(),
-                    0.0 => "Arm · FK".to_owned(),
-                    weight => format!("Arm · {:.0} % IK", weight * 100.0),
+                    1.0 => "Arm · IK (hand → joint angles)".to_owned(),
+                    0.0 => "Arm · FK (joint angles → hand)".to_owned(),
+                    influence => format!("Arm · {:.0} % IK, rest FK", influence * 100.0),
                 },
                 RigKind::Skeleton => {
                     format!("Skeleton · {}", labels::method(session.skeleton_rig().solver.method))
@@ -100,7 +100,7 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// Everything that can have keys, switches too.
+/// Channels to key, those of overlays in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Selected", "K") {
         actions.push(EditAction::Key(session.channels_to_key()));
@@ -135,7 +135,7 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// "Undo move hand", if there is something to undo.
+/// Undo or redo with the label of its step.
 fn step(
     ui: &mut Ui,
     verb: &str,
@@ -175,15 +175,15 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     }
     ui.separator();
-    let mut layers = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
+    let mut overlays = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
     if session.rig() == RigKind::Arm {
-        layers.push((Overlay::Globe, "Singularity globe"));
-        layers.push((Overlay::References, "Twist references"));
+        overlays.push((Overlay::Globe, "Singularity globe"));
+        overlays.push((Overlay::References, "Twist references"));
     }
-    for (layer, name) in layers {
-        let mut shown = session.shown().display.shows(layer);
+    for (overlay, name) in overlays {
+        let mut shown = session.shown().display.shows(overlay);
         if ui.checkbox(&mut shown, name).changed() {
-            actions.push(EditAction::ShowOverlay(layer, shown));
+            actions.push(EditAction::ShowOverlay(overlay, shown));
         }
     }
     let mut crowd = session.crowd().is_some();

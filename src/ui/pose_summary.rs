@@ -7,7 +7,7 @@ use crate::session::{Session, SolverStatus};
 use crate::ui::labels;
 use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
-/// One sentence on why the arm is as it is.
+/// One sentence about the reach of the arm.
 pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
     let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
     if !arm.is_led_by_hand() {
@@ -39,7 +39,7 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
     }
 }
 
-/// How the rig stands, for those who do not see it.
+/// Description of the pose for screen readers.
 pub(in crate::ui) fn summary(session: &Session) -> String {
     if let Some(crowd) = session.crowd() {
         return describe_crowd(&crowd);

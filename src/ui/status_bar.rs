@@ -1,4 +1,4 @@
-//! The line at the bottom: what just happened, or what the keys do now, or how the arm stands.
+//! The status bar: the last message, the keys of a drag, or the pose.
 
 use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
@@ -29,7 +29,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actio
     });
 }
 
-/// How far an export is; a press stops it.
+/// Progress of an export with a button that cancels it.
 fn show_job(ui: &mut Ui, job: &Job, actions: &mut Actions) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Cancel the export; no file is written").clicked() {
@@ -79,7 +79,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     )
 }
 
-/// What was turned, which at a limit is less than the mouse has gone around.
+/// The applied rotation, which at a limit is less than the rotation of the mouse.
 fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     const AT_LIMIT: f32 = 1e-5;
     let joints = session.skeleton().joints();

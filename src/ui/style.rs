@@ -1,4 +1,4 @@
-//! Colours, spacing and type of the panels, from the scene's own palette.
+//! Colours, spacing and fonts of the panels, from the scene's palette.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::document::Theme;
 use crate::render::SystemFace;
 use crate::scene::{Colour, Palette};
 
-/// The colours of the panels that are not the scene's.
+/// Colours of the panels that are not in the scene's palette.
 #[derive(Clone, Copy, Debug)]
 struct PanelColours {
     panel: Color32,
@@ -57,7 +57,7 @@ impl PanelColours {
     }
 }
 
-/// Sets both themes' styles, and fonts of the system for letters that egui's lack; once, at the start.
+/// Installs both themes and a fallback to system fonts; called once at the start.
 pub fn install(ctx: &Context) {
     ctx.add_font_provider(font_provider(SystemFace::find));
     for theme in [Theme::Dark, Theme::Light] {
@@ -84,7 +84,7 @@ pub fn install(ctx: &Context) {
     }
 }
 
-/// Asked once for each letter that egui's fonts lack. What it finds comes after them in every family.
+/// Finds system fonts for letters that egui's fonts lack, once per letter.
 fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> {
     Arc::new(move |request: &FallbackRequest<'_>| {
         let face = find(request.cluster.chars().next()?)?;
@@ -96,17 +96,17 @@ fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> 
     })
 }
 
-/// Shows the panels in a theme.
+/// Applies a theme to the panels.
 pub fn apply(ctx: &Context, theme: Theme) {
     ctx.set_theme(egui_theme(theme));
 }
 
-/// The scene's palette for the theme that the panels are in.
+/// The scene's palette of the current theme.
 pub(in crate::ui) fn palette(ui: &egui::Ui) -> Palette {
     Palette::new(if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light })
 }
 
-/// The one colour that is not grey and means no axis and no limb.
+/// The accent colour.
 pub(in crate::ui) fn accent(ui: &egui::Ui) -> Color32 {
     colour(palette(ui).accent)
 }
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn letters_that_egui_lacks_come_from_a_font_that_is_found() {
-        // Hack is egui's too, but for monospaced text alone.
+        // egui has Hack for monospaced text only.
         let find = |letter| {
             let data = epaint_default_fonts::HACK_REGULAR;
             (letter == '╬').then_some(SystemFace { number: 3, data, index: 0 })

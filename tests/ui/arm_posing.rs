@@ -53,7 +53,7 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     assert_eq!(bench.session().arm().influence, 0.0);
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
     assert!(
-        bench.says("Arm · FK")
+        bench.says("Arm · FK (joint angles → hand)")
             && bench.says("FK (joint angles → hand): the angles place the hand.")
     );
     bench.enter("Elbow bend", "60");

@@ -44,7 +44,7 @@ fn a_format_gives_the_path_its_ending_and_enter_exports() {
         bench.settle();
         bench.click(Role::Button, format);
         bench.settle();
-        bench.focus(Role::TextInput, "To");
+        bench.focus(Role::TextInput, "File");
         bench.key(Key::Enter);
         let export = exported(&mut bench);
         assert_eq!(export, Export { path: path.into(), frame_rate: 30, size: (1280, 800) });
@@ -55,7 +55,7 @@ fn a_format_gives_the_path_its_ending_and_enter_exports() {
 #[test]
 fn a_path_whose_ending_is_no_format_is_not_exported() {
     let mut bench = asked();
-    bench.focus(Role::TextInput, "To");
+    bench.focus(Role::TextInput, "File");
     bench.key_with(Modifiers::COMMAND, Key::A);
     bench.type_text("arm.fbx");
     bench.settle();

@@ -35,7 +35,7 @@ fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selec
         (CTRL, Key::S, "Document file"),
         (CTRL, Key::O, "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf"),
         (CTRL, Key::P, "PNG file"),
-        (CTRL, Key::E, "To"),
+        (CTRL, Key::E, "File"),
     ] {
         let mut bench = human();
         bench.click_at(bench.empty_place());

@@ -1,4 +1,4 @@
-//! The window that asks what to export, and how.
+//! The export dialog.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::io::Frames;
 use crate::session::{Actions, Dialog, EditAction, Export, FileAction, Session, ShellAction};
 use crate::ui::widgets::NumberField;
 
-/// A format, what it is called and for, and the ending of its files.
+/// A file format with its name, file extension and tooltip.
 struct FormatChoice {
     format: Format,
     name: &'static str,
@@ -164,7 +164,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
     });
 }
 
-/// A path without its ending, and without the places for a frame's number.
+/// The path without extension and frame number digits (`_####`).
 fn stem(path: &str) -> String {
     let without = Path::new(path).with_extension("");
     let without = without.to_string_lossy();

@@ -1,4 +1,4 @@
-//! Windows over the others: about, and those that ask for a path, a name or a decision.
+//! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
 mod export;
 mod first_button;
@@ -25,7 +25,7 @@ pub(in crate::ui) fn ui(
     let is_new = is_new(ui, session.dialog());
     let Some(dialog) = session.dialog() else { return };
     if is_new && dialog.is_modal() {
-        // What had the keyboard until now would have the first key, too.
+        // Otherwise the focused widget would receive the dialog's first key.
         ui.memory_mut(egui::Memory::stop_text_input);
     }
     let title = match dialog {
@@ -82,7 +82,7 @@ pub(in crate::ui) fn ui(
     });
 }
 
-/// Whether another dialog was open in the last pass, or none.
+/// True in the first frame of a dialog.
 fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     let now = dialog.map(std::mem::discriminant);
     let id = Id::unique("open dialog");
@@ -91,7 +91,7 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// A window that dims and stops all behind it.
+/// A modal window.
 fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
@@ -106,8 +106,7 @@ fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// One that is looked at while the rest goes on: at the right, where it hides the least of the
-/// viewport, until it is moved.
+/// A window that leaves the rest usable, first placed at the right of the viewport.
 fn beside(
     ui: &Ui,
     title: &str,

@@ -9,7 +9,7 @@ use crate::export::existing;
 use crate::session::{Action, Actions, Dialog, FileAction, Session, ShellAction};
 use crate::ui::widgets;
 
-/// What a path box asks for.
+/// Texts and actions of a path dialog.
 pub(super) struct PathPrompt {
     prompt: &'static str,
     accept: &'static str,
@@ -38,7 +38,7 @@ pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     action: FileAction::SaveAs,
 };
 
-/// A path box that works on every system, with the system's own dialog behind a button.
+/// A text box for a path, with a button for the system file dialog.
 pub(super) fn ask_path(
     ui: &mut Ui,
     session: &Session,
@@ -85,7 +85,7 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
     }
 }
 
-/// Says in which folder a path is that is typed without one.
+/// Shows the folder of a path that is typed without one.
 pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &Dialog) {
     let Some(typed) = dialog.path() else { return };
     let full = session.full_path(dialog, typed);
@@ -94,7 +94,7 @@ pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &Dialog) {
     ui.add(Label::new(RichText::new(format!("In {folder}")).weak()).truncate());
 }
 
-/// The action, or a question before it if it would overwrite a file that is not the open one.
+/// The action, or a dialog before it overwrites a file other than the open one.
 pub(in crate::ui) fn unless_there(
     session: &Session,
     path: PathBuf,

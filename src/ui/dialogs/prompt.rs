@@ -4,8 +4,8 @@ use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Key, TextEdit, Ui};
 
-/// A line of text that takes the keyboard when it is new, all of it selected: what is in it, and
-/// whether it was entered.
+/// A text line that takes the keyboard and selects its text when it is new. Returns the text, and
+/// true when Enter was pressed.
 pub(in crate::ui) fn prompt(ui: &mut Ui, prompt: &str, text: &str, is_new: bool) -> (String, bool) {
     let mut typed = text.to_owned();
     let name = ui.label(prompt);

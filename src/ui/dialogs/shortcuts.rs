@@ -1,4 +1,4 @@
-//! The table of the keys.
+//! The table of mouse and keyboard shortcuts.
 
 use egui::{Grid, ScrollArea, Ui, vec2};
 
@@ -78,7 +78,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             ],
         ),
     ];
-    // Beside each other, so that all is seen at once; where the window is smaller still, it scrolls.
+    // Two columns show all at once; a smaller window scrolls.
     let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
     let size = vec2(900.0, 460.0).min(room);
     ui.set_min_size(size);

@@ -1,4 +1,4 @@
-//! Questions before something is lost.
+//! Questions before changes or files are lost.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut
     ui.label(format!("{name} already exists in {folder}."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        // Enter that is pressed twice, or held, overwrites nothing.
+        // The default button is harmless, so a repeated Enter overwrites nothing.
         if first_button(ui, "Choose another name") {
             actions.push(ShellAction::CloseDialog);
         }

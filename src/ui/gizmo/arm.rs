@@ -1,4 +1,4 @@
-//! The arm's grips: the hand, the pole, and the rings of its own angles.
+//! The gizmo of the arm: handles of hand and Pole, and rings of the joint angles.
 
 use egui::{Color32, Painter, Pos2, Ui};
 
@@ -10,7 +10,7 @@ use crate::session::{Grip, Handle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Where the arm's grips are in the picture; those that are behind the eye are not.
+/// Screen positions of the arm's handles; `None` for those behind the eye.
 pub(in crate::ui) struct ArmGizmo {
     hand: Option<TranslateHandles>,
     pole: Option<TranslateHandles>,
@@ -18,31 +18,29 @@ pub(in crate::ui) struct ArmGizmo {
 }
 
 impl ArmGizmo {
-    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
+    pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         let (arm, pose) = (session.arm(), session.pose());
-        // Between IK and FK the hand is nowhere near its cursor, and is not taken for it.
+        // In a blend of IK and FK the hand is away from the Cursor and is no handle of it.
         let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
         let is_led = arm.is_led_by_hand();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
-        let ring = |grip| RotateRing::new(picture, grip, session.arm_ring(grip)?);
+        let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?);
         Self {
-            hand: is_led
-                .then(|| TranslateHandles::new(picture, arm.cursor_world(), hand))
-                .flatten(),
+            hand: is_led.then(|| TranslateHandles::new(screen, arm.cursor_world(), hand)).flatten(),
             pole: has_pole
-                .then(|| TranslateHandles::new(picture, arm.root + arm.pole, None))
+                .then(|| TranslateHandles::new(screen, arm.root + arm.pole, None))
                 .flatten(),
             rings: angles.filter_map(ring).collect(),
         }
     }
 
-    /// What is under a point of the screen.
-    pub fn at(&self, pointer: Pos2) -> Option<Grip> {
-        let on = |handles: &Option<TranslateHandles>| handles.as_ref()?.at(pointer);
+    /// The handle at a screen position.
+    pub fn at(&self, mouse: Pos2) -> Option<Grip> {
+        let on = |handles: &Option<TranslateHandles>| handles.as_ref()?.at(mouse);
         let of_hand = on(&self.hand).map(Grip::Hand);
         let of_pole = || on(&self.pole).map(Grip::Pole);
-        of_hand.or_else(of_pole).or_else(|| RotateRing::at(&self.rings, pointer))
+        of_hand.or_else(of_pole).or_else(|| RotateRing::at(&self.rings, mouse))
     }
 
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
@@ -68,7 +66,7 @@ impl ArmGizmo {
     }
 }
 
-/// While something else is held they are away.
+/// Hidden while another handle is dragged.
 fn paint(
     handles: Option<&TranslateHandles>,
     painter: &Painter,

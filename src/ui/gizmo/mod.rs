@@ -1,4 +1,4 @@
-//! What can be taken hold of in the viewport, where it is on screen, and how it shows.
+//! Handles in the viewport: their places on screen, hit tests and painting.
 
 mod arm;
 mod rotate;
@@ -18,39 +18,39 @@ use skeleton::SkeletonGizmo;
 pub(in crate::ui) enum Gizmo {
     Arm(ArmGizmo),
     Skeleton(SkeletonGizmo),
-    /// A crowd has none.
+    /// A crowd has no handles.
     None,
 }
 
 impl Gizmo {
-    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
+    pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         if session.crowd().is_some() {
             return Self::None;
         }
         match session.rig() {
-            RigKind::Arm => Self::Arm(ArmGizmo::new(picture, session)),
-            RigKind::Skeleton => Self::Skeleton(SkeletonGizmo::new(picture, session)),
+            RigKind::Arm => Self::Arm(ArmGizmo::new(screen, session)),
+            RigKind::Skeleton => Self::Skeleton(SkeletonGizmo::new(screen, session)),
         }
     }
 
-    /// What is under a point of the screen.
-    pub fn at(&self, pointer: Pos2) -> Option<Grip> {
+    /// The handle at a screen position.
+    pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         match self {
-            Self::Arm(arm) => arm.at(pointer),
-            Self::Skeleton(figure) => figure.at(pointer),
+            Self::Arm(arm) => arm.at(mouse),
+            Self::Skeleton(figure) => figure.at(mouse),
             Self::None => None,
         }
     }
 
-    /// The joint whose bone is under a point of the screen.
-    pub fn joint_at(&self, pointer: Pos2) -> Option<usize> {
+    /// The joint whose bone is at a screen position.
+    pub fn joint_at(&self, mouse: Pos2) -> Option<usize> {
         match self {
             Self::Arm(_) | Self::None => None,
-            Self::Skeleton(figure) => figure.joint_at(pointer),
+            Self::Skeleton(figure) => figure.joint_at(mouse),
         }
     }
 
-    /// Draws them; what is held or pointed at stands out.
+    /// Draws the handles and highlights the hovered or dragged one.
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
         match self {
             Self::Arm(arm) => arm.paint(painter, ui, pointed, held),

@@ -6,7 +6,7 @@ pub(in crate::ui) fn bright(colour: Color32) -> Color32 {
     colour.lerp_to_gamma(Color32::WHITE, 0.35)
 }
 
-/// How far a point is from a line between two others; endless where there is none.
+/// Distance from a point to a line segment; infinite for a segment that is off screen.
 pub(in crate::ui) fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {
     if !(from.is_finite() && to.is_finite()) {
         return f32::INFINITY;

@@ -1,4 +1,4 @@
-//! The skeleton's grips: targets, tips of bones, and the rings that turn the selected joint.
+//! The gizmo of the skeleton: targets, bone tips, and rings of the selected joint.
 
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
@@ -10,23 +10,23 @@ use crate::session::{Grip, Handle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// In points.
+/// Radius in points.
 const TIP: f32 = 7.0;
 const TIP_HIT: f32 = 10.0;
 const TARGET: f32 = 9.0;
 const TARGET_HIT: f32 = 12.0;
 const BONE_HIT: f32 = 8.0;
 
-/// Where the skeleton's grips are in the picture.
+/// Screen positions of the skeleton's handles.
 pub(in crate::ui) struct SkeletonGizmo {
     bones: Vec<ScreenBone>,
     targets: Vec<TargetMark>,
-    /// Arrows and squares of the selected joint's target.
+    /// Translation handles of the selected joint's target.
     handles: Option<(usize, TranslateHandles)>,
     rings: Vec<RotateRing>,
 }
 
-/// A bone on screen, and how far from the eye.
+/// A bone on screen with its depth.
 struct ScreenBone {
     base: Pos2,
     tip: Pos2,
@@ -42,56 +42,53 @@ struct TargetMark {
 }
 
 impl SkeletonGizmo {
-    pub fn new(picture: &ScreenProjection, session: &Session) -> Self {
+    pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         Self {
-            bones: bones(picture, session),
-            targets: targets(picture, session),
-            handles: handles(picture, session),
-            rings: rings(picture, session),
+            bones: bones(screen, session),
+            targets: targets(screen, session),
+            handles: handles(screen, session),
+            rings: rings(screen, session),
         }
     }
 
-    /// What is under a point of the screen: the selection's own handles before anything else, then
-    /// targets, then tips.
-    pub fn at(&self, pointer: Pos2) -> Option<Grip> {
+    /// The handle at a screen position: first the selection's handles, then targets, then tips.
+    pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_handles = self.handles.as_ref().and_then(|(joint, handles)| {
-            handles.at(pointer).map(|handle| Grip::Target(*joint, handle))
+            handles.at(mouse).map(|handle| Grip::Target(*joint, handle))
         });
         of_handles
-            .or_else(|| self.target_at(pointer))
-            .or_else(|| {
-                RotateRing::at(&self.rings, pointer).filter(|_| self.tip_at(pointer).is_none())
-            })
-            .or_else(|| self.tip_at(pointer))
+            .or_else(|| self.target_at(mouse))
+            .or_else(|| RotateRing::at(&self.rings, mouse).filter(|_| self.tip_at(mouse).is_none()))
+            .or_else(|| self.tip_at(mouse))
     }
 
-    fn target_at(&self, pointer: Pos2) -> Option<Grip> {
-        let hit = self.targets.iter().find(|target| target.at.distance(pointer) <= TARGET_HIT)?;
+    fn target_at(&self, mouse: Pos2) -> Option<Grip> {
+        let hit = self.targets.iter().find(|target| target.at.distance(mouse) <= TARGET_HIT)?;
         Some(Grip::Target(hit.joint, Handle::Free))
     }
 
-    /// Of tips in the same place, the one that is selected, else that of the last bone.
-    fn tip_at(&self, pointer: Pos2) -> Option<Grip> {
+    /// The tip at a screen position: the selected one first, then the nearest, then the last.
+    fn tip_at(&self, mouse: Pos2) -> Option<Grip> {
         let tips = self
             .bones
             .iter()
             .enumerate()
-            .filter(|(_, bone)| bone.can_be_posed && bone.tip.distance(pointer) <= TIP_HIT);
+            .filter(|(_, bone)| bone.can_be_posed && bone.tip.distance(mouse) <= TIP_HIT);
         let (joint, _) = tips.max_by(|(_, a), (_, b)| {
-            let rank = |bone: &ScreenBone| (bone.is_selected, -bone.tip.distance(pointer));
+            let rank = |bone: &ScreenBone| (bone.is_selected, -bone.tip.distance(mouse));
             let ((a_selected, a_near), (b_selected, b_near)) = (rank(a), rank(b));
             a_selected.cmp(&b_selected).then(a_near.total_cmp(&b_near))
         })?;
         Some(Grip::Tip(joint, Handle::Free))
     }
 
-    /// The joint whose bone is under a point of the screen, the nearest to the eye of several.
-    pub fn joint_at(&self, pointer: Pos2) -> Option<usize> {
+    /// The joint whose bone is at a screen position, nearest to the eye.
+    pub fn joint_at(&self, mouse: Pos2) -> Option<usize> {
         let hits = self
             .bones
             .iter()
             .enumerate()
-            .filter(|(_, bone)| to_segment(pointer, bone.base, bone.tip) <= BONE_HIT);
+            .filter(|(_, bone)| to_segment(mouse, bone.base, bone.tip) <= BONE_HIT);
         hits.min_by(|(_, a), (_, b)| a.depth.total_cmp(&b.depth)).map(|(joint, _)| joint)
     }
 
@@ -136,7 +133,7 @@ impl SkeletonGizmo {
     }
 }
 
-fn bones(picture: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
+fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
     let joints = rig.skeleton.joints();
     let bone = |joint: usize| {
@@ -144,9 +141,9 @@ fn bones(picture: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
         let is_root_point = joints[joint].parent.is_none() && joints[joint].axis == Vec3::ZERO;
         let nowhere = Pos2::new(f32::INFINITY, f32::INFINITY);
         ScreenBone {
-            base: picture.place(base).unwrap_or(nowhere),
-            tip: picture.place(tip).unwrap_or(nowhere),
-            depth: picture.depth(base.midpoint(tip)),
+            base: screen.place(base).unwrap_or(nowhere),
+            tip: screen.place(tip).unwrap_or(nowhere),
+            depth: screen.depth(base.midpoint(tip)),
             can_be_posed: rig.follow_path.is_none()
                 && (is_root_point || joints[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
@@ -155,26 +152,26 @@ fn bones(picture: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     (0..pose.len()).map(bone).collect()
 }
 
-fn targets(picture: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
+fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
     let mark = |target: &crate::document::Target| {
-        let at = picture.place(target.at(session.time()))?;
+        let at = screen.place(target.at(session.time()))?;
         Some(TargetMark { joint: target.joint, at, enabled: target.enabled })
     };
     session.skeleton_rig().targets.iter().filter_map(mark).collect()
 }
 
-fn handles(picture: &ScreenProjection, session: &Session) -> Option<(usize, TranslateHandles)> {
+fn handles(screen: &ScreenProjection, session: &Session) -> Option<(usize, TranslateHandles)> {
     let joint = session.selected()?;
     let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
-    Some((joint, TranslateHandles::new(picture, target.at(session.time()), None)?))
+    Some((joint, TranslateHandles::new(screen, target.at(session.time()), None)?))
 }
 
-/// The rings of the selected joint, all as large on screen wherever they are.
-fn rings(picture: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
+/// The rings of the selected joint.
+fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
     let Some(joint) = session.selected().filter(|_| session.skeleton_rig().follow_path.is_none())
     else {
         return Vec::new();
     };
-    let ring = |axis| RotateRing::new(picture, Grip::Ring(joint, axis), session.ring(joint, axis)?);
+    let ring = |axis| RotateRing::new(screen, Grip::Ring(joint, axis), session.ring(joint, axis)?);
     (0..3).filter_map(ring).collect()
 }

@@ -1,5 +1,5 @@
-//! A point's handles: three arrows, three squares and the point itself, as large on screen
-//! wherever they are.
+//! Translation handles of a point, of constant size on screen: three arrows, three squares, and
+//! the point itself.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 use glam::Vec3;
@@ -9,60 +9,61 @@ use crate::session::Handle;
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// In points.
+/// Length in points.
 const LENGTH: f32 = 80.0;
 const SQUARE: (f32, f32) = (24.0, 42.0);
 const HIT: f32 = 10.0;
 const FREE_RADIUS: f32 = 14.0;
 
-/// An arrow shorter than this part of its length looks along itself; a square narrower than this
-/// part of its size is seen edge-on.
+/// Arrows shorter than this fraction of their length are hidden, and squares narrower than this
+/// fraction of their size.
 const SHORTEST: f32 = 0.25;
 const NARROWEST: f32 = 0.2;
 
 const NAMES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Where the handles are in the picture.
+/// Screen positions of the handles.
 pub(in crate::ui) struct TranslateHandles {
     centre: Pos2,
-    /// The hand, which may not be at the Cursor.
+    /// The hand, which can be away from the Cursor.
     hand: Option<Pos2>,
-    /// From the centre to each arrow's tip, on screen.
+    /// Vectors on screen from the centre to the tips of the arrows.
     arrows: [Vec2; 3],
 }
 
 impl TranslateHandles {
-    /// Around the point at `cursor`, with a second place to take it by; nothing if it is behind the
+    /// Handles around `cursor`, with `hand` as a second place to drag it by; `None` behind the
     /// eye.
-    pub fn new(picture: &ScreenProjection, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
-        let centre = picture.place(cursor)?;
-        let unit = LENGTH * picture.units_per_point(cursor);
+    pub fn new(screen: &ScreenProjection, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
+        let centre = screen.place(cursor)?;
+        let unit = LENGTH * screen.units_per_point(cursor);
         let mut arrows = [Vec2::ZERO; 3];
         for (arrow, axis) in arrows.iter_mut().zip(Vec3::AXES) {
-            // Their own perspective would make arrows towards the eye endless.
-            *arrow = picture.direction(axis * unit, cursor);
+            // Without perspective: arrows towards the eye would be endless.
+            *arrow = screen.direction(axis * unit, cursor);
         }
-        Some(Self { centre, hand: hand.and_then(|hand| picture.place(hand)), arrows })
+        Some(Self { centre, hand: hand.and_then(|hand| screen.place(hand)), arrows })
     }
 
-    /// What is under a point of the screen.
-    pub fn at(&self, pointer: Pos2) -> Option<Handle> {
-        let on_free = |centre: Pos2| centre.distance(pointer) <= FREE_RADIUS;
+    /// The handle at a screen position.
+    pub fn at(&self, mouse: Pos2) -> Option<Handle> {
+        let on_free = |centre: Pos2| centre.distance(mouse) <= FREE_RADIUS;
         if on_free(self.centre) || self.hand.is_some_and(on_free) {
             return Some(Handle::Free);
         }
-        if let Some(axis) = (0..3).find(|axis| self.on_square(*axis, pointer)) {
+        if let Some(axis) = (0..3).find(|axis| self.on_square(*axis, mouse)) {
             return Some(Handle::Plane(axis));
         }
         (0..3)
             .filter(|axis| self.arrow_shows(*axis))
-            .map(|axis| (self.to_arrow(axis, pointer), axis))
+            .map(|axis| (self.to_arrow(axis, mouse), axis))
             .filter(|(distance, _)| *distance <= HIT)
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, axis)| Handle::Axis(axis))
     }
 
-    /// Draws them; what is held or pointed at stands out, and while one is held the others fade.
+    /// Draws the handles, highlights the hovered or dragged one, and fades the others during a
+    /// drag.
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Handle>, held: Option<Handle>) {
         let axes = style::palette(ui).axes.map(style::colour);
         let look = |handle: Handle, colour: Color32| match (held, pointed) {
@@ -112,7 +113,7 @@ impl TranslateHandles {
         self.arrows[axis].length() > LENGTH * SHORTEST
     }
 
-    /// The two axes of the square in which coordinate `axis` stays.
+    /// The two sides of the square that is normal to `axis`.
     fn sides(&self, axis: usize) -> (Vec2, Vec2) {
         (self.arrows[(axis + 1) % 3] / LENGTH, self.arrows[(axis + 2) % 3] / LENGTH)
     }
@@ -129,13 +130,13 @@ impl TranslateHandles {
             .map(|(along_u, along_v)| self.centre + u * along_u + v * along_v)
     }
 
-    fn on_square(&self, axis: usize, pointer: Pos2) -> bool {
+    fn on_square(&self, axis: usize, mouse: Pos2) -> bool {
         if !self.square_shows(axis) {
             return false;
         }
-        // The pointer in the square's own skewed coordinates, by Cramer's rule.
+        // The mouse in the square's skewed coordinates, by Cramer's rule.
         let (u, v) = self.sides(axis);
-        let at = pointer - self.centre;
+        let at = mouse - self.centre;
         let area = u.x * v.y - u.y * v.x;
         let along_u = (at.x * v.y - at.y * v.x) / area;
         let along_v = (u.x * at.y - u.y * at.x) / area;
@@ -144,9 +145,9 @@ impl TranslateHandles {
         inside.contains(&along_u) && inside.contains(&along_v)
     }
 
-    fn to_arrow(&self, axis: usize, pointer: Pos2) -> f32 {
+    fn to_arrow(&self, axis: usize, mouse: Pos2) -> f32 {
         let arrow = self.arrows[axis];
-        let at = pointer - self.centre;
+        let at = mouse - self.centre;
         let part = (at.dot(arrow) / arrow.length_sq()).clamp(0.0, 1.15);
         (at - arrow * part).length()
     }

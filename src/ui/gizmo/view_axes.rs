@@ -1,5 +1,4 @@
-//! The axes in the corner: they show how the view is turned, turn it when they are dragged, and
-//! look along an axis when its end is clicked.
+//! The view axes in the corner: drag them to orbit, click an end to look along it.
 
 use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
@@ -20,12 +19,12 @@ struct AxisEnd {
     name: &'static str,
     letter: &'static str,
     at: Pos2,
-    /// Towards the viewer.
+    /// Depth towards the viewer.
     depth: f32,
     colour: Color32,
 }
 
-/// Whether a point of the screen is on the axes of a viewport.
+/// True if a screen position is on the view axes.
 pub(in crate::ui) fn covers(viewport: Rect, at: Pos2) -> bool {
     centre(viewport).distance(at) <= RADIUS + END + 2.0
 }
@@ -34,12 +33,12 @@ fn centre(viewport: Rect) -> Pos2 {
     viewport.right_bottom() - Vec2::splat(RADIUS + END + MARGIN)
 }
 
-/// Shows the axes in the lower right of `viewport`. A drag on them is the viewport's to follow.
+/// Shows the axes at the lower right of `viewport`, which handles drags on them.
 pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mut Actions) {
     let centre = centre(viewport);
     let painter = ui.painter();
-    let pointer = ui.input(|input| input.pointer.latest_pos());
-    if pointer.is_some_and(|pointer| covers(viewport, pointer)) {
+    let mouse = ui.input(|input| input.pointer.latest_pos());
+    if mouse.is_some_and(|mouse| covers(viewport, mouse)) {
         let shade = ui.visuals().strong_text_color().gamma_multiply(0.07);
         painter.circle_filled(centre, RADIUS + END + 2.0, shade);
     }
@@ -47,7 +46,7 @@ pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mu
     ends.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     for end in &ends {
         let rect = Rect::from_center_size(end.at, Vec2::splat(2.0 * END));
-        let response = ui.interact(rect, Id::unique(("compass", end.name)), Sense::click());
+        let response = ui.interact(rect, Id::unique(("view axes", end.name)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, end.name));
         if response.clicked() {
             actions.push(ViewAction::GlideTo(session.settled_camera().along(end.view)));

@@ -1,12 +1,12 @@
-//! The widget that has the keyboard.
+//! Keyboard focus.
 
 use egui::{Id, Ui};
 
-/// Marks a widget that has the keyboard but no use for Space.
+/// Marks a focused widget that leaves Space to playback.
 #[derive(Clone, Copy, Default)]
 struct IgnoresSpace;
 
-/// Says that this widget has no use for Space.
+/// Lets Space play or pause while this widget has the keyboard.
 pub(in crate::ui) fn leave_space(ui: &Ui, widget: Id) {
     ui.data_mut(|data| data.insert_temp(widget, IgnoresSpace));
 }
@@ -16,12 +16,11 @@ pub(in crate::ui) fn leaves_space(ui: &Ui) -> bool {
     focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresSpace>(id)).is_some())
 }
 
-/// Marks whether a text has the keyboard.
+/// True while a text field has the keyboard.
 #[derive(Clone, Copy, Default)]
 struct TextFocus(bool);
 
-/// Notes at the end of a frame whether a text has the keyboard: Esc takes it away before the next
-/// one begins.
+/// Stores whether a text field has the keyboard; Esc removes the focus before the next frame.
 pub(in crate::ui) fn remember(ui: &Ui) {
     let typing = TextFocus(ui.text_edit_focused());
     ui.data_mut(|data| data.insert_temp(egui::Id::NULL, typing));

@@ -1,4 +1,4 @@
-//! What the keys do when no widget has them.
+//! Shortcuts that act in the whole window.
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 
@@ -9,7 +9,7 @@ use crate::session::{
 };
 use crate::ui::{commands, timeline};
 
-/// Keys that act wherever the keyboard is; while a dialog has it, only Esc does.
+/// Handles shortcuts of the whole window. In a modal dialog only Esc acts.
 pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
     if session.is_asking() {
         let escapes = ui.input(|input| input.key_pressed(Key::Escape));
@@ -24,7 +24,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
     if pressed(Modifiers::COMMAND, Key::Q) {
         actions.push(FileAction::Quit);
     }
-    // A text that is typed has steps of its own.
+    // A text field has an undo of its own.
     if !ui.text_edit_focused() {
         let redo = Modifiers::COMMAND.plus(Modifiers::SHIFT);
         if pressed(redo, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
@@ -57,7 +57,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
     }
     if ui.input(|input| input.key_pressed(Key::Escape)) {
         if timeline::holds(ui) && !session.is_editing() {
-            // It lets go of what it holds.
+            // The timeline cancels its own drag.
         } else if session.is_editing() {
             actions.push(TransactionAction::Cancel);
         } else if session.view_drag().is_some() {
@@ -65,7 +65,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         } else if session.dialog().is_some() {
             actions.push(ShellAction::CloseDialog);
         } else if focus::was_typing(ui) || egui::Popup::is_any_open(ui.ctx()) {
-            // It leaves the text, or closes the list.
+            // egui leaves the text field or closes the popup.
         } else if session.is_running() {
             actions.push(SolverAction::Cancel);
         } else if session.comparison().is_some() {

@@ -1,4 +1,4 @@
-//! Keys of the viewport and the outliner.
+//! Shortcuts of the viewport and the outliner.
 
 use egui::{Event, Key, Ui};
 use glam::Vec2;
@@ -10,7 +10,7 @@ use crate::session::{
 };
 use crate::ui::commands;
 
-/// Single keys, while no widget or the viewport or the tree of joints has the keyboard.
+/// Handles single keys while the viewport, the outliner or no widget has the keyboard.
 pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions) {
     if session.is_asking() {
         return;
@@ -83,8 +83,8 @@ fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// Arrow keys, while the viewport has the keyboard: they turn the view, with Shift they move it;
-/// plus and minus zoom.
+/// Orbits by arrow keys, pans with Shift, zooms by plus and minus, while the viewport has the
+/// keyboard.
 pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Actions) {
     const TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
     const PAN: f32 = 0.1;

@@ -1,4 +1,4 @@
-//! The panel of the crowd: how many arms, solved by what, and how long that takes.
+//! The crowd: number of arms, solver, and solve times.
 
 use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 

@@ -1,4 +1,4 @@
-//! The left panel: which rig it is, its parts, and what is shown.
+//! The left panel: the rig's settings, guides and display.
 
 use egui::{ScrollArea, Ui};
 
@@ -17,10 +17,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton::ui(ui, session, actions),
         }
-        widgets::section(ui, "Guides", |ui| layers(ui, session, 2, guides(session), actions));
+        widgets::section(ui, "Guides", |ui| overlays(ui, session, 2, guides(session), actions));
         let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
         let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
-        widgets::section(ui, "Display", |ui| layers(ui, session, 3, &surroundings, actions));
+        widgets::section(ui, "Display", |ui| overlays(ui, session, 3, &surroundings, actions));
         resets(ui, session, actions);
         ui.add_space(8.0);
     });
@@ -56,15 +56,21 @@ fn guides(session: &Session) -> &'static [Overlay] {
     }
 }
 
-/// In so many columns.
-fn layers(ui: &mut Ui, session: &Session, count: usize, layers: &[Overlay], actions: &mut Actions) {
+/// Check boxes of overlays in `count` columns.
+fn overlays(
+    ui: &mut Ui,
+    session: &Session,
+    count: usize,
+    overlays: &[Overlay],
+    actions: &mut Actions,
+) {
     ui.columns(count, |columns| {
-        for (index, layer) in layers.iter().enumerate() {
-            let (name, tooltip) = labels::overlay(session.rig(), *layer);
-            let mut shown = session.shown().display.shows(*layer);
+        for (index, overlay) in overlays.iter().enumerate() {
+            let (name, tooltip) = labels::overlay(session.rig(), *overlay);
+            let mut shown = session.shown().display.shows(*overlay);
             let column = &mut columns[index % count];
             if column.checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
-                actions.push(EditAction::ShowOverlay(*layer, shown));
+                actions.push(EditAction::ShowOverlay(*overlay, shown));
             }
         }
     });

@@ -1,4 +1,4 @@
-//! What a frame costs: a graph of the last ones, the parts of one in figures, and what is in it.
+//! Frame statistics: a graph of the last frames, durations, and contents of the scene.
 
 use core::time::Duration;
 
@@ -16,15 +16,14 @@ use crate::ui::widgets::plot;
 pub(in crate::ui) const WIDTH: f32 = 272.0;
 const HEIGHT: f32 = 96.0;
 const ROW: f32 = 17.0;
-/// Wide enough for a figure of any frame that is not a standstill.
+/// Fits any duration below a second.
 const FIGURE: f32 = 76.0;
 const GAP: f32 = 8.0;
 const NAME: f32 = WIDTH - 2.0 * (FIGURE + GAP);
-/// What a screen of 60 pictures a second leaves for one.
+/// Duration of a frame at 60 Hz, in milliseconds.
 const SIXTIETH: f64 = 1000.0 / 60.0;
 
-/// What the processor does for a frame, in the order in which it does it, one part on the other in
-/// the graph.
+/// CPU stages in order, stacked in the graph.
 const PARTS: [FramePart; 5] = [
     FramePart {
         name: "Solve",
@@ -127,7 +126,7 @@ fn heading(ui: &mut Ui, text: &str, tooltip: &str) {
     figure(ui, RichText::new(format!("{text}, ms")).weak().size(12.0)).on_hover_text(tooltip);
 }
 
-/// With a piece of its colour in the graph, if it has one.
+/// A name with the colour of its graph, if it has one.
 fn name(ui: &mut Ui, text: &str, tooltip: &str, colour: Option<Color32>) {
     let left = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(NAME, ROW), left, |ui| {
@@ -161,7 +160,7 @@ fn row(ui: &mut Ui, name: &str, tooltip: &str, text: &str) {
     ui.end_row();
 }
 
-/// At the right of its column, always as wide.
+/// Right-aligned text of constant width.
 fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
     let right = Layout::right_to_left(Align::Center);
     let label = |ui: &mut Ui| {
@@ -171,12 +170,12 @@ fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
     ui.allocate_ui_with_layout(vec2(FIGURE, ROW), right, label).inner
 }
 
-/// The parts of each frame, one on the other, and the device's time as a line.
+/// The stages of each frame, stacked, and the GPU time as a line.
 fn graph(ui: &mut Ui, times: &FrameTimes) {
     let top = top(times);
     let (palette, weak) = (style::palette(ui), ui.visuals().weak_text_color());
     let strong = ui.visuals().strong_text_color();
-    // In parts of the whole height, which is what a mark's spacing is told by.
+    // Fractions of the height.
     let ticks = [0.0, 0.5, 1.0];
     let points = |part: &dyn Fn(&FrameTime) -> Option<Duration>| points(times, top, part);
     let response = plot::still("frame times", HEIGHT)
@@ -190,7 +189,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
         .show(ui, |plot| {
             let last = FrameTimes::MOST as f64;
             plot::show(plot, PlotBounds::from_min_max([1.0, 0.0], [last, 1.04]));
-            // Each covers all but the part on top of it.
+            // Each area covers the lower part of the one before.
             for count in (1..=PARTS.len()).rev() {
                 let sum = |frame: &FrameTime| {
                     Some(PARTS[..count].iter().map(|part| (part.of)(frame)).sum())
@@ -216,7 +215,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
     response.on_hover_text("The last 240 frames, newest right; idle windows draw none");
 }
 
-/// The newest frame is at the right.
+/// Points of a duration, the newest frame at the right.
 fn points(
     times: &FrameTimes,
     top: f64,
@@ -228,7 +227,7 @@ fn points(
     frames.enumerate().filter_map(point).collect()
 }
 
-/// Where the graph ends: a round number that nearly all frames are below, so that it seldom changes.
+/// Top of the graph: a round number above the 99th percentile, so that it seldom changes.
 fn top(times: &FrameTimes) -> f64 {
     let total = times.spread(|frame| Some(frame.total().max(frame.gpu.unwrap_or_default())));
     let slowest = total.map_or(1.0, |total| milliseconds(total.slowest)).max(1.0);

@@ -2,13 +2,12 @@
 
 use egui::{Rect, Response, Ui, pos2};
 
-/// Of the column with the names.
+/// Width of the names.
 pub(super) const NAMES: f32 = 180.0;
 pub(super) const RULER: f32 = 24.0;
 pub(super) const ROW: f32 = 20.0;
 
-/// A press or a click in an area gives the ruler the keyboard for the whole timeline; a click beside
-/// the ruler has just taken it away.
+/// Gives the ruler the keyboard of the whole timeline after a press or click in an area.
 pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
     let touched = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_click());
     if touched && area.contains_pointer() {
@@ -16,10 +15,10 @@ pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
     }
 }
 
-/// What is where in the panel.
+/// Rectangles of the parts of the timeline.
 pub(super) struct TimelineAreas {
     pub whole: Rect,
-    /// Beside the lanes.
+    /// Left of the lanes.
     pub names: Rect,
     pub ruler: Rect,
     pub lanes: Rect,

@@ -1,4 +1,4 @@
-//! What the right button offers.
+//! Context menus of the timeline.
 
 use egui::{Id, Response, Ui};
 
@@ -9,14 +9,14 @@ use crate::document::Channel;
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
-/// Where the right button went down.
+/// Lane and time of the right click.
 #[derive(Clone, Copy)]
 struct MenuTarget {
     lane: Option<TimelineLane>,
     time: f64,
 }
 
-/// The menu of the lanes, for what was under the pointer.
+/// Context menu of the lanes.
 pub(in crate::ui) fn of_lanes(
     ui: &Ui,
     lanes: &LaneView<'_>,
@@ -55,7 +55,7 @@ pub(in crate::ui) fn of_lanes(
     });
 }
 
-/// The menu of a channel's name.
+/// Context menu of a channel's name.
 pub(in crate::ui) fn of_channel(
     response: &Response,
     session: &Session,

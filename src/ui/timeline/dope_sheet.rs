@@ -1,4 +1,4 @@
-//! A lane for all keys together and one for every keyed channel.
+//! The dope sheet: a lane for all keys and one for every keyed channel.
 
 use egui::containers::scroll_area::{DragScroll, ScrollSource};
 use egui::{
@@ -17,7 +17,7 @@ use crate::ui::widgets::diamond;
 use crate::ui::{labels, style};
 
 const SIZE: f32 = 5.0;
-/// Nearer to each other, in points, keys cannot be told apart by their names.
+/// Minimum distance in points between keys that have tooltips of their own.
 const NEAR: f32 = 5.0;
 
 pub(in crate::ui) fn ui(
@@ -59,8 +59,7 @@ struct DopeSheet<'a> {
 }
 
 impl DopeSheet<'_> {
-    /// The channels' lanes, of which only those in sight are laid out. Returns how far they are
-    /// scrolled.
+    /// Shows the visible lanes. Returns the scroll offset.
     fn scrolled(
         &self,
         ui: &mut Ui,
@@ -68,7 +67,7 @@ impl DopeSheet<'_> {
         rect: Rect,
         actions: &mut Actions,
     ) -> f32 {
-        // Over the lanes the wheel shows more or less of the time.
+        // Over the lanes the wheel zooms.
         let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
         let source = ScrollSource { scroll_bar: true, drag: DragScroll::Never, mouse_wheel };
         let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
@@ -108,7 +107,7 @@ impl DopeSheet<'_> {
         }
     }
 
-    /// A channel's name; a click selects the channel, with Shift or Ctrl beside others.
+    /// The name of a channel; a click selects it, Shift or Ctrl adds it.
     fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
         let session = self.session;
         let selected = session.selected_channels().contains(&channel);
@@ -186,7 +185,7 @@ impl DopeSheet<'_> {
         }
     }
 
-    /// What is to be known of a key, and acted on without a pointer. Whether the pointer is on it.
+    /// Tooltip and screen reader node of a key. Returns true while the mouse is over it.
     fn key(
         &self,
         ui: &Ui,
@@ -206,7 +205,7 @@ impl DopeSheet<'_> {
                 format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),
         };
-        // Presses are the lanes'.
+        // The lanes handle presses.
         let response = ui.interact(rect.intersect(lane_rect), id, Sense::hover());
         let picked = self.picked.has(lane, time);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
@@ -219,7 +218,7 @@ impl DopeSheet<'_> {
         hovered
     }
 
-    /// A channel that is not shown as its keys have it.
+    /// The mark of a channel with an unkeyed change.
     fn overridden(&self, ui: &Ui, channel: Channel, rect: Rect) {
         let at = pos2(self.scale.x(self.session.time()), rect.center().y);
         let id = Id::unique(("timeline override", channel));

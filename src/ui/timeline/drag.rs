@@ -1,4 +1,4 @@
-//! What the pointer holds in the timeline, from frame to frame.
+//! Drags in the timeline.
 
 use egui::{Id, Key, Pos2, Ui};
 
@@ -8,35 +8,35 @@ use crate::session::{Actions, Key as KeyOf, PlaybackAction, Session};
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) enum TimelineDrag {
-    /// The time, and what it was before.
+    /// The playhead, with the time before the drag.
     Playhead { before: f64 },
-    /// Keys that are moved.
+    /// Selected keys.
     Keys(KeyDrag),
-    /// A box that selects what is in it.
+    /// A selection box.
     Box(BoxDrag),
-    /// The lanes themselves.
+    /// The visible time range.
     Pan,
 }
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) struct KeyDrag {
-    /// Where the keys were.
+    /// The keys at their times before the drag.
     pub keys: Vec<KeyOf>,
-    /// When the key is that the pointer holds.
+    /// Time of the key under the mouse.
     pub time: f64,
     pub pressed: Pos2,
-    /// Whether they have been moved, so that there is something to take back.
+    /// True once the drag has moved the keys.
     pub moved: bool,
-    /// What is selected if it was a click after all.
+    /// The selection after a click without a drag.
     pub clicked: Vec<KeyOf>,
 }
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) struct BoxDrag {
     pub time: f64,
-    /// Below the top of the first lane, in points.
+    /// Offset in points from the top of the first channel's lane.
     pub y: f32,
-    /// What stays selected.
+    /// Keys that stay selected.
     pub base: Vec<KeyOf>,
 }
 
@@ -52,12 +52,12 @@ pub(in crate::ui) fn clear(ui: &Ui) {
     ui.data_mut(|data| data.remove::<TimelineDrag>(id()));
 }
 
-/// Whether the pointer lets go in this frame.
+/// True in the frame of the release.
 pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
     ui.input(|input| !input.pointer.any_down() || input.pointer.any_released())
 }
 
-/// The time follows the pointer that holds it; Esc takes it back.
+/// Moves the playhead with the mouse; Esc restores the time.
 pub(in crate::ui) fn follow_playhead(
     ui: &Ui,
     session: &Session,
@@ -72,15 +72,15 @@ pub(in crate::ui) fn follow_playhead(
         actions.push(PlaybackAction::SetTime(before));
         return;
     }
-    if let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) {
-        actions.push(PlaybackAction::SetTime(pointed_time(ui, session, scale, pointer)));
+    if let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) {
+        actions.push(PlaybackAction::SetTime(pointed_time(ui, session, scale, mouse)));
     }
     if is_released(ui) {
         clear(ui);
     }
 }
 
-/// Takes hold of the time; what plays stands.
+/// Starts to drag the playhead and pauses playback.
 pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Actions) {
     set(ui, TimelineDrag::Playhead { before: session.time() });
     if session.is_playing() {
@@ -88,24 +88,24 @@ pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Act
     }
 }
 
-/// The frame at the pointer, or with Ctrl the very time, within the timeline and its keys.
+/// The time under the mouse, snapped to frames unless Ctrl is held, within timeline and keys.
 pub(in crate::ui) fn pointed_time(
     ui: &Ui,
     session: &Session,
     scale: TimeScale,
-    pointer: Pos2,
+    mouse: Pos2,
 ) -> f64 {
     let timeline = session.document().timeline;
     let (first, last) = span(session);
-    snapped(ui, timeline, scale.time(pointer.x)).clamp(first, last)
+    snapped(ui, timeline, scale.time(mouse.x)).clamp(first, last)
 }
 
-/// On a frame, unless Ctrl is held.
+/// The time snapped to frames, unless Ctrl is held.
 pub(in crate::ui) fn snapped(ui: &Ui, timeline: Timeline, time: f64) -> f64 {
     if ui.input(|input| input.modifiers.command) { time } else { timeline.snapped(time) }
 }
 
-/// From the start or the first key to the end or the last key.
+/// The range of timeline and keys.
 pub(in crate::ui) fn span(session: &Session) -> (f64, f64) {
     let Timeline { start, end, .. } = session.document().timeline;
     session.document().keys.tracks().fold((start, end), |(start, end), (_, track)| {

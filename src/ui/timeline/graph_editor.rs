@@ -1,4 +1,4 @@
-//! The keyed values over the time.
+//! The graph editor: keyed values over time.
 
 use egui::{
     Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
@@ -16,17 +16,17 @@ use crate::session::{Actions, Session};
 use crate::ui::widgets::{format, plot};
 use crate::ui::{labels, style};
 
-/// More than these cannot be told apart.
+/// Maximum number of channels shown.
 const MOST: usize = 24;
-/// Between two points of a curve, in points of the screen.
+/// Distance in points between samples of a curve.
 const GRAIN: f32 = 2.0;
-/// Beside the plot.
+/// Width of the value axis.
 const VALUES: f32 = 42.0;
 
-/// Between two values that are written, at least.
+/// Minimum distance in points between labels.
 const BETWEEN_VALUES: f32 = 15.0;
 
-/// The line of one number of a channel.
+/// The curve of one component of a channel.
 struct ChannelCurve {
     name: String,
     colour: Color32,
@@ -75,7 +75,7 @@ pub(in crate::ui) fn ui(
 
 const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
-/// The selected channels that have keys, else those of the rig that is shown.
+/// The selected channels with keys, else those of the shown rig.
 fn shown(session: &Session) -> Vec<Channel> {
     let all = lane::channels(session);
     let selected = session.selected_channels();
@@ -87,8 +87,7 @@ fn shown(session: &Session) -> Vec<Channel> {
     chosen.into_iter().take(MOST).collect()
 }
 
-/// A point's coordinates have the axes' colours, a number one of its own; channels after the first
-/// are broken differently.
+/// Colours and line style: axis colours for points, a colour per channel otherwise.
 fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     let palette = style::palette(ui);
     let style = match index % 4 {
@@ -140,7 +139,7 @@ fn curves(
     colours.into_iter().enumerate().map(curve).collect()
 }
 
-/// Close enough to each other for a smooth curve.
+/// Sample times of a smooth curve.
 fn times(scale: TimeScale) -> Vec<f64> {
     let (from, to) = scale.range();
     let step = f64::from(GRAIN) / scale.points_per_second();
@@ -155,7 +154,7 @@ fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelC
         (low.min(value), high.max(value))
     });
     let room = (0.12 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
-    // What stands still lies in the middle.
+    // A constant value lies in the middle.
     let room = if high - low < room { 0.5 * room + 0.5 } else { room };
     let bounds = PlotBounds::from_min_max([from, low - room], [to, high + room]);
     let left = areas.lanes.left() - VALUES;
@@ -188,20 +187,20 @@ fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelC
         });
 }
 
-/// With as many digits as tell it from the next one.
+/// A value with the digits that distinguish it from the next label.
 fn value(value: f64, step: f64) -> String {
     let digits = -step.max(1e-6).log10().floor();
     format::fixed(value, digits.max(0.0) as usize)
 }
 
-/// The 1, 2 or 5 times a power of ten that is next above.
+/// The smallest 1, 2 or 5 times a power of ten from `step` up.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1e-30).log10().floor());
     let steps = [1.0, 2.0, 5.0].map(|times| times * power);
     steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
 }
 
-/// Which line is which.
+/// The legend.
 fn legend(ui: &mut Ui, session: &Session, areas: &TimelineAreas, channels: &[Channel]) {
     let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
     let rect = Rect::from_min_max(areas.names.min, right);

@@ -1,4 +1,4 @@
-//! What the keys do in the timeline, and wherever no text has the keyboard.
+//! Shortcuts of the timeline, and of keys and playback everywhere.
 
 use egui::{Event, EventFilter, Key, Modifiers, Ui};
 
@@ -6,7 +6,7 @@ use super::{drag, ruler};
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session, ShellAction};
 use crate::ui::keyboard::{focus, viewport};
 
-/// The keys for keys, wherever no text has the keyboard.
+/// Handles shortcuts of keys and playback, unless a text field has the keyboard.
 pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Actions) {
     let is_busy = ui.text_edit_focused()
         || session.drag().is_some()
@@ -47,20 +47,20 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     }
 }
 
-/// Whether the selected keys are what is worked on: the timeline was used last, or no joint is
-/// selected beside them.
+/// True if shortcuts act on the selected keys: the timeline has the keyboard, or no joint is
+/// selected.
 pub(in crate::ui) fn has_the_word(ui: &Ui, session: &Session) -> bool {
     let is_used = ui.memory(|memory| memory.has_focus(ruler::id()));
     !session.selected_keys().is_empty() && (is_used || session.selection().is_empty())
 }
 
-/// Whether Esc is the timeline's: something in it is held.
+/// True during a drag in the timeline, which Esc cancels.
 pub(in crate::ui) fn holds(ui: &Ui) -> bool {
     drag::get(ui).is_some()
 }
 
-/// Keys while the timeline has the keyboard: arrows go from frame to frame and from key to key, Home
-/// and End to the ends; single keys do what they do in the viewport.
+/// Handles shortcuts of the focused timeline: arrows step frames and keys, Home and End go to the
+/// ends; others act as in the viewport.
 pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) {
     if !ui.memory(|memory| memory.has_focus(ruler::id())) {
         return;
@@ -95,16 +95,16 @@ pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) 
         });
         actions.push(SelectAction::Keys(keys.collect()));
     }
-    // Here it never means joints.
+    // In the timeline Delete never deletes joints.
     for key in [Key::Delete, Key::Backspace] {
         consumed(Modifiers::NONE, key);
     }
     viewport::viewport(ui, session, actions);
 }
 
-/// The next time on a frame, before or after.
+/// The time of the next or previous frame.
 fn next_frame(session: &Session, by: f64) -> f64 {
-    /// What is so near a frame is on it, in frames.
+    /// Tolerance of a time on a frame, in frames.
     const ROUNDING: f64 = 1e-6;
     let timeline = session.document().timeline;
     let rate = f64::from(timeline.frame_rate);
@@ -117,7 +117,7 @@ fn next_frame(session: &Session, by: f64) -> f64 {
     (next / rate).clamp(first.min(session.time()), last.max(session.time()))
 }
 
-/// When the last key before this time is.
+/// Time of the previous key.
 pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
     let time = session.time();
     let tracks = session.document().keys.tracks();
@@ -128,7 +128,7 @@ pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
     before.max_by(f64::total_cmp)
 }
 
-/// When the first key after this time is.
+/// Time of the next key.
 pub(in crate::ui) fn key_after(session: &Session) -> Option<f64> {
     let time = session.time();
     let tracks = session.document().keys.tracks();

@@ -1,18 +1,18 @@
-//! Which lanes there are, and which keys are in them.
+//! Lanes of the dope sheet, and their keys.
 
 use std::collections::HashSet;
 
 use crate::document::Channel;
 use crate::session::{Key, Session};
 
-/// A lane: all keys at a time together, or those of a channel.
+/// A lane: the keys of all channels, or of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::ui) enum TimelineLane {
     All,
     Channel(Channel),
 }
 
-/// The keyed channels, those of the rig that is shown first.
+/// The keyed channels, those of the shown rig first.
 pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
     let rig = Some(session.rig());
     let keyed = session.document().keys.tracks().map(|(channel, _)| channel);
@@ -22,7 +22,7 @@ pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
 }
 
 impl TimelineLane {
-    /// When it has keys, of those from one time to another; in order.
+    /// Sorted times of the lane's keys within a range.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
         let keys = &session.document().keys;
         match self {
@@ -40,7 +40,7 @@ impl TimelineLane {
         }
     }
 
-    /// The keys that it has at a time.
+    /// The lane's keys at a time.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
         match self {
             Self::Channel(channel) => vec![(channel, time)],
@@ -52,7 +52,7 @@ impl TimelineLane {
         }
     }
 
-    /// What a key is added to.
+    /// Channels that "Add key" keys in this lane.
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel(channel) => vec![channel],
@@ -70,7 +70,7 @@ fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
     seen.map(|knot| knot.time)
 }
 
-/// The selected keys, to be asked for quickly.
+/// A set of keys with fast lookup.
 pub(in crate::ui) struct SelectedKeys {
     keys: HashSet<(Channel, u64)>,
     times: HashSet<u64>,
@@ -90,7 +90,7 @@ impl SelectedKeys {
         }
     }
 
-    /// Whether any of a lane's keys at a time is selected.
+    /// True if any of the lane's keys at a time is in the set.
     pub fn has(&self, lane: TimelineLane, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
         match lane {

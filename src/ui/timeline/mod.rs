@@ -1,4 +1,4 @@
-//! The panel below the viewport: playing, and the keys in lanes or as curves.
+//! The timeline: transport bar, ruler, and dope sheet or graph editor.
 
 mod areas;
 mod context_menu;

@@ -1,4 +1,4 @@
-//! What the pointer does in the lanes: it selects keys, moves them, and draws boxes around them.
+//! The mouse in the dope sheet: selects and moves keys, draws selection boxes.
 
 use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
 
@@ -12,23 +12,23 @@ use crate::session::{
 };
 use crate::ui::{labels, style};
 
-/// How far from a key it can be taken hold of, in points.
+/// Hit radius of a key, in points.
 const REACH: f32 = 7.0;
-/// How far the pointer goes before a press is a drag.
+/// Distance in points from which a press is a drag.
 const SLACK: f32 = 3.0;
 
-/// The lanes as they are on screen.
+/// The lanes on screen.
 pub(in crate::ui) struct LaneView<'a> {
     pub session: &'a Session,
     pub scale: TimeScale,
     pub channels: &'a [Channel],
     pub area: Rect,
-    /// How far the channels' lanes are scrolled.
+    /// Scroll offset of the channels' lanes.
     pub offset: f32,
 }
 
 impl LaneView<'_> {
-    /// The lane at a place on screen.
+    /// The lane at a screen position.
     pub fn lane(&self, at: Pos2) -> Option<TimelineLane> {
         let y = at.y - self.area.top();
         if y < ROW {
@@ -38,7 +38,7 @@ impl LaneView<'_> {
         self.channels.get(row).map(|channel| TimelineLane::Channel(*channel))
     }
 
-    /// The lane and the time of the key that is nearest to a place.
+    /// Lane and time of the key at a screen position.
     pub fn key(&self, at: Pos2) -> Option<(TimelineLane, f64)> {
         let lane = self.lane(at)?;
         let (from, to) = (self.scale.time(at.x - REACH), self.scale.time(at.x + REACH));
@@ -48,12 +48,12 @@ impl LaneView<'_> {
         Some((lane, nearest))
     }
 
-    /// Below the top of the first channel's lane, scrolled or not.
+    /// Offset from the top of the first channel's lane, scrolling included.
     fn content_y(&self, at: Pos2) -> f32 {
         at.y - self.area.top() - ROW + self.offset
     }
 
-    /// The keys of channels between two times and two heights.
+    /// The keys within a range of times and offsets.
     fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
         let centre = |row: usize| ROW * (row as f32 + 0.5);
         let rows = self.channels.iter().enumerate();
@@ -66,7 +66,7 @@ impl LaneView<'_> {
     }
 }
 
-/// Takes hold of what is under the pointer.
+/// Starts a drag at a press.
 pub(in crate::ui) fn press(
     ui: &Ui,
     lanes: &LaneView<'_>,
@@ -138,7 +138,7 @@ fn press_key(
     let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
     let all_selected = pointed.iter().all(|key| is_selected(&key));
     let (keys, clicked) = match (adds, all_selected) {
-        // Once more takes it out, unless it is dragged.
+        // Another click deselects it, unless it is dragged.
         (true, true) => {
             let others = selected.iter().filter(|key| !is_pointed(key)).copied();
             (selected.to_vec(), others.collect())
@@ -163,40 +163,34 @@ fn press_lane(ui: &Ui, lanes: &LaneView<'_>, at: Pos2, adds: bool) {
     drag::set(ui, TimelineDrag::Box(drag));
 }
 
-/// What is held follows the pointer, until it is let go or taken back.
+/// Continues the drag until release or Esc.
 pub(in crate::ui) fn follow(ui: &Ui, lanes: &LaneView<'_>, actions: &mut Actions) {
-    let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
+    let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
         return;
     };
     match drag::get(ui) {
-        Some(TimelineDrag::Keys(drag)) => move_keys(ui, lanes, drag, pointer, actions),
-        Some(TimelineDrag::Box(drag)) => draw_box(ui, lanes, &drag, pointer, actions),
+        Some(TimelineDrag::Keys(drag)) => move_keys(ui, lanes, drag, mouse, actions),
+        Some(TimelineDrag::Box(drag)) => draw_box(ui, lanes, &drag, mouse, actions),
         Some(TimelineDrag::Pan) if drag::is_released(ui) => drag::clear(ui),
         Some(TimelineDrag::Pan | TimelineDrag::Playhead { .. }) | None => {}
     }
 }
 
-fn move_keys(
-    ui: &Ui,
-    lanes: &LaneView<'_>,
-    mut drag: KeyDrag,
-    pointer: Pos2,
-    actions: &mut Actions,
-) {
+fn move_keys(ui: &Ui, lanes: &LaneView<'_>, mut drag: KeyDrag, mouse: Pos2, actions: &mut Actions) {
     let session = lanes.session;
-    let taken_back = ui.input(|input| input.key_pressed(Button::Escape));
-    if taken_back || drag.moved && !session.is_editing() {
+    let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
+    if cancelled || drag.moved && !session.is_editing() {
         actions.push(SelectAction::Keys(drag.keys));
         drag::clear(ui);
         return;
     }
-    if !drag.moved && (pointer - drag.pressed).length() > SLACK {
+    if !drag.moved && (mouse - drag.pressed).length() > SLACK {
         actions.push(TransactionAction::Begin);
         drag.moved = true;
         drag::set(ui, TimelineDrag::Keys(drag.clone()));
     }
     if drag.moved {
-        let way = f64::from(pointer.x - drag.pressed.x) / lanes.scale.points_per_second();
+        let way = f64::from(mouse.x - drag.pressed.x) / lanes.scale.points_per_second();
         let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
         let count = labels::count_of_keys(drag.keys.len());
         let said = format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel");
@@ -213,17 +207,17 @@ fn move_keys(
     }
 }
 
-fn draw_box(ui: &Ui, lanes: &LaneView<'_>, drag: &BoxDrag, pointer: Pos2, actions: &mut Actions) {
+fn draw_box(ui: &Ui, lanes: &LaneView<'_>, drag: &BoxDrag, mouse: Pos2, actions: &mut Actions) {
     if ui.input(|input| input.key_pressed(Button::Escape)) {
         actions.push(SelectAction::Keys(drag.base.clone()));
         drag::clear(ui);
         return;
     }
     let corner = place(lanes, drag);
-    let is_box = (pointer - corner).length() > SLACK;
+    let is_box = (mouse - corner).length() > SLACK;
     let mut keys = drag.base.clone();
     if is_box {
-        let (time, y) = (lanes.scale.time(pointer.x), lanes.content_y(pointer));
+        let (time, y) = (lanes.scale.time(mouse.x), lanes.content_y(mouse));
         let times = (drag.time.min(time), drag.time.max(time));
         let inside = lanes.keys_in(times, (drag.y.min(y), drag.y.max(y)));
         let picked = SelectedKeys::of(&keys);
@@ -244,15 +238,15 @@ fn place(lanes: &LaneView<'_>, drag: &BoxDrag) -> Pos2 {
     pos2(lanes.scale.x(drag.time), y)
 }
 
-/// The box that selects.
+/// Draws the selection box.
 pub(in crate::ui) fn paint_box(ui: &Ui, lanes: &LaneView<'_>) {
-    let (Some(TimelineDrag::Box(drag)), Some(pointer)) =
+    let (Some(TimelineDrag::Box(drag)), Some(mouse)) =
         (drag::get(ui), ui.input(|input| input.pointer.latest_pos()))
     else {
         return;
     };
     let accent = style::accent(ui);
-    let rect = Rect::from_two_pos(place(lanes, &drag), pointer);
+    let rect = Rect::from_two_pos(place(lanes, &drag), mouse);
     let painter = ui.painter().with_clip_rect(lanes.area);
     let rim = Stroke::new(1.0, accent);
     painter.rect(rect, 0.0, accent.gamma_multiply(0.15), rim, egui::StrokeKind::Inside);

@@ -1,4 +1,4 @@
-//! The time across: seconds and frames, and where it is now.
+//! The ruler: seconds, frames and the playhead.
 
 use egui::{
     Align2, Color32, CursorIcon, Event, Id, PointerButton, Rect, Response, Sense, Shape, Stroke,
@@ -11,17 +11,17 @@ use crate::document::Timeline;
 use crate::session::{Actions, PlaybackAction, Session};
 use crate::ui::style;
 
-/// Between two times that are written, in points, at least.
+/// Minimum distance in points between labels.
 const LABEL: f64 = 64.0;
-/// Between two lines, at least.
+/// Minimum distance in points between lines.
 const LINE: f64 = 7.0;
 
-/// The ruler has the keyboard for the whole timeline.
+/// Id of the ruler, which has the keyboard for the whole timeline.
 pub(in crate::ui) fn id() -> Id {
     Id::unique("timeline ruler")
 }
 
-/// Shows it, and lets the time follow the pointer on it.
+/// Shows the ruler and scrubs on it.
 pub(in crate::ui) fn ui(
     ui: &Ui,
     session: &Session,
@@ -61,7 +61,7 @@ pub(in crate::ui) fn ui(
     )
 }
 
-/// Whether the left button goes down on it.
+/// True when the left button is pressed on it.
 pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     let is_press = |event: &Event| {
         matches!(event, Event::PointerButton { button: PointerButton::Primary, pressed: true, .. })
@@ -69,7 +69,7 @@ pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     response.contains_pointer() && ui.input(|input| input.events.iter().any(is_press))
 }
 
-/// What a screen reader asks for.
+/// Handles requests of screen readers.
 fn asked(ui: &Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let frames = ui.input(|input| {
@@ -112,7 +112,7 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     }
 }
 
-/// Where the ruler's times that are written go on downwards.
+/// Extends the labelled lines over the lanes.
 pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
@@ -122,14 +122,14 @@ pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: R
     }
 }
 
-/// What lies between start and end stands out from what does not.
+/// Highlights the range from start to end.
 pub(in crate::ui) fn ground(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let x = |time| scale.x(time).clamp(rect.left(), rect.right());
     let played = Rect::from_x_y_ranges(x(timeline.start)..=x(timeline.end), rect.y_range());
     ui.painter().rect_filled(played, 0.0, ui.visuals().extreme_bg_color);
 }
 
-/// Where the time is: a line through all lanes with a handle in the ruler.
+/// Draws the playhead: a handle in the ruler and a line through all lanes.
 pub(in crate::ui) fn playhead(
     ui: &Ui,
     session: &Session,
@@ -148,11 +148,11 @@ pub(in crate::ui) fn playhead(
     painter.add(Shape::convex_polygon(points.to_vec(), accent, rim));
 }
 
-/// Which frames have a line.
+/// Frames between lines.
 struct RulerTicks {
-    /// Frames from a written time to the next.
+    /// Frames between labels.
     major: i64,
-    /// Frames from a line to the next.
+    /// Frames between lines.
     minor: i64,
 }
 
@@ -171,7 +171,7 @@ impl RulerTicks {
         Self { major, minor }
     }
 
-    /// Where every `step`th frame that is seen is, with its number.
+    /// The x of every `step`th visible frame, with its number.
     fn lines(
         &self,
         scale: TimeScale,

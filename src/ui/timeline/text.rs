@@ -4,7 +4,7 @@ use egui::{Color32, FontId, Rect, TextStyle, Ui, UiBuilder, pos2, vec2};
 
 use super::areas::{ROW, TimelineAreas};
 
-/// A quiet sentence where nothing else is.
+/// A weak sentence in an empty timeline.
 pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     let rect = Rect::from_center_size(
         areas.lanes.center(),
@@ -18,7 +18,7 @@ pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     });
 }
 
-/// In one line, cut where the column ends.
+/// One line of text, truncated to the rectangle.
 pub(in crate::ui) fn line(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     let font: FontId = TextStyle::Body.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);

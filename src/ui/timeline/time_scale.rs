@@ -1,30 +1,30 @@
-//! Which part of the time is seen, and where it is on screen.
+//! The visible time range and its place on screen.
 
 use egui::{Event, Id, MouseWheelUnit, Rangef, Rect, Ui};
 
 use crate::document::Timeline;
 use crate::session::Session;
 
-/// Left of what is fitted and right of it, in points.
+/// Margin at both ends, in points.
 const MARGIN: f32 = 16.0;
-/// How much a step of the wheel shows more or less.
+/// Zoom factor of a wheel step.
 const WHEEL: f64 = 1.2;
 const POINTS_PER_STEP: f32 = 50.0;
-/// The least that can be seen at once, in frames.
+/// Smallest visible range, in frames.
 const LEAST_FRAMES: f64 = 4.0;
 
-/// Takes times to places on screen and back.
+/// Converts between times and x on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::ui) struct TimeScale {
-    /// The whole width, in points.
+    /// Horizontal range, in points.
     seen: Rangef,
-    /// When it is a margin right of the left end, in seconds.
+    /// Time at the left margin, in seconds.
     from: f64,
-    /// When it is a margin left of the right end.
+    /// Time at the right margin, in seconds.
     to: f64,
 }
 
-/// What is kept from frame to frame: what is seen once it is not the whole timeline.
+/// The visible range kept between frames while the timeline is zoomed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StoredRange {
     of: (f64, f64),
@@ -33,7 +33,7 @@ struct StoredRange {
 }
 
 impl TimeScale {
-    /// What is seen in such a width; all of the timeline if it is another one than before.
+    /// The stored range, or the whole timeline after its ends have changed.
     pub fn load(ui: &Ui, timeline: Timeline, seen: Rangef) -> Self {
         let of = (timeline.start, timeline.end);
         let zoom = ui.data(|data| data.get_temp::<StoredRange>(id())).filter(|zoom| zoom.of == of);
@@ -51,7 +51,7 @@ impl TimeScale {
         ui.data_mut(|data| data.insert_temp(id(), zoom));
     }
 
-    /// Shows all of the timeline again.
+    /// Fits the whole timeline.
     pub fn fit(ui: &Ui) {
         ui.data_mut(|data| data.remove::<StoredRange>(id()));
     }
@@ -66,7 +66,7 @@ impl TimeScale {
 
     pub fn x(self, time: f64) -> f32 {
         let x = (time - self.from) * self.points_per_second();
-        // What is far out of sight stays there, and finite.
+        // Clamped, so that far times stay finite.
         self.seen.min + MARGIN + x.clamp(-1e6, 1e6) as f32
     }
 
@@ -74,20 +74,20 @@ impl TimeScale {
         self.from + f64::from(x - self.seen.min - MARGIN) / self.points_per_second()
     }
 
-    /// The first and the last time that is seen.
+    /// The visible time range.
     pub fn range(self) -> (f64, f64) {
         (self.time(self.seen.min), self.time(self.seen.max))
     }
 
-    /// The wheel shows more or less, about the pointer; with Shift or across, and by the middle
-    /// button, it goes on to other times. What is played stays in sight.
+    /// Zooms by the wheel about the mouse; pans by Shift+wheel, horizontal wheel and middle drag;
+    /// follows the playhead during playback.
     pub fn follow_input(&mut self, ui: &Ui, session: &Session, area: Rect, is_panning: bool) {
         let before = *self;
         let timeline = session.document().timeline;
         if session.is_playing() {
             self.reveal(session.time());
         }
-        let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else {
+        let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
             self.keep_if_other(ui, before, timeline);
             return;
         };
@@ -97,7 +97,7 @@ impl TimeScale {
         if ui.rect_contains_pointer(area) {
             for event in ui.input(|input| input.events.clone()) {
                 match event {
-                    Event::Zoom(factor) => self.zoom(pointer.x, f64::from(factor), timeline),
+                    Event::Zoom(factor) => self.zoom(mouse.x, f64::from(factor), timeline),
                     Event::MouseWheel { unit, delta, modifiers, .. } => {
                         let steps = match unit {
                             MouseWheelUnit::Point => delta / POINTS_PER_STEP,
@@ -107,7 +107,7 @@ impl TimeScale {
                         let across = if modifiers.shift { steps.x + steps.y } else { steps.x };
                         self.pan(-across * POINTS_PER_STEP);
                         if !modifiers.shift {
-                            self.zoom(pointer.x, WHEEL.powf(f64::from(steps.y)), timeline);
+                            self.zoom(mouse.x, WHEEL.powf(f64::from(steps.y)), timeline);
                         }
                     }
                     _ => {}
@@ -131,7 +131,7 @@ impl TimeScale {
         self.to += by;
     }
 
-    /// The time at x stays where it is.
+    /// Zooms about x.
     fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
         let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
         let span = self.to - self.from;
@@ -144,7 +144,7 @@ impl TimeScale {
         self.to = self.from + asked;
     }
 
-    /// Turns the page when the time leaves it.
+    /// Moves the range to a time outside it.
     fn reveal(&mut self, time: f64) {
         let span = self.to - self.from;
         if !(self.from..=self.to).contains(&time) {

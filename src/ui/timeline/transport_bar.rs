@@ -1,4 +1,4 @@
-//! Playing: to start and end, from key to key, how fast, from when to when, and the making of keys.
+//! The transport bar: playback, time, keying, speed, frame rate and range.
 
 use egui::{ComboBox, RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::session::{Action, Actions, EditAction, PlaybackAction, Session, ViewA
 use crate::ui::style;
 use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 
-/// In a narrower window numbers stand without their names.
+/// Below this width numbers have no labels.
 const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
 
@@ -75,10 +75,10 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// A number of the timeline.
+/// A number field with a label.
 struct TimeField<'a> {
     name: &'a str,
-    /// What stands before it where there is room.
+    /// Label, hidden in narrow windows.
     label: &'a str,
     value: f64,
     unit: &'a str,
@@ -106,7 +106,7 @@ impl TimeField<'_> {
         number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
     }
 
-    /// Shows one that is not the document's: there is nothing to take back.
+    /// Shows a number outside the document, which has no transaction.
     fn show_free<A: Into<Action>>(
         self,
         ui: &mut Ui,

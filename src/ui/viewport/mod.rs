@@ -1,4 +1,4 @@
-//! The view of the scene: what the pointer does in it.
+//! The viewport: gizmos, selection, orbit, pan and zoom.
 
 mod navigation;
 pub(in crate::ui) mod projection;
@@ -38,39 +38,39 @@ pub(in crate::ui) fn ui(
     }
     advance(ui, &response, session, actions);
 
-    let picture = ScreenProjection::new(rect, session.camera());
-    let grips = Gizmo::new(&picture, session);
-    let pointer = ui.input(|input| input.pointer.latest_pos());
+    let screen = ScreenProjection::new(rect, session.camera());
+    let gizmo = Gizmo::new(&screen, session);
+    let mouse = ui.input(|input| input.pointer.latest_pos());
     let held_grip = session.drag().map(Drag::grip);
 
-    let on_compass = pointer.is_some_and(|at| view_axes::covers(rect, at));
-    let over = response.contains_pointer() && !on_compass;
-    let pointed = pointer.filter(|_| over).and_then(|at| grips.at(at));
-    grips.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
+    let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
+    let over = response.contains_pointer() && !on_view_axes;
+    let pointed = mouse.filter(|_| over).and_then(|at| gizmo.at(at));
+    gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {
         invite(ui, rect);
     }
 
-    let Some(pointer) = pointer else {
+    let Some(mouse) = mouse else {
         keys(ui, &response, session, actions);
         return rect;
     };
-    let held = press(ui, &response, session, &picture, &grips, actions);
-    follow(ui, held, &picture, pointer, actions);
+    let held = press(ui, &response, session, &screen, &gizmo, actions);
+    follow(ui, held, &screen, mouse, actions);
     if response.contains_pointer() {
-        wheel(ui, session, &picture, pointer, actions);
+        wheel(ui, session, &screen, mouse, actions);
     }
     if over && matches!(held, ViewportDrag::Nothing) {
-        point(session, grips.joint_at(pointer), actions);
+        point(session, gizmo.joint_at(mouse), actions);
     }
-    if has_joints(session) && response.clicked() && !on_compass {
-        select(ui, session, &picture, &grips, pointer, actions);
+    if has_joints(session) && response.clicked() && !on_view_axes {
+        select(ui, session, &screen, &gizmo, mouse, actions);
     }
-    if response.double_clicked() && !on_compass {
+    if response.double_clicked() && !on_view_axes {
         actions.push(match pointed {
             Some(_) => commands::frame_selection(session),
-            None if grips.joint_at(pointer).is_some() => commands::frame_selection(session),
+            None if gizmo.joint_at(mouse).is_some() => commands::frame_selection(session),
             None => ViewAction::GlideTo(match session.rig() {
                 RigKind::Arm if session.crowd().is_none() => Camera::default(),
                 _ => session.framing_all(),
@@ -87,7 +87,7 @@ fn has_joints(session: &Session) -> bool {
     session.rig() == RigKind::Skeleton && session.crowd().is_none()
 }
 
-/// Says how to begin, where there is nothing to see yet.
+/// Hint for a skeleton without bones.
 fn invite(ui: &mut Ui, rect: Rect) {
     let line = |text: &str, size: f32| Label::new(RichText::new(text).size(size)).selectable(false);
     let at = Rect::from_center_size(rect.center_top() + vec2(0.0, 64.0), vec2(360.0, 24.0));
@@ -95,34 +95,33 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
-/// Says which joint the pointer is on.
+/// Reports the hovered joint.
 fn point(session: &Session, joint: Option<usize>, actions: &mut Actions) {
     if session.pointed() != joint {
         actions.push(SelectAction::Hover(joint));
     }
 }
 
-/// A click selects the joint under the mouse, Shift adds it to the selection or removes it; a click
-/// beside all joints selects none. Ctrl adds a bone that ends at the mouse, as does the first click
-/// of a skeleton without bones.
+/// Selects the clicked joint; Shift toggles it; a click beside all joints deselects. Ctrl, or a
+/// first click, adds a bone that ends at the mouse.
 fn select(
     ui: &Ui,
     session: &Session,
-    picture: &ScreenProjection,
-    grips: &Gizmo,
-    pointer: Pos2,
+    screen: &ScreenProjection,
+    gizmo: &Gizmo,
+    mouse: Pos2,
     actions: &mut Actions,
 ) {
     let modifiers = ui.input(|input| input.modifiers);
-    let joint = match grips.at(pointer) {
+    let joint = match gizmo.at(mouse) {
         Some(Grip::Target(joint, _) | Grip::Tip(joint, _)) => Some(joint),
         Some(Grip::Ring(..)) => return,
-        _ => grips.joint_at(pointer),
+        _ => gizmo.joint_at(mouse),
     };
     let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
         let base = session.next_base();
-        let at = picture.ray(pointer).meets_plane(base, picture.projection.forward);
+        let at = screen.ray(mouse).meets_plane(base, screen.projection.forward);
         actions.extend(at.map(|tip| EditAction::AddJoint { tip: Some(tip) }));
         return;
     }
@@ -139,15 +138,15 @@ fn select(
     }
 }
 
-/// On whole pixels, so that the picture is shown pixel for pixel.
+/// Rounded to pixels, so that the scene is drawn pixel for pixel.
 fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
     let scale = ui.pixels_per_point();
     let round = |at: Pos2| pos2((at.x * scale).round() / scale, (at.y * scale).round() / scale);
     Rect::from_min_max(round(rect.min), round(rect.max))
 }
 
-/// Lets all that moves by itself go on. Any input ends a glide of the view: a press in the viewport
-/// takes hold of the view as it is by then, all else brings it to where it was going.
+/// Advances everything that moves. Input ends a glide of the camera: a press in the viewport stops
+/// it there, other input jumps to its end.
 fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     if !session.is_moving() {
         return;
@@ -165,7 +164,7 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Action
     ui.request_repaint();
 }
 
-/// What the pointer holds.
+/// The drag under way.
 #[derive(Clone, Copy)]
 enum ViewportDrag {
     Nothing,
@@ -173,13 +172,13 @@ enum ViewportDrag {
     View,
 }
 
-/// What is held, be it since before or by a press in this very frame.
+/// The current drag, or the one that a press in this frame starts.
 fn press(
     ui: &Ui,
     response: &Response,
     session: &Session,
-    picture: &ScreenProjection,
-    grips: &Gizmo,
+    screen: &ScreenProjection,
+    gizmo: &Gizmo,
     actions: &mut Actions,
 ) -> ViewportDrag {
     let mut held = match (session.drag(), session.view_drag()) {
@@ -192,7 +191,7 @@ fn press(
             continue;
         };
         if button == PointerButton::Secondary && session.is_editing() {
-            // Wherever the pointer is by then.
+            // Anywhere in the window.
             actions.push(TransactionAction::Cancel);
         }
         if !response.contains_pointer() {
@@ -202,33 +201,33 @@ fn press(
         if session.is_editing() || !matches!(held, ViewportDrag::Nothing) {
             continue;
         }
-        let on_compass = view_axes::covers(picture.rect, pos);
-        let can_take = button == PointerButton::Primary && !modifiers.alt && !on_compass;
-        // Ctrl and Shift make a click on a skeleton say something else.
+        let on_view_axes = view_axes::covers(screen.rect, pos);
+        let can_take = button == PointerButton::Primary && !modifiers.alt && !on_view_axes;
+        // Ctrl and Shift clicks select and add joints.
         let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);
-        let grip = grips.at(pos).filter(|_| can_take && !is_click);
+        let grip = gizmo.at(pos).filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
-            None if on_compass && button == PointerButton::Primary => Some(Motion::Orbit),
+            None if on_view_axes && button == PointerButton::Primary => Some(Motion::Orbit),
             motion => motion,
         };
         if let Some(grip) = grip {
-            let (ray, forward) = (picture.ray(pos), picture.projection.forward);
+            let (ray, forward) = (screen.ray(pos), screen.projection.forward);
             actions.push(TransactionAction::Grab { grip, ray, forward });
             held = ViewportDrag::Grip;
         } else if let Some(motion) = motion {
-            actions.push(ViewAction::Grab(motion, picture.normalised(pos)));
+            actions.push(ViewAction::Grab(motion, screen.normalised(pos)));
             held = ViewportDrag::View;
         }
     }
     held
 }
 
-/// What is held follows the pointer, and is dropped where the button is let go.
+/// Updates the drag and ends it at the release.
 fn follow(
     ui: &Ui,
     held: ViewportDrag,
-    picture: &ScreenProjection,
-    pointer: Pos2,
+    screen: &ScreenProjection,
+    mouse: Pos2,
     actions: &mut Actions,
 ) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
@@ -236,12 +235,12 @@ fn follow(
     let (moved, dropped): (Action, Action) = match held {
         ViewportDrag::Nothing => return,
         ViewportDrag::Grip => {
-            let ray = picture.ray(pointer);
+            let ray = screen.ray(mouse);
             let input = DragInput { ray, precise: modifiers.shift, snap: modifiers.command };
             (TransactionAction::Drag(input).into(), TransactionAction::Commit.into())
         }
         ViewportDrag::View => {
-            let (to, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
+            let (to, aspect) = (screen.normalised(mouse), screen.rect.aspect_ratio());
             (ViewAction::Drag { to, aspect }.into(), ViewAction::Drop.into())
         }
     };
@@ -251,7 +250,7 @@ fn follow(
     }
 }
 
-/// Single keys act while no widget or the viewport itself has the keyboard.
+/// Handles single keys while the viewport or no widget has the keyboard.
 fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.drag().is_some() {

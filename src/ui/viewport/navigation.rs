@@ -6,7 +6,7 @@ use super::projection::ScreenProjection;
 use crate::document::Camera;
 use crate::session::{Actions, Grip, Motion, Navigation, Session, ViewAction};
 
-/// How much nearer a step of the wheel comes.
+/// Zoom factor of a wheel step.
 const WHEEL: f32 = 1.15;
 
 const POINTS_PER_STEP: f32 = 50.0;
@@ -18,7 +18,7 @@ pub(super) fn motion(
 ) -> Option<Motion> {
     use PointerButton::{Middle, Primary, Secondary};
     if modifiers.alt {
-        // Works everywhere, also over handles.
+        // Alt drags act over handles too.
         return match button {
             Primary => Some(Motion::Orbit),
             Middle => Some(Motion::Pan),
@@ -40,12 +40,12 @@ pub(super) fn motion(
 pub(super) fn wheel(
     ui: &Ui,
     session: &Session,
-    picture: &ScreenProjection,
-    pointer: Pos2,
+    screen: &ScreenProjection,
+    mouse: Pos2,
     actions: &mut Actions,
 ) {
     let mut camera = session.settled_camera();
-    let (at, aspect) = (picture.normalised(pointer), picture.rect.aspect_ratio());
+    let (at, aspect) = (screen.normalised(mouse), screen.rect.aspect_ratio());
     let trackpad = session.preferences().navigation == Navigation::Trackpad;
     ui.input(|input| {
         for event in &input.events {
@@ -73,7 +73,7 @@ pub(super) fn wheel(
     }
 }
 
-/// Two fingers on a trackpad turn the view, with Shift they move it.
+/// Trackpad scroll orbits, with Shift it pans.
 fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
     const TURN: f32 = 0.15;
     const PAN: f32 = 0.1;

@@ -1,11 +1,11 @@
-//! World points to screen points and back.
+//! Projection from world to screen.
 
 use egui::{Pos2, Rect, Vec2, vec2};
 use glam::Vec3;
 
 use crate::document::{Camera, Projection, Ray};
 
-/// The picture on screen: takes points of the world to points of the screen and back.
+/// Projects world points to screen points, and screen points to rays.
 pub(in crate::ui) struct ScreenProjection {
     pub rect: Rect,
     pub projection: Projection,
@@ -25,7 +25,7 @@ impl ScreenProjection {
         self.projection.ray(self.normalised(at))
     }
 
-    /// −1 to 1 across and up.
+    /// Normalised coordinates, −1 to 1, y up.
     pub fn normalised(&self, at: Pos2) -> glam::Vec2 {
         let from_centre = (at - self.rect.center()) / (self.rect.size() / 2.0);
         glam::Vec2::new(from_centre.x, -from_centre.y)
@@ -35,12 +35,12 @@ impl ScreenProjection {
         self.projection.half_height_at(at) / (self.rect.height() / 2.0)
     }
 
-    /// How far from the eye, along the view.
+    /// Distance from the eye along the view direction.
     pub fn depth(&self, point: Vec3) -> f32 {
         (point - self.projection.eye).dot(self.projection.forward)
     }
 
-    /// A short vector of the world at a point, as it lies on screen.
+    /// Screen vector of a short world vector at a point.
     pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
         let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
         vec2(vector.dot(right), -vector.dot(up)) / self.units_per_point(at)

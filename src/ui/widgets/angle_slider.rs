@@ -23,7 +23,7 @@ pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: 
     }
 }
 
-/// Three angles about x, y and z.
+/// Three sliders of Euler angles.
 pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
     ui: &mut Ui,
     session: &Session,

@@ -2,7 +2,7 @@
 
 use egui::{Ui, WidgetText};
 
-/// A button that tells why it cannot be pressed, if it cannot.
+/// A button; `disabled` is the reason shown while it is disabled. Returns true when pressed.
 pub(in crate::ui) fn button(
     ui: &mut Ui,
     name: impl Into<WidgetText>,

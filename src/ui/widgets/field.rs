@@ -1,4 +1,4 @@
-//! A number beside its name, without a rail.
+//! A number field of the side panels.
 
 use egui::{Response, Ui};
 
@@ -6,18 +6,18 @@ use super::format;
 use super::number::DragNumber;
 use crate::session::{Action, Actions, Session};
 
-/// Three of them stand beside a name in the narrowest panel.
+/// Fits three fields beside a name in the narrowest panel.
 const FIELD_WIDTH: f32 = 52.0;
 
-/// A number that is dragged or typed, without a rail.
+/// A number to drag or type, without a slider.
 pub(in crate::ui) struct NumberField<'a> {
-    /// What it is called where there is nothing else to see: "Bone x".
+    /// Accessible name, such as "Bone x".
     pub name: &'a str,
     pub value: f32,
     pub unit: &'a str,
-    /// What a point of the pointer's way adds.
+    /// Change per point of a drag.
     pub step: f32,
-    /// Behind the point.
+    /// Decimals.
     pub digits: usize,
     pub tooltip: &'a str,
 }
@@ -35,7 +35,7 @@ impl NumberField<'_> {
         self.show_as(ui, session, actions, &format, set)
     }
 
-    /// Shows it in letters of its own.
+    /// As [`Self::show`] with a custom format.
     pub fn show_as<A: Into<Action>>(
         self,
         ui: &mut Ui,

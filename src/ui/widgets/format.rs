@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-/// In about six letters, whatever its size: with three digits, or as a power of ten.
+/// At most about six characters: three digits, or scientific notation.
 pub(in crate::ui) fn short(value: f32) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -12,7 +12,7 @@ pub(in crate::ui) fn short(value: f32) -> String {
     }
 }
 
-/// A whole number with thousands apart: "1,000,000".
+/// A whole number with thousands separators: "1,000,000".
 pub(in crate::ui) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
@@ -25,15 +25,15 @@ pub(in crate::ui) fn grouped(number: u64) -> String {
     grouped
 }
 
-/// How many digits behind the point show a tenth of a step.
+/// Decimals that show a tenth of a step.
 pub(in crate::ui) fn decimals(step: f32) -> usize {
     (1.0 - step.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
-/// In seven letters at most, which is what there is room for.
+/// At most seven characters.
 pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
     const MOST: usize = 4;
-    // Nothing has no sign.
+    // Avoids "-0".
     let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
     match value.abs() {
         0.0 if decimals > MOST => "0".to_owned(),
@@ -45,7 +45,7 @@ pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// How many digits behind the point tell a hundredth of a grid's cell.
+/// Decimals that show a hundredth of a grid cell.
 pub(in crate::ui) fn decimals_of_cell(cell: f32) -> usize {
     (2.0 - cell.log10().round()).clamp(0.0, 6.0) as usize
 }

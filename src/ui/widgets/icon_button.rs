@@ -1,4 +1,4 @@
-//! Buttons with pictures: the fonts have none of their signs.
+//! Icon buttons, painted because the fonts lack these icons.
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
@@ -14,18 +14,18 @@ pub(in crate::ui) enum Icon {
     Loop,
 }
 
-/// A button that can be on; its tooltip tells why it cannot be pressed, if it cannot.
+/// An icon button; `disabled` is the reason shown while it is disabled.
 pub(in crate::ui) struct IconButton<'a> {
     pub icon: Icon,
     pub name: &'a str,
     pub tooltip: &'a str,
-    /// Whether it is switched on; nothing if it is no switch.
+    /// State of a toggle; `None` for other buttons.
     pub on: Option<bool>,
     pub disabled: Option<&'a str>,
 }
 
 impl IconButton<'_> {
-    /// Whether it was pressed.
+    /// Returns true when pressed.
     pub fn show(self, ui: &mut Ui) -> bool {
         let enabled = self.disabled.is_none();
         let response = ui.add_enabled_ui(enabled, |ui| self.button(ui)).inner;
@@ -96,7 +96,7 @@ impl Icon {
     }
 }
 
-/// What stands for a key.
+/// The diamond of a key.
 pub(in crate::ui) fn diamond(at: Pos2, size: f32, fill: Color32, stroke: Stroke) -> Shape {
     let points = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
     let points = points.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();

@@ -1,4 +1,4 @@
-//! The parts that panels are made of. None knows a panel.
+//! Widgets that panels are made of. A widget knows no panel.
 
 mod angle_slider;
 mod button;

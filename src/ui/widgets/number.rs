@@ -1,4 +1,4 @@
-//! Numbers as panels show them, and as they are typed and dragged.
+//! A number to drag or type.
 
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
@@ -7,21 +7,21 @@ use crate::session::{Action, Actions, TransactionAction};
 
 const HEIGHT: f32 = 22.0;
 
-/// A number that is dragged or typed.
+/// A number to drag or type.
 pub(in crate::ui) struct DragNumber<'a, N = f32> {
-    /// What it is called where there is nothing else to see.
+    /// Accessible name.
     pub name: &'a str,
     pub value: N,
     pub unit: &'a str,
-    /// What a point of the pointer's way adds.
+    /// Change per point of a drag.
     pub speed: f32,
     pub width: f32,
     pub format: &'a dyn Fn(f64) -> String,
 }
 
 impl<N: Numeric> DragNumber<'_, N> {
-    /// Shows it, always as wide. Pushes what `set` makes of a new value; a drag begins and commits
-    /// an edit, and goes on only while there is one, so that it can be taken back.
+    /// Shows the number at constant width. Pushes `set` of a new value. A drag is one transaction
+    /// and ends when the transaction is cancelled.
     pub fn show<A: Into<Action>>(
         &self,
         ui: &mut Ui,
@@ -49,7 +49,7 @@ impl<N: Numeric> DragNumber<'_, N> {
         if response.drag_started() {
             actions.push(TransactionAction::Begin);
         }
-        // egui enters what was typed in the pass after the one in which Esc left it.
+        // egui reports the typed value one pass after Esc.
         let was_left = ui.data_mut(|data| data.remove_temp::<LeftByEscape>(response.id)).is_some();
         if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
             ui.data_mut(|data| data.insert_temp(response.id, LeftByEscape));
@@ -67,8 +67,7 @@ impl<N: Numeric> DragNumber<'_, N> {
         response
     }
 
-    /// What is typed, with or without the unit. The text that stands for the value as it is keeps
-    /// the value's unseen digits.
+    /// Parses text with or without the unit. The unchanged text keeps the value's hidden digits.
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
         let text = text.replace('\u{2212}', "-");

@@ -7,20 +7,19 @@ use crate::ui::style;
 
 pub(in crate::ui) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A point that is shown and set by three sliders, each of which leaves the other two coordinates as
-/// they are.
+/// Three sliders for the coordinates of a point.
 pub(in crate::ui) struct PointSliders<'a> {
-    /// What it is called where there is nothing else to see: "Hand", of which the first is "Hand x".
+    /// Accessible name: the first slider of "Hand" is "Hand x".
     pub name: &'a str,
-    /// What stands before the rails.
+    /// Labels of the sliders.
     pub labels: [&'a str; 3],
     pub value: Vec3,
     pub default: Vec3,
-    /// Of every coordinate, to either side.
+    /// Each coordinate ranges from −`range` to `range`.
     pub range: f32,
     pub step: f32,
     pub tooltip: &'a str,
-    /// Why it cannot be set now, if it cannot.
+    /// Reason shown while the sliders are disabled.
     pub disabled: Option<&'a str>,
 }
 

@@ -1,19 +1,19 @@
-//! What the side panels are made of.
+//! Foldable sections and labelled rows of the side panels.
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Rect, Ui, UiBuilder, WidgetText,
 };
 
-/// Below a section.
+/// Space below a section.
 const SPACE: f32 = 1.0;
 
-/// A section that can be folded; whether it is, survives a restart.
+/// A foldable section; its state survives a restart.
 pub(in crate::ui) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     named_section(ui, title, title, contents);
 }
 
-/// A section with something of its own at the right of its title.
+/// A section with widgets at the right of its title.
 pub(in crate::ui) fn section_with(
     ui: &mut Ui,
     title: &str,
@@ -23,7 +23,7 @@ pub(in crate::ui) fn section_with(
     let header = show_section(ui, title, title, true, contents);
     let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), header.y_range());
     let right = Layout::right_to_left(Align::Center);
-    // Beside what is there: it takes no room.
+    // Overlaid on the title row.
     aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
 }
 
@@ -32,7 +32,7 @@ pub(in crate::ui) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnO
     show_section(ui, title, title, false, contents);
 }
 
-/// A section whose title changes; `id` says which it is.
+/// A section with a stable `id` and a variable title.
 pub(in crate::ui) fn named_section(
     ui: &mut Ui,
     id: &str,
@@ -42,7 +42,7 @@ pub(in crate::ui) fn named_section(
     show_section(ui, id, title, true, contents);
 }
 
-/// Gives where the title is.
+/// Returns the rectangle of the title.
 fn show_section(
     ui: &mut Ui,
     id: &str,
@@ -57,8 +57,7 @@ fn show_section(
     shown.header_response.rect
 }
 
-/// A title in one line no wider than the panel, whatever a joint is called: a header would make the
-/// panel as wide as its title.
+/// A title truncated to the panel: an egui header would widen the panel to its title.
 fn cut(ui: &Ui, title: &str) -> WidgetText {
     let colour = ui.visuals().strong_text_color();
     let font = FontId::proportional(13.5);
@@ -68,7 +67,7 @@ fn cut(ui: &Ui, title: &str) -> WidgetText {
     ui.fonts_mut(|fonts| fonts.layout_job(job)).into()
 }
 
-/// A name on the left and what belongs to it on the right.
+/// A row with a name on the left and widgets on the right.
 pub(in crate::ui) fn pair<T>(
     ui: &mut Ui,
     name: &str,

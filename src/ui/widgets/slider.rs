@@ -15,9 +15,9 @@ use crate::ui::style;
 /// It shows any value and never changes one by showing it; the range is the thumb's alone.
 #[derive(Default)]
 pub(in crate::ui) struct Slider<'a> {
-    /// What it is called where there is nothing else to see: "Hand x".
+    /// Accessible name, such as "Hand x".
     pub name: &'a str,
-    /// What stands before the rail; may have a lowered part, as in `d_1`.
+    /// Visible label; `_` starts a subscript, as in `d_1`.
     pub label: &'a str,
     pub colour: Option<Color32>,
     pub tooltip: &'a str,
@@ -25,10 +25,10 @@ pub(in crate::ui) struct Slider<'a> {
     pub range: (f32, f32),
     pub default: f32,
     pub unit: &'a str,
-    /// What an arrow key adds; with Shift a tenth of it, by page keys ten times. The value is shown
-    /// to a tenth of it.
+    /// Change per arrow key; a tenth with Shift, ten times with page keys. The value is shown to a
+    /// tenth of it.
     pub step: f32,
-    /// Why it cannot be set now, if it cannot.
+    /// Reason shown while the slider is disabled.
     pub disabled: Option<&'a str>,
 }
 
@@ -38,13 +38,13 @@ const HEIGHT: f32 = 22.0;
 const THUMB: f32 = 6.5;
 const RAIL: f32 = 4.0;
 
-/// What Shift makes of a step, and page keys.
+/// Factors of Shift and page keys.
 const FINE: f32 = 0.1;
 const PAGE: f32 = 10.0;
 
 impl Slider<'_> {
-    /// Shows the row. Pushes what `set` makes of a new value; a drag begins and commits an edit,
-    /// and goes on only while there is one, so that it can be taken back.
+    /// Shows the slider. Pushes `set` of a new value. A drag is one transaction and ends when the
+    /// transaction is cancelled.
     pub fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
@@ -60,7 +60,7 @@ impl Slider<'_> {
         self.show_after(ui, session, actions, &set, label);
     }
 
-    /// As [`Self::show`], with something else where the label is.
+    /// As [`Self::show`], with other widgets in place of the label.
     pub fn show_after<A: Into<Action>>(
         &self,
         ui: &mut Ui,
@@ -165,22 +165,21 @@ impl Slider<'_> {
         let pointed = rail.interact_pointer_pos().map(|at| {
             let part = ((at.x - track.left()) / track.width()).clamp(0.0, 1.0);
             let value = self.range.0 + part * (self.range.1 - self.range.0);
-            // A pixel is the finest that a pointer can mean.
+            // Rounded to the resolution of a pixel.
             let grain =
                 10.0_f32.powf(((self.range.1 - self.range.0) / track.width()).log10().floor());
             (value / grain).round() * grain
         });
-        // From the press on, not only once egui calls it a drag; and a click that the keyboard
-        // makes has no place on the rail.
+        // From the press on, before egui calls it a drag; a click by the keyboard has no position.
         let pressed = rail.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
         if pressed {
             rail.request_focus();
             actions.push(TransactionAction::Begin);
         }
-        let let_go = (rail.clicked() && !rail.double_clicked()) || rail.drag_stopped();
-        let taken_back = ui.input(|input| input.key_pressed(Key::Escape));
+        let released = (rail.clicked() && !rail.double_clicked()) || rail.drag_stopped();
+        let cancelled = ui.input(|input| input.key_pressed(Key::Escape));
         let held =
-            (rail.is_pointer_button_down_on() || let_go) && is_sliding(session) && !taken_back;
+            (rail.is_pointer_button_down_on() || released) && is_sliding(session) && !cancelled;
         if let (true, Some(value)) = (pressed || held, pointed) {
             actions.push(set(value));
         }
@@ -199,7 +198,7 @@ impl Slider<'_> {
         }
     }
 
-    /// What the keyboard adds.
+    /// Change by arrow and page keys.
     fn keyed(&self, ui: &Ui, rail: &Response) -> f32 {
         if !rail.has_focus() {
             return 0.0;
@@ -229,7 +228,7 @@ impl Slider<'_> {
         }
     }
 
-    /// What a screen reader adds.
+    /// Change requested by a screen reader.
     fn spoken_steps(&self, ui: &Ui, rail: &Response) -> f32 {
         ui.input(|input| {
             let asked = |action| input.num_accesskit_action_requests(rail.id, action) as f32;

@@ -1,9 +1,9 @@
-//! The paper's symbols on screen: `θ_e` is shown with a lowered e and read out as "theta e".
+//! Mathematical symbols: `θ_e` is shown with a subscript and read out as "theta e".
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, FontFamily, FontId, Label, Response, Role, Ui, WidgetInfo};
 
-/// Text in which what follows an underscore is lowered, as far as the letters and digits go.
+/// Text with letters and digits after an underscore as subscript.
 pub(in crate::ui) fn layout(text: &str, size: f32, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     let format = |size, valign| TextFormat {
@@ -20,7 +20,7 @@ pub(in crate::ui) fn layout(text: &str, size: f32, colour: Color32) -> LayoutJob
     job
 }
 
-/// How a screen reader says it.
+/// Text for screen readers.
 pub(in crate::ui) fn spoken(text: &str) -> String {
     let mut spoken = String::new();
     for letter in text.chars() {
@@ -39,14 +39,14 @@ pub(in crate::ui) fn spoken(text: &str) -> String {
     spoken
 }
 
-/// A label that shows the symbols and is named by their words.
+/// A label with symbols, named by their words.
 pub(in crate::ui) fn label(ui: &mut Ui, text: &str, size: f32, colour: Color32) -> Response {
     let response = ui.add(Label::new(layout(text, size, colour)).selectable(false));
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken(text)));
     response
 }
 
-/// The text's parts with whether they are lowered.
+/// Parts of the text; true for subscripts.
 fn parts(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split('_').enumerate().flat_map(|(index, part)| {
         let lowered = if index == 0 {

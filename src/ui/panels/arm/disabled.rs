@@ -1,4 +1,4 @@
 //! Reasons why controls of the arm are disabled.
 
-/// Why what the hand leads cannot be set.
+/// Shown on controls that only act in IK.
 pub(in crate::ui) const ANGLES_LEAD: &str = "Switch to IK to set this";

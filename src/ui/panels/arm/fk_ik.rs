@@ -1,4 +1,4 @@
-//! What poses the arm: the hand (IK), the joints' own angles (FK), or something between.
+//! IK (hand → joint angles), FK (joint angles → hand), or a blend.
 
 use egui::{Ui, vec2};
 use glam::Vec3;
@@ -7,10 +7,10 @@ use crate::session::{Actions, EditAction, PoseMode, Session, TransactionAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, Slider, angle_slider};
 
-/// Of each of the two buttons.
+/// Width of each of the two buttons.
 const WIDTH: f32 = 33.0;
 
-/// IK or FK, and how much of each.
+/// Buttons for IK and FK, and the slider of the blend.
 pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let influence = session.arm().influence;
     let modes = [
@@ -39,14 +39,9 @@ pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Action
         }
         ui.spacing_mut().item_spacing.x = 8.0;
     });
-    ui.weak(match influence {
-        1.0 => "IK (hand → joint angles)",
-        0.0 => "FK (joint angles → hand)",
-        _ => "Blend of IK and FK",
-    });
 }
 
-/// The shoulder's three and the elbow's one.
+/// Sliders of the shoulder's three angles and the elbow's one.
 pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let fk = session.arm().fk;
     let shoulder = [

@@ -1,4 +1,4 @@
-//! How the hand is turned, and what that does to the forearm.
+//! Hand orientation and forearm roll.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,4 @@
-//! The arm: what poses it, where the hand is, how the elbow and the hand are turned, where the root is,
-//! how long the limbs are and how they meet their limits.
+//! Settings of the arm: hand, Socket twist, Root, lengths, soft limits, hand orientation.
 
 mod disabled;
 mod fk_ik;
@@ -16,7 +15,7 @@ use crate::ui::style;
 use crate::ui::widgets::{self, AXES, PointSliders, Slider};
 use disabled::ANGLES_LEAD;
 
-/// Of an arm like the seed's.
+/// Slider range, in units of the arm.
 const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 

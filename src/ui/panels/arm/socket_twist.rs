@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// The frame that the twist is measured from, to choose.
+/// Combo box of the twist references.
 fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let chosen = session.arm().twist_reference;
     widgets::pair(ui, "Twist reference", |ui| {

@@ -1,4 +1,4 @@
-//! How the hand meets its limits.
+//! Soft limits: softness, stretch and minimum elbow angle.
 
 use core::f32::consts::PI;
 
@@ -16,7 +16,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let [softness, stretch, angle] =
         [soft_reach.softness(), soft_reach.max_stretch(), soft_reach.min_elbow_angle()];
     let seed = SoftReach::default();
-    // What no softening can have is brought to the nearest that one can.
+    // Clamped to the nearest valid values.
     let set = |softness: f32, stretch: f32, angle: f32| {
         let widest = PI - 1e-3;
         let soft_reach = SoftReach::new(

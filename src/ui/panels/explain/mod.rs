@@ -1,4 +1,4 @@
-//! The right panel: the paper's figures and formulas with the numbers of this very pose.
+//! Figures and formulas of the arm with the numbers of the current pose.
 
 mod pops;
 mod reach_curve;
@@ -15,7 +15,7 @@ use crate::ui::{pose_summary, style};
 
 const FORMULA_SIZE: f32 = 13.5;
 
-/// A quantity of the paper: its symbol, how it is computed, its value, what it means.
+/// A quantity with symbol, formula, value and meaning.
 struct FormulaRow {
     symbol: &'static str,
     formula: &'static str,
@@ -41,7 +41,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn sentence(ui: &mut Ui, session: &Session) {
-    // Two lines, whatever it says, so that nothing below moves.
+    // Always two lines high, so that nothing below moves.
     let height = 2.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
@@ -178,13 +178,13 @@ fn degrees(radians: f32) -> String {
     format!("{:.1}°", tidy(radians.to_degrees()))
 }
 
-/// Without a sign on what is shown as nothing.
+/// Avoids "-0.0".
 fn length(arm: &Arm, length: f32) -> String {
     let nothing = 0.0005 * arm.cell();
     arm.length_in_words(if length.abs() < nothing { 0.0 } else { length })
 }
 
-/// Without a sign on what is shown as nothing.
+/// Avoids "-0.0".
 fn tidy(value: f32) -> f32 {
     if value.abs() < 0.05 { 0.0 } else { value }
 }

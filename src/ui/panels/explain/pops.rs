@@ -1,4 +1,4 @@
-//! How fast the elbow is beside the cursor, and what helps where it pops.
+//! Elbow speed over Cursor speed, the pops, and their fixes.
 
 use egui::{Align2, Color32, RichText, Role, Stroke, Ui, WidgetInfo};
 use egui_plot::{
@@ -15,9 +15,9 @@ use crate::ui::style;
 use crate::ui::widgets::{self, plot};
 
 const HEIGHT: f32 = 140.0;
-/// What is shown of ratios: beyond, they are at the edge.
+/// Range of ratios on the plot; values outside are clamped.
 const SHOWN: (f64, f64) = (0.05, 100.0);
-/// How many spikes are written out.
+/// Number of pops listed.
 const LISTED: usize = 3;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -45,7 +45,7 @@ fn is_marked(pops: &Pops, change: Change) -> bool {
     pops.samples().any(|sample| sample.what == What::Change(change))
 }
 
-/// One spike: what it was, and what helps, unless it has been offered above.
+/// One pop with its fix, unless the fix is offered above already.
 fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
     if !spike.stands(arm) {
@@ -97,7 +97,7 @@ fn describe(spike: &Spike) -> String {
     }
 }
 
-/// A button's name and what it does.
+/// Label and tooltip of a fix.
 fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
     match pop_fix {
         PopFix::Measure(TwistReferenceKind::Transport) => {
@@ -191,14 +191,14 @@ impl PopColours {
     }
 }
 
-/// One run's steps: place and logarithm of ratio and limit.
+/// Steps of one drag or playback: x, and logarithms of ratio and limit.
 #[derive(Default)]
 struct PlottedRun {
     ratios: Vec<[f64; 2]>,
     limits: Vec<[f64; 2]>,
 }
 
-/// Where each sample is: one beside the other, with a gap between runs.
+/// The x of each sample, with a gap between runs.
 fn places(pops: &Pops) -> Vec<f64> {
     const GAP: f64 = 4.0;
     let (mut at, mut last) = (0.0, None);
@@ -251,8 +251,8 @@ fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: Pop
     }
 }
 
-/// A mark on each, an arrow where it is higher than what is shown; its name where there is room, of
-/// the last ones first.
+/// Draws a mark on each pop, an arrow where it exceeds the plot, and names where they fit, latest
+/// first.
 fn draw_spikes(
     plot: &mut PlotUi<'_>,
     spikes: &[Spike],

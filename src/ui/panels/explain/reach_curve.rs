@@ -1,4 +1,4 @@
-//! How far the hand goes for where it is asked to be: hard, soft and stretched.
+//! The reach curve: hand distance over Cursor distance, hard, soft and stretched.
 
 use egui::{Color32, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 use egui_plot::{
@@ -14,7 +14,7 @@ use crate::ui::widgets::{format, plot};
 
 const HEIGHT: f32 = 168.0;
 const POINTS: u16 = 240;
-/// What is shown of an arm that has neither.
+/// Values of the example curves, for settings that are off.
 const EXAMPLE_SOFTNESS: f32 = 0.5;
 const EXAMPLE_STRETCH: f32 = 1.5;
 
@@ -39,7 +39,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     }
 }
 
-/// The hand's distance over the cursor's, in parts of L.
+/// Hand distance over Cursor distance, as fractions of L.
 struct ReachCurve {
     name: String,
     soft_reach: SoftReach,
@@ -49,7 +49,7 @@ struct ReachCurve {
 }
 
 impl ReachCurve {
-    /// None, soft and stretched: with what the arm has of each, else an example.
+    /// Off, softness and stretch: with the arm's own values, else with examples.
     fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
         let own = arm.soft_reach;
         let (softness, stretch, angle) = (own.softness(), own.max_stretch(), own.min_elbow_angle());
@@ -83,7 +83,7 @@ impl ReachCurve {
     }
 }
 
-/// L, which plots and screens measure by.
+/// L, the unit of the plot.
 fn outer(arm: &Arm) -> f64 {
     f64::from(arm.bones.upper()) + f64::from(arm.bones.lower())
 }
@@ -92,14 +92,14 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let outer = outer(arm);
     let least = f64::from(arm.soft_reach.least_distance(arm.bones)) / outer;
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
-    // No arm is stretched so far that its limits would be lost in a corner.
+    // Capped so that the limits stay readable.
     let most = f64::from(longest.min(4.0)) + 0.2;
     let digits = format::decimals_of_cell(arm.cell());
     let length = move |part: f64| format!("{:.digits$}", part * outer);
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
     let weak = ui.visuals().weak_text_color();
-    // The arm's own is the widest, and beneath the others.
+    // The arm's own curve is the widest, below the others.
     let (own, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_own);
     let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(arm, most)).collect();
     let dot = ReachMarker::new(arm, most);
@@ -136,14 +136,14 @@ impl ReachCurve {
     }
 }
 
-/// Where the arm is on its curve.
+/// The mark of the current pose on the curve.
 struct ReachMarker {
     at: [f64; 2],
     shape: MarkerShape,
 }
 
 impl ReachMarker {
-    /// A cursor farther away than what is shown is an arrow at the edge.
+    /// A Cursor beyond the plot is an arrow at the edge.
     fn new(arm: &Arm, most: f64) -> Self {
         let asked = arm.cursor().length().min(f32::MAX);
         let part = f64::from(asked) / outer(arm);
@@ -158,7 +158,7 @@ impl ReachMarker {
     }
 }
 
-/// A piece of the line, and its name.
+/// Legend entry of a curve.
 fn legend(ui: &mut Ui, curve: &ReachCurve) {
     ui.spacing_mut().item_spacing.x = 5.0;
     let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
@@ -178,14 +178,14 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
     ui.add_space(4.0);
 }
 
-/// How far the hand goes for a cursor at a distance from the shoulder.
+/// Hand distance and slope for a Cursor distance.
 fn reading(arm: &Arm, asked: f32) -> String {
     let asked = asked.min(f32::MAX);
     let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, asked);
     format!("Cursor at {asked:.1}: hand at {distance:.1}, slope {slope:.2}")
 }
 
-/// Which of the curves is the arm's own, and which are only examples.
+/// A sentence on which curves are examples.
 fn note(own: SoftReach) -> &'static str {
     match (own.softness() > 0.0, own.max_stretch() > 1.0) {
         (false, false) => "Soft limits are off; the dashed curves show what they would do",

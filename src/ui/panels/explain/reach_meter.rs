@@ -6,7 +6,7 @@ use crate::session::Session;
 use crate::ui::style;
 use crate::ui::widgets::format;
 
-/// From the shoulder outwards: what the hand cannot reach, what it can, and the cursor.
+/// Draws the inner limit, the reachable range and the Cursor along a bar from the shoulder.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     const HEIGHT: f32 = 44.0;
     const BAR: f32 = 8.0;
@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
         let at = egui::pos2(at, bar.bottom() + 6.0);
         painter.text(at, anchor, text, font.clone(), visuals.weak_text_color());
     };
-    // The limits' figures would run into each other on a short bar.
+    // Numbers would collide on a short bar.
     let apart = place(outer) - place(inner) > 60.0;
     if apart && inner > 0.0 {
         written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));

@@ -1,4 +1,4 @@
-//! The paper's Figures 3 and 4: shoulder, elbow and hand in the plane of the arm, to scale.
+//! The triangle of shoulder, elbow and hand in the plane of the arm, to scale.
 
 use core::f32::consts::TAU;
 
@@ -34,7 +34,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     response.on_hover_text("The arm in its own plane, to scale");
 }
 
-/// Where everything is on screen.
+/// Screen positions and colours.
 struct TriangleDrawing {
     shoulder: Pos2,
     elbow: Pos2,
@@ -52,8 +52,8 @@ impl TriangleDrawing {
     fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink(MARGIN);
-        // One scale for all poses of this arm, so that a growing D is seen to grow; smaller only
-        // where the figure would not fit.
+        // One scale for all poses of an arm, so that a growing D grows; smaller only where the
+        // triangle would not fit.
         let widest = (right - left).max(arm.bones.outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
         let middle = (left + right) / 2.0;
@@ -115,7 +115,7 @@ impl TriangleDrawing {
         write(self.shoulder + 38.0 * vec2(half.cos(), -half.sin()), "θ_e", self.accent);
         let below = vec2(0.0, 13.0);
         write(middle(self.shoulder, self.hand) + below, "D", self.text);
-        // Their lines vanish in a straight or folded arm, and their names with them.
+        // Hidden with their lines in a straight or folded arm.
         if (self.elbow - self.foot).length() > 24.0 {
             write(middle(self.elbow, self.foot) + vec2(12.0, 0.0), "o_e", self.weak);
             let clear =

@@ -1,5 +1,4 @@
-//! The four swivel references beside each other: how far apart their elbows are, how well each goes
-//! here, and what carrying along has made of it.
+//! Comparison of the four twist references: elbow rotation, gain, and holonomy.
 
 use egui::{
     Align, Align2, FontId, Grid, Layout, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
@@ -27,10 +26,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         (Overlay::Globe, "Singularity globe", "Colour the outer limit by how fast the elbow turns"),
     ];
     ui.horizontal(|ui| {
-        for (layer, name, tooltip) in shown {
-            let mut on = display.shows(layer);
+        for (overlay, name, tooltip) in shown {
+            let mut on = display.shows(overlay);
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                actions.push(EditAction::ShowOverlay(layer, on));
+                actions.push(EditAction::ShowOverlay(overlay, on));
             }
         }
     });
@@ -39,7 +38,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// The globe's colours, each where its gain is, evenly in its logarithm.
+/// Colour bar of the singularity globe on a logarithmic scale.
 fn legend(ui: &mut Ui) {
     const HEIGHT: f32 = 30.0;
     const STEPS: usize = 64;
@@ -116,12 +115,12 @@ fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// As in "0.47" or "∞".
+/// A gain such as "0.47" or "∞".
 fn gain_in_words(gain: f32) -> String {
     if gain < 1e3 { format!("{gain:.2}") } else { "∞".to_owned() }
 }
 
-/// As in "−17.0°"; what is shown as nothing has no sign.
+/// An angle such as "−17.0°"; zero has no sign.
 fn turn_in_words(radians: f32) -> String {
     let degrees = radians.to_degrees();
     if degrees.abs() < 0.05 { "0.0°".to_owned() } else { format!("{degrees:+.1}°") }

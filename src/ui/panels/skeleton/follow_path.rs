@@ -1,4 +1,4 @@
-//! What moves with the time, beside what has keys.
+//! Path following: the joints follow their head along a wavy ring.
 
 use egui::Ui;
 
@@ -7,22 +7,22 @@ use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::Slider;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    slithers(ui, session, actions);
+    follows_path(ui, session, actions);
     if let Some(follow_path) = session.skeleton_rig().follow_path {
         sliders(ui, session, follow_path, actions);
     }
 }
 
-fn slithers(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let mut slithers = session.skeleton_rig().follow_path.is_some();
+fn follows_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let mut follows_path = session.skeleton_rig().follow_path.is_some();
     let tooltip = "Move the first chain along a wavy ring, like a snake";
-    if ui.checkbox(&mut slithers, "Follow path").on_hover_text(tooltip).changed() {
+    if ui.checkbox(&mut follows_path, "Follow path").on_hover_text(tooltip).changed() {
         let follow_path = first(session.skeleton_rig().reach());
-        actions.push(EditAction::SetFollowPath(slithers.then_some(follow_path)));
+        actions.push(EditAction::SetFollowPath(follows_path.then_some(follow_path)));
     }
 }
 
-/// The way that a skeleton of such a reach has at first.
+/// Default path of a skeleton.
 fn first(reach: f32) -> FollowPath {
     FollowPath { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
 }

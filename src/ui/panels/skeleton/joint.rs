@@ -1,4 +1,4 @@
-//! The selected joint: how it is turned, how far it can be, its bone and what it hangs from.
+//! The selected joint: rotation, limits, bone and parent.
 
 use core::f32::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 
 const STIFF: &str = "The limits leave one angle only";
-const SLITHERS: &str = "Switch off Follow path to rotate joints";
+const FOLLOWS_PATH: &str = "Switch off Follow path to rotate joints";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
@@ -42,7 +42,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions
         let range = limit
             .filter(|_| !is_stiff)
             .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
-        let slithers = session.skeleton_rig().follow_path.map(|_| SLITHERS);
+        let follows_path = session.skeleton_rig().follow_path.map(|_| FOLLOWS_PATH);
         let slider = Slider {
             name: &format!("Rotation {label}"),
             label: &format!("Rotate {label}"),
@@ -53,7 +53,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions
             default: 0.0,
             unit: "°",
             step: 1.0,
-            disabled: slithers.or(is_stiff.then_some(STIFF)),
+            disabled: follows_path.or(is_stiff.then_some(STIFF)),
         };
         slider.show(ui, session, actions, |degrees| {
             let mut rotation = joint.rotation;
@@ -63,7 +63,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions
     }
 }
 
-/// A check box for each angle, and how far it can go behind it.
+/// A check box for each axis, with the range beside it.
 fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     for (axis, label) in AXES.into_iter().enumerate() {
         let limit = joint.limits[axis];
@@ -91,7 +91,7 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
     }
 }
 
-/// One end of a limit, in radians; shown in degrees.
+/// One end of a limit in radians, shown in degrees.
 fn angle(
     ui: &mut Ui,
     session: &Session,

@@ -1,4 +1,4 @@
-//! The joints, targets and motion of the skeleton.
+//! The joints, targets and path of the skeleton.
 
 mod follow_path;
 mod joint;

@@ -1,4 +1,4 @@
-//! The tree of joints: what hangs from what, what is selected, and what can be done with it.
+//! The outliner: the tree of joints, selection, and buttons that edit it.
 
 use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
@@ -14,17 +14,17 @@ const ROWS: f32 = 9.0;
 const NONE_SELECTED: &str = "Select a joint first";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    // Above the tree: it grows with every joint, and no button may move under the mouse.
+    // Above the tree, which grows: no button may move under the mouse.
     buttons(ui, session, actions);
     ui.add_space(4.0);
     tree(ui, session, actions);
 }
 
-/// Marks whether a joint of the tree has the keyboard.
+/// True while a row has the keyboard.
 #[derive(Clone, Copy, Default)]
 struct OutlinerFocus(bool);
 
-/// A joint's place in the tree.
+/// A joint with its depth in the tree.
 struct OutlinerRow {
     joint: usize,
     depth: usize,
@@ -59,7 +59,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Depth first, so that what hangs from a joint stands below it.
+/// Rows in depth-first order, so that children follow their parent.
 fn rows(session: &Session) -> Vec<OutlinerRow> {
     let joints = session.skeleton().joints();
     let mut children = vec![Vec::new(); joints.len()];
@@ -138,8 +138,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     response.on_hover_text(said.join(", "))
 }
 
-/// Brings a joint into sight, clear of the tree's edges, when it has just been selected elsewhere; a
-/// tree that has the keyboard hands it on.
+/// Scrolls to a joint that was selected elsewhere, and moves the keyboard focus to it.
 fn reveal(ui: &Ui, session: &Session, row: &OutlinerRow, response: &Response) {
     let seen = response.id.with("selected");
     let is_new = session.selected() == Some(row.joint);
@@ -164,7 +163,7 @@ fn respond(
     response: &Response,
     actions: &mut Actions,
 ) {
-    // Space lets the time go on, here as anywhere.
+    // Space plays or pauses.
     let by_space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
     if response.double_clicked() {
         actions.push(commands::rename(session, row.joint));

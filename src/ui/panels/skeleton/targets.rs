@@ -1,4 +1,4 @@
-//! The targets: which are on, how far tips are from them, and where the selected one is.
+//! The list of targets with their distances, and the selected target.
 
 use egui::{ComboBox, RichText, Ui};
 
@@ -12,7 +12,7 @@ const PATHS: [(TargetPath, &str); 3] = [
     (TargetPath::FigureEight, "Figure eight"),
 ];
 
-/// Every target in a row.
+/// The list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     if rig.targets.is_empty() {
@@ -46,7 +46,7 @@ fn residual(session: &Session, target: &Target) -> f32 {
     session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
 }
 
-/// The target of the selected joint.
+/// Settings of the selected joint's target.
 pub(in crate::ui) fn selected(
     ui: &mut Ui,
     session: &Session,

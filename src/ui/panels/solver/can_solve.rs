@@ -1,8 +1,8 @@
-//! Reasons why no solver can run.
+//! The reason why solvers are disabled.
 
 use crate::session::Session;
 
-/// Why no solver can run.
+/// The reason why solvers are disabled; `None` if they can run.
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton_rig();
     if rig.follow_path.is_some() {

@@ -1,4 +1,4 @@
-//! All solvers beside each other: what they took and how near they came.
+//! The race: iterations, error and time of every solver.
 
 use core::time::Duration;
 
@@ -42,7 +42,7 @@ fn show(ui: &mut Ui, runner: &Runner) {
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
         let said = format!("{}: {}", short_name(runner.method), state(runner));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-        // Whoever is not there has an empty one.
+        // Only converged solvers are filled.
         if runner.report().is_ok_and(|report| report.converged) {
             ui.painter().rect_filled(rect, 2.0, colour);
         } else {

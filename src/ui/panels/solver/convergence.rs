@@ -1,4 +1,4 @@
-//! The error over the iterations, on a logarithmic scale.
+//! Error over iterations on a logarithmic scale.
 
 use core::ops::RangeInclusive;
 
@@ -11,7 +11,7 @@ use crate::ui::style;
 use crate::ui::widgets::{format, plot};
 
 const HEIGHT: f32 = 132.0;
-/// What is shown of an error that is 0, in parts of the skeleton's reach.
+/// Lower end of the scale, as a fraction of the skeleton's reach.
 const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
@@ -74,7 +74,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     response.on_hover_text("Error over iterations, dashed: tolerance");
 }
 
-/// Iteration and logarithm of the error, for every solver that has run.
+/// Iteration and log₁₀ of the error, for every solver that has run.
 fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
     let points = |history: &History| {
         let point = |(iteration, error): (usize, f32)| {
@@ -91,13 +91,13 @@ fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
     solver_run.map(|it| (it.report().method, points(it.history()))).into_iter().collect()
 }
 
-/// The 1, 2 or 5 times a power of ten that is next below, and at least 1.
+/// The largest 1, 2 or 5 times a power of ten up to `step`, at least 1.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1.0).log10().floor());
     [5.0, 2.0].map(|times| times * power).into_iter().find(|it| *it <= step).unwrap_or(power)
 }
 
-/// Nothing where the plot's edge would cut it.
+/// Empty where the edge of the plot would cut the label.
 fn iteration(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
     let edge = shown.end() - 0.04 * (shown.end() - shown.start());
     if mark.value > edge { String::new() } else { mark.value.to_string() }

@@ -1,4 +1,4 @@
-//! The right panel of a skeleton: how it is brought to its targets, and how that goes.
+//! The solver of the skeleton: method, settings, status, convergence and race.
 
 mod can_solve;
 mod comparison;
@@ -19,7 +19,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             method(ui, session, actions);
             settings(ui, session, actions);
             buttons(ui, session, actions);
-            // A race has a table of its own.
+            // The race shows its own table.
             if session.comparison().is_none() {
                 report(ui, session);
             }
@@ -167,7 +167,7 @@ fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool 
     ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
-/// Of the pose that is shown. Always as high, so that nothing below moves.
+/// Report of the shown pose, of constant height so that nothing below moves.
 fn report(ui: &mut Ui, session: &Session) {
     let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
