@@ -122,6 +122,6 @@ fn the_status_line_shows_the_keys_and_the_change_while_the_hand_is_dragged() {
     let change = format!("Move freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);
     assert!(bench.says(&change), "{change}");
     for keys in ["Shift", "Ctrl", "X Y Z", "Enter", "Esc"] {
-        assert!(bench.says(&format!("{change}     Shift fine")) && bench.says(keys), "{keys}");
+        assert!(bench.says(&format!("{change}     Shift precise")) && bench.says(keys), "{keys}");
     }
 }

@@ -156,7 +156,7 @@ fn what_would_lose_changes_is_asked_about() {
         let mut bench = moved();
         let document = bench.session().document().clone();
         bench.apply([leaving.clone()]);
-        assert!(bench.says("The document has changes that are not saved."));
+        assert!(bench.says("The document has unsaved changes."));
         assert_eq!(bench.effects(), []);
         bench.click(Role::Button, "Cancel");
         assert_eq!(bench.session().document(), &document);
@@ -255,7 +255,7 @@ fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);
-    assert!(bench.says("ik-arm ended before the changes of lost.json were saved. They are kept."));
+    assert!(bench.says("ik-arm ended with unsaved changes to lost.json. They can be recovered."));
     bench.click(Role::Button, "Recover");
     bench.settle();
     assert_eq!(bench.session().document(), &document);

@@ -219,7 +219,20 @@ fn the_explain_panel_says_in_a_sentence_how_the_arm_stands() {
 #[test]
 fn the_explain_panel_names_the_quantities_and_shows_their_values() {
     let bench = Bench::after([EditAction::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
-    for name in ["theta z", "h c", "theta y", "D", "d 1", "d 2", "h e", "o e", "theta e", "phi"] {
+    for name in [
+        "Yaw theta z",
+        "Level h c",
+        "Pitch theta y",
+        "Distance D",
+        "Upper d 1",
+        "Lower d 2",
+        "Sum L",
+        "Difference delta",
+        "Along h e",
+        "Out o e",
+        "Shoulder theta e",
+        "Elbow angle phi",
+    ] {
         assert!(bench.shows(Role::Label, name), "{name}");
     }
     for value in ["53.1°", "0.0°", "500.0", "180.0°"] {

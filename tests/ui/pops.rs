@@ -54,7 +54,7 @@ fn softened(softness: f32) -> SoftReach {
 #[test]
 fn at_first_it_says_what_to_do() {
     let bench = from_the_front();
-    assert!(bench.says("Drag the hand, or play"));
+    assert!(bench.says("Drag the hand or press play"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
 
@@ -76,7 +76,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
     bench.click(Role::Button, "Use Stereographic");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Stereographic);
     assert!(bench.session().pose().elbow.distance(elbow) < 0.01 && bench.hand() == hand);
-    assert!(bench.says("since then changed"));
+    assert!(bench.says("settings have changed since"));
     assert!(!bench.shows(Role::Button, "Use Stereographic"), "it is done");
     over_the_top(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
@@ -90,7 +90,7 @@ fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
         drag(bench, Vec3::new(-300.0, 90.0, 12.0), Vec3::new(-300.0, -90.0, 12.0), 40);
     };
     behind(&mut bench);
-    assert!(bench.says("of what the map leaves out"));
+    assert!(bench.says("of straight behind, −x"));
     bench.click(Role::Button, "Use Transport");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Transport);
     behind(&mut bench);
@@ -123,7 +123,7 @@ fn a_hand_dragged_past_the_shoulder_has_no_button_but_a_reason() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0), 20);
     assert!(bench.says("Shoulder: the Cursor passed the shoulder"));
-    assert!(bench.says("must jump by twice the least reach, 200.0"));
+    assert!(bench.says("must jump by twice the inner limit, 200.0"));
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn one_remedy_is_offered_once() {
 fn other_changes_are_told_apart_from_pops() {
     let mut bench = from_the_front();
     bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
-    assert!(bench.says("Dotted: lengths, spin changed"));
+    assert!(bench.says("Dotted lines, not pops: lengths, spin changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
 
@@ -149,7 +149,7 @@ fn another_document_has_popped_nowhere() {
     over_the_top(&mut bench);
     let document = Box::new(Document::default());
     bench.apply([FileAction::Discard(Box::new(FileAction::Opened { document, file: None }))]);
-    assert!(bench.says("Drag the hand, or play"));
+    assert!(bench.says("Drag the hand or press play"));
 }
 
 /// Drags as a slider would.

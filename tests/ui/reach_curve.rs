@@ -78,9 +78,9 @@ fn its_lines_are_named_and_examples_are_called_that() {
 #[test]
 fn it_says_when_the_hand_does_not_lead_alone() {
     let mut bench = bench(0.0, 1.0, 300.0);
-    assert!(!bench.says("As the hand alone would have it"));
+    assert!(!bench.says("Shown for IK alone"));
     bench.apply([EditAction::SetInfluence(0.5)]);
-    assert!(bench.says("As the hand alone would have it"));
+    assert!(bench.says("Shown for IK alone"));
 }
 
 #[test]

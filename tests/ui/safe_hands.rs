@@ -329,7 +329,7 @@ fn an_export_over_a_file_asks_and_the_folder_is_remembered() {
     bench.type_text(&there.display().to_string());
     bench.key(Key::Enter);
     bench.settle();
-    assert!(bench.says("walk.glb is there already"));
+    assert!(bench.says("walk.glb already exists"));
     assert_eq!(bench.effects(), []);
     bench.key(Key::Enter);
     bench.settle();

@@ -142,14 +142,14 @@ fn everything_in_the_timeline_that_can_be_acted_on_has_a_name() {
 #[test]
 fn a_timeline_without_keys_says_how_to_set_the_first_one() {
     let mut bench = Bench::with_timeline(SMALL);
-    assert!(bench.says("press K to key it"));
+    assert!(bench.says("press K to add keys"));
     bench.apply([ViewAction::ShowGraphEditor(true)]);
     assert!(bench.says("No curves"));
     bench.apply([
         Action::from(ViewAction::ShowGraphEditor(false)),
         EditAction::Key(vec![Channel::Hand]).into(),
     ]);
-    assert!(!bench.says("press K to key it"));
+    assert!(!bench.says("press K to add keys"));
 }
 
 #[test]

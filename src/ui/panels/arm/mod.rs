@@ -28,8 +28,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut aside = Actions::new();
     let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
+    let reference = |ui: &mut Ui| socket_twist::reference(ui, session, &mut aside);
+    widgets::section_with(ui, "Socket twist", reference, |ui| {
+        socket_twist::ui(ui, session, actions);
+    });
     actions.extend(aside);
-    widgets::section(ui, "Socket twist", |ui| socket_twist::ui(ui, session, actions));
     widgets::section(ui, "Root", |ui| root(ui, session, actions));
     widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));

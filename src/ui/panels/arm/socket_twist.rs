@@ -2,13 +2,13 @@
 
 use core::f32::consts::TAU;
 
-use egui::{ComboBox, Ui};
+use egui::{ComboBox, Label, RichText, Ui};
 
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::labels;
-use crate::ui::widgets::{self, PointSliders, Slider};
+use crate::ui::widgets::{PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
@@ -26,30 +26,32 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     slider
         .show(ui, session, actions, |degrees| EditAction::SetTwist((degrees % 360.0).to_radians()));
-    reference(ui, session, actions);
     if arm.twist_reference == TwistReferenceKind::Pole {
         pole(ui, session, actions);
     }
 }
 
-/// Combo box of the twist references.
-fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// Combo box of the twist references, for the title row of the section.
+pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    /// Width of the section's title and the combo box's label.
+    const TITLES: f32 = 170.0;
     let chosen = session.arm().twist_reference;
-    widgets::pair(ui, "Twist reference", |ui| {
-        let combo = ComboBox::from_id_salt("twist reference").selected_text(chosen.name());
-        let response = combo.show_ui(ui, |ui| {
-            for twist_reference in TwistReferenceKind::ALL {
-                let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
-                let item = item.on_hover_text(labels::twist_reference(twist_reference));
-                if item.clicked() && twist_reference != chosen {
-                    actions.push(EditAction::SetTwistReference(twist_reference));
-                }
+    let combo = ComboBox::from_id_salt("twist reference").selected_text(chosen.name());
+    let response = combo.show_ui(ui, |ui| {
+        for twist_reference in TwistReferenceKind::ALL {
+            let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
+            let item = item.on_hover_text(labels::twist_reference(twist_reference));
+            if item.clicked() && twist_reference != chosen {
+                actions.push(EditAction::SetTwistReference(twist_reference));
             }
-        });
-        let response = response.response;
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Twist reference"));
-        response.on_hover_text(labels::twist_reference(chosen));
+        }
     });
+    let response = response.response;
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Twist reference"));
+    response.on_hover_text(format!("Twist reference: {}", labels::twist_reference(chosen)));
+    if ui.available_width() > TITLES {
+        ui.add(Label::new(RichText::new("reference").weak()).selectable(false));
+    }
 }
 
 fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
