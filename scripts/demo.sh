@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds ik-arm and opens its demo: scripts/demo.sh [-- ARGUMENTS FOR THE PROGRAM]
-# Without a screen, poses the arm in a virtual one, by mouse, and takes a picture.
+# Without a display it drags the hand in a virtual one and saves a picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -8,7 +8,7 @@ source scripts/setup.sh
 # shellcheck source=scripts/window.sh
 source scripts/window.sh
 
-# Where the mouse drags the hand, in screen pixels: from each point to the next.
+# Points between which the mouse drags the hand, in screen pixels.
 hand_path=("720 318" "815 204" "688 157" "624 268" "767 244")
 
 picture=$target/demo.png

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A screen for the window where there is none. To be sourced.
+# Virtual display for the window. To be sourced.
 set -euo pipefail
 
 virtual_display_pid=
@@ -8,7 +8,7 @@ has_display() {
     [[ $(uname -s) != Linux || -n ${DISPLAY-} || -n ${WAYLAND_DISPLAY-} ]]
 }
 
-# Sets virtual_display, the new screen's DISPLAY. Whoever starts it stops it, on failure too.
+# Sets virtual_display to the new DISPLAY. The caller stops it, on failure too.
 start_virtual_display() {
     local log=${CARGO_TARGET_DIR:-target}/xvfb.log number
     exec 3< <(exec Xvfb -displayfd 3 -screen 0 1280x800x24 -dpi 96 -nolisten tcp -noreset \

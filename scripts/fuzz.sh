@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# fuzz.sh [SECONDS] [TARGET...]: has every target, or those that are named, try inputs for 600 s each,
-# or so many, and fails if one breaks what is promised. See fuzz/README.md.
+# fuzz.sh [SECONDS] [TARGET...]: runs every target, or the named ones, for 600 s or SECONDS each, and
+# fails on a finding. See fuzz/README.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -44,14 +44,14 @@ fuzz() {
         [[ ! -d $folder ]] || folders+=("$folder")
     done
     mkdir -p "${folders[0]}"
-    # The timeout is by the clock on the wall, of which a busy machine leaves little.
+    # The timeout counts wall-clock time, so it must allow for a busy machine.
     options=(-max_total_time="$2" -timeout=30 -rss_limit_mb=2048 -max_len="$(longest "$target")"
         -print_final_stats=1)
     if [[ -f fuzz/dictionaries/$target.dict ]]; then
         options+=(-dict="fuzz/dictionaries/$target.dict")
     fi
     printf '\n==> %s\n' "$target"
-    # No code here is unsafe, and without a sanitizer twice as much is tried.
+    # The crate has no unsafe code, and without a sanitizer the fuzzer runs twice as fast.
     local run=(cargo +nightly fuzz run --sanitizer none --codegen-units 16
         --target-dir "$target_folder" "$target" "${folders[@]}")
     if ! nice -n 19 "${run[@]}" -- "${options[@]}" >"$logs/$target.log" 2>&1; then

@@ -7,7 +7,7 @@ source scripts/setup.sh
 # shellcheck source=scripts/window.sh
 source scripts/window.sh
 
-# A closed curve of the hand on screen: middle and radii, in pixels.
+# Closed curve of the hand on screen: centre and radii, in pixels.
 middle=(720 318)
 across=90
 up=75
@@ -30,8 +30,7 @@ main() {
     printf 'The film is %s\n' "$film"
 }
 
-# One picture a step, taken when the window has followed: the film is smooth however slow the
-# machine is.
+# One picture per step, taken when the window is at rest, so that the film is smooth on a slow machine.
 drag_around() {
     local step place
     xdotool mousemove "${middle[@]}"

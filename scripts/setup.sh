@@ -5,7 +5,7 @@ set -euo pipefail
 # command:Debian package
 build_tools=(cc:gcc pkg-config:pkg-config)
 screen_tools=(Xvfb:xvfb xdotool:xdotool import:imagemagick)
-# library:Debian package. They are loaded when the window opens, so no linker misses them.
+# library:Debian package. They are loaded at run time, so the build does not notice missing ones.
 window_libraries=(
     libvulkan.so.1:libvulkan1
     libxkbcommon-x11.so.0:libxkbcommon-x11-0
@@ -15,7 +15,7 @@ window_libraries=(
     libX11-xcb.so.1:libx11-xcb1
 )
 
-# set_up [virtual-display]: with it, also what a system without a screen needs.
+# set_up [virtual-display]: with the argument, also installs a virtual display.
 set_up() {
     local tools=("${build_tools[@]}")
     if [[ ${1-} == virtual-display ]] && is_linux; then
@@ -65,7 +65,7 @@ install_packages() {
     fi
     say "installing ${missing[*]}"
     as_root apt-get update
-    # A freshly started machine may still be busy with its own updates.
+    # A newly booted machine may still run its own updates.
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
         install -y --no-install-recommends "${missing[@]}"
 }
@@ -74,7 +74,7 @@ has_package() {
     grep -qx installed <<<"$(dpkg-query -W -f '${db:Status-Status}\n' "$1" 2>/dev/null)"
 }
 
-# Also looks where rustup puts it, which a shell opened before does not have on its PATH.
+# Also looks in rustup's folder, which is not on the PATH of shells opened before the installation.
 find_cargo() {
     local bin=${CARGO_HOME:-$HOME/.cargo}/bin
     if ! has_command cargo && [[ -x $bin/cargo ]]; then
@@ -127,7 +127,7 @@ wanted_rust() {
     sed -n 's/^rust-version = "\(.*\)"$/\1/p' Cargo.toml
 }
 
-# No failure: a system may keep its libraries where ldconfig does not look.
+# A warning only: libraries may be where ldconfig does not look.
 name_missing_libraries() {
     local entry known missing=()
     known=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p 2>/dev/null || true)

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# Wears the real window for a while: scripts/soak-window.sh [SECONDS, at least 60; 600 unless told]
-# Resizes it, takes it off the screen and back, drags, turns, plays and undoes, and fails if the
-# program ends, reports an error, keeps growing in memory, or draws while nothing happens. Builds a
-# release first, unless PROGRAM names one.
+# Soak test of the real window: scripts/soak-window.sh [SECONDS, at least 60, default 600]
+# Resizes, hides, shows, drags, orbits, plays and undoes. Fails if the program ends, logs an error,
+# leaks memory, or draws while idle. Builds a release first, unless PROGRAM names a binary.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -10,7 +9,7 @@ source scripts/setup.sh
 # shellcheck source=scripts/window.sh
 source scripts/window.sh
 
-# Where things are in the window as it opens, in pixels.
+# Positions in the newly opened window, in pixels.
 hand_path=("720 318" "815 204" "688 157" "624 268" "720 318")
 spin_slider=("85 253" "170 253")
 beside_the_arm=("400 540" "520 500")
@@ -18,8 +17,8 @@ middle_of_the_ruler=("730 665")
 to_the_start=("20 636")
 nowhere=("640 12")
 
-# Memory may grow by a fiftieth from the second quarter of the time to the last, or by so many KiB:
-# a screenful of letters more.
+# From the second quarter of the time to the last, memory may grow by 2 % or by this many KiB (one
+# screen of glyphs).
 growth_of_noise=4096
 
 log=$target/soak-window.log
@@ -68,7 +67,7 @@ fail() {
     exit 1
 }
 
-# --- what is measured ---
+# --- measurements ---
 
 memory() {
     awk '$1 == "VmRSS:" { print $2 }' "/proc/$program_pid/status"
@@ -94,14 +93,14 @@ report() {
         "$(awk -v kib="$(memory)" 'BEGIN { print kib / 1024 }')"
 }
 
-# --- what is done ---
+# --- actions ---
 
 place() {
     # shellcheck disable=SC2086 # two numbers
     xdotool mousemove $1 sleep 0.1
 }
 
-# wipe POINT...: drags from each to the next.
+# wipe POINT...: drags from each point to the next.
 wipe() {
     local from=$1 to
     shift
@@ -121,7 +120,7 @@ click() {
     xdotool click 1 sleep 0.3
 }
 
-# From the hand as it is to a raised one, in half of the timeline.
+# Keys the hand and a raised hand half a timeline later.
 key_a_motion() {
     place "${beside_the_arm[0]}"
     xdotool click 1
@@ -136,7 +135,7 @@ size() {
     xdotool windowsize "$window" "$1" "$2" sleep 0.1
 }
 
-# Also sizes that no window manager would give it.
+# Includes sizes that no window manager would set.
 storm_of_sizes() {
     local end=$((SECONDS + $1)) count=0
     local corners=("640 400" "320 200" "2560 1600" "1 1" "64 1200" "2000 40" "960 600")
@@ -152,7 +151,7 @@ storm_of_sizes() {
     printf '%d sizes\n' $((2 * count))
 }
 
-# Plays meanwhile: what is not seen must not be drawn as fast as can be.
+# Plays while hidden: a hidden window must not draw without a frame limit.
 hide_and_show() {
     local end=$((SECONDS + $1))
     while ((SECONDS < end)); do
@@ -197,7 +196,7 @@ wear_once() {
     sample
 }
 
-# --- what must hold ---
+# --- checks ---
 
 check_rest() {
     local frames_before cpu_before drawn used

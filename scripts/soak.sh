@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Soaks a session in random actions: scripts/soak.sh [ACTIONS] [SEED]. Prints how far it is and how
-# often each action was done; of one that breaks something, the seed and the least that breaks it.
+# Soak test of a session: scripts/soak.sh [ACTIONS] [SEED]. Applies random actions and prints progress
+# and the count of each kind; on a failure the seed and a minimal sequence of actions.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks everything, as CI does, and stops at the first failure.
+# Runs all checks of CI and stops at the first failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -41,9 +41,8 @@ step() {
     printf '==> %s: %d s\n' "$current_step" $((SECONDS - started))
 }
 
-# All targets compile without warnings in each set of features. Their tests are among those of the
-# default set, and the code that they run differs by `parallel` alone, which shares batches and crowds
-# out among the cores: those are tested without it, too.
+# Lints all targets in each set of features. Tests run with the default features; only code under
+# `parallel` differs without them, so batches and crowds are tested without it, too.
 check_features() {
     local features
     for features in "" --no-default-features \

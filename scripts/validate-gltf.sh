@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Exports every example, as it is and with keys, and has the Khronos Group's validator read the files.
+# Exports every example, with and without keys, and runs the Khronos glTF validator on the files.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh

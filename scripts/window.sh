@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The real window on a virtual display, and a mouse in it. To be sourced.
+# The real window in a virtual display, driven by a mouse. To be sourced.
 set -euo pipefail
 # shellcheck source=scripts/display.sh
 source scripts/display.sh
@@ -25,19 +25,19 @@ open_window() {
     start_virtual_display
     export DISPLAY=$virtual_display
     empty=$(screen)
-    # Remembered settings could move the arm or the panels away from hand_path.
+    # Saved settings could move the arm or the panels.
     settings=$(mktemp -d)
     XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
         "$program" &
     program_pid=$!
     window=$(wait_for_window)
-    # No window manager gives it the keyboard.
+    # There is no window manager to give it the keyboard focus.
     xdotool windowfocus "$window"
     wait_for_screen_other_than "$empty"
     wait_for_rest
 }
 
-# The picture on the screen, as a checksum.
+# Checksum of the screen.
 screen() {
     import -window root -depth 8 rgb:- | cksum
 }
@@ -81,8 +81,8 @@ wait_for_window() {
     head -n 1 <<<"$window"
 }
 
-# drag X1 Y1 X2 Y2: at the speed of a hand. The first steps are short: a frame may see them together
-# with the press.
+# drag X1 Y1 X2 Y2: at the speed of a human hand. The first steps are short, because a frame may
+# receive them together with the press.
 drag() {
     local x1=$1 y1=$2 x2=$3 y2=$4 step steps=12
     local square=$((steps * steps))

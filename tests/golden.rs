@@ -1,6 +1,6 @@
-//! Pictures of the scene, compared with the ones kept in `tests/golden`.
+//! Pictures of scenes, compared with those in `tests/golden`.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden` keeps the new ones; look at them before committing.
+//! `UPDATE_GOLDEN=1 cargo test --test golden` writes new ones; look at them before committing.
 #![cfg(feature = "render")]
 
 mod pictures;
@@ -45,7 +45,7 @@ fn all_guides() -> Document {
     from(showing(Document::default(), &Overlay::GUIDES), Vec3::ZERO, 1650.0)
 }
 
-/// Close to the hand, whose Cursor is out of its reach.
+/// Close view of a hand whose Cursor is out of reach.
 fn too_far() -> Document {
     let document = posed(Vec3::new(420.0, 330.0, 120.0));
     from(document, Vec3::new(395.0, 310.0, 110.0), 420.0)
@@ -68,7 +68,7 @@ fn top_view() -> Document {
 }
 
 #[test]
-fn the_arm_as_it_is_first_seen() {
+fn the_arm_in_a_new_window() {
     check("default", &Document::default(), Theme::Dark);
 }
 
@@ -128,7 +128,7 @@ fn a_guide_that_is_missing_is_noticed() {
     }
 }
 
-/// A scene that comes with the program, solved where it has targets.
+/// An example scene, solved if it has targets.
 fn example(name: &str) -> Document {
     let example = Example::find(name).expect("an example");
     let mut document = example.open().expect("it opens").document;
@@ -146,7 +146,7 @@ fn the_human_with_hands_and_feet_at_their_targets() {
 }
 
 #[test]
-fn the_snake_on_its_way() {
+fn the_snake_along_its_path() {
     check("snake", &example("snake"), Theme::Dark);
 }
 
@@ -212,7 +212,7 @@ fn with(arm: Arm, layers: &[Overlay]) -> Document {
 }
 
 #[test]
-fn the_arm_as_an_animator_has_it() {
+fn the_arm_with_all_overlays_of_an_animator() {
     let pole = Arm { twist_reference: TwistReferenceKind::Pole, ..Arm::default() };
     let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().pinned(true) };
     let spun = Arm { twist: 1.0, ..pole };

@@ -1,4 +1,4 @@
-//! Pictures of joints' names, with letters that are in some font and letters that are in none.
+//! Pictures of joint names, with letters of some font and letters of none.
 #![cfg(feature = "render")]
 
 mod pictures;
@@ -12,10 +12,10 @@ use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pictures::{GPU, draw};
 
-/// For private use: no font is expected to have it.
+/// Private use area: no font has this letter.
 const NO_LETTER: char = '\u{10fffd}';
 
-/// Nothing but the names of joints that are too small to be seen.
+/// Names of joints that are too small to be visible.
 fn named(names: &[&str]) -> Scene {
     let mut skeleton = Skeleton::default();
     for (row, name) in names.iter().enumerate() {
@@ -36,7 +36,7 @@ fn named(names: &[&str]) -> Scene {
     scene
 }
 
-/// How many pixels of a picture are as light as text.
+/// Number of pixels as light as text.
 fn lit(image: &RgbaImage) -> usize {
     image.pixels().filter(|pixel| pixel.0[1] > 180).count()
 }

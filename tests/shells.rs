@@ -1,4 +1,4 @@
-//! Pictures of see-through spheres: any number of them, from back to front.
+//! Pictures of transparent spheres, drawn from back to front.
 #![cfg(feature = "render")]
 
 mod pictures;
@@ -21,7 +21,7 @@ fn shell(centre: Vec3, radius: f32, colour: Colour) -> Shell {
     Shell { centre, radius, colour }
 }
 
-/// Three in each other, one beside them, one behind, and two that cut each other.
+/// Three nested, one beside them, one behind, and two that intersect.
 fn shells() -> Vec<Shell> {
     vec![
         shell(Vec3::ZERO, 150.0, RED),

@@ -1,5 +1,5 @@
-//! The hard cases of the gallery: each does what its sentence says, at every frame, by an arm that is
-//! posed anew in f64.
+//! Hard-case examples: each does what its sentence says at every frame, compared with an arm posed in
+//! f64.
 #![cfg(feature = "document")]
 
 mod pictures;
@@ -20,7 +20,7 @@ use twin::{check, within};
 /// Error of a hand and of a limb's length, in units of L.
 const EXACT: f64 = 3e-7;
 
-/// A hard case, which is the same after it was saved and opened again.
+/// Opens a hard case and checks that it is unchanged by saving and opening.
 fn opened(name: &str) -> Document {
     let example = Example::find(name).expect("in the gallery");
     assert_eq!(example.group, Group::HardCases);
@@ -42,7 +42,7 @@ fn arms(document: &Document) -> Vec<Arm> {
     times(document).map(|time| document.at(time).arm).collect()
 }
 
-/// The arm at every frame, each as the independent one has it.
+/// The arm at every frame, checked against the f64 arm.
 fn checked(document: &Document) -> Vec<Arm> {
     let arms = arms(document);
     arms.iter().for_each(check);
@@ -61,7 +61,7 @@ fn steps(arms: &[Arm], of: impl Fn(&Arm) -> Vec3) -> Vec<f64> {
     at.windows(2).map(|pair| pair[0].distance(pair[1])).collect()
 }
 
-/// How far the elbow goes from frame to frame, for what the cursor goes.
+/// Ratio of elbow to Cursor movement for each pair of frames.
 fn elbow_gains(arms: &[Arm]) -> Vec<f64> {
     let elbow = steps(arms, |arm| arm.pose().elbow);
     let cursor = steps(arms, Arm::cursor);
@@ -72,7 +72,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// How many of the elbow's steps are more than so many of the cursor's.
+/// Number of frames at which the elbow moves more than `gain` times as far as the Cursor.
 fn jumps(arms: &[Arm], gain: f64) -> usize {
     elbow_gains(arms).into_iter().filter(|it| *it > gain).count()
 }
@@ -133,7 +133,7 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
         (document.arm.twist_reference, arms.iter().filter(is_along).count()),
         (TwistReferenceKind::Pole, 1)
     );
-    // To the side that the Limb decides for at that frame, and on to the other one.
+    // To the side that the Limb reference has at that frame, then to the other one.
     assert_eq!(jumps(&arms, 20.0), 2);
     let middle = arms.iter().position(|arm| is_along(&arm)).expect("along it");
     let [before, after] = [middle - 1, middle + 1].map(|frame| arms[frame].pose().outward());
@@ -146,7 +146,7 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
 }
 
 #[test]
-fn exactly_straight_the_target_is_reached_and_spinning_leaves_the_elbow() {
+fn exactly_straight_the_target_is_reached_and_the_twist_leaves_the_elbow() {
     let document = opened("exactly-straight");
     let arms = checked(&document);
     let mut spins = arms.iter().map(|arm| arm.twist).collect::<Vec<_>>();
@@ -197,7 +197,7 @@ fn equal_bones_fold_up_completely_and_nothing_jumps() {
 }
 
 #[test]
-fn one_bone_a_thousand_times_the_other_brings_the_hand_where_it_is_asked_to_be() {
+fn one_bone_a_thousand_times_the_other_brings_the_hand_to_its_target() {
     let document = opened("thousand-to-one");
     let arms = checked(&document);
     let bones = document.arm.bones;
@@ -214,7 +214,7 @@ fn one_bone_a_thousand_times_the_other_brings_the_hand_where_it_is_asked_to_be()
 }
 
 #[test]
-fn a_root_a_million_units_away_keeps_the_limbs_as_long_as_its_places_can_tell() {
+fn a_root_a_million_units_away_keeps_limb_lengths_to_f32_precision() {
     let document = opened("far-root");
     let arms = checked(&document);
     let root = document.arm.root;
@@ -230,15 +230,15 @@ fn a_root_a_million_units_away_keeps_the_limbs_as_long_as_its_places_can_tell() 
 
 #[test]
 fn a_tiny_arm_moves_as_the_large_ones_do() {
-    moves_as_the_seeds_does("tiny", 1e-3);
+    moves_as_the_default_arm("tiny", 1e-3);
 }
 
 #[test]
 fn a_huge_arm_moves_as_the_small_ones_do() {
-    moves_as_the_seeds_does("huge", 1e6);
+    moves_as_the_default_arm("huge", 1e6);
 }
 
-fn moves_as_the_seeds_does(name: &str, length: f32) {
+fn moves_as_the_default_arm(name: &str, length: f32) {
     let document = opened(name);
     let arms = checked(&document);
     within("L", f64::from(document.arm.bones.outer_limit() / length - 1.0).abs(), EXACT);

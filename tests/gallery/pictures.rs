@@ -1,4 +1,4 @@
-//! How the hard cases are seen.
+//! Scenes and pictures of the hard cases.
 
 use glam::Vec3;
 use ik_arm::document::{Document, Theme};
@@ -20,7 +20,7 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
             let at = format!("{} at {time}", example.name);
             assert!(numbers(&scene).all(f32::is_finite), "{at}");
             let projection = scene.camera.projection(1.6);
-            // The thousand times longer limb goes out of the picture, to its root.
+            // The limb that is a thousand times longer leaves the picture towards its root.
             let from = usize::from(example.name == "thousand-to-one");
             for ball in &scene.balls[from..3] {
                 let seen = projection.project(ball.centre).expect("before the eye");
@@ -33,7 +33,7 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
 }
 
 #[test]
-fn grids_have_cells_as_small_beside_the_rig_as_the_seeds() {
+fn grid_cells_scale_with_the_rig() {
     assert_eq!(Document::default().cell(), 100.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
@@ -43,7 +43,7 @@ fn grids_have_cells_as_small_beside_the_rig_as_the_seeds() {
     }
 }
 
-/// Everything that a picture is drawn from, but its words and colours.
+/// All numbers of a scene except texts and colours.
 fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
     let solids = scene.solids.iter().chain(&scene.guide_solids).flat_map(|solid| {
         let Cone { length, base_radius, tip_radius } = solid.shape;
@@ -68,7 +68,7 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
     placed.chain(planes).chain(view)
 }
 
-/// Every hard case once: the rig covers a part of the picture, and not all of it.
+/// In every hard case the rig covers a part of the picture, but not all of it.
 #[cfg(feature = "render")]
 #[test]
 fn every_hard_case_is_drawn() {

@@ -1,4 +1,4 @@
-//! An arm that is posed independently, by the textbook's law of cosines in f64.
+//! An arm posed independently by the law of cosines in f64.
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Arm, TwistReferenceKind};
@@ -31,7 +31,7 @@ fn twin(arm: &Arm) -> Twin {
     Twin { elbow: forward * along + side * out, hand: forward * distance, length }
 }
 
-/// d' of a cursor so far away.
+/// Softened distance d' for a Cursor at distance `d`.
 fn soften(d: f64, least: f64, length: f64, softness: f64) -> f64 {
     let zone = softness * (length - least) / 2.0;
     let (near, far) = (least + zone, length - zone);
@@ -43,7 +43,7 @@ fn soften(d: f64, least: f64, length: f64, softness: f64) -> f64 {
     }
 }
 
-/// e₀; straight up or down, and along the pole, it is the Limb's where the arm faced.
+/// e₀. Straight up or down and along the pole it is the Limb's for the last facing.
 fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     let [x, y, z] = forward.to_array();
     let (sin_pitch, flat) = (y, x.hypot(z));
@@ -64,7 +64,7 @@ fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     }
 }
 
-/// Hand and elbow are where the twin has them, in the world too, and the limbs keep their lengths.
+/// Compares hand and elbow with the f64 arm, in Root space and in the world, and checks limb lengths.
 pub fn check(arm: &Arm) {
     let (pose, twin) = (arm.pose(), twin(arm));
     let length = twin.length;
@@ -91,7 +91,7 @@ fn check_limbs(arm: &Arm, [root, elbow, hand]: [DVec3; 3], error: f64) {
     within("the lower limb", (hand.distance(elbow) - lower).abs(), error);
 }
 
-/// Also where the error is no number.
+/// Fails if the error is above the bound or NaN.
 pub fn within(what: &str, error: f64, bound: f64) {
     assert!(error <= bound, "{what} is off by {error:e}, more than {bound:e}");
 }

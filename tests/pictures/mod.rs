@@ -1,4 +1,4 @@
-//! Pictures without a window, and those kept in `tests/golden`.
+//! Pictures drawn without a window, and the expected ones in `tests/golden`.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use image::RgbaImage;
 
 pub const SIZE: (u32, u32) = (480, 300);
 
-/// At most so many of the pixels differ by more than a little, and the mean of all by so much.
+/// Largest fraction of pixels that may differ by more than `NOTICED`, and largest mean difference.
 const NOTICED: u8 = 16;
 const MOST_NOTICED: f64 = 0.002;
 const MOST_MEAN: f64 = 1.0;
@@ -32,7 +32,7 @@ pub fn kept(name: &str) -> RgbaImage {
     image::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).into_rgba8()
 }
 
-/// How two pictures differ, if that is too much.
+/// Fails with a description if two pictures differ too much.
 pub fn compare(a: &RgbaImage, b: &RgbaImage) -> Result<(), String> {
     if a.dimensions() != b.dimensions() {
         return Err(format!("{:?} is not {:?}", a.dimensions(), b.dimensions()));
@@ -58,7 +58,7 @@ pub fn compare(a: &RgbaImage, b: &RgbaImage) -> Result<(), String> {
     Ok(())
 }
 
-/// Fails unless the scene looks as the picture that is kept; keeps it if that is asked for.
+/// Fails unless the scene looks like the expected picture; with `UPDATE_GOLDEN` replaces it first.
 pub fn check(name: &str, scene: &Scene) {
     let drawn = draw(scene);
     if std::env::var_os("UPDATE_GOLDEN").is_some() {

@@ -1,4 +1,4 @@
-//! What holds for every arm.
+//! Properties of every arm in a session.
 
 use glam::{DQuat, Vec3};
 use ik_arm::document::{Channel, HandSpace, TwistReferenceKind};
@@ -14,7 +14,7 @@ proptest! {
     #![proptest_config(config(300, 0x0b0d_01e5))]
 
     #[test]
-    fn a_pinned_hand_stays_where_it_is_to_the_last_bit_however_the_root_moves(
+    fn a_pinned_hand_stays_bit_identical_while_the_root_moves(
         hand in points(300.0), roots in vec(points(400.0), 1..8), twist_reference in references()
     ) {
         let mut session = session([
@@ -41,7 +41,7 @@ proptest! {
     }
 
     #[test]
-    fn measured_from_elsewhere_the_elbow_stays(
+    fn another_twist_reference_keeps_the_elbow(
         hand in points(300.0), spin in 0.0..6.0_f32, references in vec(references(), 1..6), pole in points(300.0)
     ) {
         let mut session =
@@ -55,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn measured_from_elsewhere_the_elbow_stays_at_every_key(
+    fn another_twist_reference_keeps_the_elbow_at_every_key(
         hands in vec(points(300.0), 2..5), spins in vec(0.0..6.0_f32, 5), to in vec(references(), 1..4)
     ) {
         let mut session = Session::default();
@@ -77,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_carried_along_does_not_pop_and_is_taken_back_with_the_drag(
+    fn a_transported_elbow_does_not_pop_and_is_restored_when_the_drag_is_cancelled(
         hands in vec(points(300.0), 2..40)
     ) {
         let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport), EditAction::SetHand(hands[0])]);
@@ -90,7 +90,7 @@ proptest! {
                 let now = *session.pose();
                 let [from, to] = [was, now].map(|pose| pose.outward().as_dvec3());
                 let [w0, w1] = [was, now].map(|pose| pose.facing.direction.as_dvec3());
-                // TransportedFrame by the least turn, in f64.
+                // Parallel transport in f64.
                 let turn = DQuat::from_rotation_arc(w0.normalize(), w1.normalize());
                 prop_assert!(w0.dot(w1) < -0.999 || (turn * from).distance(to) < 2e-5);
             }
@@ -189,7 +189,7 @@ proptest! {
     }
 
     #[test]
-    fn a_hand_that_keeps_its_orientation_has_it_wherever_it_goes(
+    fn a_hand_in_world_orientation_keeps_it_at_every_position(
         angles in points(3.0), hands in vec(points(400.0), 1..8)
     ) {
         let mut session = session([EditAction::SetWrist(angles)]);

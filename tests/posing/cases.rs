@@ -1,4 +1,4 @@
-//! What was thought of, and what was found.
+//! Particular poses and former bugs.
 
 use std::f64::consts::PI;
 
@@ -13,8 +13,8 @@ use ik_arm::session::{
 use crate::*;
 
 #[test]
-fn a_root_is_where_the_hand_reaches_on_a_table_from() {
-    // The case of the seed's analysis: a hand on the edge of a table, and a body that leans.
+fn the_root_of_a_leaning_body_keeps_a_pinned_hand_on_the_table() {
+    // A hand on the edge of a table, and a body that leans.
     let mut session =
         session([EditAction::SetHand(Vec3::new(300.0, 0.0, 100.0)), EditAction::PinHand(true)]);
     session.apply(EditAction::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
@@ -24,7 +24,7 @@ fn a_root_is_where_the_hand_reaches_on_a_table_from() {
 }
 
 #[test]
-fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
+fn a_transported_elbow_comes_back_turned_by_the_solid_angle_of_its_path() {
     // An octant of the sphere: a quarter turn.
     let mut session = session([
         Action::from(EditAction::SetTwistReference(TwistReferenceKind::Transport)),
@@ -48,7 +48,7 @@ fn a_carried_elbow_comes_back_turned_by_the_solid_angle_of_its_way() {
 }
 
 #[test]
-fn a_forearm_rolls_on_past_half_a_turn() {
+fn a_forearm_rolls_beyond_half_a_turn() {
     let mut session = Session::default();
     for step in 1..=30 {
         let roll = step as f32 * 0.3;
@@ -63,7 +63,7 @@ fn a_forearm_rolls_on_past_half_a_turn() {
 }
 
 #[test]
-fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
+fn a_soft_arm_keeps_its_pose_when_switched_to_fk() {
     let soft = SoftReach::new(0.3, 1.0, 0.0).expect("a softening");
     for hand in [Vec3::new(470.0, 100.0, 40.0), Vec3::new(90.0, 60.0, 10.0)] {
         let mut session = session([EditAction::SetSoftReach(soft), EditAction::SetHand(hand)]);
@@ -77,7 +77,7 @@ fn a_soft_arm_that_is_led_by_its_angles_keeps_its_pose_too() {
 }
 
 #[test]
-fn a_stretched_arm_keeps_its_length_when_its_angles_lead() {
+fn a_stretched_arm_keeps_its_length_in_fk() {
     let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
     let mut session =
         session([EditAction::SetSoftReach(stretch), EditAction::SetHand(Vec3::X * 750.0)]);
@@ -110,7 +110,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
 }
 
 #[test]
-fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
+fn a_ring_turns_its_own_angle_in_fk() {
     let mut session = session([EditAction::SwitchPoseMode(PoseMode::Angles)]);
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = session.arm_ring(grip).expect("a ring");
@@ -128,7 +128,7 @@ fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
                 session.apply(EditAction::SetBend(fk.bend + 0.2));
             }
         }
-        // What the angle does is a right-handed turn about the ring.
+        // The angle is a right-handed rotation about the ring's axis.
         let turn = DQuat::from_axis_angle(ring.axis.as_dvec3().normalize(), 0.2);
         assert!((turn * was).distance(forearm(&session)) < 1e-3, "{grip:?}");
         let upper = if grip == Grip::Bend { before } else { turn * before };
@@ -139,7 +139,7 @@ fn a_ring_turns_the_angle_that_it_is_of_while_the_angles_lead() {
 }
 
 #[test]
-fn a_hand_pinned_beyond_all_numbers_is_within_them() {
+fn a_hand_pinned_where_numbers_overflow_stays_finite() {
     let far = Vec3::X * 3e38;
     let session =
         session([EditAction::SetRoot(far), EditAction::SetHand(far), EditAction::PinHand(true)]);
@@ -148,7 +148,7 @@ fn a_hand_pinned_beyond_all_numbers_is_within_them() {
 }
 
 #[test]
-fn a_hand_that_is_pressed_and_let_go_leaves_the_document() {
+fn a_click_on_the_hand_leaves_the_document_unchanged() {
     for twist_reference in TwistReferenceKind::ALL {
         for hand in [Vec3::new(250.0, 120.0, 60.0), Vec3::new(-90.0, 210.0, 33.3)] {
             let mut session = session([
@@ -169,7 +169,7 @@ fn a_hand_that_is_pressed_and_let_go_leaves_the_document() {
 }
 
 #[test]
-fn an_arm_of_any_size_has_its_own_limits_when_it_is_led() {
+fn limits_scale_with_the_arm_in_fk() {
     let bones = TwoBone::new(0.001, 0.002).expect("lengths");
     let arm = Arm { bones, goal: Cursor::Root(Vec3::Y * 0.0025), ..Arm::default() };
     let document = Document { arm: arm.settled().led_by_angles(), ..Document::default() };

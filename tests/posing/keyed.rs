@@ -10,7 +10,7 @@ use ik_arm::session::{EditAction, PlaybackAction, PoseMode, Session};
 use crate::*;
 
 #[test]
-fn hand_keys_rest_while_the_hand_is_pinned() {
+fn hand_keys_have_no_effect_while_the_hand_is_pinned() {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
         session.apply(PlaybackAction::SetTime(time));
@@ -27,7 +27,7 @@ fn hand_keys_rest_while_the_hand_is_pinned() {
 }
 
 #[test]
-fn k_keeps_what_is_shown_only_until_the_time_changes() {
+fn k_keys_an_edit_that_would_be_lost_when_the_time_changes() {
     let mut session =
         session([EditAction::SetInfluence(0.0), EditAction::Key(vec![Channel::Influence])]);
     session.apply(PlaybackAction::SetTime(1.0));
@@ -40,7 +40,7 @@ fn k_keeps_what_is_shown_only_until_the_time_changes() {
 }
 
 #[test]
-fn a_keyed_switch_keeps_how_far_its_limbs_are_stretched() {
+fn a_keyed_switch_keeps_the_stretch_of_its_limbs() {
     let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
     let mut session = session([
         Action::from(EditAction::SetSoftReach(stretch)),
@@ -57,7 +57,7 @@ fn a_keyed_switch_keeps_how_far_its_limbs_are_stretched() {
 }
 
 #[test]
-fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
+fn a_keyed_hand_keeps_its_orientation_at_every_key_in_another_space() {
     let mut session = Session::default();
     for (time, hand, angles) in [
         (0.0, Vec3::new(250.0, 120.0, 60.0), Vec3::new(0.3, 0.2, 0.1)),
@@ -82,8 +82,8 @@ fn a_keyed_hand_measured_in_another_space_is_turned_as_it_was_at_every_key() {
     }
 }
 
-/// A hand with keys, whose elbow has none and is carried along, between two of them.
-fn carried_between_keys() -> Session {
+/// A time between two keys of a hand whose transported elbow has no keys.
+fn transported_between_keys() -> Session {
     let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 0.0))] {
         session.apply(PlaybackAction::SetTime(time));
@@ -94,8 +94,8 @@ fn carried_between_keys() -> Session {
     session
 }
 
-/// Takes the hand around, off its keys.
-fn look_off(mut session: Session) -> Session {
+/// Moves the hand away from its keys and back.
+fn move_off_the_keys_and_back(mut session: Session) -> Session {
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
         session.apply(EditAction::SetHand(hand * 300.0));
     }
@@ -103,8 +103,8 @@ fn look_off(mut session: Session) -> Session {
 }
 
 #[test]
-fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
-    let mut session = look_off(carried_between_keys());
+fn the_twist_of_a_transported_elbow_can_be_set_between_keys_of_the_hand() {
+    let mut session = move_off_the_keys_and_back(transported_between_keys());
     session.apply(EditAction::SetTwist(2.0));
     assert_eq!(session.arm().twist, 2.0);
     session.apply(EditAction::SetUpper(210.0));
@@ -113,11 +113,11 @@ fn the_spin_of_a_carried_elbow_can_be_set_off_its_hands_keys_and_stays() {
 }
 
 #[test]
-fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere() {
+fn a_transported_elbow_between_keys_stays_with_another_twist_reference() {
     for twist_reference in
         [TwistReferenceKind::Limb, TwistReferenceKind::Pole, TwistReferenceKind::Stereographic]
     {
-        let mut session = look_off(carried_between_keys());
+        let mut session = move_off_the_keys_and_back(transported_between_keys());
         let before = *session.pose();
         session.apply(EditAction::SetTwistReference(twist_reference));
         assert!(apart(&before, session.pose()) < 1e-5, "{twist_reference:?}");
@@ -125,7 +125,7 @@ fn a_carried_elbow_off_its_hands_keys_stays_when_it_is_measured_from_elsewhere()
 }
 
 #[test]
-fn another_edit_leaves_a_keyed_carried_spin_as_its_keys_have_it() {
+fn another_edit_leaves_a_keyed_transported_twist_at_its_keys() {
     let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
     for (time, hand) in [(0.0, Vec3::X * 300.0), (2.0, Vec3::new(150.0, 200.0, 90.0))] {
         session.apply(PlaybackAction::SetTime(time));
@@ -138,7 +138,7 @@ fn another_edit_leaves_a_keyed_carried_spin_as_its_keys_have_it() {
 }
 
 #[test]
-fn what_is_beneath_the_keys_is_measured_anew_too() {
+fn the_unkeyed_twist_is_converted_to_the_new_reference_too() {
     let mut session = session([EditAction::SetTwist(1.0)]);
     let pose = *session.pose();
     session.apply(EditAction::Key(vec![Channel::Twist, Channel::Wrist]));
@@ -152,10 +152,10 @@ fn what_is_beneath_the_keys_is_measured_anew_too() {
 }
 
 #[test]
-fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
-    let session = carried_between_keys();
+fn a_move_off_the_keys_and_back_the_keys_leaves_a_carried_elbow_as_it_was() {
+    let session = transported_between_keys();
     let (document, pose) = (session.document().clone(), *session.pose());
-    let mut session = look_off(session);
+    let mut session = move_off_the_keys_and_back(session);
     assert_eq!(session.document(), &document);
     session.apply(PlaybackAction::SetTime(0.5));
     session.apply(PlaybackAction::SetTime(1.0));
@@ -163,7 +163,7 @@ fn a_look_off_the_keys_leaves_a_carried_elbow_as_it_was() {
 }
 
 #[test]
-fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
+fn a_forearm_keyed_to_roll_around_does_not_snap_between_keys() {
     let mut session = Session::default();
     for (time, roll) in [(0.0, 0.0), (2.0, 2.0 * PI as f32)] {
         session.apply(PlaybackAction::SetTime(time));
@@ -180,7 +180,7 @@ fn a_forearm_that_is_keyed_to_roll_around_does_not_snap_on_the_way() {
 }
 
 #[test]
-fn changing_the_reference_at_a_key_shows_nothing_against_the_keys() {
+fn changing_the_reference_at_a_key_makes_no_unkeyed_edit() {
     let mut session = session([EditAction::SetTwist(1.0)]);
     session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
     session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));

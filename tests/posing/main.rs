@@ -1,4 +1,4 @@
-//! An arm in a session: pinned, measured from elsewhere, led by its angles, its hand turned, in time.
+//! The arm in a session: pinned hand, twist references, FK and IK, hand orientation, keys.
 #![cfg(feature = "document")]
 
 #[path = "../common/mod.rs"]
@@ -30,13 +30,13 @@ pub fn bits(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
 }
 
-/// In f64, and exact for small angles, which the arc cosine is not.
+/// Angle in f64, exact for small angles, unlike the arc cosine.
 pub fn angle(a: Vec3, b: Vec3) -> f64 {
     let [a, b] = [a, b].map(Vec3::as_dvec3);
     a.cross(b).length().atan2(a.dot(b))
 }
 
-/// How far elbow and hand of two poses are apart, in parts of the seed's arm.
+/// Largest distance between elbows and hands of two poses, in units of the default arm's length.
 pub fn apart(a: &TwoBonePose, b: &TwoBonePose) -> f32 {
     a.elbow.distance(b.elbow).max(a.hand.distance(b.hand)) / 500.0
 }

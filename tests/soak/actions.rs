@@ -1,5 +1,4 @@
-//! Which action comes next: bursts of a sort, in stretches that are tame or wild, on sessions that do
-//! not grow without end.
+//! Choice of the next action: bursts of one sort, with tame or wild values, in sessions of bounded size.
 
 use ik_arm::document::Channel;
 use ik_arm::session::{Action, EditAction, FileAction, Session};
@@ -10,10 +9,10 @@ use crate::values::Values;
 
 pub struct Actions {
     random: Random,
-    /// What the actions are mostly about, and for how many more.
+    /// Sort of most actions, and how many more of them follow.
     sort: Sort,
     burst: usize,
-    /// What part of the values is wild, and for how many more actions.
+    /// Fraction of wild values, and for how many more actions.
     wild: f32,
     stretch: usize,
     clock: f64,
@@ -23,7 +22,7 @@ pub struct Actions {
 impl Actions {
     const MOST_JOINTS: usize = 28;
     const MOST_KEYS: usize = 300;
-    /// With more than this many joints nothing stays for long.
+    /// Skeletons with more joints than this are soon replaced.
     const HUGE: usize = 500;
 
     pub fn new(seed: u64) -> Self {
@@ -56,7 +55,7 @@ impl Actions {
         Values { random, session, wild: *wild, clock }
     }
 
-    /// Something else is opened, so that nothing wild goes on for ever.
+    /// Opens another document, so that wild values do not persist.
     fn anew(&mut self, session: &Session) -> Action {
         let mut values = self.values(session);
         let (document, file) = (Box::new(values.document()), values.file());
@@ -82,7 +81,7 @@ impl Actions {
 
     fn kind(&mut self, session: &Session) -> &'static Kind {
         const OFTEN: u32 = 8;
-        /// So that every kind comes, now and then each has its turn.
+        /// Now and then each kind has its turn, so that every kind occurs.
         const TURN: usize = 10;
         if self.made.is_multiple_of(TURN) {
             return &KINDS[self.made / TURN % KINDS.len()];

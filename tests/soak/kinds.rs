@@ -1,4 +1,4 @@
-//! Every kind of action there is: a new one does not compile until it has its line here.
+//! All kinds of actions. A new action does not compile without its line here.
 
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::SolvedBy;
@@ -9,7 +9,7 @@ use ik_arm::session::{
 
 use crate::values::Values;
 
-/// What actions are about: they come in bursts of a sort.
+/// Sorts of actions; they come in bursts of one sort.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {
     Arm,
@@ -19,7 +19,7 @@ pub enum Sort {
     Edit,
     Drag,
     Files,
-    /// These leave the document as it is, but for its camera.
+    /// Leaves the document unchanged, except for its camera.
     Look,
     Time,
 }
@@ -41,12 +41,12 @@ impl Sort {
 pub struct Kind {
     pub name: &'static str,
     pub sort: Sort,
-    /// How often it comes, beside others.
+    /// Relative frequency.
     pub weight: u32,
     pub make: fn(&mut Values<'_>) -> Action,
 }
 
-/// A line for each, and nothing else: its sort, how often it comes, and how one is made.
+/// One line for each kind: sort, relative frequency, constructor.
 macro_rules! kinds {
     ($($group:ident($payload:ident) {
         $($name:ident: $sort:ident $weight:literal, $make:expr;)*
@@ -61,7 +61,7 @@ macro_rules! kinds {
             },
         }),*),*];
 
-        /// The place of an action's kind among all.
+        /// Index of an action's kind.
         pub fn kind(action: &Action) -> usize {
             let name = match action {
                 $($(Action::$group($payload::$name { .. }) => {
@@ -216,7 +216,7 @@ kinds! {
     }
 }
 
-/// What is asked about where changes are not saved.
+/// Actions that ask first if there are unsaved changes.
 pub fn leaving(values: &mut Values<'_>) -> FileAction {
     match values.random.below(6) {
         0 => FileAction::NewSkeleton,

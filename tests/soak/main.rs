@@ -1,4 +1,4 @@
-//! A session under any actions whatever, many of them, watched after each.
+//! A session under many random actions, checked after each.
 #![cfg(feature = "document")]
 
 mod actions;
@@ -15,11 +15,11 @@ mod watch;
 
 use run::{Every, Run};
 
-/// The invariant that does not hold, in a sentence.
+/// Description of a broken invariant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken(pub String);
 
-/// Says what is broken unless it holds.
+/// Fails with the description of the invariant unless it holds.
 #[macro_export]
 macro_rules! hold {
     ($holds:expr, $($words:tt)*) => {
@@ -31,23 +31,22 @@ macro_rules! hold {
 }
 
 #[test]
-fn a_session_stays_one_under_two_thousand_of_any_actions() {
+fn a_session_stays_valid_under_two_thousand_random_actions() {
     let run = Run { seed: 1, actions: 2_000, every: Every::RARE, is_told: false };
     let (least, name) = run.run().least(|count| count.made);
     assert!(least > 0, "{name} was never made");
 }
 
 #[test]
-fn a_session_stays_one_when_all_is_checked_after_every_action() {
+fn a_session_stays_valid_when_all_is_checked_after_every_action() {
     let run = Run { seed: 2, actions: 150, every: Every::EACH, is_told: false };
     run.run();
 }
 
-/// As many actions as `IK_ARM_SOAK_ACTIONS` says, from the seed `IK_ARM_SOAK_SEED`; the last fiftieth
-/// of them with all checks after each.
+/// `IK_ARM_SOAK_ACTIONS` actions from the seed `IK_ARM_SOAK_SEED`; all checks after each of the last 2 %.
 #[test]
 #[ignore = "takes a quarter of an hour: scripts/soak.sh"]
-fn a_session_stays_one_under_a_million_of_any_actions() {
+fn a_session_stays_valid_under_a_million_random_actions() {
     let said = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
     let actions = said("IK_ARM_SOAK_ACTIONS").unwrap_or(1_000_000);
     let seed = said("IK_ARM_SOAK_SEED").unwrap_or(1) as u64;

@@ -1,4 +1,4 @@
-//! What holds for the past and the future: undo and redo, and what is saved.
+//! Checks of undo, redo and saving.
 
 use ik_arm::document::Document;
 use ik_arm::io;
@@ -6,12 +6,12 @@ use ik_arm::session::{Action, Session, SolverAction, TransactionAction};
 
 use crate::{Broken, hold};
 
-/// All but the view, which is not undone.
+/// Equal except for the camera, which is not undone.
 pub fn is_same(a: &Document, b: &Document) -> bool {
     a.rig == b.rig && a.display == b.display && has_same_content(a, b)
 }
 
-/// All but how it is looked at.
+/// Equal except for the cameras.
 pub fn has_same_content(a: &Document, b: &Document) -> bool {
     let Document {
         rig: _,
@@ -31,14 +31,14 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         && *metres == b.metres
 }
 
-/// As it is saved, with a view of no importance.
+/// The document as JSON, with a default camera.
 pub fn saved(document: &Document) -> Result<String, Broken> {
     let camera = Document::default().camera;
     let document = Document { camera, other_camera: None, ..document.clone() };
     io::to_json(&document).map_err(|error| Broken(format!("a document can be saved: {error}")))
 }
 
-/// What is saved is opened again as the same, to the last bit.
+/// Checks that a saved document opens bit-identically.
 pub fn saving(document: &Document) -> Result<(), Broken> {
     let text =
         io::to_json(document).map_err(|error| Broken(format!("it can be saved: {error}")))?;
@@ -51,17 +51,24 @@ pub fn saving(document: &Document) -> Result<(), Broken> {
     Ok(())
 }
 
-/// How often a session can be taken back, and that it comes to where it began and back again.
+/// Number of undo steps. Checks that undoing all leads to the first document and redoing all back.
 pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken> {
     let mut session = session.clone();
     for action in [Action::from(TransactionAction::Commit), SolverAction::Run(false).into()] {
         session.apply(action);
     }
     let present = (session.shown().clone(), saved(session.document())?);
-    way(&mut session, &TransactionAction::Redo.into(), &TransactionAction::Undo.into())?;
+    walk_there_and_back(
+        &mut session,
+        &TransactionAction::Redo.into(),
+        &TransactionAction::Undo.into(),
+    )?;
     let mut first = session.clone();
-    let steps =
-        way(&mut session, &TransactionAction::Undo.into(), &TransactionAction::Redo.into())?;
+    let steps = walk_there_and_back(
+        &mut session,
+        &TransactionAction::Undo.into(),
+        &TransactionAction::Redo.into(),
+    )?;
     while first.undo_name().is_some() {
         first.apply(TransactionAction::Undo);
     }
@@ -76,8 +83,12 @@ pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken
     Ok(steps)
 }
 
-/// Goes all the way there and all the way back, by the same documents.
-fn way(session: &mut Session, there: &Action, back: &Action) -> Result<usize, Broken> {
+/// Applies one action to the end and the other back, and checks that both see the same documents.
+fn walk_there_and_back(
+    session: &mut Session,
+    there: &Action,
+    back: &Action,
+) -> Result<usize, Broken> {
     const ENDLESS: usize = 3000;
     let mut passed: Vec<(Document, Document)> = Vec::new();
     loop {

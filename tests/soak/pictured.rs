@@ -1,4 +1,4 @@
-//! What holds for pictures: every number of a scene is one.
+//! Checks of scenes: every number is finite.
 
 use glam::Vec3;
 use ik_arm::document::Theme;

@@ -1,4 +1,4 @@
-//! What holds for poses, measured in double precision: lengths, reach, and what a session points at.
+//! Checks of poses in f64: lengths, reach, and references to joints and targets.
 
 use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
@@ -8,7 +8,7 @@ use ik_arm::session::{Drag, Grip, PointDrag, Session, TurnDrag};
 
 use crate::{Broken, hold};
 
-/// Half a unit in the last place of a number near 1.
+/// Half an ulp of a number near 1.
 const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
@@ -31,7 +31,7 @@ fn arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     reach(arm, pose)
 }
 
-/// |elbow| = σ d₁ and |hand − elbow| = σ d₂ to 3e-7·L, as far as there are such numbers.
+/// |elbow| = σ d₁ and |hand − elbow| = σ d₂ to 3e-7·L, unless they overflow.
 fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     const EXACT: f64 = 3e-7;
     let bones = arm.bones.stretched(pose.stretch);
@@ -47,7 +47,7 @@ fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     Ok(())
 }
 
-/// What is said of the reach is true: ε = 1e-6·L.
+/// Checks the reported reach, with ε = 1e-6·L.
 fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
     let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
@@ -88,7 +88,7 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
         }
         let (bone, length) = (back * (tip - base), joint.axis.as_dvec3().length());
         let coarse = 8.0 * U * base.abs().max(tip.abs()).max_element() * 3.0 * size(back);
-        // A product of rotations is a rotation but for a rounding each.
+        // A product of rotations is a rotation up to one rounding each.
         let depth = skeleton.ancestors(index).count() as f64;
         let skew = 4.0 * size(stand) * size(back) * (4.0 + depth) * U * length;
         let off = (bone.length() - length).abs();
@@ -101,7 +101,7 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
     Ok(())
 }
 
-/// Whatever is pointed at is there.
+/// Every reference to a joint, target or key exists.
 fn places(session: &Session) -> Result<(), Broken> {
     let joints = session.skeleton().joints().len();
     hold!(session.selection().iter().all(|joint| *joint < joints), "selected joints are there");
@@ -131,7 +131,7 @@ fn places(session: &Session) -> Result<(), Broken> {
     Ok(())
 }
 
-/// Joints that solvers do not turn have not been turned.
+/// Joints outside all targets' chains have not been rotated by solvers.
 pub fn locked(before: &Skeleton, after: &Skeleton) -> Result<(), Broken> {
     for (before, after) in before.joints().iter().zip(after.joints()) {
         let bits = |v: Vec3| v.to_array().map(f32::to_bits);

@@ -1,4 +1,4 @@
-//! Many actions one after the other, and what is said when one of them breaks something.
+//! Runs many actions, and reports the one that breaks an invariant.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -14,7 +14,7 @@ use crate::watch::{Care, Watch};
 pub struct Run {
     pub seed: u64,
     pub actions: usize,
-    /// After how many actions, on average, each of the dear checks is made.
+    /// Mean number of actions between two expensive checks.
     pub every: Every,
     /// Whether progress is printed.
     pub is_told: bool,
@@ -43,7 +43,7 @@ impl Every {
     }
 }
 
-/// How often each kind was made, and how often it was done rather than asked about.
+/// How often each kind was made and how often it was applied instead of asked about.
 pub struct Counts(Vec<Count>);
 
 #[derive(Clone, Copy, Default)]
@@ -117,14 +117,14 @@ impl Counts {
         rows.into_iter().map(row).collect()
     }
 
-    /// The least of them, and whose it is.
+    /// The smallest count and its kind.
     pub fn least(&self, of: fn(&Count) -> usize) -> (usize, &'static str) {
         let counts = KINDS.iter().zip(&self.0).map(|(kind, count)| (of(count), kind.name));
         counts.min().unwrap_or_default()
     }
 }
 
-/// Fewer actions that break the same: chunks are left out as long as it still breaks.
+/// Minimizes a failing sequence by leaving out chunks as long as the same invariant breaks.
 fn smaller(began: &Document, all: &[(Action, Care)], broken: &str) -> Vec<(Action, Care)> {
     let started = Instant::now();
     let same = |other: &str| invariant(other) == invariant(broken);
@@ -153,7 +153,7 @@ fn smaller(began: &Document, all: &[(Action, Care)], broken: &str) -> Vec<(Actio
     least
 }
 
-/// The sentence without its figures.
+/// The description without its numbers.
 fn invariant(broken: &str) -> String {
     broken.split(':').next().unwrap_or_default().chars().filter(|c| c.is_alphabetic()).collect()
 }

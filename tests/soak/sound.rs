@@ -1,4 +1,4 @@
-//! What holds for every document, and for what is shown of it.
+//! Checks of documents and of their state at a time.
 
 use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
@@ -13,7 +13,7 @@ use ik_arm::session::Session;
 
 use crate::{Broken, hold};
 
-/// Everything that a file could hold is finite and in its range.
+/// Checks that all numbers are finite and in range.
 pub fn document(document: &Document) -> Result<(), Broken> {
     let Document { arm, skeleton_rig, timeline, camera, other_camera, metres, .. } = document;
     self::arm(arm)?;
@@ -25,7 +25,7 @@ pub fn document(document: &Document) -> Result<(), Broken> {
     keys(document)
 }
 
-/// What is shown at a time has all of it too.
+/// Checks the same of the document at the current time.
 pub fn shown(session: &Session) -> Result<(), Broken> {
     let shown = session.shown();
     arm(&shown.arm)?;

@@ -1,4 +1,4 @@
-//! A session with what a watcher knows of it: after every action it is still what it has to be.
+//! A session and what is expected of it, checked after every action.
 
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
@@ -14,14 +14,14 @@ use crate::kinds::{KINDS, Sort, kind};
 use crate::past::is_same;
 use crate::{Broken, hold, past, pictured, posed, sound};
 
-/// How thoroughly to look after an action.
+/// Checks to make after an action.
 #[derive(Clone, Copy, Debug)]
 pub struct Care {
-    /// Whether this action alone is undone and done again.
+    /// Whether this action is undone and redone.
     pub step: bool,
     pub saving: bool,
     pub scene: bool,
-    /// Whether everything is undone and done again.
+    /// Whether everything is undone and redone.
     pub walk: bool,
 }
 
@@ -31,22 +31,23 @@ impl Care {
 
 pub struct Watch {
     pub session: Session,
-    /// What the history began with.
+    /// First document of the history.
     pub began: Document,
-    /// How many actions ago that was.
+    /// Number of actions since.
     pub age: usize,
-    /// As it was saved last; nothing of a document that never was.
+    /// The document as last saved; `None` if it never was.
     saved: Option<Document>,
-    /// How it was before the change under way.
+    /// The document before the open transaction.
     before_edit: Option<Document>,
-    /// What a revision looks like, saved.
+    /// A revision and its document as JSON.
     revisions: HashMap<u64, u64>,
-    /// How often it could be undone, if that has just been counted.
+    /// Number of undo steps, if just counted.
     steps: Option<usize>,
 }
 
 impl Watch {
-    /// So many steps are never forgotten: one action makes two at most, its own and a solver's.
+    /// Number of actions whose steps the history always keeps: one action adds at most two, its own and a
+    /// solver's.
     const WHOLE: usize = 450;
 
     pub fn new(document: Document) -> Self {
@@ -62,7 +63,7 @@ impl Watch {
         }
     }
 
-    /// Whether the action was done, and not asked about.
+    /// Whether the action was applied instead of asked about.
     pub fn apply(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
         catch_unwind(AssertUnwindSafe(|| self.watched(action, care))).unwrap_or_else(|panic| {
             let text = panic.downcast_ref::<String>().cloned();
@@ -102,7 +103,7 @@ impl Watch {
         Ok(is_done)
     }
 
-    /// Keeps up with what is saved and what has been opened. Whether it is another document.
+    /// Follows saving and opening. Returns whether another document was opened.
     fn follow(&mut self, action: &Action, before: &Before) -> bool {
         let session = &self.session;
         let can_replace = matches!(
@@ -131,7 +132,7 @@ impl Watch {
         is_replaced
     }
 
-    /// Who leaves the document alone does, and what is taken back is.
+    /// Checks that actions outside the document leave it unchanged, and that a cancelled drag restores it.
     fn check_documents(
         &mut self,
         action: &Action,
@@ -183,7 +184,7 @@ impl Watch {
         Ok(())
     }
 
-    /// The same revision, the same document.
+    /// Checks that equal revisions have equal documents.
     fn check_revision(&mut self) -> Result<(), Broken> {
         if self.session.is_changing() {
             return Ok(());
@@ -196,7 +197,7 @@ impl Watch {
         Ok(())
     }
 
-    /// A change that is one action is undone by one Undo, and done again by one Redo.
+    /// Checks that an edit of one action is undone by one Undo and redone by one Redo.
     fn check_step(&self, action: &Action, before: &Before) -> Result<(), Broken> {
         let Some(was) = before.session.as_deref() else { return Ok(()) };
         let session = &self.session;
@@ -242,7 +243,7 @@ impl Watch {
         let steps = past::walk(&self.session, began)?;
         self.steps = Some(steps);
         let Some(last) = last.filter(|_| !is_replaced) else { return Ok(()) };
-        // Steps that show something at a time only are none at another.
+        // Unkeyed edits of keyed channels are no steps at another time.
         let is_elsewhen = before.time != self.session.time();
         let moves = matches!(
             action,
@@ -254,7 +255,7 @@ impl Watch {
     }
 }
 
-/// What is compared with afterwards.
+/// State before an action, for comparison.
 struct Before {
     document: Document,
     session: Option<Box<Session>>,

@@ -1,4 +1,4 @@
-//! The graphics device is lost.
+//! Losses of the graphics device.
 
 use image::RgbImage;
 
@@ -6,16 +6,16 @@ use crate::open_to_debug;
 use crate::recovery::{change, document_of, kept};
 use crate::screen::{Program, SIZE, changed, wait_for};
 
-/// Beside all that takes the keyboard.
+/// A point where a click gives no widget the keyboard.
 const NOWHERE: egui::Pos2 = egui::pos2(640.0, 12.0);
 
-/// The screen as it is to be when the device has been made anew: mouse and keyboard at nothing.
+/// The screen that is expected after the device was created again, with no widget hovered or focused.
 fn expected(program: &Program) -> RgbImage {
     program.click(NOWHERE);
     program.at_rest()
 }
 
-/// Through the debug key.
+/// Presses the debug key and waits for the error.
 fn lose_device(program: &Program) {
     program.at_rest();
     let errors = program.count_errors();
@@ -23,7 +23,7 @@ fn lose_device(program: &Program) {
     wait_for("the loss of the device", || (program.count_errors() > errors).then_some(()));
 }
 
-/// Waits until the new device has drawn all as before, but for the line at the bottom.
+/// Waits until the new device has drawn the same picture, except for the status line.
 fn assert_comes_back(program: &Program, before: &RgbImage) {
     wait_for("a frame of the new device", || program.has_drawn_since_error().then_some(()));
     program.mouse_to(NOWHERE);
@@ -32,7 +32,7 @@ fn assert_comes_back(program: &Program, before: &RgbImage) {
     });
 }
 
-/// Whether all pixels are equal above the line at the bottom, which says what has happened.
+/// Whether all pixels above the status line are equal.
 fn is_same_above_the_status(a: &RgbImage, b: &RgbImage) -> bool {
     const STATUS: u32 = 30;
     let mut pixels = a.enumerate_pixels().zip(b.pixels());
@@ -41,7 +41,7 @@ fn is_same_above_the_status(a: &RgbImage, b: &RgbImage) -> bool {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_intact() {
+fn a_device_lost_again_and_again_is_recreated_with_document_and_picture_intact() {
     let (_folder, places, program) = open_to_debug("1");
     let first = program.at_rest();
     program.drag(places.thumb, places.rail_end);
@@ -73,7 +73,7 @@ fn a_lost_device_is_made_anew_again_and_again_with_the_document_and_the_picture_
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
+fn a_device_that_cannot_be_recreated_twice_is_there_at_the_third_try() {
     let (_folder, _, program) = open_to_debug("fail-devices:2");
     let before = expected(&program);
     lose_device(&program);
@@ -84,7 +84,7 @@ fn a_device_that_fails_twice_while_it_is_made_anew_is_there_at_the_third_try() {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn a_device_that_fails_three_times_while_it_is_made_anew_ends_the_program_with_all_kept() {
+fn a_device_that_cannot_be_recreated_three_times_ends_the_program_and_keeps_the_document() {
     let (folder, places, program) = open_to_debug("fail-devices:3");
     change(&program, &places);
     lose_device(&program);

@@ -1,8 +1,7 @@
 //! The real program in a real window: a mouse drags a slider and the hand, and the screen follows.
 //!
-//! Needs a display without a window manager, `xdotool` and ImageMagick's `import`; the script that
-//! runs all tests makes one: `scripts/test.sh`. By hand, within such a display:
-//! `cargo test --test window -- --ignored`.
+//! Needs a display without a window manager, `xdotool` and ImageMagick's `import`. `scripts/test.sh`
+//! starts such a display; within one, `cargo test --test window -- --ignored` runs the tests.
 #![cfg(all(feature = "app", target_os = "linux"))]
 
 mod drag;

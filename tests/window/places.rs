@@ -6,18 +6,18 @@ use ik_arm::ui::{self, Machine};
 
 use crate::screen::SIZE;
 
-/// What the harness leaves free around the panels, and the window does not.
+/// Margin of the test harness around the panels; the window has none.
 const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
 
-/// Where things are in the window, in points: the same panels laid out without one.
+/// Positions of widgets in the window, in points, from laying out the same panels without a window.
 pub struct Places {
     pub thumb: egui::Pos2,
     pub rail_end: egui::Pos2,
-    /// The box beside the slider, for the same number.
+    /// The number box beside the slider.
     pub number: egui::Pos2,
     pub hand: egui::Pos2,
     pub elbow: egui::Pos2,
-    /// In the viewport, with nothing under it.
+    /// A point of the viewport with nothing under it.
     pub empty: egui::Pos2,
     pub skeleton_switch: egui::Pos2,
     /// The middle of the Human's head, while that is shown.

@@ -6,7 +6,7 @@ use crate::open;
 use crate::places::Places;
 use crate::screen::{Program, changed, wait_for};
 
-/// Where the program keeps what is not saved, in case it ends before.
+/// Files in which the program keeps unsaved changes.
 pub fn kept(settings: &Path) -> Vec<PathBuf> {
     let folder = settings.join("ik-arm/recovery");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -30,7 +30,7 @@ pub fn change(program: &Program, places: &Places) {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_starts_again() {
+fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_next_start() {
     let (folder, places, program) = open();
     change(&program, &places);
     assert!(kept(folder.path()).is_empty(), "half a minute is not over");
@@ -42,10 +42,10 @@ fn what_is_not_saved_is_kept_when_the_program_is_ended_and_offered_when_it_start
 
     let program = Program::open(folder.path());
     let offered = program.at_rest();
-    // Opened by the keyboard: the dialog has it.
+    // The dialog has the keyboard focus.
     program.key("Return");
     program.wait_until("the document opens", |now| changed(&offered, now, places.thumb, 6.0) > 40);
-    // Left alone, it is kept again after half a minute, whatever happens to the program then.
+    // Without input it is kept again after half a minute, so a crash loses nothing.
     let second = wait_for("another file", || match &kept(folder.path())[..] {
         [one] if one != first => Some(one.clone()),
         _ => None,

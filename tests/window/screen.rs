@@ -1,7 +1,7 @@
-//! Drives the program by keyboard and mouse, and waits for what the screen shows.
+//! Drives the program by keyboard and mouse, and waits for pictures on the screen.
 //!
-//! No helper sleeps for a fixed time and hopes: each waits for a frame, a picture or a state, and
-//! panics after [`PATIENCE`] with what it waited for. A picture that does not come is kept in a file.
+//! No helper sleeps for a fixed time: each waits for a frame, a picture or a state, and panics after
+//! [`PATIENCE`] with the condition, and a screenshot in a file.
 
 use std::cell::RefCell;
 use std::io::{BufRead as _, BufReader};
@@ -16,23 +16,23 @@ use image::RgbImage;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-/// Of the screen and of the window, in pixels.
+/// Size of screen and window, in pixels.
 pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
-/// A screen that does not change for as long is at rest. Shorter than a text cursor blinks.
+/// A screen unchanged for this long is at rest. Shorter than the blink of a text cursor.
 const REST: Duration = Duration::from_millis(300);
 const POLL: Duration = Duration::from_millis(50);
 
-/// The program with its window, ended with the test.
+/// The running program with its window, killed when dropped.
 pub struct Program {
     child: RefCell<Child>,
-    /// What it has written to standard error, line by line.
+    /// Lines of standard error.
     log: Arc<Mutex<Vec<String>>>,
     listener: RefCell<Option<JoinHandle<()>>>,
 }
 
 impl Program {
-    /// Starts it and waits for its first picture. Its settings are in a folder.
+    /// Starts the program with a folder for its settings, and waits for the first picture.
     pub fn open(settings: &Path) -> Self {
         Self::open_to_debug(settings, "")
     }
@@ -46,7 +46,7 @@ impl Program {
             .env("RUST_LOG", "error,ik_arm::app::window=trace")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("XDG_RUNTIME_DIR")
-            // Its own dialogs ask for paths, not the desktop's.
+            // Forces the program's own file dialogs instead of the desktop's.
             .env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent")
             .stderr(Stdio::piped())
             .spawn()
@@ -93,7 +93,7 @@ impl Program {
 
     pub fn mouse_to(&self, at: Pos2) {
         let (x, y) = (at.x.round(), at.y.round());
-        // Where the mouse is already, no event follows.
+        // No event follows if the mouse is there already.
         if !xdotool(&["getmouselocation"]).starts_with(&format!("x:{x} y:{y} ")) {
             self.input(&["mousemove", &x.to_string(), &y.to_string()]);
         }
@@ -121,7 +121,7 @@ impl Program {
         self.input(&["mouseup", "1"]);
     }
 
-    /// Gives xdotool several commands at once, as fast as keys can follow each other.
+    /// Gives xdotool several commands at once, so that keys follow each other without a pause.
     pub fn quickly(&self, arguments: &[&str]) {
         self.input(arguments);
     }
@@ -134,7 +134,7 @@ impl Program {
         });
     }
 
-    // The screen.
+    // Screen.
 
     /// Waits until the program has drawn something, and the screen has not changed for a while.
     pub fn at_rest(&self) -> RgbImage {
@@ -154,19 +154,19 @@ impl Program {
         wait_for_screen("another picture", |screen| screen != before)
     }
 
-    /// Waits for a picture of the screen about which something holds.
+    /// Waits for a picture of the screen that meets a condition.
     pub fn wait_until(&self, what: &str, holds: impl Fn(&RgbImage) -> bool) -> RgbImage {
         wait_for_screen(what, holds)
     }
 
-    /// How many frames it has drawn.
+    /// Number of frames drawn.
     fn frames(&self) -> usize {
         self.log.lock().expect("no panic").iter().filter(|line| is_frame(line)).count()
     }
 
-    // What it says.
+    // Log.
 
-    /// What it has written to standard error so far, without the lines about frames.
+    /// Standard error so far, without the lines about frames.
     pub fn errors(&self) -> String {
         let log = self.log.lock().expect("no panic");
         log.iter().filter(|line| !is_frame(line)).fold(String::new(), |all, line| all + line + "\n")
@@ -176,27 +176,27 @@ impl Program {
         self.log.lock().expect("no panic").iter().filter(|line| is_error(line)).count()
     }
 
-    /// Whether it has drawn a frame after the last error that it has logged.
+    /// Whether a frame was drawn after the last logged error.
     pub fn has_drawn_since_error(&self) -> bool {
         let log = self.log.lock().expect("no panic");
         log.iter().rev().take_while(|line| !is_error(line)).any(|line| is_frame(line))
     }
 
-    // The end.
+    // End.
 
-    /// Asks it to end, as a system does that shuts down.
+    /// Sends SIGTERM, as at a system shutdown.
     pub fn terminate(&self) {
         let id = self.child.borrow().id().cast_signed();
         kill(Pid::from_raw(id), Signal::SIGTERM).expect("the program runs");
     }
 
-    /// Ends it at once, as a crash does.
+    /// Kills the program, as a crash would.
     pub fn kill(&self) {
         self.child.borrow_mut().kill().expect("the program runs");
         self.end();
     }
 
-    /// Waits until it has ended and all that it said is heard; its exit code.
+    /// Waits for the end of the program and of its log. Returns the exit code.
     pub fn end(&self) -> Option<i32> {
         let exited = || self.child.borrow_mut().try_wait().expect("a child");
         let status = wait_for("the program's end", exited);
@@ -228,7 +228,7 @@ fn is_error(line: &str) -> bool {
     line.contains("ERROR")
 }
 
-/// Polls until there is something.
+/// Polls until `found` returns a value.
 pub fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     let deadline = Instant::now() + PATIENCE;
     loop {
@@ -257,7 +257,7 @@ pub fn screenshot() -> RgbImage {
     RgbImage::from_raw(SIZE.0, SIZE.1, taken.stdout).expect("the screen is as large as the window")
 }
 
-/// Writes a picture to a file called after `what`, to look at.
+/// Writes a picture to a file named after `what`.
 pub fn keep(screen: &RgbImage, what: &str) -> PathBuf {
     let name = what.replace(|letter: char| !letter.is_alphanumeric(), "_");
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
@@ -265,7 +265,7 @@ pub fn keep(screen: &RgbImage, what: &str) -> PathBuf {
     file
 }
 
-/// How many pixels differ within `radius` of a place.
+/// Number of pixels that differ within `radius` of a point.
 pub fn changed(a: &RgbImage, b: &RgbImage, at: Pos2, radius: f32) -> usize {
     let near = |x: u32, y: u32| egui::pos2(x as f32, y as f32).distance(at) <= radius;
     let differs = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| {

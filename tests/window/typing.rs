@@ -1,4 +1,4 @@
-//! What is typed quickly, with the real keyboard: several keys arrive in one frame.
+//! Fast typing with the real keyboard: several keys arrive in one frame.
 
 use std::path::Path;
 
@@ -28,10 +28,10 @@ fn saved_again(program: &Program, path: &Path) -> Document {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn a_file_name_typed_after_a_click_in_the_view_is_the_file_name() {
+fn a_file_name_typed_after_a_click_in_the_viewport_reaches_the_dialog() {
     let (folder, places, program) = open();
     program.click(places.empty);
-    // Each of its letters is a shortcut of the view or the skeleton, too.
+    // Each letter is also a shortcut of the view or the skeleton.
     let path = folder.path().join("start-157-fraks.json");
     let document = saved_to(&program, &path);
     assert_eq!(document.camera, Camera::default(), "no letter looks elsewhere");
@@ -40,7 +40,7 @@ fn a_file_name_typed_after_a_click_in_the_view_is_the_file_name() {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn a_joint_that_was_clicked_is_named_by_the_keyboard() {
+fn a_clicked_joint_is_renamed_by_the_keyboard() {
     let (folder, places, program) = open();
     program.click(places.skeleton_switch);
     program.at_rest();
@@ -83,7 +83,7 @@ fn a_quick_ctrl_1_looks_from_the_back_each_time() {
 
 #[test]
 #[ignore = "needs a display of its own"]
-fn nothing_behind_save_changes_answers() {
+fn nothing_behind_the_save_dialog_reacts() {
     let (folder, places, program) = open();
     let first = program.at_rest();
     program.drag(places.thumb, places.rail_end);
@@ -124,7 +124,7 @@ fn an_export_does_not_overwrite_a_file_by_enter_alone() {
         program.at_rest();
     }
     assert_eq!(std::fs::read_to_string(&path).expect("still there"), "precious");
-    // Enter asks again; Tab goes to the button that replaces the file.
+    // Enter asks again; Tab moves to the button that replaces the file.
     program.key("Return");
     program.at_rest();
     program.key("Tab");

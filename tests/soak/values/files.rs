@@ -1,4 +1,4 @@
-//! Documents, files and windows over the others.
+//! Documents, files and dialogs.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ impl Values<'_> {
         self.one_of(&Example::ALL)
     }
 
-    /// An example, or any forest, straight or in a mirror; of many joints once in a long while.
+    /// An example or a random forest, transformed or mirrored; rarely with many joints.
     pub fn document(&mut self) -> Document {
         match self.random.below(60) {
             0..30 => self.example().open().expect("it opens").document,
@@ -89,7 +89,7 @@ fn skeleton(skeleton: Skeleton) -> Document {
     }
 }
 
-/// As many joints as there can be.
+/// A skeleton with the largest number of joints.
 fn long_chain() -> Skeleton {
     let joint = |index: usize| {
         let parent = index.checked_sub(1);

@@ -1,4 +1,4 @@
-//! Joints, targets, and how solvers and snakes go.
+//! Joints, targets, solver options and path following.
 
 use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
@@ -11,7 +11,7 @@ impl Values<'_> {
         self.session.skeleton().joints().len()
     }
 
-    /// Mostly one that is there.
+    /// Mostly an existing joint.
     pub fn joint(&mut self) -> usize {
         let joints = self.joints();
         if joints == 0 || self.chance(0.03) {
@@ -23,7 +23,7 @@ impl Values<'_> {
         }
     }
 
-    /// Mostly one with a target, if there is any.
+    /// Mostly a joint with a target, if there is one.
     pub fn aimed(&mut self) -> usize {
         let targets = &self.session.skeleton_rig().targets;
         if targets.is_empty() || self.chance(0.1) {
@@ -32,12 +32,12 @@ impl Values<'_> {
         targets[self.random.below(targets.len())].joint
     }
 
-    /// None, one or some, also twice.
+    /// None, one or several, with repetitions.
     pub fn some_joints(&mut self) -> Vec<usize> {
         (0..self.random.below(4)).map(|_| self.joint()).collect()
     }
 
-    /// An angle's place.
+    /// Index of an Euler angle, sometimes out of range.
     pub fn axis(&mut self) -> usize {
         if self.is_wild() { self.one_of(&[3, 99, usize::MAX]) } else { self.random.below(3) }
     }

@@ -1,4 +1,4 @@
-//! What actions are made of: mostly sensible, often on a limit, sometimes wild.
+//! Values of actions: mostly sensible, often on a limit, sometimes wild.
 
 mod files;
 mod joints;
@@ -14,13 +14,13 @@ use ik_arm::session::Session;
 
 use crate::common::Random;
 
-/// Makes values for a session as that stands.
+/// Makes values for a session in its current state.
 pub struct Values<'a> {
     pub random: &'a mut Random,
     pub session: &'a Session,
-    /// What part of the values is wild.
+    /// Fraction of wild values.
     pub wild: f32,
-    /// When the last picture was made, in seconds of the window.
+    /// Time of the last frame, in seconds of the window.
     pub clock: &'a mut f64,
 }
 
@@ -64,7 +64,7 @@ impl Values<'_> {
         self.one_of(&WILD)
     }
 
-    /// Of a size; often 0 or the whole of it.
+    /// Within ±`size`; often 0 or ±`size`.
     pub fn number(&mut self, size: f32) -> f32 {
         if self.is_wild() {
             return self.wild_number();
@@ -110,7 +110,7 @@ impl Values<'_> {
 
     // Points
 
-    /// How large what is shown is.
+    /// Size of the shown rig.
     pub fn size(&self) -> f32 {
         let size = match self.session.rig() {
             RigKind::Arm => self.session.arm().bones.outer_limit(),
@@ -128,7 +128,7 @@ impl Values<'_> {
         self.point(1.5 * if size.is_normal() { size } else { 1.0 })
     }
 
-    /// A cursor: in reach, on a limit, at the shoulder, on an axis, on the pole's line, far away.
+    /// A Cursor in reach, on a limit, at the shoulder, on an axis, on the line to the pole, or far away.
     pub fn cursor(&mut self) -> Vec3 {
         let arm = *self.session.arm();
         let (inner, outer) = (arm.bones.inner_limit(), arm.bones.outer_limit());

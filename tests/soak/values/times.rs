@@ -49,7 +49,7 @@ impl Values<'_> {
         }
     }
 
-    /// None, one or some, also twice.
+    /// None, one or several, with repetitions.
     pub fn channels(&mut self) -> Vec<Channel> {
         match self.random.below(6) {
             0 => self.session.channels_to_key(),
@@ -57,7 +57,7 @@ impl Values<'_> {
         }
     }
 
-    /// Mostly one that is there, if any is.
+    /// Mostly an existing key, if there is one.
     pub fn key(&mut self) -> Key {
         let keys = &self.session.document().keys;
         let count = keys.tracks().count();
@@ -77,7 +77,7 @@ impl Values<'_> {
         }
     }
 
-    /// How far keys go.
+    /// Offset of moved keys.
     pub fn shift(&mut self) -> f64 {
         let mut times = || self.time();
         let (from, to) = (times(), times());
@@ -92,7 +92,7 @@ impl Values<'_> {
         Timeline { start, end, frame_rate }
     }
 
-    /// Of the window: it goes on, stands, jumps or goes back.
+    /// Time of the window: advances, stands still, jumps or goes back.
     pub fn seconds(&mut self) -> f64 {
         if self.is_wild() {
             return self.one_of(&[f64::NAN, f64::INFINITY, f64::MAX, -1.0, 1e17]);

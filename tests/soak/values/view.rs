@@ -1,4 +1,4 @@
-//! Cameras, and what is dragged by rays.
+//! Cameras, and drags by rays.
 
 use std::f32::consts::FRAC_PI_2;
 
