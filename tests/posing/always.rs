@@ -42,10 +42,10 @@ proptest! {
 
     #[test]
     fn another_twist_reference_keeps_the_elbow(
-        hand in points(300.0), spin in 0.0..6.0_f32, references in vec(references(), 1..6), pole in points(300.0)
+        hand in points(300.0), twist in 0.0..6.0_f32, references in vec(references(), 1..6), pole in points(300.0)
     ) {
         let mut session =
-            session([EditAction::SetHand(hand), EditAction::SetTwist(spin), EditAction::SetPole(pole)]);
+            session([EditAction::SetHand(hand), EditAction::SetTwist(twist), EditAction::SetPole(pole)]);
         let pose = *session.pose();
         for twist_reference in references {
             session.apply(EditAction::SetTwistReference(twist_reference));
@@ -56,13 +56,13 @@ proptest! {
 
     #[test]
     fn another_twist_reference_keeps_the_elbow_at_every_key(
-        hands in vec(points(300.0), 2..5), spins in vec(0.0..6.0_f32, 5), to in vec(references(), 1..4)
+        hands in vec(points(300.0), 2..5), twists in vec(0.0..6.0_f32, 5), to in vec(references(), 1..4)
     ) {
         let mut session = Session::default();
         for (index, hand) in hands.iter().enumerate() {
             session.apply(PlaybackAction::SetTime(index as f64));
             session.apply(EditAction::SetHand(*hand));
-            session.apply(EditAction::SetTwist(spins[index]));
+            session.apply(EditAction::SetTwist(twists[index]));
             session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
         }
         let poses: Vec<_> =
@@ -139,11 +139,11 @@ proptest! {
 
     #[test]
     fn switching_between_hand_and_angles_keeps_the_pose_in_one_step(
-        hand in points(400.0), spin in 0.0..6.0_f32, twist_reference in references(), pinned in any::<bool>(),
+        hand in points(400.0), twist in 0.0..6.0_f32, twist_reference in references(), pinned in any::<bool>(),
         shoulder in points(3.0), bend in -3.0..3.0_f32
     ) {
         let mut session = session([
-            EditAction::SetHand(hand), EditAction::SetTwist(spin), EditAction::SetTwistReference(twist_reference), EditAction::PinHand(pinned),
+            EditAction::SetHand(hand), EditAction::SetTwist(twist), EditAction::SetTwistReference(twist_reference), EditAction::PinHand(pinned),
         ]);
         let before = (session.document().clone(), *session.pose());
         let bound = |pose: &TwoBonePose| {

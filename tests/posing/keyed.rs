@@ -152,7 +152,7 @@ fn the_unkeyed_twist_is_converted_to_the_new_reference_too() {
 }
 
 #[test]
-fn a_move_off_the_keys_and_back_the_keys_leaves_a_carried_elbow_as_it_was() {
+fn moving_off_the_keys_and_back_leaves_a_transported_elbow_unchanged() {
     let session = transported_between_keys();
     let (document, pose) = (session.document().clone(), *session.pose());
     let mut session = move_off_the_keys_and_back(session);

@@ -56,16 +56,19 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
         ..
     } = arm;
     hold!(arm.cursor().is_finite() && arm.cursor_world().is_finite(), "the cursor is finite");
-    hold!(twist.is_finite(), "the elbow's spin is finite: {twist}");
+    hold!(twist.is_finite(), "the twist is finite: {twist}");
     hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
     hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
     hold!(is_unit(facing.direction.length()), "the arm faces somewhere: {facing:?}");
     hold!(is_unit(facing.heading.length()), "the arm heads somewhere: {facing:?}");
     if let Some(it) = transported {
         let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
-        hold!(are_units, "what is carried are unit vectors: {it:?}");
+        hold!(are_units, "the transported frame has unit vectors: {it:?}");
         let across = it.direction.dot(it.outward);
-        hold!(across.abs() < UNIT, "what is carried is across the Pointer: {it:?}");
+        hold!(
+            across.abs() < UNIT,
+            "the transported direction is perpendicular to the Pointer: {it:?}"
+        );
     }
     hold!((0.0..=1.0).contains(influence), "the influence is from 0 to 1: {influence}");
     hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
