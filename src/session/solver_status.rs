@@ -26,10 +26,10 @@ pub enum SolverState {
 impl SolverState {
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Reached => "reached",
+            Self::Reached => "converged",
             Self::Running => "running",
-            Self::AtRest => "at rest, out of reach",
-            Self::GaveUp => "gave up",
+            Self::AtRest => "stalled",
+            Self::GaveUp => "out of iterations",
             Self::Paused => "paused",
             Self::NotSolved => "not solved yet",
         }

@@ -1,3 +1,5 @@
+//! Durations of the last frames.
+
 use core::time::Duration;
 
 /// Durations of the stages of one frame.
@@ -7,6 +9,7 @@ pub struct FrameTime {
     pub solve: Duration,
     /// Layout and tessellation of the panels.
     pub panels: Duration,
+    /// Making the scene from the document.
     pub scene: Duration,
     /// Upload of changes and GPU commands.
     pub encode: Duration,
@@ -41,7 +44,9 @@ pub struct FrameTimes {
 /// Median and 99th percentile of durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeSpread {
+    /// Half of the durations are below it.
     pub median: Duration,
+    /// One duration in a hundred is above it.
     pub slowest: Duration,
 }
 
@@ -55,6 +60,7 @@ impl FrameTimes {
     /// Number of frames kept.
     pub const MOST: usize = 240;
 
+    /// Adds the durations of a frame, in place of the oldest.
     pub fn push(&mut self, frame: FrameTime) {
         let place = self.place(self.drawn);
         self.frames[place] = frame;
@@ -82,6 +88,7 @@ impl FrameTimes {
         (0..count as usize).map(move |index| &self.frames[self.place(first + index as u64)])
     }
 
+    /// The newest frame.
     pub fn last(&self) -> Option<&FrameTime> {
         self.frames().last()
     }

@@ -23,12 +23,10 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
     match pose.reach {
         Reach::Reached => "Reached: the hand is at the Cursor.".to_owned(),
         Reach::TooFar if arm.soft_reach.softness() > 0.0 => {
-            format!(
-                "Soft limits: the hand stays {gap} behind the Cursor, so the elbow does not snap."
-            )
+            format!("Soft: the hand stays {gap} behind the Cursor, so the elbow does not snap.")
         }
         Reach::TooClose if !arm.soft_reach.is_hard() => {
-            format!("Soft limits: the hand stays off the shoulder, {gap} from the Cursor.")
+            format!("Soft: the hand stays off the shoulder, {gap} from the Cursor.")
         }
         Reach::TooFar => {
             format!("Too far: the arm is straight and points at the Cursor, {gap} short.")

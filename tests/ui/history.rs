@@ -96,7 +96,7 @@ fn a_running_solver_is_one_step() {
     bench.wait(2.0);
     assert!(!bench.session().is_running());
     assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_name(), Some("solve"));
+    assert_eq!(bench.session().undo_name(), Some("Solve"));
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
     assert_eq!(bench.session().undo_name(), None);

@@ -253,12 +253,12 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
     assert_eq!(status(&bench).state, SolverState::Reached);
-    assert!(bench.says("reached after"), "the status line says so");
+    assert!(bench.says("converged after"), "the status line says so");
 
     bench.apply([EditAction::SetRotation { joint: 2, rotation: Vec3::splat(0.7) }]);
     assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody turned a joint");
     assert!(bench.shows(Role::Label, "not solved yet"));
-    assert!(!bench.says("reached after"));
+    assert!(!bench.says("converged after"));
     assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
 
     bench.apply([TransactionAction::Undo]);

@@ -288,6 +288,6 @@ fn a_race_says_of_every_solver_how_it_ended() {
     let mut bench = tree();
     bench.apply_moving([SolverAction::Compare(true)]);
     bench.wait(4.0);
-    assert!(bench.shows(Role::Image, "FABRIK: Reached"));
-    assert!(bench.shows(Role::Image, "Two-bone: At rest, out of reach"));
+    assert!(bench.shows(Role::Image, "FABRIK: Converged"));
+    assert!(bench.shows(Role::Image, "Two-bone: Stalled"));
 }

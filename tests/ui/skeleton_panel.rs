@@ -215,7 +215,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         assert!(!solver_run.is_running(), "it stops by itself");
         let report = solver_run.report();
         assert!(report.converged, "{name}: {report:?}");
-        assert!(bench.says("reached"));
+        assert!(bench.says("converged"));
         let (rig, pose) = (bench.session().skeleton_rig(), bench.session().skeleton_pose());
         for target in &rig.targets {
             assert!(pose.tip(target.joint).distance(target.home) < 1e-3);

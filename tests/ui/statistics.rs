@@ -60,11 +60,11 @@ fn opened(size: Vec2, machine: Machine) -> Bench {
 fn the_help_menu_opens_the_statistics_and_esc_closes_them() {
     let mut bench = opened(LARGE, machine(3, true));
     assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
-    assert!(bench.says("FrameTime times: the last took 8.6 ms"));
+    assert!(bench.says("Frame times: the last took 8.6 ms"));
     bench.key(Key::Escape);
     bench.settle();
     assert_eq!(bench.session().dialog(), None);
-    assert!(!bench.says("FrameTime times"));
+    assert!(!bench.says("Frame times"));
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn an_adapter_without_a_clock_is_said_to_have_none() {
 #[test]
 fn before_the_first_frame_there_is_nothing_to_tell() {
     let bench = opened(LARGE, Machine::default());
-    assert!(bench.says("FrameTime times: no frame has been drawn"));
+    assert!(bench.says("Frame times: no frame drawn yet"));
     assert!(bench.shows(Role::Label, "–"));
 }
 

@@ -207,9 +207,9 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
         .response;
     let said = match times.last() {
         Some(frame) => {
-            format!("FrameTime times: the last took {:.1} ms", milliseconds(frame.total()))
+            format!("Frame times: the last took {:.1} ms", milliseconds(frame.total()))
         }
-        None => "FrameTime times: no frame has been drawn".to_owned(),
+        None => "Frame times: no frame drawn yet".to_owned(),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
     response.on_hover_text("The last 240 frames, newest right; idle windows draw none");

@@ -219,8 +219,7 @@ fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
     let size = vec2(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let name = labels::channel(session, channel);
-    response
-        .widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("ChannelCurve of {name}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Curve of {name}")));
     let (colours, _) = look(ui, channel, index);
     let width = SWATCH * colours.len() as f32;
     for (place, colour) in colours.iter().enumerate() {

@@ -1,3 +1,5 @@
+//! Sliders for a point.
+
 use egui::Ui;
 use glam::Vec3;
 

@@ -1,3 +1,5 @@
+//! A slider with a label and a number.
+
 use egui::{
     Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
     Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
@@ -10,9 +12,9 @@ use crate::session::{Action, Actions, Session, TransactionAction};
 use crate::ui::keyboard::focus;
 use crate::ui::style;
 
-/// A number that is shown and set: a name, a rail with a thumb, and the value, which can be typed.
+/// A slider: a label, a rail with a thumb, and the value, which can be typed.
 ///
-/// It shows any value and never changes one by showing it; the range is the thumb's alone.
+/// Showing a value never changes it; the range limits only the thumb.
 #[derive(Default)]
 pub(in crate::ui) struct Slider<'a> {
     /// Accessible name, such as "Hand x".

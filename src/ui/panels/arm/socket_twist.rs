@@ -36,7 +36,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Act
     /// Width of the section's title and the combo box's label.
     const TITLES: f32 = 170.0;
     let chosen = session.arm().twist_reference;
-    let combo = ComboBox::from_id_salt("twist reference").selected_text(chosen.name());
+    let combo = ComboBox::from_id_salt("twist reference").width(60.0).selected_text(chosen.name());
     let response = combo.show_ui(ui, |ui| {
         for twist_reference in TwistReferenceKind::ALL {
             let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());

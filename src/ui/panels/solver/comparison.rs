@@ -40,7 +40,7 @@ fn show(ui: &mut Ui, runner: &Runner) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-        let said = format!("{}: {}", short_name(runner.method), state(runner));
+        let said = format!("{}: {}", short_name(runner.method), status(runner));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         // Only converged solvers are filled.
         if runner.report().is_ok_and(|report| report.converged) {
@@ -50,7 +50,7 @@ fn show(ui: &mut Ui, runner: &Runner) {
         }
         response.on_hover_text(said);
         let label = ui.label(short_name(runner.method));
-        label.on_hover_text(format!("{}. {}", labels::method(runner.method), state(runner)));
+        label.on_hover_text(format!("{}. {}", labels::method(runner.method), status(runner)));
     });
     let texts = match runner.report() {
         Ok(report) => {
@@ -59,7 +59,7 @@ fn show(ui: &mut Ui, runner: &Runner) {
         Err(_) => ["–", "–", "–"].map(str::to_owned),
     };
     for text in texts {
-        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(state(runner));
+        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(status(runner));
     }
 }
 
@@ -67,13 +67,13 @@ fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Re
     ui.with_layout(Layout::right_to_left(Align::Center), label).inner
 }
 
-fn state(runner: &Runner) -> String {
+fn status(runner: &Runner) -> String {
     match runner.report() {
         Err(error) => error.to_string(),
-        Ok(report) if report.converged => "Reached".to_owned(),
-        Ok(report) if report.resting => "At rest, out of reach".to_owned(),
+        Ok(report) if report.converged => "Converged".to_owned(),
+        Ok(report) if report.resting => "Stalled".to_owned(),
         Ok(_) if runner.is_running() => "Running".to_owned(),
-        Ok(_) => "Gave up".to_owned(),
+        Ok(_) => "Out of iterations".to_owned(),
     }
 }
 
