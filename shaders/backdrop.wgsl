@@ -1,6 +1,6 @@
-// Everything behind the solids: the sky, and the planes in front of it.
+// Background: the sky with the planes in front of it.
 
-const FARTHEST = 1e30;
+const MAX_DISTANCE = 1e30;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -11,5 +11,5 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = pixel_ray(position.xy);
-    return vec4f(behind_planes(sky(position.xy), ray, FARTHEST), 1.0);
+    return vec4f(behind_planes(sky(position.xy), ray, MAX_DISTANCE), 1.0);
 }

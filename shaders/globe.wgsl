@@ -1,18 +1,18 @@
-// The sphere of every direction of the Pointer, coloured by how far the elbow swings there.
+// Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
 const RIM_OPACITY = 0.3;
-const FAR_OPACITY = 0.65; // of what the near side has
+const FAR_OPACITY = 0.65; // times that of the near side
 const LINE_WIDTH = 1.3; // pixels
 const LINE_OPACITY = 0.55;
 const LEVELS = vec3f(0.6931472, 1.0986123, 1.7917595); // ln 2, ln 3, ln 6: gains 1, 2 and 5
-const STEEPEST = 0.2; // so much in a pixel that a line would be smeared
+const MAX_SLOPE = 0.2; // of the level per pixel, above which lines fade out
 
 struct Globe {
     centre: vec3f,
     radius: f32,
     axis: vec3f, // unit, towards a singular direction
-    singular: f32, // how many directions are: none, the axis, or both its ends
-    ramp: array<vec4f, 5>, // from gain 0, evenly in the logarithm of 1 + gain
+    singular: f32, // number of singular directions: 0, 1 (the axis) or 2 (and its opposite)
+    ramp: array<vec4f, 5>, // linear in the logarithm of 1 + gain
     line: vec4f,
     max_gain: f32, // at the end of the ramp
 }
@@ -34,14 +34,14 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     return Side(covering(index, globe.centre, globe.radius), 1.0 - 2.0 * f32(instance));
 }
 
-// How far the elbow turns for every radian that the Pointer does: as `Reference::gain`.
+// Radians that the elbow turns per radian of the Pointer, as `TwistReference::gain`.
 fn gain(pointer: vec3f) -> f32 {
     let both = abs(dot(pointer, globe.axis)) / max(length(cross(pointer, globe.axis)), 1e-6);
     let one = length(pointer + globe.axis) / max(length(pointer - globe.axis), 1e-6);
     return select(select(both, one, globe.singular < 1.5), 0.0, globe.singular < 0.5);
 }
 
-// The colour of a gain, by the logarithm of 1 + gain.
+// Colour by the logarithm of 1 + gain.
 fn ramp(level: f32) -> vec4f {
     let at = level / log(1.0 + globe.max_gain) * 4.0;
     let first = mix(globe.ramp[0], globe.ramp[1], saturate(at));
@@ -50,12 +50,12 @@ fn ramp(level: f32) -> vec4f {
     return mix(third, globe.ramp[4], saturate(at - 3.0));
 }
 
-// How much of a pixel the lines of gain 1, 2 and 5 cover.
+// Fraction of a pixel that is covered by the lines of gain 1, 2 and 5.
 fn isolines(level: f32) -> f32 {
     let steep = max(fwidth(level), 1e-6);
     let off = abs(LEVELS - level);
     let pixels = min(min(off.x, off.y), off.z) / steep;
-    return saturate(0.5 + LINE_WIDTH * 0.5 * view.pixel_scale - pixels) * saturate(STEEPEST / steep);
+    return saturate(0.5 + LINE_WIDTH * 0.5 * view.pixel_scale - pixels) * saturate(MAX_SLOPE / steep);
 }
 
 @fragment

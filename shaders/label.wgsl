@@ -1,8 +1,8 @@
-// Words: one rectangle of the glyph atlas each, in pixels.
+// Glyphs of labels: rectangles of the glyph atlas, in pixels.
 
 struct Instance {
-    @location(0) place: vec4f, // left, top, width, height in pixels
-    @location(1) source: vec4f, // the same in the atlas, 0 to 1
+    @location(0) target_rect: vec4f, // left, top, width, height in pixels
+    @location(1) source: vec4f, // rectangle in the atlas, 0 to 1
     @location(2) colour: vec4f,
 }
 
@@ -18,7 +18,7 @@ struct Glyph {
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Glyph {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    let pixel = i.place.xy + corner * i.place.zw;
+    let pixel = i.target_rect.xy + corner * i.target_rect.zw;
     let clip = vec2f(pixel.x, -pixel.y) * 2.0 / view.size + vec2f(-1.0, 1.0);
     return Glyph(vec4f(clip, 1.0, 1.0), i.source.xy + corner * i.source.zw, i.colour);
 }

@@ -1,4 +1,4 @@
-// Lines, dashed or whole, some pixels wide wherever they are.
+// Solid or dashed lines of constant width on screen.
 
 const WIDTH = 2.0;
 const PERIOD = 9.0;
@@ -19,7 +19,7 @@ struct Stroke {
     @location(3) @interpolate(flat) dashed: f32,
 }
 
-// The end `a` of a segment, moved to in front of the eye where it is behind it.
+// The end `a` of a segment, clipped if it is behind the eye.
 fn before_eye(a: vec4f, b: vec4f) -> vec4f {
     let part = (NEAREST - a.w) / (b.w - a.w);
     return select(a, mix(a, b, part), a.w < NEAREST && b.w > NEAREST);

@@ -1,9 +1,9 @@
-// The three grids and the ground, as seen in front of something at a pixel. All three planes are
-// met analytically in one go and laid over each other far to near, so that they cross each other
-// and the arm rightly and cost one pass. Straight-line code: software rasterisers do not skip.
+// The three grids and the ground in front of a pixel's colour. All three planes are intersected analytically
+// and blended from far to near, so that they intersect each other and the arm correctly in one pass. The
+// code has no branches, since software rasterizers gain nothing from them.
 
-const LINE_WIDTH = 1.1; // pixels, at most
-const WIDEST_LINE = 0.012; // cells
+const LINE_WIDTH = 1.1; // maximum, in pixels
+const MAX_LINE_WIDTH = 0.012; // cells
 const FINE = 0.4;
 const COARSE = 0.65; // every fifth line
 
@@ -12,20 +12,20 @@ struct Layer {
     colour: vec4f, // premultiplied
 }
 
-// How much of a pixel is covered by lines one cell apart: a box as wide as the pixel over a line
-// that gets no thinner than it but fainter, and the average where cells are smaller than pixels, so
-// that nothing flickers (after B. Golus, "The Best Darn Grid Shader (Yet)", 2023).
+// Fraction of a pixel that is covered by lines one cell apart. A line thinner than a pixel is drawn one
+// pixel wide and fainter, and cells smaller than a pixel are averaged, so that nothing flickers (after B.
+// Golus, "The Best Darn Grid Shader (Yet)", 2023).
 fn lines(at: vec2f, pixel: vec2f) -> f32 {
     let nearest = round(at);
     let strength = select(vec2f(FINE), vec2f(COARSE), nearest - round(nearest / 5.0) * 5.0 == vec2f(0.0));
-    let width = min(pixel * LINE_WIDTH * view.pixel_scale, vec2f(WIDEST_LINE));
+    let width = min(pixel * LINE_WIDTH * view.pixel_scale, vec2f(MAX_LINE_WIDTH));
     let from_line = abs(at - nearest);
     let sharp = saturate(0.5 + (max(width, pixel) * 0.5 - from_line) / pixel) * saturate(width / pixel);
     let cover = mix(sharp, width, saturate(pixel * 2.0 - 1.0)) * strength;
     return max(cover.x, cover.y);
 }
 
-// A grid at `at` cells from the origin, where a pixel is `pixel` cells large, with coloured axes.
+// A grid with coloured axes at a point in cells from the origin; `pixel` is the size of a pixel in cells.
 fn grid(at: vec2f, pixel: vec2f, axis_u: vec3f, axis_v: vec3f) -> vec4f {
     let cover = lines(at, pixel);
     let axes = saturate(1.0 + 0.9 * view.pixel_scale - abs(at) / pixel) * 0.85;
@@ -37,7 +37,7 @@ fn over(front: vec4f, back: vec4f) -> vec4f {
     return front + back * (1.0 - front.a);
 }
 
-// Whether a plane is met before `limit`.
+// 1 if a plane is hit before `limit`, else 0.
 fn met(along: f32, limit: f32) -> f32 {
     return select(0.0, 1.0, along > nearest_along() && along < limit);
 }
@@ -46,7 +46,7 @@ fn pixel_in_cells(at: vec2f) -> vec2f {
     return max(fwidth(at), vec2f(1e-6));
 }
 
-// A colour at `limit` along the ray, with every plane that is nearer laid over it.
+// The colour at distance `limit` along the ray, with all nearer planes blended over it.
 fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
     let along = -ray.origin / ray.direction;
     let on_yz = ray.origin + ray.direction * along.x;

@@ -1,5 +1,5 @@
-// The soft shadow of a limb on the ground: the limb as a capsule, the light as the key light with
-// some width, so that the shadow is softer and fainter the higher the limb is.
+// Soft shadow of a limb on the ground. The limb is a capsule, and the key light has a width, so that the
+// shadow gets softer and fainter with the height of the limb.
 
 const LIGHT_WIDTH = 0.16;
 const CONTACT = 0.35; // of the radius: how soft the shadow is where the limb touches the ground
@@ -16,18 +16,18 @@ struct Ground {
     @location(2) @interpolate(flat) tip: vec4f,
 }
 
-// Where the light through a point meets the ground, and how far around a ball there is shaded.
-fn fallen(ball: vec4f) -> vec3f {
+// Centre of a ball's shadow on the ground, and its radius.
+fn shadow_of(ball: vec4f) -> vec3f {
     let height = ball.y / KEY_DIRECTION.y;
     let point = ball.xyz - KEY_DIRECTION * height;
     return vec3f(point.xz, (ball.w * (1.0 + CONTACT) + height * LIGHT_WIDTH) / KEY_DIRECTION.y);
 }
 
-// A rectangle around the shadows of both ends.
+// Corners of a rectangle around the shadows of both ends.
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Ground {
-    let from_base = fallen(i.base);
-    let to_tip = fallen(i.tip);
+    let from_base = shadow_of(i.base);
+    let to_tip = shadow_of(i.tip);
     let long = distance(from_base.xy, to_tip.xy);
     let along = select(vec2f(1.0, 0.0), (to_tip.xy - from_base.xy) / long, long > 0.0);
     let around = max(from_base.z, to_tip.z);
@@ -38,7 +38,7 @@ fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Ground {
     return Ground(view.clip_from_world * vec4f(point, 1.0), point, i.base, i.tip);
 }
 
-// The nearest approach of the limb's axis and the ray from the ground to the light.
+// Finds the closest point of the limb's axis to the ray from the ground to the light.
 @fragment
 fn fragment(g: Ground) -> @location(0) vec4f {
     let axis = g.tip.xyz - g.base.xyz;

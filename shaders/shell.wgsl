@@ -1,5 +1,4 @@
-// One side of a see-through sphere: a faint fill, and a rim where the surface turns away from the
-// eye.
+// One side of a see-through sphere: a faint fill, and a brighter rim.
 
 const FILL_OPACITY = 0.045;
 const RIM_OPACITY = 0.5;

@@ -1,5 +1,5 @@
-// Tapered cylinders and balls, instanced. A vertex says how far along the solid it is and where on
-// the rim there; a ball is a solid of no length whose rim is a unit sphere.
+// Instanced tapered cylinders and balls. A vertex has a position along the solid and on the rim there; a ball
+// is a solid of length 0 whose rim is a unit sphere.
 
 struct Vertex {
     @location(0) along: f32, // 0 base, 1 tip
@@ -19,15 +19,15 @@ struct Instance {
 struct Surface {
     @builtin(position) position: vec4f,
     @location(0) world: vec3f,
-    // Within the solid, also where its edge is in the pixel.
+    // Centroid sampling keeps it within the solid at its edges.
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(flat) colour: vec4f,
-    @location(3) around_along: vec3f, // where on the rim, how far along
-    @location(4) @interpolate(flat) stripes: vec2f, // how strong, winding
+    @location(3) around_along: vec3f, // position on the rim and along the solid
+    @location(4) @interpolate(flat) stripes: vec2f, // strength, winding
 }
 
 const STRIPES = 5.0;
-const STRIPE_WIDTH = 0.13; // of the way from one to the next
+const STRIPE_WIDTH = 0.13; // of the distance between two stripes
 const STRIPE_SHADE = 0.3;
 
 @vertex
@@ -36,7 +36,7 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     let length = i.x_length.w;
     let radii = vec2f(i.y_base_radius.w, i.z_tip_radius.w);
     let local = vec3f(v.along * length, 0.0, 0.0) + v.rim * mix(radii.x, radii.y, v.along);
-    // A taper tilts the side's normal towards the thinner end; caps have no side to tilt.
+    // A taper tilts the side's normal towards the thinner end, but not the caps' normals.
     let taper = (radii.x - radii.y) / max(length, 1e-6);
     let tilt = select(0.0, taper, length > 0.0) * dot(v.normal.yz, v.normal.yz);
     let world = i.origin + axes * local;
@@ -50,8 +50,8 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     );
 }
 
-// How dark the lines along a solid's side make a pixel. The angle around has a seam; its change from
-// pixel to pixel, taken from the rim itself, has none.
+// Darkness of the stripes at a pixel. The angle around the solid has a seam, so that its derivative is computed
+// from the position on the rim.
 fn stripe_shade(s: Surface) -> f32 {
     let rim = s.around_along.xy;
     let turn = vec2f(
@@ -81,7 +81,7 @@ fn fragment(s: Surface) -> @location(0) vec4f {
     return vec4f(shaded(s), 1.0);
 }
 
-// What shows through the things in front of it.
+// The part that is hidden by other things.
 @fragment
 fn fragment_hidden(s: Surface) -> @location(0) vec4f {
     return vec4f(s.colour.rgb, 0.38);

@@ -1,8 +1,8 @@
-// A see-through sphere, intersected analytically: a square that covers it, and what a pixel's ray
-// meets of it. Right from inside too, where the near side is behind the eye.
+// A see-through sphere, intersected analytically: a square that covers it, and the intersection with a
+// pixel's ray. Also correct from inside, where the near side is behind the eye.
 
-// Clip position of a corner of a square around the sphere that faces the eye; of the whole picture
-// from inside. The depth comes from the fragment.
+// Clip position of a corner of a square that faces the eye and covers the sphere, or the whole picture from
+// inside. The fragment shader sets the depth.
 fn covering(index: u32, centre: vec3f, radius: f32) -> vec4f {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     let to_centre = centre - view.eye;
@@ -26,9 +26,9 @@ fn covering(index: u32, centre: vec3f, radius: f32) -> vec4f {
 
 struct Met {
     point: vec3f,
-    cover: f32, // of the pixel; 0 behind the eye
-    grazing: f32, // 0 where the ray meets the surface head-on, 1 at the rim
-    hides_far: f32, // 1 or 0: whether the near side is before the eye
+    cover: f32, // coverage of the pixel; 0 behind the eye
+    grazing: f32, // 0 if the ray is perpendicular to the surface, 1 at the rim
+    hides_far: f32, // 1 if the near side is in front of the eye, else 0
 }
 
 // Intersection with the near (-1) or far (1) side.
@@ -51,13 +51,13 @@ fn meet(ray: Ray, centre: vec3f, radius: f32, side: f32) -> Met {
     );
 }
 
-// Opacity of a rim, as a part of its greatest.
+// Opacity of the rim, relative to its maximum.
 fn rim(grazing: f32) -> f32 {
     let squared = grazing * grazing;
     return squared * squared * grazing;
 }
 
-// Depth of a point; never that of the sky, which hides nothing.
+// Depth of a point, always in front of the sky.
 fn depth_of(point: vec3f) -> f32 {
     let clip = view.clip_from_world * vec4f(point, 1.0);
     return max(clip.z / clip.w, 1e-37);

@@ -1,5 +1,5 @@
-// What every shader of the scene sees: camera, lights, colours, and the planes' settings. Colours
-// are as a screen has them (sRGB); light is added up in linear space and then encoded.
+// Uniforms and functions that all shaders of a scene share. Colours are sRGB; light is added in linear
+// space and then encoded.
 
 struct View {
     clip_from_world: mat4x4f,
@@ -26,7 +26,7 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 
-// The seed's two lights, and a soft light from everywhere: bluish above, warm below.
+// Two directional lights, and ambient light: bluish from above, warm from below.
 const KEY_DIRECTION = vec3f(0.298142, 0.596285, 0.745356);
 const KEY = vec3f(0.76, 0.74, 0.70);
 const FILL_DIRECTION = vec3f(-0.842152, 0.421076, -0.336861);
@@ -39,7 +39,7 @@ struct Ray {
     direction: vec3f, // not normalised
 }
 
-// The half line seen at a pixel.
+// Ray through a pixel.
 fn pixel_ray(position: vec2f) -> Ray {
     let step = 2.0 / view.size;
     let at = vec2f(position.x * step.x - 1.0, 1.0 - position.y * step.y);
@@ -50,12 +50,12 @@ fn pixel_ray(position: vec2f) -> Ray {
     );
 }
 
-// An orthographic picture has no eye to be behind.
+// Minimum distance along a ray: an orthographic view has no eye to be behind.
 fn nearest_along() -> f32 {
     return -1e30 * view.orthographic;
 }
 
-// How large a pixel is in the world, `along` a ray.
+// Size of a pixel in world units at a distance along a ray.
 fn pixel_size(along: f32) -> f32 {
     let depth = mix(abs(along), 1.0, view.orthographic);
     return max(depth * length(view.up) * 2.0 / view.size.y, 1e-6);
@@ -75,7 +75,7 @@ fn encoded(light: vec3f) -> vec3f {
     return select(high, light * 12.92, light <= vec3f(0.0031308));
 }
 
-// Matte: two directional lights and the sky's and the ground's own light.
+// Diffuse shading by both lights and the ambient light.
 fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, normal.y * 0.5 + 0.5);
     let key = KEY * max(dot(normal, KEY_DIRECTION), 0.0);
@@ -83,18 +83,18 @@ fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     return encoded(decoded(colour) * (ambient + key + fill));
 }
 
-// How far the planes reach, in stage radii.
+// Radii at which the planes fade out, in units of the planes' radius.
 const FLOOR_RADIUS = 2.2;
 const WALL_RADIUS = 1.0;
 
-// 1 in the middle of the stage, fading to 0 at `radius` stage radii.
+// 1 at the centre of the planes, fading to 0 at `radius` times their radius.
 fn presence(point: vec3f, radius: f32) -> f32 {
     let out = (point - view.planes_centre) / (view.planes_radius * radius);
     let near = 1.0 - saturate(dot(out, out));
     return near * near;
 }
 
-// Far things fade into the sky behind them.
+// Fades distant things into the sky.
 fn fogged(colour: vec3f, position: vec2f, along: f32) -> vec3f {
     let depth = along / (view.focus_distance * 7.0);
     return mix(sky(position), colour, exp(-depth * depth));

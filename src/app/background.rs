@@ -143,7 +143,7 @@ pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<Use
     if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
         system = system.set_directory(folder);
     }
-    let asked = Instant::now();
+    let start = Instant::now();
     let is_open = matches!(dialog, Dialog::Open { .. });
     let (open, save) = match is_open {
         true => (Some(system.pick_file()), None),
@@ -157,7 +157,7 @@ pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<Use
         };
         let choice = match file {
             Some(file) => PathChoice::Path(file.path().to_owned()),
-            None if asked.elapsed() < FASTEST_USER => PathChoice::NoDialog,
+            None if start.elapsed() < FASTEST_USER => PathChoice::NoDialog,
             None => PathChoice::Cancelled,
         };
         send(&proxy, UserEvent::Chosen(dialog, choice));

@@ -55,7 +55,7 @@ pub(super) enum BackupError {
 struct BackupSlot {
     path: PathBuf,
     lock: PathBuf,
-    _held: File,
+    _lock_file: File,
 }
 
 /// Backs up the document of this run.
@@ -239,9 +239,9 @@ impl BackupSlot {
         let started = SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default().as_millis();
         let path = folder.join(format!("{started}-{}.json", std::process::id()));
         let lock = path.with_extension("lock");
-        let held = File::create(&lock)?;
-        held.try_lock()?;
-        Ok(Self { path, lock, _held: held })
+        let lock_file = File::create(&lock)?;
+        lock_file.try_lock()?;
+        Ok(Self { path, lock, _lock_file: lock_file })
     }
 }
 

@@ -1,11 +1,11 @@
-//! Keeps graphics drivers from writing to standard error while all is well.
+//! Keeps graphics drivers from writing to standard error without an error.
 
-/// Replaces this process by one with Mesa's Vulkan layer "device select" switched off, if the layer
-/// would only complain.
+/// Replaces this process by one without Mesa's Vulkan layer "device select", if the layer would print an
+/// error.
 ///
-/// The layer asks the Wayland compositor for its GPU. Without `XDG_RUNTIME_DIR` there is nobody to
-/// ask, and libwayland prints an error each time. The layer's switch is an environment variable,
-/// which has to be set before a process starts: changing it later is unsafe.
+/// The layer asks the Wayland compositor for its GPU. Without `XDG_RUNTIME_DIR` there is no
+/// compositor, and libwayland prints an error each time. The layer is switched off by an environment variable,
+/// which must be set before a process starts: changing it later is unsafe.
 pub(super) fn restart_without_device_select() {
     #[cfg(target_os = "linux")]
     linux::restart();
@@ -27,8 +27,8 @@ mod linux {
         }
         let (Ok(program), mut arguments) = (env::current_exe(), env::args_os()) else { return };
         let name = arguments.next().unwrap_or_default();
-        // Returns only if it fails; then this process goes on, with the layer's complaints.
+        // Returns only if it fails. This process then continues, with the layer's errors.
         let error = Command::new(program).arg0(name).args(arguments).env(SWITCH, "1").exec();
-        log::debug!("not restarted: {error}");
+        log::debug!("cannot restart: {error}");
     }
 }

@@ -1,36 +1,36 @@
 use core::ops::Range;
 
-/// Small images of coverage packed into a large one, row by row, until it is full.
+/// Packs small coverage images into a large one, row by row, until it is full.
 #[derive(Debug)]
 pub(super) struct Atlas {
     width: u32,
     height: u32,
-    /// The height grows in powers of two up to this one.
-    tallest: u32,
-    /// Row by row.
+    /// Maximum height, reached in powers of two.
+    max_height: u32,
+    /// Coverage from 0 to 255, row by row.
     pixels: Vec<u8>,
-    /// Where the next image goes.
+    /// Upper left corner of the next image.
     pen: (u32, u32),
     row_height: u32,
     changed: Range<u32>,
 }
 
 impl Atlas {
-    /// Between images, so that none bleeds into its neighbour.
+    /// Gap between images, so that none bleeds into its neighbour.
     const GAP: u32 = 1;
     const FIRST_HEIGHT: u32 = 64;
 
-    pub fn new(width: u32, tallest: u32) -> Self {
+    pub fn new(width: u32, max_height: u32) -> Self {
         let mut atlas = Self {
             width,
             height: 0,
-            tallest,
+            max_height,
             pixels: Vec::new(),
             pen: (Self::GAP, Self::GAP),
             row_height: 0,
             changed: 0..0,
         };
-        atlas.grow(Self::FIRST_HEIGHT.min(tallest));
+        atlas.grow(Self::FIRST_HEIGHT.min(max_height));
         atlas
     }
 
@@ -38,7 +38,7 @@ impl Atlas {
         (self.width, self.height)
     }
 
-    /// Makes room for an image: where its upper left corner is. `None` if there is no more.
+    /// Reserves a rectangle and returns its upper left corner; `None` if the atlas is full.
     pub fn place(&mut self, (width, height): (u32, u32)) -> Option<(u32, u32)> {
         let end = |from: u32, length: u32| from.checked_add(length)?.checked_add(Self::GAP);
         if end(Self::GAP, width)? > self.width {
@@ -50,11 +50,11 @@ impl Atlas {
             row_height = 0;
         }
         let bottom = end(pen.1, height)?;
-        if bottom > self.tallest {
+        if bottom > self.max_height {
             return None;
         }
         if bottom > self.height {
-            self.grow(bottom.next_power_of_two().min(self.tallest));
+            self.grow(bottom.next_power_of_two().min(self.max_height));
         }
         self.pen = (pen.0 + width + Self::GAP, pen.1);
         self.row_height = row_height.max(height);
@@ -70,7 +70,7 @@ impl Atlas {
         }
     }
 
-    /// Takes every image out.
+    /// Removes all images.
     pub fn clear(&mut self) {
         self.pixels.fill(0);
         self.pen = (Self::GAP, Self::GAP);
@@ -78,7 +78,7 @@ impl Atlas {
         self.change(0..self.height);
     }
 
-    /// The rows that have changed since the last call.
+    /// Rows that have changed since the last call.
     pub fn take_changed(&mut self) -> Range<u32> {
         core::mem::take(&mut self.changed)
     }
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_has_no_place() {
+    fn an_image_that_is_too_large_does_not_fit() {
         let mut atlas = Atlas::new(64, 64);
         for size in [(63, 1), (1, 63), (u32::MAX, 1), (1, u32::MAX)] {
             assert_eq!(atlas.place(size), None, "{size:?}");
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn changed_rows_are_told_once() {
+    fn changed_rows_are_returned_once() {
         let mut atlas = Atlas::new(64, 256);
         assert_eq!(atlas.take_changed(), 0..64);
         assert_eq!(atlas.take_changed(), 0..0);

@@ -6,14 +6,14 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/backdrop.wgsl"),
 );
 
-/// Draws the sky, the ground and the grids, before everything else.
+/// Draws the sky, the ground and the grids behind everything else.
 #[derive(Debug)]
 pub(super) struct Backdrop {
     pipeline: wgpu::RenderPipeline,
 }
 
 impl Backdrop {
-    /// One covers the picture.
+    /// One triangle covers the picture.
     pub const TRIANGLES: u32 = 1;
 
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {

@@ -3,7 +3,7 @@ use thiserror::Error;
 
 use super::Gpu;
 
-/// What a renderer draws on: an image, four samples for each of its pixels, and their depths.
+/// Render target: an image, and multisampled colour and depth buffers.
 #[derive(Debug)]
 pub struct Canvas {
     width: u32,
@@ -14,26 +14,31 @@ pub struct Canvas {
     pub(super) depth: wgpu::TextureView,
 }
 
-/// Why a drawn picture could not be read back.
+/// Reasons why a buffer could not be read back from the device.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ReadError {
-    #[error("the device did not finish the picture: {0}")]
+    /// The device did not finish.
+    #[error("the graphics device did not finish: {0}")]
     Poll(#[from] wgpu::PollError),
-    #[error("the picture could not be read from the device: {0}")]
+    /// The buffer could not be mapped.
+    #[error("cannot read from the graphics device: {0}")]
     Map(#[from] wgpu::BufferAsyncError),
-    #[error("the picture could not be read from the device: {0}")]
+    /// The mapped range is invalid.
+    #[error("cannot read from the graphics device: {0}")]
     Range(#[from] wgpu::MapRangeError),
-    #[error("the device gave a picture of the wrong size")]
+    /// The picture has the wrong size.
+    #[error("the graphics device returned a picture of the wrong size")]
     Size,
 }
 
 impl Canvas {
-    /// The shaders encode light as sRGB themselves: once a pixel instead of once a sample.
+    /// Pixel format. The shaders encode sRGB themselves.
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
     pub(super) const SAMPLES: u32 = 4;
 
-    /// Sides below 1 are 1; the longest is [`Gpu::longest_side`].
+    /// Creates a canvas. Sides are clamped to 1 and [`Gpu::longest_side`].
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let side = |length: u32| length.clamp(1, gpu.longest_side());
         let (width, height) = (side(width), side(height));
@@ -65,24 +70,26 @@ impl Canvas {
         }
     }
 
+    /// Width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
 
+    /// Width divided by height.
     pub fn aspect(&self) -> f32 {
         self.width as f32 / self.height as f32
     }
 
-    /// The image, to be shown in another one.
+    /// View of the image, for sampling.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.colour
     }
 
-    /// Waits for the device and takes the picture to memory.
+    /// Waits for the device and reads the picture back.
     ///
     /// # Errors
     ///
-    /// If the device fails meanwhile.
+    /// If the device fails.
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, ReadError> {
         const PIXEL: u32 = 4;
         let row = self.width * PIXEL;
@@ -118,11 +125,11 @@ impl Canvas {
     }
 }
 
-/// Waits for the device to have done what it was told, and shows what is in a buffer then.
+/// Waits until the device has executed all commands and maps a buffer.
 pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
     let (sender, receiver) = std::sync::mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Nobody waits any more only if the wait itself failed.
+        // Fails only if the wait below has failed.
         let _ = sender.send(result);
     });
     gpu.device.poll(wgpu::PollType::wait_indefinitely())?;

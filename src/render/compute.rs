@@ -1,6 +1,6 @@
 use super::Gpu;
 
-/// What a shader reads or writes at a place of a group.
+/// Kind of a buffer binding.
 #[derive(Clone, Copy)]
 pub(super) enum BindingKind {
     Uniform,
@@ -8,18 +8,18 @@ pub(super) enum BindingKind {
     Write,
 }
 
-/// A group of buffers in this order, as the stages see them.
+/// Layout of a bind group of buffers.
 pub(super) fn layout(
     gpu: &Gpu,
     label: &str,
     stages: wgpu::ShaderStages,
-    slots: &[BindingKind],
+    kinds: &[BindingKind],
 ) -> wgpu::BindGroupLayout {
-    let entry = |(binding, slot): (u32, &BindingKind)| wgpu::BindGroupLayoutEntry {
+    let entry = |(binding, kind): (u32, &BindingKind)| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: stages,
         ty: wgpu::BindingType::Buffer {
-            ty: match slot {
+            ty: match kind {
                 BindingKind::Uniform => wgpu::BufferBindingType::Uniform,
                 BindingKind::Read => wgpu::BufferBindingType::Storage { read_only: true },
                 BindingKind::Write => wgpu::BufferBindingType::Storage { read_only: false },
@@ -31,7 +31,7 @@ pub(super) fn layout(
     };
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
-        entries: &(0..).zip(slots).map(entry).collect::<Vec<_>>(),
+        entries: &(0..).zip(kinds).map(entry).collect::<Vec<_>>(),
     })
 }
 
@@ -80,10 +80,10 @@ pub(super) fn pipeline(
     })
 }
 
-/// How many arms one workgroup of a shader takes.
+/// Number of arms per workgroup, as in the shaders.
 const GROUP: u32 = 256;
 
-/// Has a shader run once for each arm.
+/// Encodes a compute pass with one invocation per arm.
 pub(super) fn run_for_each(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,

@@ -287,10 +287,10 @@ mod tests {
         font.prepare([text].into_iter());
         let laid: Vec<_> = font.lay_out(text, Vec2::ZERO).collect();
         let (width, height) = font.atlas.size();
-        for (stands, source) in &laid {
+        for (target, source) in &laid {
             let end = source.at + source.size;
             assert!(end.x < width as f32 && end.y < height as f32, "{text}");
-            assert_eq!(stands.size, source.size);
+            assert_eq!(target.size, source.size);
         }
         laid
     }
@@ -334,13 +334,13 @@ mod tests {
     fn a_letter_without_a_glyph_is_a_box() {
         for size in SIZES {
             let mut font = without_system_fonts(size);
-            let [(stands, source)] = lay_out(&mut font, &NO_LETTER.to_string())[..] else {
+            let [(target, source)] = lay_out(&mut font, &NO_LETTER.to_string())[..] else {
                 panic!("one box")
             };
             let outer = source.size.element_product();
             assert!(ink(&mut font, "\u{10fffd}") > 0.3 * outer, "its edges are drawn");
             assert!(ink(&mut font, "\u{10fffd}") < 0.95 * outer, "it is empty inside");
-            assert_eq!(stands.at.y, -stands.size.y, "it stands on the line");
+            assert_eq!(target.at.y, -target.size.y, "it is on the baseline");
             assert_eq!(lay_out(&mut font, "左手").len(), 2);
             let end = |text, font: &mut Font| lay_out(font, text).last().map(|it| it.0.at.x);
             assert!(end("a\u{10fffd}b", &mut font) > end("ab", &mut font), "it takes room");
@@ -380,13 +380,13 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_stands_over_the_letter_before_it() {
+    fn a_mark_is_drawn_over_the_letter_before_it() {
         let mut font = without_system_fonts(28.0);
         // There is no letter of both.
         let laid = lay_out(&mut font, "q\u{301}q");
         let plain = lay_out(&mut font, "qq");
         assert_eq!((laid[0], laid[2]), (plain[0], plain[1]));
-        let middle = |stands: Rectangle| stands.at.x + stands.size.x / 2.0;
+        let middle = |target: Rectangle| target.at.x + target.size.x / 2.0;
         assert!((middle(laid[1].0) - middle(laid[0].0)).abs() < 6.0, "{laid:?}");
     }
 

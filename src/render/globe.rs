@@ -12,7 +12,7 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/globe.wgsl"),
 );
 
-/// The far and the near one.
+/// Number of sides: far and near.
 const SIDES: u32 = 2;
 
 #[repr(C)]
@@ -58,7 +58,7 @@ impl Globes {
         Self { pipeline, uniforms, shown: false }
     }
 
-    /// How many bytes were sent.
+    /// Sends what has changed and returns the number of bytes.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         let globe = scene.globe.filter(Globe::has_size);
         self.shown = globe.is_some();

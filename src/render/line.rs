@@ -37,7 +37,7 @@ impl Lines {
         ))
     }
 
-    /// How many bytes were sent.
+    /// Sends what has changed and returns the number of bytes.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         self.0.upload(gpu, scene.lines.iter().map(LineInstance::new))
     }

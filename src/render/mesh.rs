@@ -6,15 +6,15 @@ use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
 
-/// Triangles on the device, counter-clockwise seen from outside.
+/// Triangles on the device, counter-clockwise as seen from outside.
 #[derive(Debug)]
-pub(super) struct Mesh {
+pub(super) struct MeshBuffers {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     count: u32,
 }
 
-impl Mesh {
+impl MeshBuffers {
     pub fn new<V: Pod>(gpu: &Gpu, label: &str, vertices: &[V], indices: &[u16]) -> Self {
         let buffer = |contents, usage| {
             let label = Some(label);
@@ -43,13 +43,13 @@ impl Mesh {
     }
 }
 
-/// Points around a unit circle, the first again at the end.
+/// Points on a unit circle; the last equals the first.
 pub(super) fn circle(segments: u16) -> impl Iterator<Item = Vec2> + Clone {
     (0..=segments)
         .map(move |i| Vec2::from_angle(TAU * f32::from(i % segments) / f32::from(segments)))
 }
 
-/// A unit sphere: points (which are its normals too) and triangles.
+/// A unit sphere: vertices, which are also its normals, and triangles.
 pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
     let rings = segments / 2;
     let points: Vec<_> = (0..=rings)
@@ -63,14 +63,13 @@ pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
     (points, triangles)
 }
 
-/// Triangles over rows of points, each row closed by its first point again. Rows run downwards,
-/// points in a row to the right, as seen from outside. Triangles without an area are left out:
-/// where a row is one point, or lies on the next.
-pub(super) fn grid(rows: u16, columns: u16, place: impl Fn(u16) -> Vec3) -> Vec<u16> {
-    const SAME: f32 = 1e-6;
+/// Triangles between rows of vertices, whose last vertex repeats the first. As seen from outside, rows follow
+/// each other downwards, and vertices in a row to the right. Triangles without area are left out.
+pub(super) fn grid(rows: u16, columns: u16, position: impl Fn(u16) -> Vec3) -> Vec<u16> {
+    const MIN_DISTANCE: f32 = 1e-6;
     let has_area = |[a, b, c]: &[u16; 3]| {
-        let [a, b, c] = [*a, *b, *c].map(&place);
-        a.distance(b) > SAME && b.distance(c) > SAME && c.distance(a) > SAME
+        let [a, b, c] = [*a, *b, *c].map(&position);
+        a.distance(b) > MIN_DISTANCE && b.distance(c) > MIN_DISTANCE && c.distance(a) > MIN_DISTANCE
     };
     let point = |row: u16, column: u16| row * (columns + 1) + column;
     (0..rows)

@@ -1,6 +1,6 @@
 use super::{Canvas, Gpu};
 
-/// What makes one pipeline of the scene differ from another.
+/// Settings in which the pipelines of a scene differ.
 pub(super) struct PipelineDescriptor<'a> {
     pub label: &'static str,
     pub shader: &'static str,
@@ -9,9 +9,9 @@ pub(super) struct PipelineDescriptor<'a> {
     pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
     pub topology: wgpu::PrimitiveTopology,
     pub cull: Option<wgpu::Face>,
-    /// Depth falls with distance.
+    /// Depth comparison; nearer is greater.
     pub depth: wgpu::CompareFunction,
-    /// Opaque things hide what is behind them, others are laid over it.
+    /// Whether it replaces what is behind it and writes depth, instead of being blended.
     pub opaque: bool,
 }
 

@@ -35,7 +35,7 @@ impl Shadows {
         ))
     }
 
-    /// How many bytes were sent.
+    /// Sends what has changed and returns the number of bytes.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         self.0.upload(gpu, scene.shadows.iter().map(ShadowInstance::new))
     }

@@ -2,7 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
 use super::instance_buffer::InstanceBuffer;
-use super::mesh::Mesh;
+use super::mesh::MeshBuffers;
 use super::solid_mesh::{self, SolidVertex};
 use super::{Gpu, pipeline};
 use crate::scene::{Ball, Scene, Solid};
@@ -60,8 +60,8 @@ pub(super) struct Solids {
 /// Meshes and instances of one level of detail.
 #[derive(Debug)]
 struct DetailMeshes {
-    cone: Mesh,
-    ball: Mesh,
+    cone: MeshBuffers,
+    ball: MeshBuffers,
     cones: InstanceBuffer<SolidInstance>,
     balls: InstanceBuffer<SolidInstance>,
     guide_cones: InstanceBuffer<SolidInstance>,
@@ -201,7 +201,11 @@ impl DetailMeshes {
     }
 }
 
-fn draw(pass: &mut wgpu::RenderPass<'_>, mesh: &Mesh, instances: &InstanceBuffer<SolidInstance>) {
+fn draw(
+    pass: &mut wgpu::RenderPass<'_>,
+    mesh: &MeshBuffers,
+    instances: &InstanceBuffer<SolidInstance>,
+) {
     if let Some((buffer, count)) = instances.get() {
         mesh.draw(pass, buffer, count);
     }

@@ -2,7 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
-use super::mesh::{self, Mesh};
+use super::mesh::{self, MeshBuffers};
 
 /// Vertex of a solid of length and radius 1.
 #[repr(C)]
@@ -17,9 +17,9 @@ const _: () = assert!(size_of::<SolidVertex>() == 28);
 
 /// A cone: a side and two caps. Rows of vertices run from the centre of the base over both rims to the
 /// centre of the tip, with each rim twice for the edge.
-pub(super) fn cone(gpu: &Gpu, segments: u16) -> Mesh {
+pub(super) fn cone(gpu: &Gpu, segments: u16) -> MeshBuffers {
     let (vertices, indices) = cone_triangles(segments);
-    Mesh::new(gpu, "cone", &vertices, &indices)
+    MeshBuffers::new(gpu, "cone", &vertices, &indices)
 }
 
 fn cone_triangles(segments: u16) -> (Vec<SolidVertex>, Vec<u16>) {
@@ -52,13 +52,13 @@ fn position(vertex: &SolidVertex) -> Vec3 {
 }
 
 /// A unit sphere.
-pub(super) fn ball(gpu: &Gpu, segments: u16) -> Mesh {
+pub(super) fn ball(gpu: &Gpu, segments: u16) -> MeshBuffers {
     let (points, indices) = mesh::sphere(segments);
     let vertices: Vec<_> = points
         .into_iter()
         .map(|point| SolidVertex { along: 0.0, rim: point, normal: point })
         .collect();
-    Mesh::new(gpu, "ball", &vertices, &indices)
+    MeshBuffers::new(gpu, "ball", &vertices, &indices)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use core::ops::Range;
 use crate::document::Projection;
 use crate::scene::Shell;
 
-/// One of the two sides of a sphere.
+/// One side of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SphereSurface {
     /// Index of the sphere.
@@ -12,35 +12,36 @@ pub(super) struct SphereSurface {
     pub side: SphereSide,
 }
 
+/// Side of a sphere, as seen from the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SphereSide {
     Near,
     Far,
 }
 
-/// Sides of spheres from back to front, whatever order the spheres are listed in.
+/// Sorts the sides of spheres from back to front, independent of the order of the list.
 ///
-/// The order is exact where every two spheres are apart or one contains the other: what is inside a
-/// sphere comes between its far and its near side, and spheres that are apart go by the distance of
-/// their tangents. A plane separates two such spheres, the one of the points with tangents of equal
-/// length to both, and a ray from the eye crosses it at most once. Spheres that cut each other go by
-/// the same distance, although no order of whole sides is right for them.
+/// The result is exact if no two spheres intersect. Spheres inside a sphere come between its far and its near
+/// side. Disjoint spheres are sorted by the length of their tangents from the eye: the points with tangents of
+/// equal length to both spheres form a plane that separates them, and a ray from the eye crosses it at most
+/// once. Intersecting spheres are sorted by the same length, although no order of whole sides is right for
+/// them.
 #[derive(Debug, Default)]
 pub(super) struct SphereOrder {
     surfaces: Vec<SphereSurface>,
-    /// The spheres from the largest to the smallest.
+    /// Indices of the spheres, the largest first.
     by_size: Vec<usize>,
 }
 
 impl SphereOrder {
-    /// Takes no memory if there were as many spheres before.
+    /// Sorts the sides. It allocates only if there are more spheres than before.
     pub fn sort(&mut self, projection: &Projection, spheres: &[Shell]) -> &[SphereSurface] {
         self.surfaces.clear();
         self.by_size.clear();
         self.by_size.extend(0..spheres.len());
         self.by_size.sort_unstable_by(|a, b| by_size(&spheres[*a], &spheres[*b]));
         for sphere in self.by_size.iter().copied() {
-            let at = self.place(projection, spheres, sphere);
+            let at = self.index_of(projection, spheres, sphere);
             let sides =
                 [SphereSide::Far, SphereSide::Near].map(|side| SphereSurface { sphere, side });
             self.surfaces.splice(at..at, sides);
@@ -48,8 +49,8 @@ impl SphereOrder {
         &self.surfaces
     }
 
-    /// Index of the first surface in front of a sphere that is not larger than those in the list.
-    fn place(&self, projection: &Projection, spheres: &[Shell], sphere: usize) -> usize {
+    /// Index of the first surface in front of a sphere that is at most as large as those in the list.
+    fn index_of(&self, projection: &Projection, spheres: &[Shell], sphere: usize) -> usize {
         let inner = &spheres[sphere];
         let mut inside = 0..self.surfaces.len();
         while let Some((_, sides)) =
@@ -63,12 +64,12 @@ impl SphereOrder {
             .map_or(inside.end, |(_, sides)| sides.start)
     }
 
-    /// The spheres of a part of the list that are inside no other one of it, from back to front, with
-    /// the indices of their far and near sides.
-    fn outermost(&self, part: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
-        let mut start = part.start;
+    /// Spheres in a range of the list that are inside no other sphere there, from back to front, with the
+    /// indices of their far and near sides.
+    fn outermost(&self, range: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let mut start = range.start;
         core::iter::from_fn(move || {
-            let rest = self.surfaces.get(start..part.end)?;
+            let rest = self.surfaces.get(start..range.end)?;
             let sphere = rest.first()?.sphere;
             let sides = start..start + rest.iter().rposition(|other| other.sphere == sphere)?;
             start = sides.end + 1;
@@ -77,7 +78,7 @@ impl SphereOrder {
     }
 }
 
-/// Largest first; colours order spheres of the same centre and radius.
+/// Compares by size, the largest first, then by centre and colour.
 fn by_size(a: &Shell, b: &Shell) -> Ordering {
     let key = |sphere: &Shell| {
         let [x, y, z] = sphere.centre.to_array();
@@ -93,8 +94,8 @@ fn contains(outer: &Shell, inner: &Shell) -> bool {
     apart <= f64::from(outer.radius) - f64::from(inner.radius)
 }
 
-/// Square of the length of a tangent from the eye; negative inside. The depth of the centre in an
-/// orthographic picture, to which the former tends as the eye moves away.
+/// Squared length of the tangent from the eye; negative inside the sphere. In an orthographic view it is the
+/// depth of the centre, the limit as the eye moves away.
 fn distance(sphere: &Shell, projection: &Projection) -> f64 {
     let from_eye = sphere.centre.as_dvec3() - projection.eye.as_dvec3();
     if projection.orthographic {
@@ -115,7 +116,7 @@ mod tests {
         Shell { centre: centre.into(), radius, colour: Colour([255; 4]) }
     }
 
-    /// Apart, nested, nested in what is nested, touching, and the same twice.
+    /// Disjoint, nested, doubly nested, touching and equal spheres.
     fn shells() -> Vec<Shell> {
         let mut shells = vec![
             shell([0.0, 0.0, 0.0], 100.0),
@@ -148,7 +149,7 @@ mod tests {
         cameras
     }
 
-    /// Where a ray meets the sides of the spheres, as a surface and how far along it is.
+    /// Intersections of a ray with the sides of the spheres, with distances along the ray.
     fn met(projection: &Projection, at: Vec2, shells: &[Shell]) -> Vec<(SphereSurface, f64)> {
         let ray = projection.ray(at);
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize());

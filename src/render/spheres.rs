@@ -4,15 +4,15 @@ use super::shell::Shells;
 use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
 use crate::scene::{Colour, Globe, Scene, Shell};
 
-/// Draws the see-through spheres, shells and globe, from back to front over everything solid.
+/// Draws the shells and the globe, which are see-through, from back to front over everything opaque.
 #[derive(Debug)]
 pub(super) struct Spheres {
     shells: Shells,
     globe: Globes,
     order: SphereOrder,
-    /// The shells that have a size, then the globe.
+    /// Shells with a size, then the globe.
     spheres: Vec<Shell>,
-    /// How many sides of shells are behind the globe's far side and behind its near one.
+    /// Number of shells' sides behind the globe's far side and behind its near side.
     behind_globe: [u32; 2],
 }
 
@@ -27,7 +27,7 @@ impl Spheres {
         }
     }
 
-    /// Sends what has changed: how many bytes. `size` is the picture's, in pixels.
+    /// Sends what has changed and returns the number of bytes. `size` is the picture's in pixels.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> u64 {
         let projection = scene.camera.projection(size.0 as f32 / size.1 as f32);
         self.spheres.clear();
@@ -59,7 +59,7 @@ impl Spheres {
     }
 }
 
-/// Whether the square of the radius is a number too.
+/// Whether a shell is finite, even with its radius squared, and not empty.
 fn has_size(shell: &Shell) -> bool {
     let radius = shell.radius;
     shell.centre.is_finite() && radius > 0.0 && (radius * radius).is_finite()

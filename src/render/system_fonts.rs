@@ -6,12 +6,12 @@ use ab_glyph::Font as _;
 use fontdb::{Database, FaceInfo, Family, ID, Source, Stretch, Style, Weight};
 use skrifa::MetadataProvider as _;
 
-/// A face of a font that is installed on this system, for letters that the fonts in the program lack.
+/// A face of a font installed on this system, for letters that the built-in fonts lack.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemFace {
-    /// The same number, the same face.
+    /// Number that identifies the face.
     pub number: u16,
-    /// The file, kept until the program ends: a letter that was shown once is shown again.
+    /// Contents of the file, kept until the program ends.
     pub data: &'static [u8],
     /// Index of the face in the file.
     pub index: u32,
@@ -20,9 +20,8 @@ pub struct SystemFace {
 impl SystemFace {
     /// The preferred face that has a letter; `None` if there is none.
     ///
-    /// The first call reads the character maps of all installed fonts, which takes a tenth of a second
-    /// where there are many; later ones look the letter up in a table. The answer depends on the
-    /// installed fonts alone.
+    /// The first call reads the character maps of all installed fonts, which may take a tenth of a second;
+    /// later calls look the letter up in a table. The result depends only on the installed fonts.
     pub fn find(letter: char) -> Option<Self> {
         static INSTALLED: LazyLock<Mutex<SystemFonts>> = LazyLock::new(|| {
             let mut database = Database::new();
@@ -33,11 +32,11 @@ impl SystemFace {
     }
 }
 
-/// Faces in the order in which they are preferred, with the letters that each has.
+/// All faces in order of preference, with a table of their letters.
 struct SystemFonts {
     database: Database,
     faces: Vec<ID>,
-    /// For each code point one more than the index of the first face that has it, or 0.
+    /// For each code point, 1 plus the index of the first face that has it, or 0.
     first: Vec<u16>,
     files: HashMap<PathBuf, &'static [u8]>,
     loaded: HashMap<u16, SystemFace>,
@@ -45,9 +44,9 @@ struct SystemFonts {
 }
 
 impl SystemFonts {
-    /// Size of all files that are loaded: what is beyond is not shown, so that a text in many scripts
-    /// does not fill the memory.
-    const MOST_BYTES: usize = 256 << 20;
+    /// Maximum total size of loaded files. Letters of further files are not shown, so that a text in many
+    /// scripts does not exhaust memory.
+    const MAX_BYTES: usize = 256 << 20;
 
     fn new(database: Database) -> Self {
         let sans_serif = database.family_name(&Family::SansSerif);
@@ -81,14 +80,16 @@ impl SystemFonts {
                     return Some(*data);
                 }
                 let read = std::fs::read(path);
-                let warn =
-                    |error: &_| log::warn!("font {} cannot be read: {error}", path.display());
+                let warn = |error: &_| log::warn!("cannot read font {}: {error}", path.display());
                 (Some(path), read.inspect_err(warn).ok()?)
             }
             Source::Binary(data) => (None, data.as_ref().as_ref().to_vec()),
         };
-        if self.bytes + data.len() > Self::MOST_BYTES {
-            log::warn!("fonts of more than {} bytes are needed", Self::MOST_BYTES);
+        if self.bytes + data.len() > Self::MAX_BYTES {
+            log::warn!(
+                "font files are limited to {} bytes; some letters are not shown",
+                Self::MAX_BYTES
+            );
             return None;
         }
         self.bytes += data.len();
@@ -98,14 +99,14 @@ impl SystemFonts {
     }
 }
 
-/// Sorts the faces: upright, regular ones of a sans-serif family first, then by name.
+/// Sort key of a face: upright, regular ones of a sans-serif family first, then by name.
 fn rank(info: &FaceInfo, sans_serif: &str) -> impl Ord + use<> {
     let family = info.families.first().map_or("", |(name, _)| name.as_str());
     (
         info.style != Style::Normal,
         info.weight.0.abs_diff(Weight::NORMAL.0),
         info.stretch != Stretch::Normal,
-        // Its boxes tell scripts, but stand for every letter.
+        // The Last Resort font claims every letter but shows only boxes.
         info.post_script_name.contains("LastResort"),
         info.monospaced,
         family != sans_serif,
@@ -116,8 +117,8 @@ fn rank(info: &FaceInfo, sans_serif: &str) -> impl Ord + use<> {
     )
 }
 
-/// Enters a face for the letters that no face has claimed before, unless it only has pictures or
-/// nothing to show for them.
+/// Enters a face for all its letters that no earlier face has. Faces with bitmaps only and symbol fonts are
+/// skipped.
 fn claim(first: &mut [u16], number: u16, data: &[u8], index: u32) {
     const SAMPLE: usize = 32;
     let Ok(map) = skrifa::FontRef::from_index(data, index).map(|font| font.charmap()) else {

@@ -2,7 +2,7 @@ use bytemuck::Pod;
 
 use super::Gpu;
 
-/// A block of values that shaders read, alone in a bind group; sent again only when it changes.
+/// A uniform buffer in a bind group of its own, sent only when it changes.
 #[derive(Debug)]
 pub(super) struct Uniforms<T> {
     sent: Option<T>,
@@ -41,7 +41,7 @@ impl<T: Pod + PartialEq> Uniforms<T> {
         Self { sent: None, buffer, layout, group }
     }
 
-    /// How many bytes were sent.
+    /// Sends the values if they have changed and returns the number of bytes.
     pub fn upload(&mut self, gpu: &Gpu, values: T) -> u64 {
         if self.sent == Some(values) {
             return 0;

@@ -74,12 +74,12 @@ impl<'a> PoseLine<'a> {
             })
         });
         let joints = joints.collect::<Result<_, _>>()?;
-        let targets = rig.goals(time).into_iter().map(|goal| {
-            let tip = pose.tip(goal.joint);
-            let error = goal.point.as_dvec3().distance(tip.as_dvec3());
+        let targets = rig.goals(time).into_iter().map(|target| {
+            let tip = pose.tip(target.joint);
+            let error = target.point.as_dvec3().distance(tip.as_dvec3());
             TargetLine {
-                joint: index_of[goal.joint],
-                target: goal.point,
+                joint: index_of[target.joint],
+                target: target.point,
                 tip,
                 error: (error as f32).min(f32::MAX),
             }

@@ -7,7 +7,7 @@ use egui::{DragValue, Grid, Ui};
 use super::path::{browse, folder, unless_there};
 use super::prompt::prompt;
 use crate::document::Timeline;
-use crate::export::Format;
+use crate::export::{ExportOptions, Format};
 use crate::io::Frames;
 use crate::session::{Actions, Dialog, EditAction, Export, FileAction, Session, ShellAction};
 use crate::ui::widgets::NumberField;
@@ -92,9 +92,11 @@ pub(in crate::ui) fn ui(
         if chosen.is_some_and(Format::is_picture) {
             let name = ui.label("Size in pixels");
             ui.horizontal(|ui| {
-                ui.add(DragValue::new(&mut changed.size.0).range(16..=8192)).labelled_by(name.id);
+                ui.add(DragValue::new(&mut changed.size.0).range(16..=ExportOptions::MAX_SIDE))
+                    .labelled_by(name.id);
                 ui.label("×");
-                ui.add(DragValue::new(&mut changed.size.1).range(16..=8192)).labelled_by(name.id);
+                ui.add(DragValue::new(&mut changed.size.1).range(16..=ExportOptions::MAX_SIDE))
+                    .labelled_by(name.id);
             });
             ui.end_row();
         }
