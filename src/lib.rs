@@ -1,7 +1,7 @@
 //! A 3D inverse-kinematics arm to pose, look into and understand.
 //!
-//! The crate is the program `ik-arm` and, without its default features, solvers that depend
-//! on `glam`, `nalgebra`, `multiversion` and `thiserror` alone:
+//! The crate is the program `ik-arm`. Without its default features it is a library of solvers that
+//! depends only on `glam`, `nalgebra`, `multiversion` and `thiserror`:
 //!
 //! ```
 //! use glam::Vec3;
@@ -13,44 +13,47 @@
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!
-//! Trees of joints have [solvers](kinematics::chain_ik) that bring any number of tips to their targets.
+//! Skeletons of any shape have [iterative solvers](kinematics::chain_ik) for any number of targets.
 //!
-//! # The house
+//! # Architecture
 //!
-//! A module uses only what stands above it.
+//! Each module uses only modules above it in this table, and no two files of a module import each
+//! other, directly or in a circle (`tests/architecture.rs`).
 //!
-//! | module | what it is | feature |
+//! | module | contents | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | pure numbers: two bones, one or a batch, their swivel and reach, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, solvers, following a path, splines | |
-//! | [`rig`] | the arm as a hierarchy: Root → Limb → Socket, limbs and guides; crowds of arms | |
-//! | `document` | what is saved: arm, skeleton with targets, keys in time, camera, what is shown | `document` |
-//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, tables out; lines of `ik-arm solve` | `document` |
-//! | `session` | the document and what is not saved; `Action` and `apply`; undo | `document` |
-//! | `scene` | what to draw: plain lists | `document` |
-//! | `render` | wgpu: draws a scene into a window, a PNG or a test image | `render` |
-//! | `export` | files for other programs: motions, tables, pictures | `render` |
-//! | `ui` | egui panels: read a session, push actions | `app` |
-//! | `app` | winit: window, surface, frame loop | `app` |
-//! | `cli` | solve, pose, render, export, examples, gui | `app` |
+//! | [`kinematics`] | mathematics: two bones, one or a batch, twist references, soft limits, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, chain solvers, path following, splines | |
+//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; crowds of arms | |
+//! | `document` | saved state: arm, skeleton with targets, keys, timeline, camera, display | `document` |
+//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, CSV out; lines of `ik-arm solve` | `document` |
+//! | `session` | the open document and state that is not saved; actions, undo and redo | `document` |
+//! | `scene` | what to draw, as plain lists | `document` |
+//! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
+//! | `export` | files for other programs: motion, tables, pictures | `render` |
+//! | `ui` | egui panels that read a session and push actions | `app` |
+//! | `app` | window, surface and frame loop (winit) | `app` |
+//! | `cli` | commands: solve, pose, render, export, examples, gui | `app` |
 //!
 //! # One frame
 //!
-//! The panels and the viewport read the [session](session::Session) and push
-//! [actions](session::Action); [`apply`](session::Session::apply) checks each, edits the document
-//! and solves the arm again; if there was any, the panels run once more, so that none shows the
-//! state before; the [scene](scene::Scene) is made from the document and drawn if it is not the one
-//! on screen already; then the panels. Nothing is drawn while nothing changes.
+//! 1. Panels and viewport read the [session](session::Session) and push
+//!    [actions](session::Action).
+//! 2. [`apply`](session::Session::apply) checks each action, edits the document and solves again.
+//! 3. If there was an action, the panels run once more, so that none shows the state before it.
+//! 4. The [scene](scene::Scene) is refilled from the document and drawn if it changed; then the panels.
+//!
+//! Nothing is drawn while nothing changes.
 //!
 //! # Conventions
 //!
-//! Right-handed, +x right, +y up, +z towards the viewer. Angles are radians in code, degrees on
-//! screen and on the command line. A point's name carries its space where two spaces meet. A cursor
-//! out of reach is a value, not an error; errors name the file, field or value and what would be
-//! right. All state that shapes the pose is in the document: pose = f(document, time). A solver's
-//! iteration is an action that edits angles, like any other. Keyed channels have the values of their
-//! keys; one that is edited without a new key is shown as it is edited until the time changes, which
-//! is the only state of a pose that is not saved. Playing writes nothing, and never carries the elbow
-//! along: a transported spin has keys that are measured from the map.
+//! - Right-handed axes: +x right, +y up, +z towards the viewer.
+//! - Angles are radians in code, degrees on screen and on the command line.
+//! - Where two spaces meet, a point's name carries its space.
+//! - A target out of reach is a value, not an error. Errors name the file, the field and the rule.
+//! - A pose is a function of document and time. All state that shapes it is in the document, except
+//!   unkeyed edits of keyed channels, which last until the time changes.
+//! - Playback writes nothing. Keys of a transported twist are measured from the stereographic map, so
+//!   that playing does not depend on the past.
 
 #[cfg(feature = "app")]
 pub mod app;
