@@ -5,7 +5,7 @@ use super::error::ExportError;
 use super::numbered_name::NumberedName;
 use super::options::ExportOptions;
 use crate::document::{Document, Theme};
-use crate::io::{self, Exported, FileBatch, Frames, Playback, Progress};
+use crate::io::{self, ExportFrames, Exported, FileBatch, FrameEvaluator, Progress};
 use crate::render::{Gpu, PictureRenderer};
 use crate::scene::SceneBuilder;
 use crate::session::Overlays;
@@ -36,7 +36,7 @@ pub fn sequence(
     options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
-    let frames = Frames::of_picture(document, options.fps)?;
+    let frames = ExportFrames::of_picture(document, options.fps)?;
     let mut batch = FileBatch::beside(path)?;
     let gpu = Gpu::headless()?;
     let mut renderer = FrameRenderer::new(document, options, &gpu)?;
@@ -58,7 +58,7 @@ pub fn animation(
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
     const LOOP_FOR_EVER: u32 = 0;
-    let frames = Frames::of_picture(document, options.fps)?;
+    let frames = ExportFrames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
     // Timeline::HIGHEST_FRAME_RATE is below.
     let rate = u16::try_from(frames.rate()).unwrap_or(u16::MAX);
@@ -81,7 +81,7 @@ pub fn animation(
 
 /// Draws a document at one time after another.
 struct FrameRenderer<'a> {
-    playback: Playback,
+    playback: FrameEvaluator,
     overlays: Overlays,
     builder: SceneBuilder,
     picture: PictureRenderer<'a>,
@@ -96,7 +96,7 @@ impl<'a> FrameRenderer<'a> {
     ) -> Result<Self, ExportError> {
         let (width, height) = options.size;
         Ok(Self {
-            playback: Playback::new(document),
+            playback: FrameEvaluator::new(document),
             overlays: Overlays::new(document, document.timeline.start),
             builder: SceneBuilder::default(),
             picture: PictureRenderer::of_size(gpu, width, height)?,

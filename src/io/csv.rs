@@ -1,30 +1,30 @@
 use glam::Vec3;
 
 use super::Progress;
-use super::frames::{Frames, Playback};
+use super::frames::{ExportFrames, FrameEvaluator};
 use super::motion::{Exported, MotionError};
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skeleton::is_within_numbers;
 
-/// Where the shown rig's joints are in time, as a table of comma-separated values.
+/// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
-/// A row for each frame: its number from 0, its time in seconds from the first one, and for every
-/// joint where its base is in the world, then for every bone that nothing hangs from where it ends,
-/// in units of the scene. Of the arm: shoulder, elbow, hand.
+/// One row per frame: its number from 0, its time in seconds from the first frame, the world position
+/// of every joint's base, then that of every leaf bone's tip, in units of the scene. Of the arm:
+/// shoulder, elbow, hand.
 ///
 /// # Errors
 ///
-/// If it is to stop, or the rig or the time is more than a table holds.
+/// Fails if cancelled, or if the rig or the timeline is too large for a table.
 pub fn to_csv(
     document: &Document,
     fps: Option<u32>,
     progress: &Progress,
 ) -> Result<Exported, MotionError> {
-    let frames = Frames::of_pose(document, fps)?;
+    let frames = ExportFrames::of_pose(document, fps)?;
     let columns = Columns::new(document);
     MotionError::if_too_much(frames.count(), 2 + 3 * columns.names.len())?;
-    let mut playback = Playback::new(document);
+    let mut playback = FrameEvaluator::new(document);
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.header())?;
     for frame in 0..frames.count() {
@@ -48,10 +48,10 @@ pub fn to_csv(
     Ok(Exported { bytes, notes: Vec::new() })
 }
 
-/// The points that have columns.
+/// The points in the columns of the table.
 struct Columns {
     names: Vec<String>,
-    /// The joints whose tips have some.
+    /// The joints whose tips are in the table.
     ends: Vec<usize>,
 }
 

@@ -3,7 +3,7 @@ use std::io;
 
 use thiserror::Error;
 
-/// Why a file is not open.
+/// The reason why a file cannot be opened.
 #[derive(Debug, Error)]
 pub enum OpenError {
     #[error("{file} cannot be read: {source}")]
@@ -21,15 +21,16 @@ impl OpenError {
     pub const MAX_BYTES: u64 = 64 << 20;
 }
 
-/// What there is to say about a place in a file.
+/// A message about a position in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// From 1; 0 in a binary file, which has no lines.
+    /// Line from 1; 0 in a binary file.
     pub line: usize,
-    /// From 1, in characters; 0 where there are no lines.
+    /// Column from 1, in characters; 0 in a binary file.
     pub column: usize,
-    /// The path of the field, as `skeleton.joints[3].parent`; empty where there is none.
+    /// Path of the field, like `skeleton.joints[3].parent`; empty if the message is about none.
     pub field: String,
+    /// The rule and the value that breaks it.
     pub reason: String,
 }
 
@@ -46,7 +47,7 @@ impl fmt::Display for Remark {
     }
 }
 
-/// Why a document is not on the disk.
+/// The reason why a document cannot be saved.
 #[derive(Debug, Error)]
 pub enum SaveError {
     #[error(transparent)]
@@ -55,7 +56,7 @@ pub enum SaveError {
     Value(#[from] serde_json::Error),
 }
 
-/// Why a file is not on the disk.
+/// The reason why a file cannot be written.
 #[derive(Debug, Error)]
 pub enum WriteError {
     #[error("{path} could not be written: there is no folder {folder}")]
@@ -74,7 +75,7 @@ fn list(names: &[String]) -> String {
     }
 }
 
-/// A message that quotes something long keeps its start and its end.
+/// A message without the middle of a long quotation.
 pub(crate) fn shortened(message: String) -> String {
     const START: usize = 200;
     const END: usize = 120;

@@ -3,25 +3,27 @@ use super::open::parse;
 use super::opened::Opened;
 use crate::document::Document;
 
-/// A scene that comes with the program.
+/// An example document that is built into the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
+    /// The list that it is shown in.
     pub group: Group,
-    /// As its file is called, without its ending.
+    /// Name of its file without extension.
     pub name: &'static str,
+    /// Name on screen.
     pub title: &'static str,
-    /// What it shows, in one sentence.
+    /// One sentence about it.
     pub sentence: &'static str,
-    /// What its file has, in the program's own format.
+    /// Content of its file.
     pub text: &'static str,
 }
 
-/// What an example is there for.
+/// A list of examples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// To begin with: what the program can do.
+    /// Introduction to what the program can do.
     Tour,
-    /// Where arms go wrong: a scene for every case.
+    /// One example for each case that is hard for IK.
     HardCases,
 }
 
@@ -33,6 +35,7 @@ pub fn new_document() -> Document {
 }
 
 impl Example {
+    /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 18] = [
         Self {
             group: Group::Tour,
@@ -98,8 +101,8 @@ impl Example {
             name: "straight-up-and-down",
             title: "Straight up and down",
             sentence: "The hand goes around through straight up and straight down, where the \
-                       Limb's elbow does not know its side and jumps; the stereographic swivel \
-                       takes the jumps away.",
+                       Limb's elbow does not know its side and jumps; the Stereographic \
+                       reference takes the jumps away.",
             text: include_str!("../../assets/hard/straight-up-and-down.json"),
         },
         Self {
@@ -107,7 +110,7 @@ impl Example {
             name: "along-the-pole",
             title: "Along the pole",
             sentence: "The hand crosses the line to the pole, and the elbow that points at it \
-                       flips over; the stereographic swivel takes the flip away.",
+                       flips over; the Stereographic reference takes the flip away.",
             text: include_str!("../../assets/hard/along-the-pole.json"),
         },
         Self {
@@ -115,7 +118,7 @@ impl Example {
             name: "exactly-straight",
             title: "Exactly straight",
             sentence: "The target is exactly as far away as the arm is long: it is reached, and \
-                       the spin that plays leaves the elbow where it is.",
+                       turning the Socket twist leaves the elbow where it is.",
             text: include_str!("../../assets/hard/exactly-straight.json"),
         },
         Self {
@@ -139,15 +142,15 @@ impl Example {
             name: "thousand-to-one",
             title: "One bone a thousand times the other",
             sentence: "A forearm of 0.3 on an upper arm of 300, small as its joints: the hand goes \
-                       once around the elbow's place and is where it is asked to be.",
+                       once around the elbow and stays at its target.",
             text: include_str!("../../assets/hard/thousand-to-one.json"),
         },
         Self {
             group: Group::HardCases,
             name: "far-root",
             title: "Root a million units away",
-            sentence: "The shoulder is a million units away, where places are 1/16 apart: the \
-                       limbs keep their lengths as well as such places can tell.",
+            sentence: "The shoulder is a million units away, where f32 positions are 1/16 \
+                       apart: the limbs keep their lengths within that rounding.",
             text: include_str!("../../assets/hard/far-root.json"),
         },
         Self {
@@ -174,17 +177,21 @@ impl Example {
         },
     ];
 
+    /// All examples of a group.
     pub fn of(group: Group) -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(move |example| example.group == group)
     }
 
+    /// The example with a name.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|example| example.name == name)
     }
 
+    /// Opens the example.
+    ///
     /// # Errors
     ///
-    /// None, as the tests have it.
+    /// Never fails: a test opens every example.
     pub fn open(self) -> Result<Opened, OpenError> {
         parse(self.name, self.text, None)
     }

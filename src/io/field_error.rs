@@ -18,7 +18,7 @@ impl FieldError {
 #[derive(Debug, Default)]
 pub struct FieldWarnings {
     pub first: Vec<FieldError>,
-    /// Number of further ones.
+    /// JsonNumber of further ones.
     pub more: usize,
 }
 

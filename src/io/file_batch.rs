@@ -8,14 +8,13 @@ use tempfile::TempDir;
 use super::WriteError;
 use super::write::{failed, folder_of};
 
-/// Several files in one folder that are written all or none: into a new folder beside them first.
+/// Several files in one folder that are written all or none, by way of a temporary folder beside them.
 ///
-/// Files that are there are replaced only at the end, and are brought back if one of them cannot be.
+/// Existing files are replaced only at the end, and restored if one of them cannot be replaced.
 #[derive(Debug)]
 pub struct FileBatch {
     folder: PathBuf,
-    /// Holds what is not in its place yet, and what was there before under [`BEFORE`]; it goes with
-    /// the batch.
+    /// Holds the new files until the end, then the replaced ones in [`BEFORE`]; deleted with the batch.
     temporary: TempDir,
     names: Vec<OsString>,
 }
@@ -27,7 +26,7 @@ impl FileBatch {
     ///
     /// # Errors
     ///
-    /// If nothing can be written there.
+    /// Fails if the folder cannot be written to.
     pub fn beside(path: &Path) -> Result<Self, WriteError> {
         let folder = folder_of(path)?;
         let temporary = tempfile::Builder::new()
@@ -38,11 +37,11 @@ impl FileBatch {
         Ok(Self { folder, temporary, names: Vec::new() })
     }
 
-    /// Adds a file, which must not be called as another one of them.
+    /// Adds a file. Its name must differ from those of the others.
     ///
     /// # Errors
     ///
-    /// If it cannot be written.
+    /// Fails if it cannot be written.
     pub fn add(&mut self, name: &OsStr, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.new_path(name);
         fs::write(path, bytes).map_err(|source| failed(&self.folder.join(name), source))?;
@@ -50,15 +49,15 @@ impl FileBatch {
         Ok(())
     }
 
-    /// Brings all files to their places.
+    /// Moves all files to the folder.
     ///
     /// # Errors
     ///
-    /// If one cannot be; the folder is then as it was, as far as it lets itself be.
+    /// Fails if one cannot be moved. The folder is then restored as far as possible.
     pub fn finish(self) -> Result<(), WriteError> {
         for (index, name) in self.names.iter().enumerate() {
             if let Err(source) = self.place(name) {
-                self.names[..index].iter().rev().for_each(|name| self.take_back(name));
+                self.names[..index].iter().rev().for_each(|name| self.restore(name));
                 return Err(failed(&self.folder.join(name), source));
             }
         }
@@ -77,9 +76,9 @@ impl FileBatch {
         })
     }
 
-    fn take_back(&self, name: &OsStr) {
+    fn restore(&self, name: &OsStr) {
         let path = self.folder.join(name);
-        // What cannot be taken back has no one else to be told.
+        // The error that led here is the one to report.
         let _ = fs::remove_file(&path);
         let _ = fs::rename(self.before_path(name), &path);
     }

@@ -2,29 +2,29 @@ use crate::document::{Document, RigKind, Timeline};
 
 use super::MotionError;
 
-/// The frames of an export: how many there are, and when each is.
+/// The times of all frames of an export.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frames {
+pub struct ExportFrames {
     timeline: Timeline,
     count: usize,
 }
 
-impl Frames {
-    /// Those of the document's timeline, `fps` in a second where that is said, in which the rig's pose
-    /// changes; only the first where nothing poses it.
+impl ExportFrames {
+    /// The frames of the document's timeline, at `fps` frames a second if given; only the first if the
+    /// rig's pose does not change.
     ///
     /// # Errors
     ///
-    /// Refuses a frame rate that no timeline can have.
+    /// Fails if the frame rate is not one that a timeline can have.
     pub fn of_pose(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
         Self::new(document, fps, document.is_posed_by_time())
     }
 
-    /// As [`Frames::of_pose`], with whatever else moves in a picture.
+    /// Like [`ExportFrames::of_pose`], but one frame only if nothing in a picture changes.
     ///
     /// # Errors
     ///
-    /// As [`Frames::of_pose`].
+    /// As [`ExportFrames::of_pose`].
     pub fn of_picture(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
         let moves = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
         Self::new(document, fps, moves || !document.keys.is_empty())
@@ -39,37 +39,39 @@ impl Frames {
         Ok(Self { timeline, count: if moves { timeline.frames() } else { 1 } })
     }
 
+    /// Number of frames, at least 1.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// In a second.
+    /// Frames per second.
     pub fn rate(&self) -> u32 {
         self.timeline.frame_rate
     }
 
-    /// When a frame is in the document, in seconds.
+    /// Time of a frame in the document, in seconds.
     pub fn time(&self, frame: usize) -> f64 {
         self.timeline.time(frame)
     }
 
-    /// When a frame is in a file, in seconds from its first one.
+    /// Time of a frame in an exported file, in seconds from the first frame.
     pub fn since_first(&self, frame: usize) -> f64 {
         frame as f64 / f64::from(self.rate())
     }
 }
 
-/// A document that is brought to one time after the other, without a copy for each.
-pub struct Playback {
+/// A document evaluated at one time after another without a copy for each.
+pub struct FrameEvaluator {
     document: Document,
 }
 
-impl Playback {
+impl FrameEvaluator {
+    /// An evaluator of a copy of the document.
     pub fn new(document: &Document) -> Self {
         Self { document: document.clone() }
     }
 
-    /// As [`Document::at`].
+    /// The document at a time, like [`Document::at`].
     pub fn at(&mut self, time: f64) -> &Document {
         self.document.keys_to(time);
         &self.document

@@ -1,4 +1,4 @@
-//! Where in a text a field is.
+//! Paths to values of a JSON text, and their positions.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,43 +6,43 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 
-/// The way from the whole file to one of its values.
+/// The path to a value of a JSON text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct JsonPath(Vec<Segment>);
+pub struct JsonPath(Vec<PathSegment>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Segment {
+enum PathSegment {
     Key(String),
     Index(usize),
 }
 
 impl JsonPath {
-    /// The whole file.
+    /// The path to the whole text.
     pub fn root() -> Self {
         Self::default()
     }
 
     #[must_use]
     pub fn key(mut self, key: &str) -> Self {
-        self.0.push(Segment::Key(key.to_owned()));
+        self.0.push(PathSegment::Key(key.to_owned()));
         self
     }
 
     #[must_use]
     pub fn index(mut self, index: usize) -> Self {
-        self.0.push(Segment::Index(index));
+        self.0.push(PathSegment::Index(index));
         self
     }
 
     /// The names of all fields on the path.
     pub fn keys(&self) -> impl DoubleEndedIterator<Item = &str> {
         self.0.iter().filter_map(|segment| match segment {
-            Segment::Key(key) => Some(key.as_str()),
-            Segment::Index(_) => None,
+            PathSegment::Key(key) => Some(key.as_str()),
+            PathSegment::Index(_) => None,
         })
     }
 
-    /// The byte at which the value begins, or the nearest value around it that is there.
+    /// The byte at which the value begins, or else the nearest existing value around it.
     pub fn find(&self, text: &str) -> usize {
         let inside = (1..=self.0.len()).rev();
         let found = inside.map(|depth| &self.0[..depth]).find_map(|path| find(text, path));
@@ -50,18 +50,18 @@ impl JsonPath {
     }
 }
 
-/// As `skeleton.joints[3].parent`.
+/// Writes the path like `skeleton.joints[3].parent`.
 impl fmt::Display for JsonPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_plain = |c: char| c.is_alphanumeric() || "_-".contains(c);
         for (index, segment) in self.0.iter().enumerate() {
             match segment {
-                Segment::Index(index) => write!(f, "[{index}]")?,
-                Segment::Key(key) if key.is_empty() || !key.chars().all(is_plain) => {
+                PathSegment::Index(index) => write!(f, "[{index}]")?,
+                PathSegment::Key(key) if key.is_empty() || !key.chars().all(is_plain) => {
                     write!(f, "[{key:?}]")?;
                 }
-                Segment::Key(key) if index == 0 => f.write_str(key)?,
-                Segment::Key(key) => write!(f, ".{key}")?,
+                PathSegment::Key(key) if index == 0 => f.write_str(key)?,
+                PathSegment::Key(key) => write!(f, ".{key}")?,
             }
         }
         Ok(())
@@ -72,8 +72,8 @@ impl From<&serde_path_to_error::Path> for JsonPath {
     fn from(path: &serde_path_to_error::Path) -> Self {
         use serde_path_to_error::Segment as Step;
         let segment = |step: &Step| match step {
-            Step::Seq { index } => Some(Segment::Index(*index)),
-            Step::Map { key } => Some(Segment::Key(key.clone())),
+            Step::Seq { index } => Some(PathSegment::Index(*index)),
+            Step::Map { key } => Some(PathSegment::Key(key.clone())),
             Step::Enum { .. } | Step::Unknown => None,
         };
         Self(path.iter().filter_map(segment).collect())
@@ -94,14 +94,14 @@ impl From<&serde_ignored::Path<'_>> for JsonPath {
     }
 }
 
-/// Line and column (in characters) of a byte, each from 1.
+/// Line and column of a byte, each from 1, the column in characters.
 pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |end| end + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// The byte that a parser was at when it told a line and a column in bytes, each from 1.
+/// The byte at a line and a column in bytes, each from 1.
 pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
     let start = start_of_line(text, line);
     let mut byte = (start + column.saturating_sub(1)).min(text.len());
@@ -115,11 +115,11 @@ fn start_of_line(text: &str, line: usize) -> usize {
     text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum()
 }
 
-fn find(text: &str, path: &[Segment]) -> Option<usize> {
+fn find(text: &str, path: &[PathSegment]) -> Option<usize> {
     let mut json = serde_json::Deserializer::from_str(text);
     let mut found = false;
-    let error = Walk { path, found: &mut found }.deserialize(&mut json).err()?;
-    // The parser stands before the value, at most some spaces away.
+    let error = ValueFinder { path, found: &mut found }.deserialize(&mut json).err()?;
+    // The parser is before the value, at most some spaces away.
     found.then(|| skip_space(text, start_of_line(text, error.line()) + error.column()))
 }
 
@@ -128,13 +128,13 @@ fn skip_space(text: &str, from: usize) -> usize {
     text.len() - rest.trim_start().len()
 }
 
-/// Goes to a value and stops there, so that the parser tells where it is.
-struct Walk<'a> {
-    path: &'a [Segment],
+/// Parses up to a value and fails there, so that the error has its position.
+struct ValueFinder<'a> {
+    path: &'a [PathSegment],
     found: &'a mut bool,
 }
 
-impl<'de> DeserializeSeed<'de> for Walk<'_> {
+impl<'de> DeserializeSeed<'de> for ValueFinder<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -146,7 +146,7 @@ impl<'de> DeserializeSeed<'de> for Walk<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Walk<'_> {
+impl<'de> Visitor<'de> for ValueFinder<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -154,12 +154,12 @@ impl<'de> Visitor<'de> for Walk<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Some((Segment::Key(wanted), path)) = self.path.split_first() else {
+        let Some((PathSegment::Key(wanted), path)) = self.path.split_first() else {
             return Err(A::Error::custom("no object is wanted"));
         };
         while let Some(key) = map.next_key::<Cow<'_, str>>()? {
             if key == wanted.as_str() {
-                return map.next_value_seed(Walk { path, found: self.found });
+                return map.next_value_seed(ValueFinder { path, found: self.found });
             }
             map.next_value::<IgnoredAny>()?;
         }
@@ -167,7 +167,7 @@ impl<'de> Visitor<'de> for Walk<'_> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<(), A::Error> {
-        let Some((Segment::Index(wanted), path)) = self.path.split_first() else {
+        let Some((PathSegment::Index(wanted), path)) = self.path.split_first() else {
             return Err(A::Error::custom("no array is wanted"));
         };
         for _ in 0..*wanted {
@@ -175,7 +175,7 @@ impl<'de> Visitor<'de> for Walk<'_> {
                 return Ok(());
             }
         }
-        sequence.next_element_seed(Walk { path, found: self.found })?;
+        sequence.next_element_seed(ValueFinder { path, found: self.found })?;
         Ok(())
     }
 }

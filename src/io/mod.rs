@@ -1,10 +1,10 @@
-//! Files: documents in the program's own format, Scotty3D's skeletons, and skeletons with their
-//! motions in glTF (`.gltf`, `.glb`) and BVH in; documents, [glTF](glb), [BVH](to_bvh) and
-//! [tables](to_csv) out; and the [lines](solve_line) of `ik-arm solve`.
+//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`], [`to_bvh`] and
+//! [`to_csv`] write; [`solve_line`] answers the lines of `ik-arm solve`. docs/files.md describes the
+//! formats.
 //!
-//! What is wrong in a file is said with its line, its column (of a text), the path of the field, and
-//! what would be right: see [`OpenError`]. What is only odd is a [`Remark`] beside the document. What
-//! a file made of a document cannot say is in the notes of [`Exported`].
+//! An [`OpenError`] has the line, the column, the field, the rule and the value. Oddities that do not
+//! keep a file from being opened are [`Remark`]s in [`Opened`]. Losses of an export are in the notes of
+//! [`Exported`].
 //!
 //! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]; nothing else
 //! writes to the disk.
@@ -37,7 +37,7 @@ pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::{Example, Group, new_document};
 pub use file_batch::FileBatch;
 pub use format::{save, to_json};
-pub use frames::{Frames, Playback};
+pub use frames::{ExportFrames, FrameEvaluator};
 pub use gltf::{GlbError, glb};
 pub use line::{Answer, LineError, PreviousLine, solve_line};
 pub use motion::{Exported, MotionError};

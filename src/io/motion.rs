@@ -3,20 +3,21 @@ use thiserror::Error;
 use super::Cancelled;
 use crate::document::Timeline;
 
-/// A file made of a document.
+/// The content of an exported file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
+    /// The bytes of the file.
     pub bytes: Vec<u8>,
-    /// What the document has and the file cannot say.
+    /// Losses: content of the document that the format cannot hold.
     pub notes: Vec<String>,
 }
 
-/// Why a motion cannot be a file.
+/// The reason why a motion cannot be exported.
 #[derive(Debug, Error)]
 pub enum MotionError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{0} frames in a second are not possible; they are 1 to {max}", max = Timeline::HIGHEST_FRAME_RATE)]
+    #[error("frames a second must be from 1 to {max}, got {0}", max = Timeline::HIGHEST_FRAME_RATE)]
     FrameRate(u32),
     #[error("the skeleton has no joint; the file needs at least one")]
     NoJoints,
@@ -33,12 +34,12 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// How many numbers a motion can have: about a gigabyte of text.
+    /// The most numbers that a motion can have: about a gigabyte of text.
     pub const MOST_NUMBERS: usize = 100_000_000;
 
     /// # Errors
     ///
-    /// Refuses more than [`MotionError::MOST_NUMBERS`].
+    /// Fails with more than [`MotionError::MOST_NUMBERS`].
     pub(super) fn if_too_much(frames: usize, numbers: usize) -> Result<(), Self> {
         if frames.saturating_mul(numbers) > Self::MOST_NUMBERS {
             return Err(Self::TooMuch { frames, numbers });

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use thiserror::Error;
 
-/// How far a long job is, and whether it is to go on: shared by who does it and who waits for it.
+/// Progress and cancellation of a long job, shared between the job and those who wait for it.
 #[derive(Debug, Default)]
 pub struct Progress {
     done: AtomicUsize,
@@ -10,33 +10,34 @@ pub struct Progress {
     cancelled: AtomicBool,
 }
 
-/// The job was to stop, and did.
+/// The error of a job that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
 impl Progress {
-    /// Said by the job, often: so many steps are done, of so many.
+    /// Reports that `done` of `of` steps are done. The job calls it often.
     ///
     /// # Errors
     ///
-    /// If the job is to stop.
+    /// Fails if the job was cancelled.
     pub fn step(&self, done: usize, of: usize) -> Result<(), Cancelled> {
         self.done.store(done, Ordering::Relaxed);
         self.of.store(of, Ordering::Relaxed);
         if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Asks the job to stop.
+    /// Asks the job to stop at its next step.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
+    /// Whether the job was asked to stop.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// What part of the job is done, from 0 to 1.
+    /// Fraction of the job that is done, from 0 to 1.
     pub fn part(&self) -> f32 {
         let (done, of) = (self.done.load(Ordering::Relaxed), self.of.load(Ordering::Relaxed));
         if of == 0 { 0.0 } else { (done as f32 / of as f32).min(1.0) }

@@ -1,4 +1,4 @@
-//! What files are made of: objects, finite numbers, rows of them.
+//! Values in JSON files: objects, finite numbers, arrays of them. Errors say what was expected.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -9,65 +9,65 @@ use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visi
 use serde::ser::{Error as _, SerializeSeq as _, Serializer};
 use serde::{Deserialize, Serialize};
 
-/// An object. Derived code alone would take an array, too.
+/// An object. The derived code alone accepts an array, too.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Object<T>(pub T);
+pub struct JsonObject<T>(pub T);
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for JsonObject<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ObjectVisitor<T>(PhantomData<T>);
+        struct JsonObjectVisitor<T>(PhantomData<T>);
 
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
-            type Value = Object<T>;
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for JsonObjectVisitor<T> {
+            type Value = JsonObject<T>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("an object: {…}")
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Object<T>, A::Error> {
-                T::deserialize(MapAccessDeserializer::new(map)).map(Object)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<JsonObject<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(map)).map(JsonObject)
             }
         }
 
-        deserializer.deserialize_map(ObjectVisitor(PhantomData))
+        deserializer.deserialize_map(JsonObjectVisitor(PhantomData))
     }
 }
 
-/// A finite f32; the parser refuses what rounds past the largest one.
+/// A finite f32. The parser refuses numbers that overflow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Number(pub f32);
+pub struct JsonNumber(pub f32);
 
-impl<'de> Deserialize<'de> for Number {
+impl<'de> Deserialize<'de> for JsonNumber {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumberVisitor;
+        struct JsonNumberVisitor;
 
-        impl Visitor<'_> for NumberVisitor {
-            type Value = Number;
+        impl Visitor<'_> for JsonNumberVisitor {
+            type Value = JsonNumber;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number")
             }
 
-            fn visit_f64<E>(self, value: f64) -> Result<Number, E> {
-                Ok(Number(value as f32))
+            fn visit_f64<E>(self, value: f64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value as f32))
             }
 
-            fn visit_u64<E>(self, value: u64) -> Result<Number, E> {
-                Ok(Number(value as f32))
+            fn visit_u64<E>(self, value: u64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value as f32))
             }
 
-            fn visit_i64<E>(self, value: i64) -> Result<Number, E> {
-                Ok(Number(value as f32))
+            fn visit_i64<E>(self, value: i64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value as f32))
             }
         }
 
         // As f32, so that decimals are rounded once, not to f64 first.
-        deserializer.deserialize_f32(NumberVisitor)
+        deserializer.deserialize_f32(JsonNumberVisitor)
     }
 }
 
-impl Serialize for Number {
+impl Serialize for JsonNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !self.0.is_finite() {
             return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
@@ -76,7 +76,7 @@ impl Serialize for Number {
     }
 }
 
-/// A finite f64: a time, which single precision would be too coarse for.
+/// A time in seconds: a finite f64, because f32 is too coarse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds(pub f64);
 
@@ -95,11 +95,11 @@ impl Serialize for Seconds {
     }
 }
 
-/// A time and the numbers at it, in a row.
+/// A key: its time and its numbers, as one array.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyRow {
     pub time: Seconds,
-    pub values: Vec<Number>,
+    pub values: Vec<JsonNumber>,
 }
 
 impl<'de> Deserialize<'de> for KeyRow {
@@ -136,16 +136,16 @@ impl Serialize for KeyRow {
     }
 }
 
-/// So many numbers in a row.
+/// An array of `N` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Numbers<const N: usize>(pub [f32; N]);
+pub struct JsonNumbers<const N: usize>(pub [f32; N]);
 
-impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
+impl<'de, const N: usize> Deserialize<'de> for JsonNumbers<N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumbersVisitor<const N: usize>;
+        struct JsonNumbersVisitor<const N: usize>;
 
-        impl<'de, const N: usize> Visitor<'de> for NumbersVisitor<N> {
-            type Value = Numbers<N>;
+        impl<'de, const N: usize> Visitor<'de> for JsonNumbersVisitor<N> {
+            type Value = JsonNumbers<N>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 match N {
@@ -156,10 +156,10 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
                 }
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<Numbers<N>, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<JsonNumbers<N>, A::Error> {
                 let mut numbers = [0.0; N];
                 let mut found = 0;
-                while let Some(Number(number)) = row.next_element()? {
+                while let Some(JsonNumber(number)) = row.next_element()? {
                     if let Some(place) = numbers.get_mut(found) {
                         *place = number;
                     }
@@ -172,37 +172,38 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
                     let error = format!("found {found} number{s}, expected {expected}");
                     return Err(A::Error::custom(error));
                 }
-                Ok(Numbers(numbers))
+                Ok(JsonNumbers(numbers))
             }
         }
 
-        deserializer.deserialize_seq(NumbersVisitor)
+        deserializer.deserialize_seq(JsonNumbersVisitor)
     }
 }
 
-impl<const N: usize> Serialize for Numbers<N> {
+impl<const N: usize> Serialize for JsonNumbers<N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.map(Number))
+        serializer.collect_seq(self.0.map(JsonNumber))
     }
 }
 
-/// Three numbers.
+/// An array of three numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Point(pub Vec3);
+pub struct JsonPoint(pub Vec3);
 
-impl<'de> Deserialize<'de> for Point {
+impl<'de> Deserialize<'de> for JsonPoint {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Numbers::deserialize(deserializer).map(|Numbers(point)| Self(Vec3::from_array(point)))
+        JsonNumbers::deserialize(deserializer)
+            .map(|JsonNumbers(point)| Self(Vec3::from_array(point)))
     }
 }
 
-impl Serialize for Point {
+impl Serialize for JsonPoint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Numbers(self.0.to_array()).serialize(serializer)
+        JsonNumbers(self.0.to_array()).serialize(serializer)
     }
 }
 
-/// A whole number, 0 or more.
+/// A whole number from 0 to 4294967295.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Whole(pub u32);
 

@@ -4,22 +4,22 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
-/// Writes a file whole or not at all: to a new file beside it first. One that is there keeps its
-/// rights, and a link stays a link. What is no file, such as a pipe or a device, is written to as it
-/// is.
+/// Writes a file whole or not at all, by way of a temporary file beside it. An existing file keeps its
+/// permissions, and a link stays a link. A pipe or a device is written to directly.
 ///
 /// # Errors
 ///
-/// If the folder or the file cannot be written.
+/// Fails if the folder or the file cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
 }
 
-/// As [`write()`], what `write` writes, piece by piece. If that fails, there is no file.
+/// Like [`write()`], with the content that `write` writes piece by piece. If it fails, no file is
+/// created.
 ///
 /// # Errors
 ///
-/// If the folder or the file cannot be written, or `write` fails.
+/// Fails if the folder or the file cannot be written, or `write` fails.
 pub fn write_with<E: From<WriteError>>(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
@@ -36,7 +36,7 @@ pub fn write_with<E: From<WriteError>>(
         }
         _ => {}
     }
-    // Where a link leads, so that it stays a link.
+    // The target of a link, so that it stays a link.
     let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let rights = there.map(|there| there.permissions());
     let mut file = temporary_file(&folder_of(path)?).map_err(failed)?;
@@ -48,7 +48,7 @@ pub fn write_with<E: From<WriteError>>(
     Ok(())
 }
 
-/// The folder that a file is in, which must be there.
+/// The folder of a file, which must exist.
 pub(super) fn folder_of(path: &Path) -> Result<PathBuf, WriteError> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -80,7 +80,7 @@ fn keep(
     Ok(())
 }
 
-/// With the rights that a new file has here, not the private ones of a temporary file.
+/// A temporary file with the permissions of a new file, not the private ones of temporary files.
 fn temporary_file(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".ik-arm-");

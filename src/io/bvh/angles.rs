@@ -6,8 +6,8 @@ use glam::{DMat3, DVec3};
 /// ones: every rotation has two triples, each up to whole turns. At y = ±90°, where x and z turn
 /// about one axis, z stays.
 ///
-/// As [`nearest_angles`](crate::kinematics::skeleton::nearest_angles), and in f64, so that a
-/// chain of many joints ends where it does.
+/// [`nearest_angles`](crate::kinematics::skeleton::nearest_angles) in f64, so that errors do not add up
+/// along a long chain.
 pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     const GIMBAL: f64 = 1e-9;
     let DMat3 { x_axis, y_axis, z_axis } = rotation;

@@ -1,6 +1,6 @@
 use std::collections::{HashMap, HashSet};
 
-/// Names that all differ: the first of several that are the same keeps it, the others get a number.
+/// Unique names: of equal ones, the first stays and the others get a number.
 pub fn distinct(names: &[String]) -> Vec<String> {
     let mut taken: HashSet<&str> = HashSet::new();
     let is_first: Vec<bool> = names.iter().map(|name| taken.insert(name)).collect();

@@ -1,8 +1,8 @@
 use std::fmt;
 
-/// What a motion has and BVH cannot say.
-pub enum Note<'a> {
-    /// The skeleton's transform stretches, shears or flattens.
+/// A loss in exporting to BVH.
+pub enum BvhNote<'a> {
+    /// The skeleton's transform has uneven scale, shear or zero scale.
     Uneven,
     /// The length of a limb changes.
     Length(&'a str),
@@ -10,20 +10,20 @@ pub enum Note<'a> {
     Offsets(&'a [&'a str]),
 }
 
-impl fmt::Display for Note<'_> {
+impl fmt::Display for BvhNote<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Uneven => f.write_str(
-                "the skeleton is scaled unevenly, sheared or flattened, and BVH only turns: the \
-                 joints are turned as nearly as turns can be",
+                "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations only: the \
+                 nearest rotations are written",
             ),
             Self::Length(limb) => write!(
                 f,
-                "the length of the {limb} limb changes, which BVH cannot say: that of the first \
-                 frame is written"
+                "the length of the {limb} limb changes, but BVH lengths are constant: that of the \
+                 first frame is written"
             ),
             Self::Offsets(joints) => {
-                /// More names than so many help nobody.
+                /// The rest is counted.
                 const MOST: usize = 10;
                 let named: Vec<_> =
                     joints.iter().take(MOST).map(|name| format!("{name:?}")).collect();
@@ -35,8 +35,8 @@ impl fmt::Display for Note<'_> {
                 let change = if joints.len() == 1 { "changes" } else { "change" };
                 write!(
                     f,
-                    " {change} in time, which BVH can say of a single root only: what is at the first \
-                     frame is written"
+                    " {change} in time, but BVH offsets are constant except for a single root: those of \
+                     the first frame are written"
                 )
             }
         }

@@ -1,28 +1,29 @@
 use glam::{DMat3, DVec3, Vec3};
 
-use super::hierarchy::{self, Channel, Node};
-use super::motion::{self, Motion};
+use super::angles;
+use super::hierarchy::{self, BvhChannel, BvhNode};
+use super::motion::{self, MotionData};
 use super::names::distinct;
-use super::text::{Fault, Text};
-use super::{METRES, angles};
+use super::text::{Scanner, TextError};
+use super::unit::METRES;
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, Skeleton};
 
-/// Whether a text's first word says that it is BVH.
+/// Whether a text is BVH, by its first word.
 pub fn is_bvh(text: &str) -> bool {
-    Text::new(text).word().is("HIERARCHY")
+    Scanner::new(text).word().is("HIERARCHY")
 }
 
-/// Reads the one skeleton of a file, which is called as its first root.
+/// Reads the skeleton of a file. Its name is that of the first root.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
-    let wrong = |fault: Fault| {
+    let wrong = |fault: TextError| {
         let remark = source.remark_about(fault.at, &fault.joint, &fault.reason);
         OpenError::Content { file: source.name().to_owned(), remark }
     };
-    let mut text = Text::new(source.text());
+    let mut text = Scanner::new(source.text());
     let mut nodes = hierarchy::read(&mut text).map_err(wrong)?;
     let (motion, odd) = motion::read(&mut text, &nodes).map_err(wrong)?;
     let skeletons: Vec<_> = nodes.iter().take(1).map(|root| root.name.clone()).collect();
@@ -36,9 +37,9 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     Ok(Opened { order: (0..nodes.len()).collect(), document, warnings, skeletons })
 }
 
-/// Gives joints that are called as another one a name of their own, and says so.
-fn rename(source: &Source, nodes: &mut [Node]) -> Vec<Remark> {
-    /// To look up where each is takes a way through the text.
+/// Renames joints that have the name of another one, with a warning each.
+fn rename(source: &Source, nodes: &mut [BvhNode]) -> Vec<Remark> {
+    /// Finding the position of each searches the text.
     const MOST: usize = 20;
     let names: Vec<_> = nodes.iter().map(|node| node.name.clone()).collect();
     let mut remarks = Vec::new();
@@ -48,7 +49,7 @@ fn rename(source: &Source, nodes: &mut [Node]) -> Vec<Remark> {
             continue;
         }
         if remarks.len() < MOST {
-            let reason = format!("another joint is called the same; this one is called {name:?}");
+            let reason = format!("must be unique; this joint is renamed to {name:?}");
             remarks.push(source.remark_about(node.at, &node.name, &reason));
         } else {
             more += 1;
@@ -62,12 +63,12 @@ fn rename(source: &Source, nodes: &mut [Node]) -> Vec<Remark> {
     remarks
 }
 
-fn document(nodes: &[Node], motion: &Motion) -> Result<Document, Fault> {
+fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextError> {
     let mut keys = Keys::default();
     let mut joints = Vec::with_capacity(nodes.len());
     let mut start = 0;
     for (index, node) in nodes.iter().enumerate() {
-        let Places { offset, rotation } = key(&mut keys, index, node, motion, start);
+        let FirstFrame { offset, rotation } = key(&mut keys, index, node, motion, start);
         let seed = Joint::new(&node.name, node.parent, Vec3::ZERO);
         joints.push(Joint { offset, rotation, ..seed });
         start += node.channels.len();
@@ -79,7 +80,7 @@ fn document(nodes: &[Node], motion: &Motion) -> Result<Document, Fault> {
     }
     let at = nodes.first().map_or(0, |root| root.at);
     let skeleton =
-        Skeleton::from_joints(joints).map_err(|error| Fault::new(at, "", error.to_string()))?;
+        Skeleton::from_joints(joints).map_err(|error| TextError::new(at, "", error.to_string()))?;
     let rig = SkeletonRig::new(skeleton);
     Ok(Document {
         rig: RigKind::Skeleton,
@@ -92,8 +93,8 @@ fn document(nodes: &[Node], motion: &Motion) -> Result<Document, Fault> {
     })
 }
 
-/// From the first frame to the last; a pose has the time that a new document has.
-fn timeline(motion: &Motion) -> Timeline {
+/// From the first frame to the last; the default for a single frame.
+fn timeline(motion: &MotionData) -> Timeline {
     let usual = Timeline::default();
     let timing = motion.timing;
     let end = timing.time(motion.frames().saturating_sub(1));
@@ -101,24 +102,30 @@ fn timeline(motion: &Motion) -> Timeline {
     if timeline.is_valid() { timeline } else { Timeline { end: usual.end, ..timeline } }
 }
 
-/// Where a joint is at the first frame.
-struct Places {
+/// A joint's offset and angles at the first frame.
+struct FirstFrame {
     offset: Vec3,
     rotation: Vec3,
 }
 
-/// Keys what of a joint changes; `start` is the number of its first channel in a frame.
-fn key(keys: &mut Keys, joint: usize, node: &Node, motion: &Motion, start: usize) -> Places {
+/// Adds keys for the values of a joint that change. `start` is the index of its first channel.
+fn key(
+    keys: &mut Keys,
+    joint: usize,
+    node: &BvhNode,
+    motion: &MotionData,
+    start: usize,
+) -> FirstFrame {
     let rows = motion.of(start, node.channels.len());
     let Some(first) = rows.clone().next() else {
-        return Places { offset: node.offset, rotation: Vec3::ZERO };
+        return FirstFrame { offset: node.offset, rotation: Vec3::ZERO };
     };
-    let changes = |is_one: fn(&Channel) -> bool| {
+    let changes = |is_one: fn(&BvhChannel) -> bool| {
         let of = |row: &[f32], index: usize| row.get(index).copied();
         let chosen = || (0..node.channels.len()).filter(|index| is_one(&node.channels[*index]));
         rows.clone().any(|row| chosen().any(|index| of(row, index) != of(first, index)))
     };
-    if changes(|channel| matches!(channel, Channel::Position(_))) {
+    if changes(|channel| matches!(channel, BvhChannel::Position(_))) {
         for (frame, row) in rows.clone().enumerate() {
             let time = motion.timing.time(frame);
             keys.insert(document::Channel::Offset(joint), time, offset(node, row));
@@ -126,21 +133,21 @@ fn key(keys: &mut Keys, joint: usize, node: &Node, motion: &Motion, start: usize
     }
     let mut angles = first_angles(node, first);
     let rotation = angles.as_vec3();
-    if changes(|channel| matches!(channel, Channel::Rotation(_))) {
+    if changes(|channel| matches!(channel, BvhChannel::Rotation(_))) {
         for (frame, row) in rows.enumerate() {
             angles = angles::nearest(turn(node, row), angles);
             let time = motion.timing.time(frame);
             keys.insert(document::Channel::Rotation(joint), time, angles.as_vec3());
         }
     }
-    Places { offset: offset(node, first), rotation }
+    FirstFrame { offset: offset(node, first), rotation }
 }
 
-/// Position channels stand in the place of the joint's own offset.
-fn offset(node: &Node, row: &[f32]) -> Vec3 {
+/// Position channels replace the joint's offset.
+fn offset(node: &BvhNode, row: &[f32]) -> Vec3 {
     let mut offset = node.offset;
     for (channel, value) in node.channels.iter().zip(row) {
-        if let Channel::Position(axis) = channel {
+        if let BvhChannel::Position(axis) = channel {
             offset[*axis] = *value;
         }
     }
@@ -148,28 +155,28 @@ fn offset(node: &Node, row: &[f32]) -> Vec3 {
 }
 
 /// The product of a joint's rotations, in the order of its channels.
-fn turn(node: &Node, row: &[f32]) -> DMat3 {
+fn turn(node: &BvhNode, row: &[f32]) -> DMat3 {
     let mut turn = DMat3::IDENTITY;
     for (channel, value) in node.channels.iter().zip(row) {
         let angle = f64::from(*value).to_radians();
         turn *= match channel {
-            Channel::Rotation(0) => DMat3::from_rotation_x(angle),
-            Channel::Rotation(1) => DMat3::from_rotation_y(angle),
-            Channel::Rotation(_) => DMat3::from_rotation_z(angle),
-            Channel::Position(_) => DMat3::IDENTITY,
+            BvhChannel::Rotation(0) => DMat3::from_rotation_x(angle),
+            BvhChannel::Rotation(1) => DMat3::from_rotation_y(angle),
+            BvhChannel::Rotation(_) => DMat3::from_rotation_z(angle),
+            BvhChannel::Position(_) => DMat3::IDENTITY,
         };
     }
     turn
 }
 
-/// The joint's angles at the first frame: those of the file, if they are in our order.
-fn first_angles(node: &Node, row: &[f32]) -> DVec3 {
-    /// In degrees: beyond it an f32 radian would say little of where the joint is.
+/// The joint's angles at the first frame: those of the file if its order is Z, Y, X.
+fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
+    /// In degrees. Larger angles are too coarse in f32 radians.
     const MANY_TURNS: f32 = 36_000.0;
     let mut angles = DVec3::ZERO;
     let mut order = Vec::new();
     for (channel, value) in node.channels.iter().zip(row) {
-        if let Channel::Rotation(axis) = channel {
+        if let BvhChannel::Rotation(axis) = channel {
             angles[*axis] = f64::from(*value % MANY_TURNS).to_radians();
             order.push(*axis);
         }
@@ -178,9 +185,9 @@ fn first_angles(node: &Node, row: &[f32]) -> DVec3 {
     if is_ours { angles } else { angles::nearest(turn(node, row), DVec3::ZERO) }
 }
 
-/// The joints' bones: to an End Site, else to the only child or the middle of the children, as they
-/// are at the first frame. What has neither is a point.
-fn axes(nodes: &[Node], joints: &[Joint]) -> Vec<Vec3> {
+/// The joints' bones at the first frame: to an End Site, else to the only child or the middle of the
+/// children, else of length 0.
+fn axes(nodes: &[BvhNode], joints: &[Joint]) -> Vec<Vec3> {
     let mut sums = vec![(DVec3::ZERO, 0_u32); joints.len()];
     for joint in joints {
         if let Some(parent) = joint.parent {
@@ -188,7 +195,7 @@ fn axes(nodes: &[Node], joints: &[Joint]) -> Vec<Vec3> {
             sums[parent].1 += 1;
         }
     }
-    let axis = |(node, (sum, count)): (&Node, (DVec3, u32))| {
+    let axis = |(node, (sum, count)): (&BvhNode, (DVec3, u32))| {
         node.end.unwrap_or_else(|| (sum / f64::from(count.max(1))).as_vec3())
     };
     nodes.iter().zip(sums).map(axis).collect()

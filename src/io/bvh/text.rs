@@ -1,33 +1,33 @@
-/// A way through a text, word by word.
+/// A scanner that splits a text into words.
 #[derive(Clone, Copy)]
-pub struct Text<'a> {
+pub struct Scanner<'a> {
     text: &'a str,
     at: usize,
 }
 
-/// Some of a text, and the byte at which it begins.
+/// A part of the text, and the byte at which it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Word<'a> {
+pub struct Token<'a> {
     pub text: &'a str,
     pub at: usize,
 }
 
-/// What is wrong at a byte of a text.
+/// An error at a byte of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct TextError {
     pub at: usize,
-    /// The joint that it is about; empty where it is about none.
+    /// The joint that the error is about; empty if it is about none.
     pub joint: String,
     pub reason: String,
 }
 
-impl<'a> Text<'a> {
+impl<'a> Scanner<'a> {
     pub fn new(text: &'a str) -> Self {
         Self { text, at: 0 }
     }
 
-    /// What stands between spaces and braces, or a brace; empty at the end.
-    pub fn word(&mut self) -> Word<'a> {
+    /// The next word or brace; empty at the end.
+    pub fn word(&mut self) -> Token<'a> {
         let rest = self.skip_space();
         let end = match rest.starts_with(is_brace) {
             true => 1,
@@ -36,16 +36,15 @@ impl<'a> Text<'a> {
         self.take(end)
     }
 
-    /// What stands before the end of the line or a brace, on this line or the next that has
-    /// something; without the spaces around it.
-    pub fn name(&mut self) -> Word<'a> {
+    /// The rest of this line, or else the next line that is not blank, up to a brace, trimmed.
+    pub fn name(&mut self) -> Token<'a> {
         let rest = self.skip_space();
         let is_end = |c: char| c == '\n' || c == '\r' || is_brace(c);
         let word = self.take(rest.find(is_end).unwrap_or(rest.len()));
-        Word { text: word.text.trim_end(), ..word }
+        Token { text: word.text.trim_end(), ..word }
     }
 
-    /// Passes over these words and a colon, if they are next.
+    /// Skips these words and a colon if they are next.
     pub fn label(&mut self, words: &[&str]) -> bool {
         let mut ahead = *self;
         for word in words {
@@ -65,14 +64,14 @@ impl<'a> Text<'a> {
         is_there
     }
 
-    /// What is left of this line, or else the next that has something; nothing at the end.
-    pub fn line(&mut self) -> Option<Word<'a>> {
+    /// The rest of this line, or else the next line that is not blank; `None` at the end.
+    pub fn line(&mut self) -> Option<Token<'a>> {
         let rest = self.skip_space();
         let word = self.take(rest.find(['\n', '\r']).unwrap_or(rest.len()));
-        (!word.text.is_empty()).then(|| Word { text: word.text.trim_end(), ..word })
+        (!word.text.is_empty()).then(|| Token { text: word.text.trim_end(), ..word })
     }
 
-    /// How many bytes are left.
+    /// Number of bytes left.
     pub fn left(&self) -> usize {
         self.text.len() - self.at
     }
@@ -84,15 +83,15 @@ impl<'a> Text<'a> {
         trimmed
     }
 
-    fn take(&mut self, length: usize) -> Word<'a> {
+    fn take(&mut self, length: usize) -> Token<'a> {
         let at = self.at;
         self.at += length;
-        Word { text: self.text.get(at..self.at).unwrap_or_default(), at }
+        Token { text: self.text.get(at..self.at).unwrap_or_default(), at }
     }
 }
 
-impl<'a> Word<'a> {
-    /// The words of it, which is a line.
+impl<'a> Token<'a> {
+    /// The words of a line.
     pub fn words(self) -> impl Iterator<Item = Self> {
         let mut left = self;
         std::iter::from_fn(move || {
@@ -109,13 +108,13 @@ impl<'a> Word<'a> {
         self.text.eq_ignore_ascii_case(keyword)
     }
 
-    /// The byte after it.
+    /// The byte after the token.
     pub fn end(self) -> usize {
         self.at + self.text.len()
     }
 
-    pub fn number(self, joint: &str) -> Result<f32, Fault> {
-        let wrong = |reason| Fault::new(self.at, joint, reason);
+    pub fn number(self, joint: &str) -> Result<f32, TextError> {
+        let wrong = |reason| TextError::new(self.at, joint, reason);
         let number: f64 = match self.text.parse() {
             Ok(number) => number,
             Err(_) => return Err(wrong(format!("{}, expected a number", self.found()))),
@@ -123,13 +122,13 @@ impl<'a> Word<'a> {
         if (number as f32).is_finite() {
             return Ok(number as f32);
         }
-        Err(wrong(format!("{} is out of range; it must be between ±3.4028235e38", self.text)))
+        Err(wrong(format!("must be between ±3.4028235e38, got {}", self.text)))
     }
 
-    pub fn whole(self, joint: &str) -> Result<usize, Fault> {
+    pub fn whole(self, joint: &str) -> Result<usize, TextError> {
         self.text.parse().map_err(|_| {
             let reason = format!("{}, expected a whole number, 0 or more", self.found());
-            Fault::new(self.at, joint, reason)
+            TextError::new(self.at, joint, reason)
         })
     }
 
@@ -141,7 +140,7 @@ impl<'a> Word<'a> {
     }
 }
 
-impl Fault {
+impl TextError {
     pub fn new(at: usize, joint: &str, reason: impl Into<String>) -> Self {
         Self { at, joint: joint.to_owned(), reason: reason.into() }
     }

@@ -3,78 +3,79 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use super::angles;
-use super::figure::{Figure, Stance};
-use super::place::Place;
-use super::{BvhUnit, Note};
+use super::note::BvhNote;
+use super::rig::{BvhPose, BvhRig};
+use super::transform::SkeletonTransform;
+use super::unit::BvhUnit;
 use crate::document::{Document, RigKind};
 use crate::io::Progress;
-use crate::io::frames::{Frames, Playback};
+use crate::io::frames::{ExportFrames, FrameEvaluator};
 use crate::io::motion::{Exported, MotionError};
 
-/// The shown rig and its motion as BVH: see the module.
+/// The shown rig and its motion as a BVH file.
 ///
 /// # Errors
 ///
-/// If it is to stop, or the rig or the time is more than such a file holds.
+/// Fails if cancelled, or if the rig or the timeline is too large.
 pub fn to_bvh(
     document: &Document,
     fps: Option<u32>,
     unit: BvhUnit,
     progress: &Progress,
 ) -> Result<Exported, MotionError> {
-    let frames = Frames::of_pose(document, fps)?;
-    let figure = Figure::new(document).ok_or(MotionError::NoJoints)?;
-    MotionError::if_too_much(frames.count(), 3 + 3 * figure.names.len())?;
-    let mut playback = Playback::new(document);
-    let mut moving = Moving::default();
-    let mut motion = Motion::new(&figure, unit.per_unit(document));
+    let frames = ExportFrames::of_pose(document, fps)?;
+    let rig = BvhRig::new(document).ok_or(MotionError::NoJoints)?;
+    MotionError::if_too_much(frames.count(), 3 + 3 * rig.names.len())?;
+    let mut playback = FrameEvaluator::new(document);
+    let mut moving = LostMotion::default();
+    let mut motion = BvhWriter::new(&rig, unit.per_unit(document));
     let mut text = String::new();
-    let mut first: Option<Stance> = None;
+    let mut first: Option<BvhPose> = None;
     for frame in 0..frames.count() {
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         let posed = playback.at(time);
-        let place = Place::new(posed.skeleton().transform());
-        let stance = figure.stance(posed, &place, time);
+        let place = SkeletonTransform::new(posed.skeleton().transform());
+        let pose = rig.pose(posed, &place, time);
         let first = match &first {
             Some(first) => first,
             None => {
-                text = motion.hierarchy(&stance)?;
+                text = motion.hierarchy(&pose)?;
                 motion_header(&mut text, &frames);
-                moving = Moving::new(document, &place, &stance);
-                first.insert(stance.clone())
+                moving = LostMotion::new(document, &place, &pose);
+                first.insert(pose.clone())
             }
         };
-        moving.compare(first, &stance);
-        motion.frame(&mut text, &stance)?;
+        moving.compare(first, &pose);
+        motion.frame(&mut text, &pose)?;
     }
     progress.step(frames.count(), frames.count())?;
-    Ok(Exported { bytes: text.into_bytes(), notes: moving.notes(&figure) })
+    Ok(Exported { bytes: text.into_bytes(), notes: moving.notes(&rig) })
 }
 
-fn motion_header(text: &mut String, frames: &Frames) {
+fn motion_header(text: &mut String, frames: &ExportFrames) {
     let _ = writeln!(text, "MOTION\nFrames: {}", frames.count());
     let _ = writeln!(text, "Frame Time: {:.9}", f64::from(frames.rate()).recip());
 }
 
-/// Writes a figure's places and turns.
-struct Motion<'a> {
-    figure: &'a Figure,
-    /// How many of the file's units a unit of the scene is.
+/// Writes the hierarchy and the frames of a rig.
+struct BvhWriter<'a> {
+    rig: &'a BvhRig,
+    /// Length of a unit of the scene in the file.
     scale: f64,
-    /// What the joints' angles were last, in radians, so that they go on from there.
+    /// The joints' angles in the last frame, radians, for unwrapping.
     angles: Vec<DVec3>,
 }
 
-impl<'a> Motion<'a> {
-    fn new(figure: &'a Figure, scale: f64) -> Self {
-        Self { figure, scale, angles: vec![DVec3::ZERO; figure.names.len()] }
+impl<'a> BvhWriter<'a> {
+    fn new(rig: &'a BvhRig, scale: f64) -> Self {
+        Self { rig, scale, angles: vec![DVec3::ZERO; rig.names.len()] }
     }
 
-    fn hierarchy(&self, stance: &Stance) -> Result<String, MotionError> {
+    fn hierarchy(&self, pose: &BvhPose) -> Result<String, MotionError> {
         let mut text = "HIERARCHY\n".to_owned();
-        let Figure { names, parents, .. } = self.figure;
-        // The nodes that are open, from the first one inwards.
+        let BvhRig { names, parents, .. } = self.rig;
+        // The open nodes, from the root inwards.
         let mut open: Vec<usize> = Vec::new();
         for (node, (name, parent)) in names.iter().zip(parents).enumerate() {
             while open.last().copied() != *parent {
@@ -85,14 +86,14 @@ impl<'a> Motion<'a> {
             let kind = if parent.is_none() { "ROOT" } else { "JOINT" };
             line(&mut text, depth, &format!("{kind} {name}"));
             line(&mut text, depth, "{");
-            let offset = if parent.is_none() { DVec3::ZERO } else { stance.offsets[node] };
+            let offset = if parent.is_none() { DVec3::ZERO } else { pose.offsets[node] };
             line(&mut text, depth + 1, &format!("OFFSET{}", self.place(node, offset)?));
             let channels = match parent {
                 None => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
                 Some(_) => "3 Zrotation Yrotation Xrotation",
             };
             line(&mut text, depth + 1, &format!("CHANNELS {channels}"));
-            if let Some(end) = stance.ends[node] {
+            if let Some(end) = pose.ends[node] {
                 line(&mut text, depth + 1, "End Site");
                 line(&mut text, depth + 1, "{");
                 line(&mut text, depth + 2, &format!("OFFSET{}", self.place(node, end)?));
@@ -106,27 +107,27 @@ impl<'a> Motion<'a> {
         Ok(text)
     }
 
-    fn frame(&mut self, text: &mut String, stance: &Stance) -> Result<(), MotionError> {
-        let root = stance.offsets.first().copied().unwrap_or_default();
+    fn frame(&mut self, text: &mut String, pose: &BvhPose) -> Result<(), MotionError> {
+        let root = pose.offsets.first().copied().unwrap_or_default();
         let start = text.len();
         text.push_str(&self.place(0, root)?);
-        for (angles, turn) in self.angles.iter_mut().zip(&stance.turns) {
+        for (angles, turn) in self.angles.iter_mut().zip(&pose.turns) {
             *angles = angles::nearest(*turn, *angles);
             for angle in [angles.z, angles.y, angles.x] {
                 push(text, degrees(angle));
             }
         }
-        // Each number has a space before it.
+        // A space precedes each number.
         text.remove(start);
         text.push('\n');
         Ok(())
     }
 
-    /// Three numbers, each with a space before it.
+    /// Three numbers, each after a space.
     fn place(&self, node: usize, place: DVec3) -> Result<String, MotionError> {
         let place = (place * self.scale).as_vec3();
         if !place.is_finite() {
-            let joint = self.figure.names.get(node).cloned().unwrap_or_default();
+            let joint = self.rig.names.get(node).cloned().unwrap_or_default();
             return Err(MotionError::TooFar { joint });
         }
         let mut text = String::new();
@@ -137,20 +138,20 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// In f32, the precision of what is turned: 90 is 90 again.
+/// In f32, so that 90 stays 90.
 fn degrees(radians: f64) -> f32 {
-    /// What is nearer to 0 is a rounding.
+    /// Smaller angles are rounding.
     const ROUNDING: f32 = 1e-9;
     let degrees = radians.to_degrees() as f32;
     if degrees.abs() < ROUNDING { 0.0 } else { degrees }
 }
 
-/// As few digits as make the same f32 again; never −0.
+/// Writes the fewest digits that parse to the same f32; never −0.
 fn push(text: &mut String, number: f32) {
     let _ = write!(text, " {}", number + 0.0);
 }
 
-/// Deep hierarchies would be nothing but tabs.
+/// Indentation is bounded, because deep hierarchies would be mostly tabs.
 fn line(text: &mut String, depth: usize, line: &str) {
     const DEEPEST: usize = 32;
     text.extend(std::iter::repeat_n('\t', depth.min(DEEPEST)));
@@ -158,28 +159,28 @@ fn line(text: &mut String, depth: usize, line: &str) {
     text.push('\n');
 }
 
-/// What of the motion is not in the file.
+/// Motion that the file cannot hold.
 #[derive(Default)]
-struct Moving {
+struct LostMotion {
     is_arm: bool,
     is_uneven: bool,
     offsets: Vec<bool>,
     ends: Vec<bool>,
 }
 
-impl Moving {
-    fn new(document: &Document, place: &Place, stance: &Stance) -> Self {
+impl LostMotion {
+    fn new(document: &Document, place: &SkeletonTransform, pose: &BvhPose) -> Self {
         let is_arm = document.rig == RigKind::Arm;
         Self {
             is_arm,
             is_uneven: !is_arm && !place.is_even(),
-            offsets: vec![false; stance.offsets.len()],
-            ends: vec![false; stance.ends.len()],
+            offsets: vec![false; pose.offsets.len()],
+            ends: vec![false; pose.ends.len()],
         }
     }
 
-    fn compare(&mut self, first: &Stance, now: &Stance) {
-        // The first one's is in its channels.
+    fn compare(&mut self, first: &BvhPose, now: &BvhPose) {
+        // The first node has position channels.
         for (node, moves) in self.offsets.iter_mut().enumerate().skip(1) {
             *moves |= first.offsets[node] != now.offsets[node];
         }
@@ -188,21 +189,21 @@ impl Moving {
         }
     }
 
-    fn notes(&self, figure: &Figure) -> Vec<String> {
+    fn notes(&self, rig: &BvhRig) -> Vec<String> {
         let mut notes = Vec::new();
         if self.is_uneven {
-            notes.push(Note::Uneven.to_string());
+            notes.push(BvhNote::Uneven.to_string());
         }
-        let names = || figure.names.iter().map(String::as_str);
+        let names = || rig.names.iter().map(String::as_str);
         let moving: Vec<&str> =
             names().zip(&self.offsets).filter(|(_, moves)| **moves).map(|(name, _)| name).collect();
         if self.is_arm {
-            // A limb's length is the offset of what hangs from it.
+            // A limb's length is the offset of its child.
             let lengths = [(!moving.is_empty(), "upper"), (self.ends.contains(&true), "lower")];
             let changing = lengths.into_iter().filter(|(changes, _)| *changes);
-            notes.extend(changing.map(|(_, limb)| Note::Length(limb).to_string()));
+            notes.extend(changing.map(|(_, limb)| BvhNote::Length(limb).to_string()));
         } else if !moving.is_empty() {
-            notes.push(Note::Offsets(&moving).to_string());
+            notes.push(BvhNote::Offsets(&moving).to_string());
         }
         notes
     }

@@ -9,7 +9,7 @@ use super::check::{UNIT_TOLERANCE, above_0, fraction, number, unit_vector};
 use crate::document::{Arm, Cursor, HandSpace, TwistReferenceKind, Wrist};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Numbers, Object, Point};
+use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
 use crate::kinematics::fk::Fk;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TransportedFrame;
@@ -18,98 +18,100 @@ use crate::kinematics::two_bone::{Facing, TwoBone};
 #[derive(Serialize, Deserialize)]
 pub struct ArmFields {
     #[serde(skip_serializing_if = "Option::is_none")]
-    cursor: Option<Point>,
+    cursor: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pin: Option<Point>,
-    twist: Option<Number>,
-    root: Option<Point>,
-    upper: Option<Number>,
-    lower: Option<Number>,
-    facing: Option<Object<FacingFields>>,
-    twist_reference: Option<Object<TwistReferenceFields>>,
-    soft_reach: Option<Object<SoftReachFields>>,
-    influence: Option<Number>,
-    fk: Option<Object<FkFields>>,
-    hand_orientation: Option<Object<HandOrientationFields>>,
+    pin: Option<JsonPoint>,
+    twist: Option<JsonNumber>,
+    root: Option<JsonPoint>,
+    upper: Option<JsonNumber>,
+    lower: Option<JsonNumber>,
+    facing: Option<JsonObject<FacingFields>>,
+    twist_reference: Option<JsonObject<TwistReferenceFields>>,
+    soft_reach: Option<JsonObject<SoftReachFields>>,
+    influence: Option<JsonNumber>,
+    fk: Option<JsonObject<FkFields>>,
+    hand_orientation: Option<JsonObject<HandOrientationFields>>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct FacingFields {
-    direction: Point,
-    heading: Numbers<2>,
+    direction: JsonPoint,
+    heading: JsonNumbers<2>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct TwistReferenceFields {
     kind: Option<TwistReferenceKind>,
-    pole: Option<Point>,
+    pole: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    transported: Option<Object<TransportedFields>>,
+    transported: Option<JsonObject<TransportedFields>>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct TransportedFields {
-    direction: Point,
-    outward: Point,
+    direction: JsonPoint,
+    outward: JsonPoint,
 }
 
 #[derive(Serialize, Deserialize)]
 struct SoftReachFields {
-    softness: Option<Number>,
-    max_stretch: Option<Number>,
-    min_elbow_angle: Option<Number>,
+    softness: Option<JsonNumber>,
+    max_stretch: Option<JsonNumber>,
+    min_elbow_angle: Option<JsonNumber>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct FkFields {
-    shoulder: Option<Point>,
-    bend: Option<Number>,
-    stretch: Option<Number>,
+    shoulder: Option<JsonPoint>,
+    bend: Option<JsonNumber>,
+    stretch: Option<JsonNumber>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct HandOrientationFields {
     space: Option<HandSpace>,
-    angles: Option<Point>,
-    roll: Option<Number>,
+    angles: Option<JsonPoint>,
+    roll: Option<JsonNumber>,
 }
 
 impl ArmFields {
     pub fn new(arm: &Arm) -> Self {
         let (cursor, pin) = match arm.goal {
-            Cursor::Root(cursor) => (Some(Point(cursor)), None),
-            Cursor::World(pin) => (None, Some(Point(pin))),
+            Cursor::Root(cursor) => (Some(JsonPoint(cursor)), None),
+            Cursor::World(pin) => (None, Some(JsonPoint(pin))),
         };
         let Facing { direction, heading } = arm.facing;
-        let facing =
-            FacingFields { direction: Point(direction), heading: Numbers(heading.to_array()) };
+        let facing = FacingFields {
+            direction: JsonPoint(direction),
+            heading: JsonNumbers(heading.to_array()),
+        };
         Self {
             cursor,
             pin,
-            twist: Some(Number(arm.twist)),
-            root: Some(Point(arm.root)),
-            upper: Some(Number(arm.bones.upper())),
-            lower: Some(Number(arm.bones.lower())),
-            facing: Some(Object(facing)),
-            twist_reference: Some(Object(TwistReferenceFields::new(arm))),
-            soft_reach: Some(Object(SoftReachFields::new(arm.soft_reach))),
-            influence: Some(Number(arm.influence)),
-            fk: Some(Object(FkFields::new(arm.fk))),
-            hand_orientation: Some(Object(HandOrientationFields::new(arm.wrist))),
+            twist: Some(JsonNumber(arm.twist)),
+            root: Some(JsonPoint(arm.root)),
+            upper: Some(JsonNumber(arm.bones.upper())),
+            lower: Some(JsonNumber(arm.bones.lower())),
+            facing: Some(JsonObject(facing)),
+            twist_reference: Some(JsonObject(TwistReferenceFields::new(arm))),
+            soft_reach: Some(JsonObject(SoftReachFields::new(arm.soft_reach))),
+            influence: Some(JsonNumber(arm.influence)),
+            fk: Some(JsonObject(FkFields::new(arm.fk))),
+            hand_orientation: Some(JsonObject(HandOrientationFields::new(arm.wrist))),
         }
     }
 
     pub fn arm(&self, at: &JsonPath) -> Result<Arm, FieldError> {
         let default = Arm::default();
         let goal = match (self.pin, self.cursor) {
-            (Some(Point(pin)), _) => Cursor::World(pin),
-            (None, Some(Point(cursor))) => Cursor::Root(cursor),
+            (Some(JsonPoint(pin)), _) => Cursor::World(pin),
+            (None, Some(JsonPoint(cursor))) => Cursor::Root(cursor),
             (None, None) => default.goal,
         };
         let arm = Arm {
             goal,
             twist: number(self.twist, default.twist),
-            root: self.root.map_or(default.root, |Point(root)| root),
+            root: self.root.map_or(default.root, |JsonPoint(root)| root),
             bones: self.bones(at, default.bones)?,
             influence: fraction(
                 at.clone().key("influence"),
@@ -119,19 +121,19 @@ impl ArmFields {
         };
         let facing = Facing::towards(arm.cursor(), Facing::default());
         let mut arm = Arm { facing, ..arm };
-        if let Some(Object(fields)) = &self.twist_reference {
+        if let Some(JsonObject(fields)) = &self.twist_reference {
             fields.set(&mut arm, &at.clone().key("twist_reference"))?;
         }
-        if let Some(Object(fields)) = &self.soft_reach {
+        if let Some(JsonObject(fields)) = &self.soft_reach {
             arm.soft_reach = fields.soft_reach(&at.clone().key("soft_reach"))?;
         }
-        if let Some(Object(fields)) = &self.fk {
+        if let Some(JsonObject(fields)) = &self.fk {
             arm.fk = fields.fk(&at.clone().key("fk"))?;
         }
-        if let Some(Object(fields)) = &self.hand_orientation {
+        if let Some(JsonObject(fields)) = &self.hand_orientation {
             arm.wrist = fields.hand_orientation();
         }
-        if let Some(Object(fields)) = &self.facing {
+        if let Some(JsonObject(fields)) = &self.facing {
             arm.facing = fields.facing(&at.clone().key("facing"))?;
         }
         Ok(arm)
@@ -166,19 +168,22 @@ impl FacingFields {
 impl TwistReferenceFields {
     fn new(arm: &Arm) -> Self {
         let transported = |TransportedFrame { direction, outward }| {
-            Object(TransportedFields { direction: Point(direction), outward: Point(outward) })
+            JsonObject(TransportedFields {
+                direction: JsonPoint(direction),
+                outward: JsonPoint(outward),
+            })
         };
         Self {
             kind: Some(arm.twist_reference),
-            pole: Some(Point(arm.pole)),
+            pole: Some(JsonPoint(arm.pole)),
             transported: arm.transported.map(transported),
         }
     }
 
     fn set(&self, arm: &mut Arm, at: &JsonPath) -> Result<(), FieldError> {
         arm.twist_reference = self.kind.unwrap_or(arm.twist_reference);
-        arm.pole = self.pole.map_or(arm.pole, |Point(pole)| pole);
-        if let Some(Object(fields)) = &self.transported {
+        arm.pole = self.pole.map_or(arm.pole, |JsonPoint(pole)| pole);
+        if let Some(JsonObject(fields)) = &self.transported {
             arm.transported = Some(fields.frame(&at.clone().key("transported"))?);
         }
         Ok(())
@@ -200,9 +205,9 @@ impl TransportedFields {
 impl SoftReachFields {
     fn new(soft_reach: SoftReach) -> Self {
         Self {
-            softness: Some(Number(soft_reach.softness())),
-            max_stretch: Some(Number(soft_reach.max_stretch())),
-            min_elbow_angle: Some(Number(soft_reach.min_elbow_angle())),
+            softness: Some(JsonNumber(soft_reach.softness())),
+            max_stretch: Some(JsonNumber(soft_reach.max_stretch())),
+            min_elbow_angle: Some(JsonNumber(soft_reach.min_elbow_angle())),
         }
     }
 
@@ -227,16 +232,16 @@ impl SoftReachFields {
 impl FkFields {
     fn new(fk: Fk) -> Self {
         Self {
-            shoulder: Some(Point(fk.shoulder)),
-            bend: Some(Number(fk.bend)),
-            stretch: Some(Number(fk.stretch)),
+            shoulder: Some(JsonPoint(fk.shoulder)),
+            bend: Some(JsonNumber(fk.bend)),
+            stretch: Some(JsonNumber(fk.stretch)),
         }
     }
 
     fn fk(&self, at: &JsonPath) -> Result<Fk, FieldError> {
         let default = Fk::default();
         Ok(Fk {
-            shoulder: self.shoulder.map_or(default.shoulder, |Point(shoulder)| shoulder),
+            shoulder: self.shoulder.map_or(default.shoulder, |JsonPoint(shoulder)| shoulder),
             bend: number(self.bend, default.bend),
             stretch: above_0(at.clone().key("stretch"), number(self.stretch, default.stretch))?,
         })
@@ -247,8 +252,8 @@ impl HandOrientationFields {
     fn new(orientation: Wrist) -> Self {
         Self {
             space: Some(orientation.space),
-            angles: Some(Point(orientation.angles)),
-            roll: Some(Number(orientation.roll)),
+            angles: Some(JsonPoint(orientation.angles)),
+            roll: Some(JsonNumber(orientation.roll)),
         }
     }
 
@@ -256,7 +261,7 @@ impl HandOrientationFields {
         let default = Wrist::default();
         Wrist {
             space: self.space.unwrap_or(default.space),
-            angles: self.angles.map_or(default.angles, |Point(angles)| angles),
+            angles: self.angles.map_or(default.angles, |JsonPoint(angles)| angles),
             roll: number(self.roll, default.roll),
         }
     }

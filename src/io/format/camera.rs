@@ -8,24 +8,24 @@ use super::check::{above_0, number, within};
 use crate::document::Camera;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Point};
+use crate::io::value::{JsonNumber, JsonPoint};
 
 #[derive(Serialize, Deserialize)]
 pub struct CameraFields {
-    target: Option<Point>,
-    yaw: Option<Number>,
-    pitch: Option<Number>,
-    distance: Option<Number>,
+    target: Option<JsonPoint>,
+    yaw: Option<JsonNumber>,
+    pitch: Option<JsonNumber>,
+    distance: Option<JsonNumber>,
     orthographic: Option<bool>,
 }
 
 impl CameraFields {
     pub fn new(camera: &Camera) -> Self {
         Self {
-            target: Some(Point(camera.target)),
-            yaw: Some(Number(camera.yaw)),
-            pitch: Some(Number(camera.pitch)),
-            distance: Some(Number(camera.distance)),
+            target: Some(JsonPoint(camera.target)),
+            yaw: Some(JsonNumber(camera.yaw)),
+            pitch: Some(JsonNumber(camera.pitch)),
+            distance: Some(JsonNumber(camera.distance)),
             orthographic: Some(camera.orthographic),
         }
     }
@@ -34,7 +34,7 @@ impl CameraFields {
         let default = Camera::default();
         let at = |key| at.clone().key(key);
         Ok(Camera {
-            target: self.target.map_or(default.target, |Point(target)| target),
+            target: self.target.map_or(default.target, |JsonPoint(target)| target),
             yaw: number(self.yaw, default.yaw),
             pitch: within(at("pitch"), number(self.pitch, default.pitch), FRAC_PI_2)?,
             distance: above_0(at("distance"), number(self.distance, default.distance))?,

@@ -4,15 +4,15 @@ use glam::Vec3;
 
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Whole};
+use crate::io::value::{JsonNumber, Whole};
 
 /// Largest deviation of a written unit vector's length from 1, and of the cosine between two
 /// perpendicular ones from 0.
 pub const UNIT_TOLERANCE: f32 = 1e-3;
 
 /// `default` where the file has no number.
-pub fn number(file: Option<Number>, default: f32) -> f32 {
-    file.map_or(default, |Number(number)| number)
+pub fn number(file: Option<JsonNumber>, default: f32) -> f32 {
+    file.map_or(default, |JsonNumber(number)| number)
 }
 
 pub fn above_0(at: JsonPath, value: f32) -> Result<f32, FieldError> {

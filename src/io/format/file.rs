@@ -12,26 +12,26 @@ use super::targets::{FollowPathFields, SolverFields, TargetFields, add_targets};
 use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig};
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Object, Whole};
+use crate::io::value::{JsonNumber, JsonObject, Whole};
 
 #[derive(Serialize, Deserialize)]
 pub struct DocumentFields {
     format: String,
     version: Whole,
     rig: RigKind,
-    arm: Option<Object<ArmFields>>,
-    skeleton: Option<Object<SkeletonFields>>,
-    targets: Option<Vec<Object<TargetFields>>>,
-    solver: Option<Object<SolverFields>>,
-    follow_path: Option<Object<FollowPathFields>>,
+    arm: Option<JsonObject<ArmFields>>,
+    skeleton: Option<JsonObject<SkeletonFields>>,
+    targets: Option<Vec<JsonObject<TargetFields>>>,
+    solver: Option<JsonObject<SolverFields>>,
+    follow_path: Option<JsonObject<FollowPathFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    channels: Option<Vec<Object<ChannelFields>>>,
-    timeline: Option<Object<TimelineFields>>,
+    channels: Option<Vec<JsonObject<ChannelFields>>>,
+    timeline: Option<JsonObject<TimelineFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    metres_per_unit: Option<Number>,
-    camera: Option<Object<CameraFields>>,
+    metres_per_unit: Option<JsonNumber>,
+    camera: Option<JsonObject<CameraFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    other_camera: Option<Object<CameraFields>>,
+    other_camera: Option<JsonObject<CameraFields>>,
     overlays: Option<Vec<Overlay>>,
 }
 
@@ -43,43 +43,43 @@ impl DocumentFields {
             format: FORMAT.to_owned(),
             version: Whole(VERSION),
             rig: document.rig,
-            arm: Some(Object(ArmFields::new(&document.arm))),
-            skeleton: Some(Object(SkeletonFields::new(skeleton))),
-            targets: Some(targets.iter().map(TargetFields::new).map(Object).collect()),
-            solver: Some(Object(SolverFields::new(&document.skeleton_rig))),
-            follow_path: follow_path.as_ref().map(FollowPathFields::new).map(Object),
+            arm: Some(JsonObject(ArmFields::new(&document.arm))),
+            skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
+            targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
+            solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
+            follow_path: follow_path.as_ref().map(FollowPathFields::new).map(JsonObject),
             channels,
-            timeline: Some(Object(TimelineFields::new(document.timeline))),
-            metres_per_unit: document.metres.map(Number),
-            camera: Some(Object(CameraFields::new(&document.camera))),
-            other_camera: document.other_camera.as_ref().map(CameraFields::new).map(Object),
+            timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
+            metres_per_unit: document.metres.map(JsonNumber),
+            camera: Some(JsonObject(CameraFields::new(&document.camera))),
+            other_camera: document.other_camera.as_ref().map(CameraFields::new).map(JsonObject),
             overlays: Some(document.display.layers().collect()),
         }
     }
 
     pub fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
         let at = |key| JsonPath::root().key(key);
-        let arm = self.arm.map(|Object(fields)| fields.arm(&at("arm"))).transpose()?;
+        let arm = self.arm.map(|JsonObject(fields)| fields.arm(&at("arm"))).transpose()?;
         let mut skeleton_rig = SkeletonRig::default();
-        if let Some(Object(fields)) = self.skeleton {
+        if let Some(JsonObject(fields)) = self.skeleton {
             skeleton_rig.skeleton = fields.skeleton(&at("skeleton"), warnings)?.into();
         }
         add_targets(&mut skeleton_rig, self.targets.unwrap_or_default())?;
-        if let Some(Object(fields)) = self.solver {
+        if let Some(JsonObject(fields)) = self.solver {
             fields.set(&mut skeleton_rig, &at("solver"))?;
         }
-        if let Some(Object(fields)) = self.follow_path {
+        if let Some(JsonObject(fields)) = self.follow_path {
             skeleton_rig.follow_path = Some(fields.follow_path(&at("follow_path"))?);
         }
         let camera = match self.camera {
-            Some(Object(fields)) => fields.camera(&at("camera"))?,
+            Some(JsonObject(fields)) => fields.camera(&at("camera"))?,
             None => default_camera(self.rig, &skeleton_rig),
         };
         let other_camera =
-            self.other_camera.map(|Object(fields)| fields.camera(&at("other_camera")));
-        let timeline = self.timeline.map(|Object(fields)| fields.timeline(at("timeline")));
+            self.other_camera.map(|JsonObject(fields)| fields.camera(&at("other_camera")));
+        let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline(at("timeline")));
         let metres =
-            self.metres_per_unit.map(|Number(metres)| above_0(at("metres_per_unit"), metres));
+            self.metres_per_unit.map(|JsonNumber(metres)| above_0(at("metres_per_unit"), metres));
         let overlays = self.overlays.map(|overlays| overlays.into_iter().collect());
         let mut document = Document {
             rig: self.rig,

@@ -7,7 +7,7 @@ use super::check;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{KeyRow, Number, Object, Seconds, Whole};
+use crate::io::value::{JsonNumber, JsonObject, KeyRow, Seconds, Whole};
 use crate::kinematics::spline::Spline;
 
 /// One channel and its keys.
@@ -53,8 +53,8 @@ pub struct TimelineFields {
 }
 
 impl ChannelFields {
-    pub fn all(keys: &Keys) -> Vec<Object<Self>> {
-        keys.tracks().map(|(channel, track)| Object(Self::new(channel, track))).collect()
+    pub fn all(keys: &Keys) -> Vec<JsonObject<Self>> {
+        keys.tracks().map(|(channel, track)| JsonObject(Self::new(channel, track))).collect()
     }
 
     fn new(channel: Channel, track: &Spline<Vec3>) -> Self {
@@ -81,7 +81,7 @@ impl ChannelFields {
         let width = channel.quantity().width();
         let row = |time, value: Vec3| KeyRow {
             time: Seconds(time),
-            values: value.to_array().into_iter().take(width).map(Number).collect(),
+            values: value.to_array().into_iter().take(width).map(JsonNumber).collect(),
         };
         let joint = channel.joint().and_then(|joint| u32::try_from(joint).ok());
         Self {
@@ -136,9 +136,12 @@ impl ChannelFields {
 }
 
 /// Converts the keys of a document that has everything else already.
-pub fn keys(channels: Vec<Object<ChannelFields>>, document: &Document) -> Result<Keys, FieldError> {
+pub fn keys(
+    channels: Vec<JsonObject<ChannelFields>>,
+    document: &Document,
+) -> Result<Keys, FieldError> {
     let mut keys = Keys::default();
-    for (index, Object(fields)) in channels.into_iter().enumerate() {
+    for (index, JsonObject(fields)) in channels.into_iter().enumerate() {
         let at = JsonPath::root().key("channels").index(index);
         let channel = fields.channel(&at, document)?;
         if keys.has(channel) {
@@ -160,7 +163,7 @@ fn value(quantity: Quantity, row: &KeyRow) -> Result<Vec3, String> {
         return Err(format!("must have {numbers} after the time, got {}", row.values.len()));
     }
     let mut value = [0.0; 3];
-    for (component, Number(number)) in value.iter_mut().zip(&row.values) {
+    for (component, JsonNumber(number)) in value.iter_mut().zip(&row.values) {
         *component = *number;
     }
     let x = value[0];

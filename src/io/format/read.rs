@@ -6,12 +6,12 @@ use crate::io::field_error::FieldWarnings;
 use crate::io::json_path::JsonPath;
 use crate::io::opened::Opened;
 use crate::io::source::Source;
-use crate::io::value::Object;
+use crate::io::value::JsonObject;
 
 /// Reads a document of any version.
 pub fn read(source: &Source) -> Result<Opened, OpenError> {
-    match source.parse::<Object<Header>>(|_| {}) {
-        Ok(Object(header)) => match header.version().map_err(|error| source.error(&error))? {
+    match source.parse::<JsonObject<Header>>(|_| {}) {
+        Ok(JsonObject(header)) => match header.version().map_err(|error| source.error(&error))? {
             1 => read_fields(&source.translated(version_1::translated(source.text()))),
             _ => read_fields(source),
         },
@@ -22,7 +22,7 @@ pub fn read(source: &Source) -> Result<Opened, OpenError> {
 
 fn read_fields(source: &Source) -> Result<Opened, OpenError> {
     let mut warnings = FieldWarnings::default();
-    let Object(fields) = source.parse::<Object<DocumentFields>>(|field| {
+    let JsonObject(fields) = source.parse::<JsonObject<DocumentFields>>(|field| {
         let reason = unknown(&field);
         warnings.push(field, reason);
     })?;

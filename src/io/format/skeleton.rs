@@ -5,46 +5,46 @@ use serde::{Deserialize, Serialize};
 
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
 
 #[derive(Serialize, Deserialize)]
 pub struct SkeletonFields {
-    joints: Option<Vec<Object<JointFields>>>,
-    transform: Option<Numbers<12>>,
+    joints: Option<Vec<JsonObject<JointFields>>>,
+    transform: Option<JsonNumbers<12>>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct JointFields {
     name: String,
     parent: Option<Whole>,
-    offset: Option<Point>,
-    axis: Option<Point>,
-    rotation: Option<Point>,
+    offset: Option<JsonPoint>,
+    axis: Option<JsonPoint>,
+    rotation: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    frame: Option<Numbers<9>>,
+    frame: Option<JsonNumbers<9>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    limits: Option<Object<LimitsFields>>,
+    limits: Option<JsonObject<LimitsFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     locked: Option<bool>,
-    radius: Option<Number>,
+    radius: Option<JsonNumber>,
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct LimitsFields {
     #[serde(skip_serializing_if = "Option::is_none")]
-    x: Option<Numbers<2>>,
+    x: Option<JsonNumbers<2>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    y: Option<Numbers<2>>,
+    y: Option<JsonNumbers<2>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    z: Option<Numbers<2>>,
+    z: Option<JsonNumbers<2>>,
 }
 
 impl SkeletonFields {
     pub fn new(skeleton: &Skeleton) -> Self {
         Self {
-            joints: Some(skeleton.joints().iter().map(JointFields::new).map(Object).collect()),
-            transform: Some(Numbers(skeleton.transform().to_cols_array())),
+            joints: Some(skeleton.joints().iter().map(JointFields::new).map(JsonObject).collect()),
+            transform: Some(JsonNumbers(skeleton.transform().to_cols_array())),
         }
     }
 
@@ -56,7 +56,7 @@ impl SkeletonFields {
     ) -> Result<Skeleton, FieldError> {
         let at_joints = at.clone().key("joints");
         let mut joints: Vec<Joint> = Vec::new();
-        for (index, Object(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
+        for (index, JsonObject(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
             let joint = fields.joint(&joints);
             if is_beyond_limits(&joint) {
                 let field = at_joints.clone().index(index).key("rotation");
@@ -68,7 +68,7 @@ impl SkeletonFields {
         let mut skeleton = Skeleton::from_joints(joints).map_err(|error| {
             FieldError::new(invalid_field(&error, at_joints, &names), error.to_string())
         })?;
-        if let Some(Numbers(transform)) = self.transform {
+        if let Some(JsonNumbers(transform)) = self.transform {
             skeleton
                 .set_transform(Affine3A::from_cols_array(&transform))
                 .map_err(|error| FieldError::new(at.clone().key("transform"), error.to_string()))?;
@@ -105,37 +105,37 @@ impl JointFields {
         let is_identity =
             frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
         let [x, y, z] =
-            joint.limits.map(|limit| limit.map(|Limit { min, max }| Numbers([min, max])));
+            joint.limits.map(|limit| limit.map(|Limit { min, max }| JsonNumbers([min, max])));
         Self {
             name: joint.name.clone(),
             parent: joint.parent.and_then(|parent| u32::try_from(parent).ok()).map(Whole),
-            offset: Some(Point(joint.offset)),
-            axis: Some(Point(joint.axis)),
-            rotation: Some(Point(joint.rotation)),
-            frame: (!is_identity).then_some(Numbers(frame)),
-            limits: joint.is_limited().then_some(Object(LimitsFields { x, y, z })),
+            offset: Some(JsonPoint(joint.offset)),
+            axis: Some(JsonPoint(joint.axis)),
+            rotation: Some(JsonPoint(joint.rotation)),
+            frame: (!is_identity).then_some(JsonNumbers(frame)),
+            limits: joint.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
             locked: joint.locked.then_some(true),
-            radius: Some(Number(joint.radius)),
+            radius: Some(JsonNumber(joint.radius)),
         }
     }
 
     /// A joint without an offset sits on the tip of its parent, one of `before`.
     fn joint(self, before: &[Joint]) -> Joint {
         let parent = self.parent.map(|Whole(parent)| parent as usize);
-        let axis = self.axis.map_or(Vec3::ZERO, |Point(axis)| axis);
+        let axis = self.axis.map_or(Vec3::ZERO, |JsonPoint(axis)| axis);
         let parent_tip = parent.and_then(|parent| Some(before.get(parent)?.axis));
         let default = Joint::new(&self.name, parent, axis);
-        let limits = self.limits.map(|Object(limits)| limits).unwrap_or_default();
+        let limits = self.limits.map(|JsonObject(limits)| limits).unwrap_or_default();
         Joint {
-            offset: self.offset.map_or(parent_tip.unwrap_or_default(), |Point(offset)| offset),
-            rotation: self.rotation.map_or(Vec3::ZERO, |Point(rotation)| rotation),
+            offset: self.offset.map_or(parent_tip.unwrap_or_default(), |JsonPoint(offset)| offset),
+            rotation: self.rotation.map_or(Vec3::ZERO, |JsonPoint(rotation)| rotation),
             frame: self
                 .frame
-                .map_or(Mat3::IDENTITY, |Numbers(frame)| Mat3::from_cols_array(&frame)),
+                .map_or(Mat3::IDENTITY, |JsonNumbers(frame)| Mat3::from_cols_array(&frame)),
             limits: [limits.x, limits.y, limits.z]
-                .map(|limit| limit.map(|Numbers([min, max])| Limit { min, max })),
+                .map(|limit| limit.map(|JsonNumbers([min, max])| Limit { min, max })),
             locked: self.locked.unwrap_or(default.locked),
-            radius: self.radius.map_or(default.radius.min(f32::MAX), |Number(radius)| radius),
+            radius: self.radius.map_or(default.radius.min(f32::MAX), |JsonNumber(radius)| radius),
             ..default
         }
     }

@@ -8,32 +8,32 @@ use super::check::{above_0, from_1_to, joint, number};
 use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Object, Point, Whole};
+use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 
 #[derive(Serialize, Deserialize)]
 pub struct TargetFields {
     joint: Whole,
-    home: Point,
-    weight: Option<Number>,
+    home: JsonPoint,
+    weight: Option<JsonNumber>,
     enabled: Option<bool>,
-    motion: Option<Object<TargetMotionFields>>,
+    motion: Option<JsonObject<TargetMotionFields>>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct TargetMotionFields {
     path: TargetPath,
-    radius: Option<Number>,
-    period: Option<Number>,
+    radius: Option<JsonNumber>,
+    period: Option<JsonNumber>,
 }
 
 #[derive(Serialize, Deserialize)]
 pub struct SolverFields {
     method: Option<String>,
     iterations: Option<Whole>,
-    tolerance: Option<Number>,
-    damping: Option<Number>,
-    step: Option<Number>,
+    tolerance: Option<JsonNumber>,
+    damping: Option<JsonNumber>,
+    step: Option<JsonNumber>,
     root: Option<RootFields>,
     iterations_per_frame: Option<Whole>,
 }
@@ -47,20 +47,20 @@ enum RootFields {
 
 #[derive(Serialize, Deserialize)]
 pub struct FollowPathFields {
-    radius: Number,
-    amplitude: Number,
+    radius: JsonNumber,
+    amplitude: JsonNumber,
     waves: Whole,
-    period: Number,
+    period: JsonNumber,
 }
 
 /// Adds the targets of a file to a rig that has its skeleton.
 pub fn add_targets(
     rig: &mut SkeletonRig,
-    targets: Vec<Object<TargetFields>>,
+    targets: Vec<JsonObject<TargetFields>>,
 ) -> Result<(), FieldError> {
     let radius = rig.circle();
     let mut targeted = HashSet::new();
-    for (index, Object(fields)) in targets.into_iter().enumerate() {
+    for (index, JsonObject(fields)) in targets.into_iter().enumerate() {
         let at = JsonPath::root().key("targets").index(index);
         let target = fields.target(&at, rig.skeleton.joints().len(), radius)?;
         if !targeted.insert(target.joint) {
@@ -75,14 +75,17 @@ pub fn add_targets(
 impl TargetFields {
     pub fn new(target: &Target) -> Self {
         let TargetMotion { path, radius, period } = target.motion;
-        let motion =
-            TargetMotionFields { path, radius: Some(Number(radius)), period: Some(Number(period)) };
+        let motion = TargetMotionFields {
+            path,
+            radius: Some(JsonNumber(radius)),
+            period: Some(JsonNumber(period)),
+        };
         Self {
             joint: Whole(u32::try_from(target.joint).unwrap_or(u32::MAX)),
-            home: Point(target.home),
-            weight: Some(Number(target.weight)),
+            home: JsonPoint(target.home),
+            weight: Some(JsonNumber(target.weight)),
             enabled: Some(target.enabled),
-            motion: Some(Object(motion)),
+            motion: Some(JsonObject(motion)),
         }
     }
 
@@ -90,7 +93,7 @@ impl TargetFields {
         let joint = joint(at.clone().key("joint"), self.joint, joints)?;
         let default = Target::new(joint, self.home.0, radius);
         let motion = match &self.motion {
-            Some(Object(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
+            Some(JsonObject(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
             None => default.motion,
         };
         Ok(Target {
@@ -118,9 +121,9 @@ impl SolverFields {
         Self {
             method: Some(solver.method.name().to_owned()),
             iterations: solver.iterations.map(Whole),
-            tolerance: solver.tolerance.map(Number),
-            damping: Some(Number(solver.damping)),
-            step: Some(Number(solver.step)),
+            tolerance: solver.tolerance.map(JsonNumber),
+            damping: Some(JsonNumber(solver.damping)),
+            step: Some(JsonNumber(solver.step)),
             root: Some(match solver.root {
                 Root::Fixed => RootFields::Fixed,
                 Root::Free => RootFields::Free,
@@ -138,7 +141,7 @@ impl SolverFields {
             let reason = "must be 1 or more, or null for the method's default, got 0";
             return Err(FieldError::new(at("iterations"), reason));
         }
-        let tolerance = self.tolerance.map(|Number(number)| above_0(at("tolerance"), number));
+        let tolerance = self.tolerance.map(|JsonNumber(number)| above_0(at("tolerance"), number));
         rig.solver = SolverOptions {
             method: match &self.method {
                 Some(name) => method(at("method"), name)?,
@@ -174,10 +177,10 @@ fn method(at: JsonPath, name: &str) -> Result<Method, FieldError> {
 impl FollowPathFields {
     pub fn new(path: &FollowPath) -> Self {
         Self {
-            radius: Number(path.radius),
-            amplitude: Number(path.amplitude),
+            radius: JsonNumber(path.radius),
+            amplitude: JsonNumber(path.amplitude),
             waves: Whole(path.waves),
-            period: Number(path.period),
+            period: JsonNumber(path.period),
         }
     }
 

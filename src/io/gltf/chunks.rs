@@ -1,23 +1,23 @@
 //! The container of a `.glb` file: a header of 12 bytes, then chunks, each with a length, a type and
 //! its bytes. The first chunk is JSON, the second binary.
 
-/// What a binary glTF begins with.
+/// The first bytes of a binary glTF file.
 pub const MAGIC: &[u8] = b"glTF";
 
-/// What a `.glb` file has.
+/// The chunks of a `.glb` file.
 pub struct Chunks {
     pub json: String,
-    /// Empty where there is none.
+    /// Empty without a binary chunk.
     pub binary: Vec<u8>,
 }
 
-/// Takes a file apart, or says what is wrong with it.
+/// Splits a file into its chunks. The error is a reason.
 pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
     let cut = || "the file ends within its first 12 bytes, the header of a .glb file".to_owned();
     let version = number(bytes, 4).ok_or_else(cut)?;
     let length = number(bytes, 8).ok_or_else(cut)? as usize;
     if version != 2 {
-        return Err(format!("the file is of glTF {version}; only glTF 2 is known"));
+        return Err(format!("the glTF version must be 2, got {version}"));
     }
     let Some(bytes) = bytes.get(..length) else {
         let there = bytes.len();
@@ -33,7 +33,7 @@ pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
     Ok(Chunks { json, binary })
 }
 
-/// The bytes of the chunk that stands first, and what comes after it.
+/// The bytes of the first chunk, and the rest.
 fn chunk<'a>(bytes: &'a [u8], name: &str, kind: [u8; 4]) -> Result<(&'a [u8], &'a [u8]), String> {
     let Some(length) = number(bytes, 0) else {
         return Err(format!("the file ends where its {name} chunk should be"));
@@ -48,7 +48,7 @@ fn chunk<'a>(bytes: &'a [u8], name: &str, kind: [u8; 4]) -> Result<(&'a [u8], &'
     })
 }
 
-/// The number of four bytes, the least significant one first.
+/// A little-endian number.
 fn number(bytes: &[u8], at: usize) -> Option<u32> {
     let bytes = bytes.get(at..at + 4)?;
     Some(u32::from_le_bytes(bytes.try_into().ok()?))

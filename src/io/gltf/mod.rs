@@ -7,21 +7,20 @@
 //! ```text
 //! Armature             identity; skin.skeleton
 //!  └ joints…           as in the document, or the arm's `upper` and `lower`: at the bone's base, +y
-//!                      along the bone, x as near to the joint's own as can be
+//!                      along the bone, x as near to the joint's own as possible
 //!     └ NAME_tip       at the tip of a bone without children, or of a keyed length
-//! Limbs                the mesh: a cone for every bone, balls at joints; skinned
+//! Limbs                the mesh: a cone for each bone, balls at joints; skinned
 //! ```
 //!
-//! The joints stand in the bind pose: a skeleton without rotations, the arm straight along the Root's
-//! +x. The document's pose is in the animation, with a key in every frame; what a skeleton's
-//! transform mirrors, stretches or shears is in it as rotations and translations.
+//! Nodes are in the bind pose: a skeleton without rotations, the arm straight along the Root's +x. The document's pose is in the animation, with a key in every frame; mirroring,
+//! stretching and shear of a skeleton's transform become rotations and translations in it.
 //!
 //! # In
 //!
-//! A skin's joints, parents before their children, in the world, in metres. At rest, as the nodes
-//! stand, none is turned: a joint's frame is its node's rotation. Keys are at every frame of the first
+//! A skin's joints, parents before their children, in the world, in metres. The nodes
+//! are the bind pose: a joint's frame is its node's rotation. Keys are at every frame of the first
 //! animation; where lengths or scales change, a joint's offset has keys. `NAME_tip` without children
-//! is the tip of NAME's bone. Meshes, materials, cameras and the like are passed over.
+//! is the tip of NAME's bone. Meshes, materials and cameras are ignored.
 //!
 //! # Source
 //!

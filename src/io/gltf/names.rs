@@ -1,10 +1,10 @@
 use std::collections::HashMap;
 
-/// Names that are taken, each with the number that may make the next one of it.
+/// UniqueNames that are taken, each with the number that may make the next one of it.
 #[derive(Default)]
-pub struct Names(HashMap<String, usize>);
+pub struct UniqueNames(HashMap<String, usize>);
 
-impl<const N: usize> From<[&str; N]> for Names {
+impl<const N: usize> From<[&str; N]> for UniqueNames {
     fn from(taken: [&str; N]) -> Self {
         Self(taken.map(|name| (name.to_owned(), FIRST)).into())
     }
@@ -12,8 +12,8 @@ impl<const N: usize> From<[&str; N]> for Names {
 
 const FIRST: usize = 2;
 
-impl Names {
-    /// The name itself or, where it is taken, one with a number. It is then taken.
+impl UniqueNames {
+    /// Takes the name, or if it is taken, the name with a number.
     pub fn free(&mut self, name: &str) -> String {
         let mut free = name.to_owned();
         let mut number = self.0.get(name).copied();
@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn every_name_is_free() {
-        let mut names = Names::from(["a", "a_3"]);
+        let mut names = UniqueNames::from(["a", "a_3"]);
         let all = ["a", "b", "a", "a_2", "b", "a"].map(|name| names.free(name));
         assert_eq!(all, ["a_2", "b", "a_4", "a_2_2", "b_2", "a_5"]);
     }

@@ -1,23 +1,23 @@
 use glam::{DMat3, DVec3, Vec3};
 
-use super::file::{Bone, Skeleton as File};
+use super::file::{Js3dBone, Js3dSkeleton};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Number, Object, Point};
+use crate::io::value::{JsonNumber, JsonObject, JsonPoint};
 use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
 
-/// A skeleton, and for every bone in the file's order the joint that it is.
-pub struct Bones {
+/// A skeleton, and the joint of every bone in the file's order.
+pub struct SkeletonWithOrder {
     pub skeleton: Skeleton,
     pub order: Vec<usize>,
 }
 
-pub fn read(at: &JsonPath, file: &File) -> Result<Bones, FieldError> {
+pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, FieldError> {
     let at_bone = |bone| at.clone().key("bones").index(bone);
     if file.bones.len() > Skeleton::MOST_JOINTS {
         return Err(FieldError::new(at.clone().key("bones"), SkeletonError::TooMany.to_string()));
     }
-    let parents: Vec<_> = file.bones.iter().map(|Object(bone)| bone.parent()).collect();
+    let parents: Vec<_> = file.bones.iter().map(|JsonObject(bone)| bone.parent()).collect();
     let bones = parents_first(&parents)
         .map_err(|(bone, reason)| FieldError::new(at_bone(bone).key("parent"), reason))?;
     let mut order = vec![0; bones.len()];
@@ -32,16 +32,16 @@ pub fn read(at: &JsonPath, file: &File) -> Result<Bones, FieldError> {
     let joints = bones.iter().map(|&index| joint(file, index, root, &order)).collect();
     let skeleton = Skeleton::from_joints(joints).map_err(|error| match &error {
         SkeletonError::Radius { joint, value } => {
-            let reason = format!("is {value}; it must be 0 or more");
+            let reason = format!("must be 0 or more, got {value}");
             FieldError::new(at_bone(bones[*joint]).key("radius"), reason)
         }
         _ => FieldError::new(at.clone(), error.to_string()),
     })?;
-    Ok(Bones { skeleton, order })
+    Ok(SkeletonWithOrder { skeleton, order })
 }
 
-/// The bones in an order in which parents come before their children, and otherwise as it was; else
-/// a bone whose parent cannot be its parent, and why.
+/// The bones with parents before their children, otherwise in the same order. Fails with a bone whose
+/// parent is invalid, and the reason.
 fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String)> {
     let mut first = Vec::with_capacity(parents.len());
     let mut is_placed = vec![false; parents.len()];
@@ -59,7 +59,7 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String
                     return Err((bone, format!("there is no bone {parent}; {count}")));
                 }
                 Some(parent) if path_of[parent] == Some(start) => {
-                    let reason = format!("bone {parent} hangs from bone {bone} itself");
+                    let reason = format!("bone {parent} is a descendant of bone {bone}");
                     return Err((bone, reason));
                 }
                 Some(parent) if is_placed[parent] => next = None,
@@ -82,16 +82,16 @@ pub fn counted(bones: usize) -> String {
     }
 }
 
-fn joint(file: &File, index: usize, root: Vec3, order: &[usize]) -> Joint {
-    let Object(bone) = &file.bones[index];
-    let Point(axis) = bone.extent;
+fn joint(file: &Js3dSkeleton, index: usize, root: Vec3, order: &[usize]) -> Joint {
+    let JsonObject(bone) = &file.bones[index];
+    let JsonPoint(axis) = bone.extent;
     let parent = bone.parent();
     let seed = Joint::new(&format!("bone_{index}"), parent.map(|parent| order[parent]), axis);
     Joint {
         offset: parent.map_or(root, |parent| file.bones[parent].0.extent.0),
         rotation: radians(bone.pose.0.as_dvec3()).as_vec3(),
         frame: bone.frame().as_mat3(),
-        radius: bone.radius.map_or(seed.radius.min(f32::MAX), |Number(radius)| radius),
+        radius: bone.radius.map_or(seed.radius.min(f32::MAX), |JsonNumber(radius)| radius),
         ..seed
     }
 }
@@ -100,7 +100,7 @@ fn radians(degrees: DVec3) -> DVec3 {
     DVec3::from_array(degrees.to_array().map(f64::to_radians))
 }
 
-impl Bone {
+impl Js3dBone {
     /// A, in which the bone's angles are measured: y along the bone, x as near to the skeleton's x
     /// as can be and then turned by the roll.
     ///

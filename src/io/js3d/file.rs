@@ -1,4 +1,4 @@
-//! What stands in a scene, as far as skeletons go.
+//! Fields of a scene that concern skeletons.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -7,85 +7,85 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
-use crate::io::value::{Number, Numbers, Object, Point, Whole};
+use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
-pub struct File {
-    pub scene: Object<Scene>,
+pub struct Js3dFile {
+    pub scene: JsonObject<Js3dScene>,
 }
 
 #[derive(Deserialize)]
-pub struct Scene {
+pub struct Js3dScene {
     #[serde(default)]
-    pub transforms: Named<Transform>,
+    pub transforms: Named<Js3dTransform>,
     #[serde(default)]
-    skinned_meshes: Named<Mesh>,
+    skinned_meshes: Named<Js3dMesh>,
     #[serde(default)]
-    pub instances: Object<Instances>,
+    pub instances: JsonObject<Js3dInstances>,
 }
 
 #[derive(Deserialize)]
-pub struct Transform {
+pub struct Js3dTransform {
     pub parent: Option<String>,
-    pub translation: Option<Point>,
-    pub rotation: Option<Numbers<4>>,
-    pub scale: Option<Point>,
+    pub translation: Option<JsonPoint>,
+    pub rotation: Option<JsonNumbers<4>>,
+    pub scale: Option<JsonPoint>,
 }
 
 #[derive(Deserialize)]
-struct Mesh {
-    skeleton: Option<Object<Skeleton>>,
+struct Js3dMesh {
+    skeleton: Option<JsonObject<Js3dSkeleton>>,
 }
 
 #[derive(Default, Deserialize)]
-pub struct Instances {
+pub struct Js3dInstances {
     #[serde(default)]
-    pub skinned_meshes: Named<Instance>,
+    pub skinned_meshes: Named<Js3dInstance>,
 }
 
 #[derive(Deserialize)]
-pub struct Instance {
+pub struct Js3dInstance {
     pub mesh: Option<String>,
     pub transform: Option<String>,
 }
 
 #[derive(Deserialize)]
-pub struct Skeleton {
+pub struct Js3dSkeleton {
     #[serde(default)]
-    pub base: Point,
+    pub base: JsonPoint,
     #[serde(default)]
-    pub base_offset: Point,
-    pub bones: Vec<Object<Bone>>,
-    pub handles: Option<Vec<Object<Handle>>>,
+    pub base_offset: JsonPoint,
+    pub bones: Vec<JsonObject<Js3dBone>>,
+    pub handles: Option<Vec<JsonObject<Js3dHandle>>>,
 }
 
 #[derive(Deserialize)]
-pub struct Bone {
-    pub extent: Point,
+pub struct Js3dBone {
+    pub extent: JsonPoint,
     #[serde(default)]
-    pub roll: Number,
-    pub radius: Option<Number>,
+    pub roll: JsonNumber,
+    pub radius: Option<JsonNumber>,
     parent: Option<Whole>,
     #[serde(default)]
-    pub pose: Point,
+    pub pose: JsonPoint,
 }
 
 #[derive(Deserialize)]
-pub struct Handle {
+pub struct Js3dHandle {
     pub bone: Whole,
-    pub target: Point,
+    pub target: JsonPoint,
     pub enabled: Option<bool>,
 }
 
-impl Scene {
-    /// In the file's order.
-    pub fn skeletons(&self) -> impl Iterator<Item = (&str, &Skeleton)> {
+impl Js3dScene {
+    /// Skeletons with their names, in the file's order.
+    pub fn skeletons(&self) -> impl Iterator<Item = (&str, &Js3dSkeleton)> {
         let meshes = self.skinned_meshes.0.iter();
         meshes.filter_map(|(name, mesh)| Some((name.as_str(), &mesh.skeleton.as_ref()?.0)))
     }
 }
 
-impl Bone {
+impl Js3dBone {
     pub fn parent(&self) -> Option<usize> {
         const NONE: u32 = u32::MAX;
         self.parent.filter(|parent| parent.0 != NONE).map(|parent| parent.0 as usize)
@@ -119,7 +119,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
                     if !names.insert(name.clone()) {
                         return Err(A::Error::custom(format!("duplicate name {name:?}")));
                     }
-                    let Object(value) = map.next_value()?;
+                    let JsonObject(value) = map.next_value()?;
                     named.push((name, value));
                 }
                 Ok(Named(named))

@@ -1,21 +1,21 @@
-//! Scotty3D's scenes, `.js3d`: their skeletons.
+//! Skeletons of Scotty3D scenes, `.js3d`.
 //!
 //! ```text
 //! scene.skinned_meshes.NAME.skeleton
-//!     base, base_offset      where bones without a parent begin: at the sum
+//!     base, base_offset      their sum is the base of bones without a parent
 //!     bones[]                extent, roll (degrees), radius, parent, pose (x, y, z in degrees)
 //!     handles[]              bone, target (in the skeleton's own space), enabled
 //! scene.instances.skinned_meshes.*   mesh (a NAME), transform (the name of one)
 //! scene.transforms.*                 parent, translation, rotation [x, y, z, w], scale
 //! ```
 //!
-//! Bones count from 0 in the file's order, and a parent may come after its children; 4294967295 is
-//! none. The angles of a bone are measured in the frame [`Bone::frame`](file::Bone::frame). The
-//! skeleton stands where the first instance of its mesh does.
+//! SkeletonWithOrder count from 0 in the file's order, and a parent may come after its children; 4294967295 is
+//! none. The angles of a bone are measured in the frame [`Js3dBone::frame`](file::Js3dBone::frame). The
+//! skeleton has the transform of the first instance of its mesh.
 
 mod bones;
 mod file;
-mod place;
+mod transform;
 
 use glam::DAffine3;
 
@@ -24,14 +24,15 @@ use super::field_error::{FieldError, FieldWarnings};
 use super::json_path::JsonPath;
 use super::opened::Opened;
 use super::source::Source;
-use super::value::Object;
+use super::value::JsonObject;
 use crate::document::{Document, RigKind, SkeletonRig, Target};
-use bones::Bones;
-use file::{File, Handle, Scene, Skeleton};
+use bones::SkeletonWithOrder;
+use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
-/// Reads the skeleton of that name, or the first one.
+/// Reads the skeleton called `name`, or the first one.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
-    let Object(File { scene: Object(scene) }) = source.parse::<Object<File>>(|_| {})?;
+    let JsonObject(Js3dFile { scene: JsonObject(scene) }) =
+        source.parse::<JsonObject<Js3dFile>>(|_| {})?;
     let names: Vec<String> = scene.skeletons().map(|(name, _)| name.to_owned()).collect();
     let mut skeletons = scene.skeletons();
     let chosen = match name {
@@ -66,21 +67,18 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
 
 fn no_skeleton() -> FieldError {
     let field = JsonPath::root().key("scene").key("skinned_meshes");
-    FieldError::new(
-        field,
-        "there is no skeleton; one is under the name of a mesh, as its `skeleton`",
-    )
+    FieldError::new(field, "must have a mesh with a `skeleton`")
 }
 
 fn rig(
-    scene: &Scene,
+    scene: &Js3dScene,
     name: &str,
-    file: &Skeleton,
+    file: &Js3dSkeleton,
     odd: &mut FieldWarnings,
 ) -> Result<(SkeletonRig, Vec<usize>), FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
-    let place = place::of(scene, name, odd)?;
-    let Bones { mut skeleton, order } = bones::read(&at, file)?;
+    let place = transform::of_mesh(scene, name, odd)?;
+    let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
     skeleton.set_transform(place.as_affine3a()).map_err(|error| {
         FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
@@ -89,20 +87,20 @@ fn rig(
     Ok((rig, order))
 }
 
-/// Of several handles on a bone the first that is enabled counts, or the first.
+/// Targets of the handles. Of several on a bone, the first enabled one is used, or the first.
 fn targets(
     at: &JsonPath,
-    file: &Skeleton,
+    file: &Js3dSkeleton,
     place: DAffine3,
     order: &[usize],
     circle: f32,
     odd: &mut FieldWarnings,
 ) -> Result<Vec<Target>, FieldError> {
     let at_handle = |handle| at.clone().key("handles").index(handle);
-    // Each with its handle, and for every joint which of them is its own.
+    // Targets with their handles, and the index of each joint's own.
     let mut targets: Vec<(usize, Target)> = Vec::new();
     let mut own = vec![None; order.len()];
-    for (handle, Object(file)) in file.handles.iter().flatten().enumerate() {
+    for (handle, JsonObject(file)) in file.handles.iter().flatten().enumerate() {
         let target = target(&at_handle(handle), file, place, order, circle)?;
         let Some(own) = own[target.joint] else {
             own[target.joint] = Some(targets.len());
@@ -113,7 +111,7 @@ fn targets(
         if target.enabled && !counts.1.enabled {
             std::mem::swap(&mut counts, &mut ignored);
         }
-        let reason = format!("handle {} of the same bone counts; this one is ignored", counts.0);
+        let reason = format!("ignored; handle {} of the same bone is used", counts.0);
         odd.push(at_handle(ignored.0), reason);
         targets[own] = counts;
     }
@@ -122,7 +120,7 @@ fn targets(
 
 fn target(
     at: &JsonPath,
-    handle: &Handle,
+    handle: &Js3dHandle,
     place: DAffine3,
     order: &[usize],
     circle: f32,

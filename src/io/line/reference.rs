@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 
-use crate::io::value::Point;
+use crate::io::value::JsonPoint;
 use crate::kinematics::twist::{Stereographic, TwistReference};
 
 /// The twist reference of a line: a name, or an object with a pole.
@@ -14,7 +14,7 @@ pub struct ReferenceField(pub TwistReference);
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PoleField {
-    pole: Point,
+    pole: JsonPoint,
 }
 
 impl<'de> Deserialize<'de> for ReferenceField {

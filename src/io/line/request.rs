@@ -10,7 +10,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use super::error::LineError;
 use super::previous::PreviousLine;
 use super::reference::ReferenceField;
-use crate::io::value::{Number, Point};
+use crate::io::value::{JsonNumber, JsonPoint};
 use crate::kinematics::ik::{Ik, Solved};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
 use crate::kinematics::two_bone::{Facing, TwoBone};
@@ -18,35 +18,35 @@ use crate::kinematics::two_bone::{Facing, TwoBone};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
-    hand: Point,
+    hand: JsonPoint,
     #[serde(default = "default_upper")]
-    upper: Number,
+    upper: JsonNumber,
     #[serde(default = "default_lower")]
-    lower: Number,
+    lower: JsonNumber,
     #[serde(default)]
-    pub root: Point,
+    pub root: JsonPoint,
     #[serde(default)]
-    twist_deg: Number,
+    twist_deg: JsonNumber,
     #[serde(default)]
     reference: ReferenceField,
     #[serde(default)]
-    softness: Number,
+    softness: JsonNumber,
     #[serde(default = "default_max_stretch")]
-    max_stretch: Number,
+    max_stretch: JsonNumber,
     #[serde(default)]
-    min_elbow_angle_deg: Number,
+    min_elbow_angle_deg: JsonNumber,
 }
 
-fn default_upper() -> Number {
-    Number(200.0)
+fn default_upper() -> JsonNumber {
+    JsonNumber(200.0)
 }
 
-fn default_lower() -> Number {
-    Number(300.0)
+fn default_lower() -> JsonNumber {
+    JsonNumber(300.0)
 }
 
-fn default_max_stretch() -> Number {
-    Number(1.0)
+fn default_max_stretch() -> JsonNumber {
+    JsonNumber(1.0)
 }
 
 impl Request {

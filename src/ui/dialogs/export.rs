@@ -8,7 +8,7 @@ use super::path::{browse, folder, unless_there};
 use super::prompt::prompt;
 use crate::document::Timeline;
 use crate::export::{ExportOptions, Format};
-use crate::io::Frames;
+use crate::io::ExportFrames;
 use crate::session::{Actions, Dialog, EditAction, Export, FileAction, Session, ShellAction};
 use crate::ui::widgets::NumberField;
 
@@ -85,7 +85,7 @@ pub(in crate::ui) fn ui(
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
-        let name = ui.label("Frames per second");
+        let name = ui.label("ExportFrames per second");
         ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::HIGHEST_FRAME_RATE))
             .labelled_by(name.id);
         ui.end_row();
@@ -120,8 +120,8 @@ pub(in crate::ui) fn ui(
         let document = session.document();
         let rate = Some(export.frame_rate);
         let frames = match chosen {
-            Some(format) if format.is_picture() => Frames::of_picture(document, rate),
-            _ => Frames::of_pose(document, rate),
+            Some(format) if format.is_picture() => ExportFrames::of_picture(document, rate),
+            _ => ExportFrames::of_pose(document, rate),
         };
         ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
             true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),

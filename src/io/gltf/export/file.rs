@@ -12,17 +12,21 @@ use ::gltf::json::{
 };
 use glam::{DAffine3, DMat4};
 
-use super::GlbError;
-use super::bones::Bones;
-use super::limbs::{Limbs, Part};
-use super::motion::{Motion, Track};
-use super::writer::{Kind, Writer, floats};
+use super::error::GlbError;
+use super::limbs::{LimbMesh, MeshPart};
+use super::motion::{JointAnimation, JointTrack};
+use super::nodes::JointNodes;
+use super::writer::{AccessorKind, GltfWriter, floats};
 
-/// The two limbs' colours, as a dark screen has them: sRGB.
+/// Colours of the limbs in the dark theme: sRGB.
 const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
 
-pub fn write(bones: &Bones, motion: &Motion, limbs: &Limbs) -> Result<Vec<u8>, GlbError> {
-    let mut writer = Writer::default();
+pub fn write(
+    bones: &JointNodes,
+    motion: &JointAnimation,
+    limbs: &LimbMesh,
+) -> Result<Vec<u8>, GlbError> {
+    let mut writer = GltfWriter::default();
     writer.root.asset = Asset {
         generator: Some(concat!("ik-arm ", env!("CARGO_PKG_VERSION")).to_owned()),
         ..Asset::default()
@@ -44,7 +48,7 @@ pub fn write(bones: &Bones, motion: &Motion, limbs: &Limbs) -> Result<Vec<u8>, G
     packed(writer)
 }
 
-fn packed(mut writer: Writer) -> Result<Vec<u8>, GlbError> {
+fn packed(mut writer: GltfWriter) -> Result<Vec<u8>, GlbError> {
     writer.root.buffers = vec![Buffer {
         byte_length: writer.bytes.len().into(),
         name: None,
@@ -53,14 +57,14 @@ fn packed(mut writer: Writer) -> Result<Vec<u8>, GlbError> {
         extras: Extras::default(),
     }];
     let json = serde_json::to_vec(&writer.root)?;
-    // The length is counted again as it is written.
+    // The length is set when the file is written.
     let header = Header { magic: *b"glTF", version: 2, length: 0 };
     Ok(Glb { header, json: json.into(), bin: Some(writer.bytes.into()) }.to_vec()?)
 }
 
-/// The joints have the same numbers as in `bones`; then come the node above them, and that of the
-/// mesh, which are returned.
-fn add_nodes(writer: &mut Writer, bones: &Bones) -> [Index<Node>; 2] {
+/// Adds the joints with the same indices as in `bones`. Returns the node above them and the node of the
+/// mesh, which follow.
+fn add_nodes(writer: &mut GltfWriter, bones: &JointNodes) -> [Index<Node>; 2] {
     let mut children = vec![Vec::new(); bones.nodes.len()];
     let mut roots = Vec::new();
     for (index, node) in bones.nodes.iter().enumerate() {
@@ -76,9 +80,12 @@ fn add_nodes(writer: &mut Writer, bones: &Bones) -> [Index<Node>; 2] {
             ..Node::default()
         });
     }
-    let armature =
-        Node { name: Some(Bones::ARMATURE.to_owned()), children: some(roots), ..Node::default() };
-    let figure = Node { name: Some(Bones::MESH.to_owned()), ..Node::default() };
+    let armature = Node {
+        name: Some(JointNodes::ARMATURE.to_owned()),
+        children: some(roots),
+        ..Node::default()
+    };
+    let figure = Node { name: Some(JointNodes::MESH.to_owned()), ..Node::default() };
     [armature, figure].map(|node| writer.root.push(node))
 }
 
@@ -86,7 +93,7 @@ fn node_index(node: usize) -> Index<Node> {
     Index::new(u32::try_from(node).unwrap_or(u32::MAX))
 }
 
-fn add_mesh(writer: &mut Writer, limbs: &Limbs) -> Index<Mesh> {
+fn add_mesh(writer: &mut GltfWriter, limbs: &LimbMesh) -> Index<Mesh> {
     let mut primitives = Vec::new();
     for (part, colour) in limbs.parts.iter().zip(COLOURS) {
         if !part.indices.is_empty() {
@@ -94,7 +101,7 @@ fn add_mesh(writer: &mut Writer, limbs: &Limbs) -> Index<Mesh> {
         }
     }
     writer.root.push(Mesh {
-        name: Some(Bones::MESH.to_owned()),
+        name: Some(JointNodes::MESH.to_owned()),
         primitives,
         weights: None,
         extensions: None,
@@ -102,24 +109,27 @@ fn add_mesh(writer: &mut Writer, limbs: &Limbs) -> Index<Mesh> {
     })
 }
 
-fn primitive(writer: &mut Writer, part: &Part, colour: [u8; 3]) -> Primitive {
+fn primitive(writer: &mut GltfWriter, part: &MeshPart, colour: [u8; 3]) -> Primitive {
     const NONE: [u8; 6] = [0; 6];
     let vertices = part.positions.len();
     let array = Some(ArrayBuffer);
     let joints = part.joints.iter().flat_map(|joint| joint.to_le_bytes().into_iter().chain(NONE));
     let weights = part.joints.iter().flat_map(|_| [255, 0, 0, 0]);
     let attributes = BTreeMap::from([
-        (Valid(Semantic::Positions), writer.bounded(&part.positions, array, Kind::POINT)),
+        (Valid(Semantic::Positions), writer.bounded(&part.positions, array, AccessorKind::POINT)),
         (
             Valid(Semantic::Normals),
-            writer.array(floats(&part.normals), array, vertices, Kind::POINT),
+            writer.array(floats(&part.normals), array, vertices, AccessorKind::POINT),
         ),
-        (Valid(Semantic::Joints(0)), writer.array(joints, array, vertices, Kind::JOINTS)),
-        (Valid(Semantic::Weights(0)), writer.array(weights, array, vertices, Kind::WEIGHTS)),
+        (Valid(Semantic::Joints(0)), writer.array(joints, array, vertices, AccessorKind::JOINTS)),
+        (
+            Valid(Semantic::Weights(0)),
+            writer.array(weights, array, vertices, AccessorKind::WEIGHTS),
+        ),
     ]);
     let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
     let target = Some(ElementArrayBuffer);
-    let indices = writer.array(indices, target, part.indices.len(), Kind::INDEX);
+    let indices = writer.array(indices, target, part.indices.len(), AccessorKind::INDEX);
     Primitive {
         attributes,
         indices: Some(indices),
@@ -144,13 +154,13 @@ fn matte(colour: [u8; 3]) -> Material {
     }
 }
 
-/// What a screen shows for a number, as a part of white.
+/// Linear value of an sRGB component.
 fn linear(srgb: u8) -> f32 {
     let part = f32::from(srgb) / 255.0;
     if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
 }
 
-fn add_skin(writer: &mut Writer, bones: &Bones, armature: Index<Node>) -> Index<Skin> {
+fn add_skin(writer: &mut GltfWriter, bones: &JointNodes, armature: Index<Node>) -> Index<Skin> {
     let mut worlds: Vec<DAffine3> = Vec::with_capacity(bones.nodes.len());
     for (node, rest) in bones.nodes.iter().zip(&bones.rest) {
         let local = DAffine3::from_rotation_translation(rest.rotation, rest.translation);
@@ -158,9 +168,9 @@ fn add_skin(writer: &mut Writer, bones: &Bones, armature: Index<Node>) -> Index<
     }
     let inverse = |world: &DAffine3| DMat4::from(world.inverse()).as_mat4().to_cols_array();
     let matrices: Vec<[f32; 16]> = worlds.iter().map(inverse).collect();
-    let accessor = writer.array(floats(&matrices), None, matrices.len(), Kind::MATRIX);
+    let accessor = writer.array(floats(&matrices), None, matrices.len(), AccessorKind::MATRIX);
     writer.root.push(Skin {
-        name: Some(Bones::ARMATURE.to_owned()),
+        name: Some(JointNodes::ARMATURE.to_owned()),
         inverse_bind_matrices: Some(accessor),
         joints: (0..bones.nodes.len()).map(node_index).collect(),
         skeleton: Some(armature),
@@ -169,13 +179,13 @@ fn add_skin(writer: &mut Writer, bones: &Bones, armature: Index<Node>) -> Index<
     })
 }
 
-/// Nothing where nothing leaves its rest.
-fn add_animation(writer: &mut Writer, motion: &Motion) {
+/// Adds the animation, unless it is empty.
+fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation) {
     if motion.is_empty() {
         return;
     }
     let times: Vec<[f32; 1]> = motion.times.iter().map(|time| [*time]).collect();
-    let input = writer.bounded(&times, None, Kind::NUMBER);
+    let input = writer.bounded(&times, None, AccessorKind::NUMBER);
     let start = writer.bytes.len();
     let view = Index::new(u32::try_from(writer.root.buffer_views.len()).unwrap_or(u32::MAX));
     let mut animation = Animation {
@@ -187,18 +197,18 @@ fn add_animation(writer: &mut Writer, motion: &Motion) {
     };
     let mut recorder = Recorder { writer, animation: &mut animation, input, view, start };
     for track in &motion.rotations {
-        recorder.add(track, Property::Rotation, Kind::QUATERNION);
+        recorder.add(track, Property::Rotation, AccessorKind::QUATERNION);
     }
     for track in &motion.translations {
-        recorder.add(track, Property::Translation, Kind::POINT);
+        recorder.add(track, Property::Translation, AccessorKind::POINT);
     }
     writer.view(start, None);
     writer.root.push(animation);
 }
 
-/// Writes tracks one after the other into one view, which is made when all are there.
+/// Writes tracks one after the other into one buffer view, which is added at the end.
 struct Recorder<'a> {
-    writer: &'a mut Writer,
+    writer: &'a mut GltfWriter,
     animation: &'a mut Animation,
     input: Index<Accessor>,
     view: Index<buffer::View>,
@@ -207,7 +217,7 @@ struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    fn add<const N: usize>(&mut self, track: &Track<N>, path: Property, kind: Kind) {
+    fn add<const N: usize>(&mut self, track: &JointTrack<N>, path: Property, kind: AccessorKind) {
         let offset = self.writer.bytes.len() - self.start;
         self.writer.bytes.extend(floats(&track.values));
         let output = self.writer.accessor(self.view, offset, track.values.len(), kind);

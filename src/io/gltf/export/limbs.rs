@@ -2,36 +2,35 @@ use core::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec3};
 
-use super::GlbError;
-use super::bones::Bones;
-use super::figure::Figure;
+use super::error::GlbError;
+use super::nodes::JointNodes;
+use super::rig::GltfRig;
 
-/// The mesh in the bind pose: a cone for every bone, balls where they begin and end. Of each of the
-/// two colours one part.
+/// The mesh in the bind pose: a cone for each bone, balls at both ends; one part for each colour.
 #[derive(Default)]
-pub struct Limbs {
-    pub parts: [Part; 2],
+pub struct LimbMesh {
+    pub parts: [MeshPart; 2],
 }
 
 #[derive(Default)]
-pub struct Part {
+pub struct MeshPart {
     /// In the world, in metres.
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
-    /// The joint that each vertex goes with.
+    /// The joint that each vertex follows.
     pub joints: Vec<u16>,
     /// Three for each triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
 }
 
-/// A ball is so much thicker than the bone that it covers the end of.
+/// Radius of a ball relative to the bone whose end it covers.
 const BALL: f64 = 1.1;
 
-impl Limbs {
-    pub fn new(figure: &Figure, bones: &Bones) -> Result<Self, GlbError> {
+impl LimbMesh {
+    pub fn new(rig: &GltfRig, bones: &JointNodes) -> Result<Self, GlbError> {
         let mut limbs = Self::default();
         let tips = bones.tips();
-        for (index, (bone, placed)) in figure.bones.iter().zip(&figure.rest).enumerate() {
+        for (index, (bone, placed)) in rig.bones.iter().zip(&rig.rest).enumerate() {
             let part = &mut limbs.parts[bone.shade];
             let turn = placed.frame();
             let length = placed.along.length();
@@ -53,7 +52,7 @@ impl Limbs {
     }
 }
 
-impl Part {
+impl MeshPart {
     /// A tapered cylinder along its frame's y, open at both ends.
     fn add_cone(
         &mut self,
@@ -114,12 +113,12 @@ impl Part {
         self.joints.push(u16::try_from(joint).unwrap_or_default());
     }
 
-    /// What the next vertex is numbered.
+    /// Index of the next vertex.
     fn first(&self) -> u32 {
         u32::try_from(self.positions.len()).unwrap_or_default()
     }
 
-    /// Whether the last vertices are somewhere.
+    /// Whether the last vertices are finite.
     fn is_finite(&self) -> bool {
         const MOST_OF_A_BONE: usize = 76;
         let last = self.positions.iter().rev().take(MOST_OF_A_BONE);

@@ -3,33 +3,33 @@ use ::gltf::json::buffer::{Target, View};
 use ::gltf::json::validation::Checked::Valid;
 use ::gltf::json::{Accessor, Extras, Index, Root, Value};
 
-/// What there is of a file so far: its JSON, and the bytes that this tells of.
+/// A file in progress: its JSON, and the bytes of its buffer.
 #[derive(Default)]
-pub struct Writer {
+pub struct GltfWriter {
     pub root: Root,
     pub bytes: Vec<u8>,
 }
 
-/// What an accessor's numbers are.
+/// Component type and shape of an accessor.
 #[derive(Clone, Copy)]
-pub struct Kind {
+pub struct AccessorKind {
     pub component: ComponentType,
     pub shape: Type,
 }
 
-impl Kind {
+impl AccessorKind {
     pub const NUMBER: Self = Self { component: ComponentType::F32, shape: Type::Scalar };
     pub const POINT: Self = Self { component: ComponentType::F32, shape: Type::Vec3 };
     pub const QUATERNION: Self = Self { component: ComponentType::F32, shape: Type::Vec4 };
     pub const MATRIX: Self = Self { component: ComponentType::F32, shape: Type::Mat4 };
     pub const JOINTS: Self = Self { component: ComponentType::U16, shape: Type::Vec4 };
-    /// From 0 to 255, which is 1.
+    /// Normalized: 255 is 1.
     pub const WEIGHTS: Self = Self { component: ComponentType::U8, shape: Type::Vec4 };
     pub const INDEX: Self = Self { component: ComponentType::U32, shape: Type::Scalar };
 }
 
-impl Writer {
-    /// A view of the bytes that were written since `start`.
+impl GltfWriter {
+    /// Adds a view of the bytes from `start` on.
     pub fn view(&mut self, start: usize, target: Option<Target>) -> Index<View> {
         let view = View {
             buffer: Index::new(0),
@@ -44,13 +44,13 @@ impl Writer {
         self.root.push(view)
     }
 
-    /// An accessor of `count` values that begin so many bytes into a view.
+    /// Adds an accessor of `count` values from byte `offset` of a view on.
     pub fn accessor(
         &mut self,
         view: Index<View>,
         offset: usize,
         count: usize,
-        kind: Kind,
+        kind: AccessorKind,
     ) -> Index<Accessor> {
         self.root.push(Accessor {
             buffer_view: Some(view),
@@ -68,13 +68,13 @@ impl Writer {
         })
     }
 
-    /// A view of `bytes`, whose number is a multiple of 4, as all are, and an accessor of it.
+    /// Adds bytes, a multiple of 4, with a view and an accessor.
     pub fn array(
         &mut self,
         bytes: impl Iterator<Item = u8>,
         target: Option<Target>,
         count: usize,
-        kind: Kind,
+        kind: AccessorKind,
     ) -> Index<Accessor> {
         let start = self.bytes.len();
         self.bytes.extend(bytes);
@@ -82,12 +82,12 @@ impl Writer {
         self.accessor(view, 0, count, kind)
     }
 
-    /// As [`Self::array`], of rows of floats; the accessor tells between which each of a row is.
+    /// Like [`Self::array`] for rows of floats, with their minimum and maximum in the accessor.
     pub fn bounded<const N: usize>(
         &mut self,
         rows: &[[f32; N]],
         target: Option<Target>,
-        kind: Kind,
+        kind: AccessorKind,
     ) -> Index<Accessor> {
         let accessor = self.array(floats(rows), target, rows.len(), kind);
         let bound = |of: fn(f32, f32) -> f32, from: f32| -> Value {
@@ -104,7 +104,7 @@ impl Writer {
     }
 }
 
-/// As a file has them.
+/// Little-endian bytes of floats.
 pub fn floats<const N: usize>(rows: &[[f32; N]]) -> impl Iterator<Item = u8> + '_ {
     rows.iter().flatten().flat_map(|number| number.to_le_bytes())
 }

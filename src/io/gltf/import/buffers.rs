@@ -4,19 +4,19 @@ use std::io::Read;
 use std::path::{Component, Path};
 
 use super::base64;
-use super::file::{Buffer, File};
+use super::file::{GltfBuffer, GltfFile};
 use crate::io::error::OpenError;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
 
-/// The bytes that a file tells of: those that are needed.
-pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
+/// The bytes of the buffers that are needed.
+pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 
-impl<'a> Buffers<'a> {
-    /// Reads buffers, which may be in the file, in its text, or in files beside it; together they are
-    /// no longer than a file can be.
-    pub fn read(source: &'a Source, file: &File, needed: &[usize]) -> Result<Self, FieldError> {
+impl<'a> GltfBuffers<'a> {
+    /// Reads buffers from the binary chunk, data URIs or files beside the file. Fails if they are larger
+    /// together than the largest file.
+    pub fn read(source: &'a Source, file: &GltfFile, needed: &[usize]) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
         let mut left = OpenError::MAX_BYTES;
         for &index in needed {
@@ -45,7 +45,7 @@ impl<'a> Buffers<'a> {
 fn bytes<'a>(
     source: &'a Source,
     index: usize,
-    buffer: &Buffer,
+    buffer: &GltfBuffer,
     at: &JsonPath,
 ) -> Result<Cow<'a, [u8]>, FieldError> {
     let length = buffer.length.0 as usize;
@@ -85,7 +85,7 @@ fn inline(data: &str) -> Result<Vec<u8>, String> {
     base64::decode(data)
 }
 
-/// A file beside the one that is read.
+/// The bytes of a file beside the one that is read.
 fn beside(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> {
     let Some(folder) = source.folder() else {
         return Err(format!(
@@ -109,7 +109,7 @@ fn beside(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> 
     Ok(bytes)
 }
 
-/// With the bytes that a URI writes as `%20`.
+/// A URI with escapes like `%20` decoded.
 fn unescaped(uri: &str) -> Option<String> {
     let mut parts = uri.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();

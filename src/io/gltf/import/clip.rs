@@ -1,17 +1,17 @@
 use super::sampler::tolerance;
-use super::tracks::Tracks;
+use super::tracks::NodeTracks;
 use crate::document::Timeline;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 
-/// Frames in a second that motions usually have, the fewest first.
+/// Usual frame rates, ascending.
 const USUAL: [u32; 8] = [24, 25, 30, 48, 50, 60, 100, 120];
-/// For motions whose keys are at other times.
+/// Frame rate of motions with keys at other times.
 const OTHERWISE: u32 = 60;
 
-/// From when to when a motion goes: from its first key to its last, in as few frames in a second as
-/// there is one at every key. None if that takes no time. `at` is where its animation stands.
-pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
+/// The timeline from the first key to the last, with the lowest frame rate that has a frame at every
+/// key; `None` if all keys are at one time. `at` is the field of the animation.
+pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
     let Some((start, last)) = ends(tracks) else { return Ok(None) };
     let frames_at = |rate: u32| {
         tracks.times().all(|time| {
@@ -33,7 +33,7 @@ pub fn timeline(tracks: &Tracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, 
     Ok((frames > 0.0).then_some(timeline))
 }
 
-/// When the first key is, and the last.
-pub fn ends(tracks: &Tracks<'_>) -> Option<(f64, f64)> {
+/// Times of the first and the last key.
+pub fn ends(tracks: &NodeTracks<'_>) -> Option<(f64, f64)> {
     tracks.times().map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }

@@ -6,74 +6,74 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
-use crate::io::value::{Numbers, Object, Point, Whole};
+use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
-pub struct File {
-    pub asset: Object<Asset>,
+pub struct GltfFile {
+    pub asset: JsonObject<GltfAsset>,
     #[serde(default)]
-    pub nodes: List<Node>,
+    pub nodes: List<GltfNode>,
     #[serde(default)]
-    pub skins: List<Skin>,
+    pub skins: List<GltfSkin>,
     #[serde(default)]
-    pub animations: List<Animation>,
+    pub animations: List<GltfAnimation>,
     #[serde(default)]
-    pub accessors: List<Accessor>,
+    pub accessors: List<GltfAccessor>,
     #[serde(default, rename = "bufferViews")]
-    pub views: List<View>,
+    pub views: List<GltfBufferView>,
     #[serde(default)]
-    pub buffers: List<Buffer>,
+    pub buffers: List<GltfBuffer>,
 }
 
 #[derive(Deserialize)]
-pub struct Asset {
+pub struct GltfAsset {
     pub version: String,
 }
 
 #[derive(Deserialize)]
-pub struct Node {
+pub struct GltfNode {
     pub name: Option<String>,
     pub children: Option<Vec<Whole>>,
-    pub matrix: Option<Box<Numbers<16>>>,
-    pub translation: Option<Point>,
-    pub rotation: Option<Numbers<4>>,
-    pub scale: Option<Point>,
+    pub matrix: Option<Box<JsonNumbers<16>>>,
+    pub translation: Option<JsonPoint>,
+    pub rotation: Option<JsonNumbers<4>>,
+    pub scale: Option<JsonPoint>,
     pub skin: Option<Whole>,
 }
 
 #[derive(Deserialize)]
-pub struct Skin {
+pub struct GltfSkin {
     pub name: Option<String>,
     pub joints: Vec<Whole>,
 }
 
 #[derive(Deserialize)]
-pub struct Animation {
-    pub channels: List<Channel>,
-    pub samplers: List<Sampler>,
+pub struct GltfAnimation {
+    pub channels: List<GltfChannel>,
+    pub samplers: List<GltfSampler>,
 }
 
 #[derive(Deserialize)]
-pub struct Channel {
+pub struct GltfChannel {
     pub sampler: Whole,
-    pub target: Object<Target>,
+    pub target: JsonObject<GltfTarget>,
 }
 
 #[derive(Deserialize)]
-pub struct Target {
+pub struct GltfTarget {
     pub node: Option<Whole>,
     pub path: String,
 }
 
 #[derive(Deserialize)]
-pub struct Sampler {
+pub struct GltfSampler {
     pub input: Whole,
     pub output: Whole,
     pub interpolation: Option<String>,
 }
 
 #[derive(Deserialize)]
-pub struct Accessor {
+pub struct GltfAccessor {
     #[serde(rename = "bufferView")]
     pub view: Option<Whole>,
     #[serde(rename = "byteOffset")]
@@ -88,7 +88,7 @@ pub struct Accessor {
 }
 
 #[derive(Deserialize)]
-pub struct View {
+pub struct GltfBufferView {
     pub buffer: Whole,
     #[serde(rename = "byteOffset")]
     pub offset: Option<Whole>,
@@ -99,7 +99,7 @@ pub struct View {
 }
 
 #[derive(Deserialize)]
-pub struct Buffer {
+pub struct GltfBuffer {
     #[serde(rename = "byteLength")]
     pub length: Whole,
     pub uri: Option<String>,
@@ -132,7 +132,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<List<T>, A::Error> {
                 let mut list = Vec::new();
-                while let Some(Object(entry)) = row.next_element()? {
+                while let Some(JsonObject(entry)) = row.next_element()? {
                     if list.len() == List::<T>::LONGEST {
                         let most = List::<T>::LONGEST;
                         return Err(A::Error::custom(format!("at most {most} are possible")));

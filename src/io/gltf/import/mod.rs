@@ -6,6 +6,7 @@ mod clip;
 mod file;
 mod motion;
 mod nodes;
+mod part;
 mod rig;
 mod rows;
 mod sampler;
@@ -18,21 +19,21 @@ use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::opened::Opened;
 use crate::io::source::Source;
-use crate::io::value::Object;
+use crate::io::value::JsonObject;
 use crate::kinematics::skeleton::Joint;
-use file::{Animation, File, Skin};
-use motion::{Motion, Placed, Stage};
-use nodes::Nodes;
-use rig::Built;
-use skins::{Joints, at_skin};
-use tracks::Tracks;
+use file::{GltfAnimation, GltfFile, GltfSkin};
+use motion::{JointMotion, JointPlacement, NodePoser};
+use nodes::NodeTree;
+use rig::ImportedRig;
+use skins::{SkinJoints, at_skin};
+use tracks::NodeTracks;
 
-/// So many times a node can be somewhere.
+/// Most transforms of nodes in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
 
-/// Reads the skeleton of the skin of that name, or of the first.
+/// Reads the skeleton of the skin called `name`, or of the first skin.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
-    let Object(file) = source.parse::<Object<File>>(|_| {})?;
+    let JsonObject(file) = source.parse::<JsonObject<GltfFile>>(|_| {})?;
     check(&file).map_err(|wrong| source.error(&wrong))?;
     let names = skins::names(&file);
     let chosen = match name {
@@ -48,7 +49,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     };
     let mut odd = FieldWarnings::default();
     let opened = opened(source, &file, index, skin, &mut odd);
-    let (Built { document, kept }, order) = opened.map_err(|wrong| source.error(&wrong))?;
+    let (ImportedRig { document, kept }, order) = opened.map_err(|wrong| source.error(&wrong))?;
     Ok(Opened {
         document,
         warnings: source.warnings(&odd),
@@ -57,8 +58,8 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     })
 }
 
-fn check(file: &File) -> Result<(), FieldError> {
-    let Object(asset) = &file.asset;
+fn check(file: &GltfFile) -> Result<(), FieldError> {
+    let JsonObject(asset) = &file.asset;
     if asset.version.split('.').next() != Some("2") {
         let reason = format!("is {:?}; only glTF 2 is known", asset.version);
         return Err(FieldError::new(JsonPath::root().key("asset").key("version"), reason));
@@ -72,14 +73,14 @@ fn check(file: &File) -> Result<(), FieldError> {
 
 fn opened(
     source: &Source,
-    file: &File,
+    file: &GltfFile,
     index: usize,
-    skin: &Skin,
+    skin: &GltfSkin,
     odd: &mut FieldWarnings,
-) -> Result<(Built, Vec<usize>), FieldError> {
-    let nodes = Nodes::new(file)?;
-    let joints = Joints::new(file, &nodes, index, skin)?;
-    let mut stage = Stage::new(&nodes, &joints);
+) -> Result<(ImportedRig, Vec<usize>), FieldError> {
+    let nodes = NodeTree::new(file)?;
+    let joints = SkinJoints::new(file, &nodes, index, skin)?;
+    let mut stage = NodePoser::new(&nodes, &joints);
     let rest = stage.rest()?;
     let mut list = rig::joints(file, &joints, &rest);
     let at = JsonPath::root().key("animations");
@@ -101,16 +102,16 @@ fn opened(
 
 fn animate(
     source: &Source,
-    file: &File,
-    nodes: &Nodes,
-    (animation, at): (&Animation, &JsonPath),
-    stage: &mut Stage<'_>,
+    file: &GltfFile,
+    nodes: &NodeTree,
+    (animation, at): (&GltfAnimation, &JsonPath),
+    stage: &mut NodePoser<'_>,
     joints: &mut [Joint],
-    rest: &[Placed],
-) -> Result<(Vec<Motion>, Option<Timeline>), FieldError> {
+    rest: &[JointPlacement],
+) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
     let chosen = tracks::chosen(animation, at, nodes, &stage.is_needed())?;
     let buffers = tracks::buffers(source, file, &chosen)?;
-    let tracks = Tracks::new(file, &buffers, &chosen)?;
+    let tracks = NodeTracks::new(file, &buffers, &chosen)?;
     let Some((start, _)) = clip::ends(&tracks) else {
         return Ok((Vec::new(), None));
     };

@@ -1,41 +1,41 @@
 use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3};
 
-use super::nodes::{Local, Nodes, at_node};
-use super::skins::Joints;
-use super::tracks::Tracks;
+use super::nodes::{NodeTransform, NodeTree, at_node};
+use super::skins::SkinJoints;
+use super::tracks::NodeTracks;
 use crate::document::Timeline;
 use crate::io::field_error::FieldError;
 use crate::io::gltf::frame::frame;
 use crate::kinematics::skeleton::Joint;
 
-/// Where a joint is in the world.
+/// The placement of a joint in the world.
 #[derive(Clone, Copy)]
-pub struct Placed {
+pub struct JointPlacement {
     pub base: DVec3,
-    /// Its axes, made rigid.
+    /// Its axes, orthonormalized.
     pub frame: DMat3,
 }
 
-/// The nodes that joints hang from, and the joints: all that is to be posed.
-pub struct Stage<'a> {
-    nodes: &'a Nodes,
-    joints: &'a Joints,
+/// Poses the joints and their ancestors.
+pub struct NodePoser<'a> {
+    nodes: &'a NodeTree,
+    joints: &'a SkinJoints,
     /// Parents before their children.
     needed: Vec<usize>,
-    locals: Vec<Local>,
+    locals: Vec<NodeTransform>,
     worlds: Vec<DAffine3>,
 }
 
-/// What a joint of our skeleton does, frame by frame.
+/// The motion of a joint, frame by frame.
 #[derive(Default)]
-pub struct Motion {
+pub struct JointMotion {
     /// Unwrapped angles.
     pub rotations: Vec<Vec3>,
     pub offsets: Vec<Vec3>,
 }
 
-impl<'a> Stage<'a> {
-    pub fn new(nodes: &'a Nodes, joints: &'a Joints) -> Self {
+impl<'a> NodePoser<'a> {
+    pub fn new(nodes: &'a NodeTree, joints: &'a SkinJoints) -> Self {
         let mut is_needed = vec![false; nodes.parents.len()];
         joints.nodes.iter().for_each(|node| is_needed[*node] = true);
         for node in nodes.order.iter().rev().copied() {
@@ -52,30 +52,34 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// How many nodes are posed.
+    /// Number of nodes that are posed.
     pub fn len(&self) -> usize {
         self.needed.len()
     }
 
-    /// For every node whether it is posed.
+    /// Whether each node is posed.
     pub fn is_needed(&self) -> Vec<bool> {
         let mut is_needed = vec![false; self.nodes.parents.len()];
         self.needed.iter().for_each(|node| is_needed[*node] = true);
         is_needed
     }
 
-    /// Where the joints are without an animation.
-    pub fn rest(&mut self) -> Result<Vec<Placed>, FieldError> {
+    /// Placements of the joints without an animation.
+    pub fn rest(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
         self.placed()
     }
 
-    /// Where an animation has the joints at a time, in seconds.
-    pub fn at(&mut self, tracks: &Tracks<'_>, time: f64) -> Result<Vec<Placed>, FieldError> {
+    /// Placements of the joints in an animation at a time, in seconds.
+    pub fn at(
+        &mut self,
+        tracks: &NodeTracks<'_>,
+        time: f64,
+    ) -> Result<Vec<JointPlacement>, FieldError> {
         tracks.pose(time, &mut self.locals);
         self.placed()
     }
 
-    fn placed(&mut self) -> Result<Vec<Placed>, FieldError> {
+    fn placed(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
         for &node in &self.needed {
             let above = self.nodes.parents[node];
             let above = above.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
@@ -87,22 +91,22 @@ impl<'a> Stage<'a> {
                 let reason = "is beyond 3.4028235e38 m in the world; bring it nearer to 0";
                 return Err(FieldError::new(at_node(*node), reason));
             }
-            Ok(Placed { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
+            Ok(JointPlacement { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
         };
         self.joints.nodes.iter().map(place).collect()
     }
 }
 
-/// Poses the joints frame by frame; at a single time without a timeline.
+/// Motions of all joints, frame by frame.
 pub fn sample(
-    stage: &mut Stage<'_>,
-    tracks: &Tracks<'_>,
+    stage: &mut NodePoser<'_>,
+    tracks: &NodeTracks<'_>,
     timeline: Timeline,
     frames: usize,
     joints: &mut [Joint],
-    rest: &[Placed],
-) -> Result<Vec<Motion>, FieldError> {
-    let mut motions: Vec<Motion> = joints.iter().map(|_| Motion::default()).collect();
+    rest: &[JointPlacement],
+) -> Result<Vec<JointMotion>, FieldError> {
+    let mut motions: Vec<JointMotion> = joints.iter().map(|_| JointMotion::default()).collect();
     for frame in 0..frames {
         let placed = stage.at(tracks, timeline.time(frame))?;
         let turns: Vec<DMat3> =
@@ -118,7 +122,7 @@ pub fn sample(
                 let reason = "is beyond 3.4028235e38 m from its parent; bring it nearer";
                 return Err(FieldError::new(at_node(stage.joints.nodes[index]), reason));
             }
-            // The angles nearest to those of the frame before.
+            // Unwrapped: the angles nearest to those of the last frame.
             joint.rotation = joint.angles_of(Mat3A::from((above * turns[index]).as_mat3()));
             motion.rotations.push(joint.rotation);
             motion.offsets.push(offset);

@@ -1,39 +1,39 @@
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
-use super::file::{File, Node};
+use super::file::{GltfFile, GltfNode};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::Numbers;
+use crate::io::value::JsonNumbers;
 
 /// The tree of nodes.
-pub struct Nodes {
+pub struct NodeTree {
     pub parents: Vec<Option<usize>>,
-    /// All of them, parents before their children.
+    /// All nodes, parents before their children.
     pub order: Vec<usize>,
-    /// Each in its parent, at rest.
-    pub locals: Vec<Local>,
+    /// Transforms relative to the parents, without animation.
+    pub locals: Vec<NodeTransform>,
 }
 
-/// A transform in the parent's space, as a file has it.
+/// A transform relative to the parent, as in the file.
 #[derive(Clone, Copy)]
-pub enum Local {
-    Parts(Parts),
+pub enum NodeTransform {
+    TransformParts(TransformParts),
     Matrix(DAffine3),
 }
 
-/// What animations change.
+/// A transform that animations can change.
 #[derive(Clone, Copy)]
-pub struct Parts {
+pub struct TransformParts {
     pub translation: DVec3,
     /// A unit quaternion.
     pub rotation: DQuat,
     pub scale: DVec3,
 }
 
-impl Local {
+impl NodeTransform {
     pub fn affine(&self) -> DAffine3 {
         match *self {
-            Self::Parts(Parts { translation, rotation, scale }) => {
+            Self::TransformParts(TransformParts { translation, rotation, scale }) => {
                 DAffine3::from_scale_rotation_translation(scale, rotation, translation)
             }
             Self::Matrix(matrix) => matrix,
@@ -45,8 +45,8 @@ pub fn at_node(index: usize) -> JsonPath {
     JsonPath::root().key("nodes").index(index)
 }
 
-impl Nodes {
-    pub fn new(file: &File) -> Result<Self, FieldError> {
+impl NodeTree {
+    pub fn new(file: &GltfFile) -> Result<Self, FieldError> {
         let nodes = &file.nodes.0;
         let parents = parents(nodes)?;
         let order = order(nodes, &parents)?;
@@ -55,7 +55,7 @@ impl Nodes {
     }
 }
 
-fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, FieldError> {
+fn parents(nodes: &[GltfNode]) -> Result<Vec<Option<usize>>, FieldError> {
     let mut parents = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for (place, child) in node.children.iter().flatten().enumerate() {
@@ -65,7 +65,7 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, FieldError> {
             match parents.get_mut(child) {
                 None => return Err(wrong(format!("there is no node {child}"))),
                 Some(Some(other)) => {
-                    let reason = format!("node {child} already hangs from node {other}");
+                    let reason = format!("node {child} is already a child of node {other}");
                     return Err(wrong(reason));
                 }
                 Some(parent) => *parent = Some(index),
@@ -75,8 +75,8 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, FieldError> {
     Ok(parents)
 }
 
-/// Every node after its parent, which there is unless nodes hang from each other in a ring.
-fn order(nodes: &[Node], parents: &[Option<usize>]) -> Result<Vec<usize>, FieldError> {
+/// All nodes, parents before their children. Fails if a node is its own ancestor.
+fn order(nodes: &[GltfNode], parents: &[Option<usize>]) -> Result<Vec<usize>, FieldError> {
     let mut order: Vec<usize> = (0..nodes.len()).filter(|node| parents[*node].is_none()).collect();
     let mut done = 0;
     while let Some(node) = order.get(done).and_then(|node| nodes.get(*node)) {
@@ -87,12 +87,12 @@ fn order(nodes: &[Node], parents: &[Option<usize>]) -> Result<Vec<usize>, FieldE
         let mut is_placed = vec![false; nodes.len()];
         order.iter().for_each(|node| is_placed[*node] = true);
         let node = is_placed.iter().position(|is_placed| !is_placed).unwrap_or_default();
-        return Err(FieldError::new(at_node(node), "hangs from itself, by way of others or not"));
+        return Err(FieldError::new(at_node(node), "is its own ancestor"));
     }
     Ok(order)
 }
 
-fn local(index: usize, node: &Node) -> Result<Local, FieldError> {
+fn local(index: usize, node: &GltfNode) -> Result<NodeTransform, FieldError> {
     if let Some(matrix) = &node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.0.map(f64::from));
         if matrix.row(3) != DVec4::W {
@@ -100,21 +100,21 @@ fn local(index: usize, node: &Node) -> Result<Local, FieldError> {
                 "the last number of its first three columns must be 0, that of the fourth 1";
             return Err(FieldError::new(at_node(index).key("matrix"), reason));
         }
-        return Ok(Local::Matrix(DAffine3::from_mat4(matrix)));
+        return Ok(NodeTransform::Matrix(DAffine3::from_mat4(matrix)));
     }
     let rotation = match node.rotation {
         None => DQuat::IDENTITY,
-        Some(Numbers(rotation)) => unit(rotation.map(f64::from)).ok_or_else(|| {
-            let reason = "four zeros turn nothing; no rotation is [0, 0, 0, 1]";
+        Some(JsonNumbers(rotation)) => unit(rotation.map(f64::from)).ok_or_else(|| {
+            let reason = "must not be four zeros; [0, 0, 0, 1] is no rotation";
             FieldError::new(at_node(index).key("rotation"), reason)
         })?,
     };
     let translation = node.translation.unwrap_or_default().0.as_dvec3();
     let scale = node.scale.map_or(DVec3::ONE, |scale| scale.0.as_dvec3());
-    Ok(Local::Parts(Parts { translation, rotation, scale }))
+    Ok(NodeTransform::TransformParts(TransformParts { translation, rotation, scale }))
 }
 
-/// The unit quaternion that turns as one of any length does; none if it has no length.
+/// The normalized quaternion; `None` for zero.
 pub fn unit(rotation: [f64; 4]) -> Option<DQuat> {
     const SHORTEST: f64 = 1e-6;
     let rotation = DVec4::from_array(rotation);

@@ -1,15 +1,15 @@
 use glam::Vec3;
 
-use super::file::File;
-use super::motion::{Motion, Placed};
-use super::skins::Joints;
+use super::file::GltfFile;
+use super::motion::{JointMotion, JointPlacement};
+use super::skins::SkinJoints;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
-use crate::io::gltf::names::Names;
+use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
 
-/// Every joint at rest: as it stands in the world, without rotations. None has a bone yet.
-pub fn joints(file: &File, joints: &Joints, rest: &[Placed]) -> Vec<Joint> {
-    let mut names = Names::default();
+/// All joints in the bind pose, in world space, without rotations and without bones.
+pub fn joints(file: &GltfFile, joints: &SkinJoints, rest: &[JointPlacement]) -> Vec<Joint> {
+    let mut names = UniqueNames::default();
     let joint = |(index, node): (usize, &usize)| {
         let name = file.nodes.0.get(*node).and_then(|node| node.name.as_deref());
         let name = name.filter(|name| !name.trim().is_empty());
@@ -25,16 +25,16 @@ pub fn joints(file: &File, joints: &Joints, rest: &[Placed]) -> Vec<Joint> {
     joints.nodes.iter().enumerate().map(joint).collect()
 }
 
-/// What is less is rounding: a part of an angle, or of an offset's length.
+/// Smaller changes are rounding: in radians, or relative to the length of an offset.
 const LEAST: f32 = 1e-6;
 
-impl Motion {
+impl JointMotion {
     fn turns(&self) -> bool {
         let first = self.rotations.first().copied().unwrap_or_default();
         self.rotations.iter().any(|angles| (*angles - first).abs().max_element() > 2.0 * LEAST)
     }
 
-    /// Whether the joint moves in its parent, on a skeleton of such a size.
+    /// Whether the joint's offset changes, on a skeleton of such a size.
     fn moves(&self, size: f32) -> bool {
         let first = self.offsets.first().copied().unwrap_or_default();
         let least = LEAST * first.length().max(1e-3 * size);
@@ -42,18 +42,18 @@ impl Motion {
     }
 }
 
-/// A document with the joints, posed as in the first frame, and keys for what moves. `kept` has the
-/// place of every joint, or none for one that was the tip of its parent's bone.
-pub struct Built {
+/// A document with the joints in the pose of the first frame, and keys for those that move. `kept` has
+/// the index of every joint, or `None` for one that was the tip of its parent's bone.
+pub struct ImportedRig {
     pub document: Document,
     pub kept: Vec<Option<usize>>,
 }
 
 pub fn build(
     mut joints: Vec<Joint>,
-    motions: &[Motion],
+    motions: &[JointMotion],
     timeline: Option<Timeline>,
-) -> Result<Built, SkeletonError> {
+) -> Result<ImportedRig, SkeletonError> {
     let rest: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
     let size = rest.iter().map(|offset| offset.length()).fold(0.0, f32::max);
     for (joint, motion) in joints.iter_mut().zip(motions) {
@@ -85,11 +85,11 @@ pub fn build(
     }
     document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(left)?);
     document.camera = document.skeleton_rig.first_view();
-    Ok(Built { document, kept })
+    Ok(ImportedRig { document, kept })
 }
 
-/// Which joints only say where their parents' bones end: they are called so, nothing hangs from
-/// them, and they stay.
+/// Whether each joint is only the tip of its parent's bone: called `…_tip`, without children, and
+/// without motion.
 fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     let mut are_leaves = vec![true; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
@@ -103,8 +103,8 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     joints.iter().enumerate().map(is_tip).collect()
 }
 
-/// Bones to the tips that joints have; without one to the only child, to that which is where the
-/// joint's own y points, or to the middle of the children.
+/// Sets bones: to a joint's tip, else to its only child, else to the child along the joint's y axis,
+/// else to the middle of the children.
 fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
     const ALONG: f32 = 0.999;
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -128,14 +128,19 @@ fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
     }
 }
 
-/// The mean of those that are not zero.
+/// The mean of the offsets that are not zero.
 fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
     let offsets: Vec<Vec3> = offsets.filter(|offset| *offset != Vec3::ZERO).collect();
     let part = 1.0 / offsets.len().max(1) as f32;
     offsets.into_iter().map(|offset| offset * part).sum()
 }
 
-fn add_keys(document: &mut Document, motions: &[Motion], moves: &[bool], kept: &[Option<usize>]) {
+fn add_keys(
+    document: &mut Document,
+    motions: &[JointMotion],
+    moves: &[bool],
+    kept: &[Option<usize>],
+) {
     let timeline = document.timeline;
     let mut add = |channel, values: &[Vec3]| {
         for (frame, value) in values.iter().enumerate() {

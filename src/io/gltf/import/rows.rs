@@ -1,13 +1,13 @@
-use super::buffers::Buffers;
-use super::file::{Accessor, File, View};
+use super::buffers::GltfBuffers;
+use super::file::{GltfAccessor, GltfBufferView, GltfFile};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 
-/// The numbers of an accessor, row by row, as they stand in a buffer: each was checked to be in it.
+/// The numbers of an accessor, row by row. All are within the buffer.
 #[derive(Clone, Copy)]
-pub struct Rows<'a> {
+pub struct AccessorRows<'a> {
     bytes: &'a [u8],
-    /// From one row to the next, in bytes.
+    /// Bytes from one row to the next.
     stride: usize,
     count: usize,
     component: Component,
@@ -55,7 +55,10 @@ fn at_view(index: usize) -> JsonPath {
 }
 
 /// An accessor and its buffer view.
-fn found(file: &File, index: usize) -> Result<(&Accessor, &View, usize), FieldError> {
+fn found(
+    file: &GltfFile,
+    index: usize,
+) -> Result<(&GltfAccessor, &GltfBufferView, usize), FieldError> {
     let accessor = file.accessors.0.get(index);
     let accessor =
         accessor.ok_or_else(|| FieldError::new(at_accessor(index), "there is no such accessor"))?;
@@ -71,9 +74,9 @@ fn found(file: &File, index: usize) -> Result<(&Accessor, &View, usize), FieldEr
     Ok((accessor, view, place))
 }
 
-/// Which buffer an accessor reads.
-pub fn buffer_of(file: &File, index: usize) -> Result<usize, FieldError> {
-    let (_, View { buffer, .. }, view) = found(file, index)?;
+/// The buffer of an accessor.
+pub fn buffer_of(file: &GltfFile, index: usize) -> Result<usize, FieldError> {
+    let (_, GltfBufferView { buffer, .. }, view) = found(file, index)?;
     let buffer = buffer.0 as usize;
     if buffer >= file.buffers.0.len() {
         let reason = format!("there is no buffer {buffer}");
@@ -82,11 +85,11 @@ pub fn buffer_of(file: &File, index: usize) -> Result<usize, FieldError> {
     Ok(buffer)
 }
 
-impl<'a> Rows<'a> {
-    /// The accessor's rows of numbers, if they are of that `shape` and all of them are there.
+impl<'a> AccessorRows<'a> {
+    /// The accessor's rows. Fails if it has another shape, or if the buffer is too short.
     pub fn new(
-        file: &File,
-        buffers: &'a Buffers<'_>,
+        file: &GltfFile,
+        buffers: &'a GltfBuffers<'_>,
         index: usize,
         shape: &str,
     ) -> Result<Self, FieldError> {
@@ -129,7 +132,7 @@ impl<'a> Rows<'a> {
         self.count
     }
 
-    /// Whether the numbers are floats, or integers that stand for parts of 1.
+    /// Whether the numbers are floats, rather than integers.
     pub fn is_float(&self) -> bool {
         self.component == Component::F32
     }
@@ -138,7 +141,7 @@ impl<'a> Rows<'a> {
         self.is_normalized && self.component != Component::U32
     }
 
-    /// The numbers of a row; 0 where there are none.
+    /// The numbers of a row; 0 beyond its width.
     pub fn row<const N: usize>(&self, index: usize) -> [f64; N] {
         let size = self.component.size();
         std::array::from_fn(|column| {
@@ -171,8 +174,12 @@ fn width(shape: &str) -> usize {
     }
 }
 
-/// The bytes of a view, if its buffer has them.
-fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a [u8], FieldError> {
+/// The bytes of a view. Fails if its buffer is too short.
+fn viewed<'a>(
+    buffers: &'a GltfBuffers<'_>,
+    view: &GltfBufferView,
+    index: usize,
+) -> Result<&'a [u8], FieldError> {
     let buffer = buffers.get(view.buffer.0 as usize).unwrap_or_default();
     let offset = view.offset.map_or(0, |offset| offset.0 as usize);
     let length = view.length.0 as usize;
@@ -186,7 +193,7 @@ fn viewed<'a>(buffers: &'a Buffers<'_>, view: &View, index: usize) -> Result<&'a
     })
 }
 
-fn stride(view: &View, index: usize, row: usize) -> Result<usize, FieldError> {
+fn stride(view: &GltfBufferView, index: usize, row: usize) -> Result<usize, FieldError> {
     let Some(stride) = view.stride else { return Ok(row) };
     let stride = stride.0 as usize;
     if !(4..=252).contains(&stride) || stride < row {

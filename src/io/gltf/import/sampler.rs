@@ -1,20 +1,19 @@
 use glam::{DQuat, DVec3, DVec4};
 
-use super::buffers::Buffers;
-use super::file::File;
+use super::buffers::GltfBuffers;
+use super::file::GltfFile;
 use super::nodes::unit;
-use super::rows::{Rows, at_accessor};
-use super::tracks::Part;
+use super::part::AnimatedPart;
+use super::rows::{AccessorRows, at_accessor};
 use crate::io::field_error::FieldError;
 
-/// Values at times, and what is between them.
+/// Keys with interpolation.
 #[derive(Clone, Copy)]
-pub struct Sampler<'a> {
-    times: Rows<'a>,
-    /// As many as there are times; thrice as many for cubic splines: at each time the slope that
-    /// arrives, the value, and the slope that leaves.
-    values: Rows<'a>,
-    part: Part,
+pub struct KeySampler<'a> {
+    times: AccessorRows<'a>,
+    /// One per time; for cubic splines three: in-tangent, value, out-tangent.
+    values: AccessorRows<'a>,
+    part: AnimatedPart,
     interpolation: Interpolation,
 }
 
@@ -36,35 +35,34 @@ impl Interpolation {
     }
 }
 
-/// A time that is so near to a key's is that key's, in seconds: files have times in 32 bits, some
-/// with few decimals.
+/// Tolerance for a time to be a key's, in seconds: files have 32-bit times, some with few decimals.
 pub fn tolerance(time: f64) -> f64 {
     const LEAST: f64 = 1e-4;
     const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
     (time.abs() * ROUNDING).max(LEAST)
 }
 
-/// Which of a cubic spline's three rows at a time.
+/// Index of a row among a cubic spline's three.
 const ARRIVING: usize = 0;
 const VALUE: usize = 1;
 const LEAVING: usize = 2;
 
-impl<'a> Sampler<'a> {
+impl<'a> KeySampler<'a> {
     pub fn new(
-        file: &File,
-        buffers: &'a Buffers<'_>,
+        file: &GltfFile,
+        buffers: &'a GltfBuffers<'_>,
         [input, output]: [usize; 2],
-        part: Part,
+        part: AnimatedPart,
         interpolation: Interpolation,
     ) -> Result<Self, FieldError> {
-        let times = Rows::new(file, buffers, input, "SCALAR")?;
-        let shape = if part == Part::Rotation { "VEC4" } else { "VEC3" };
-        let values = Rows::new(file, buffers, output, shape)?;
+        let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
+        let shape = if part == AnimatedPart::Rotation { "VEC4" } else { "VEC3" };
+        let values = AccessorRows::new(file, buffers, output, shape)?;
         if !times.is_float() {
             let reason = "times must be floats: 5126";
             return Err(FieldError::new(at_accessor(input).key("componentType"), reason));
         }
-        if !(values.is_float() || part == Part::Rotation && values.is_normalized()) {
+        if !(values.is_float() || part == AnimatedPart::Rotation && values.is_normalized()) {
             let reason =
                 "values must be floats, 5126; rotations can be normalized integers as well";
             return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
@@ -84,8 +82,7 @@ impl<'a> Sampler<'a> {
         Ok(Self { times, values, part, interpolation })
     }
 
-    /// Refuses times that do not follow each other, values that are no numbers, and rotations that
-    /// are none.
+    /// Fails if times do not increase, values are not finite, or a rotation is zero.
     pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), FieldError> {
         for key in 0..self.len() {
             let time = self.time(key);
@@ -103,7 +100,7 @@ impl<'a> Sampler<'a> {
                 return Err(FieldError::new(at_accessor(output), reason));
             }
         }
-        if self.part == Part::Rotation {
+        if self.part == AnimatedPart::Rotation {
             for key in 0..self.len() {
                 if unit(self.row(key, VALUE)).is_none() {
                     let reason = format!("rotation {key} is four zeros, which turn nothing");
@@ -114,12 +111,12 @@ impl<'a> Sampler<'a> {
         Ok(())
     }
 
-    /// How many keys there are.
+    /// Number of keys.
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// When a key is, in seconds.
+    /// Time of a key, in seconds.
     pub fn time(&self, key: usize) -> f64 {
         let [time] = self.times.row(key);
         time
@@ -149,7 +146,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The key at or before a time, and how far on the way to the next the time is, if it is.
+    /// The key at or before a time, and the fraction of the way to the next, if between two.
     fn place(&self, time: f64) -> (usize, Option<f64>) {
         let near = tolerance(time);
         let (mut until, mut after) = (0, self.len());
@@ -170,7 +167,7 @@ impl<'a> Sampler<'a> {
         (key, Some((time - start) / (self.time(key + 1) - start)))
     }
 
-    /// Between a key and the next: the cubic Hermite polynomial of the standard's appendix C.
+    /// Interpolates by the cubic Hermite polynomial of the standard's appendix C.
     fn cubic(&self, key: usize, s: f64) -> DVec4 {
         let span = self.time(key + 1) - self.time(key);
         let row = |key, which| {
@@ -184,7 +181,7 @@ impl<'a> Sampler<'a> {
             + row(key + 1, ARRIVING) * (span * (s3 - s2))
     }
 
-    /// The numbers of a key.
+    /// The values of a key.
     fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
         self.values.row(match self.interpolation {
             Interpolation::CubicSpline => 3 * key + which,
@@ -193,6 +190,6 @@ impl<'a> Sampler<'a> {
     }
 
     fn width(&self) -> usize {
-        if self.part == Part::Rotation { 4 } else { 3 }
+        if self.part == AnimatedPart::Rotation { 4 } else { 3 }
     }
 }

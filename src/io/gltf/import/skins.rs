@@ -1,25 +1,24 @@
 use std::collections::HashSet;
 
-use super::file::{File, Skin};
-use super::nodes::Nodes;
+use super::file::{GltfFile, GltfSkin};
+use super::nodes::NodeTree;
 use crate::io::field_error::FieldError;
-use crate::io::gltf::names::Names;
+use crate::io::gltf::names::UniqueNames;
 use crate::io::json_path::JsonPath;
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
 /// The joints of a skin, parents before their children.
-pub struct Joints {
-    /// Their nodes.
+pub struct SkinJoints {
+    /// The nodes of the joints.
     pub nodes: Vec<usize>,
-    /// The joint that each hangs from, nodes between the two left out.
+    /// The parent joint of each; nodes between the two are skipped.
     pub parents: Vec<Option<usize>>,
-    /// For every joint of the skin in the file's order, which joint it is.
+    /// For each joint of the skin in the file's order, its index.
     pub order: Vec<usize>,
 }
 
-/// What the skins are called: by their own name, else by that of the first node with the skin, else
-/// by their number. No two are called the same.
-pub fn names(file: &File) -> Vec<String> {
+/// Unique names of the skins: their own, else that of the first node with the skin, else by number.
+pub fn names(file: &GltfFile) -> Vec<String> {
     let mut users = vec![None; file.skins.0.len()];
     for node in &file.nodes.0 {
         let user = node.skin.and_then(|skin| users.get_mut(skin.0 as usize));
@@ -27,8 +26,8 @@ pub fn names(file: &File) -> Vec<String> {
             *user = user.or(node.name.as_deref());
         }
     }
-    let mut names = Names::default();
-    let name = |(index, (skin, user)): (usize, (&Skin, Option<&str>))| {
+    let mut names = UniqueNames::default();
+    let name = |(index, (skin, user)): (usize, (&GltfSkin, Option<&str>))| {
         let name = skin.name.as_deref().or(user).filter(|name| !name.trim().is_empty());
         names.free(name.unwrap_or(&format!("skin_{index}")))
     };
@@ -39,13 +38,18 @@ pub fn at_skin(skin: usize) -> JsonPath {
     JsonPath::root().key("skins").index(skin)
 }
 
-impl Joints {
-    pub fn new(file: &File, nodes: &Nodes, index: usize, skin: &Skin) -> Result<Self, FieldError> {
+impl SkinJoints {
+    pub fn new(
+        file: &GltfFile,
+        nodes: &NodeTree,
+        index: usize,
+        skin: &GltfSkin,
+    ) -> Result<Self, FieldError> {
         let at = at_skin(index).key("joints");
         if skin.joints.is_empty() {
-            return Err(FieldError::new(at, "there is none; a skin needs a joint"));
+            return Err(FieldError::new(at, "must have a joint"));
         }
-        // Each joint may have another one at its tip, which becomes none.
+        // Tips are joints in the file, but not in the skeleton.
         if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
             return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
         }
@@ -64,8 +68,8 @@ impl Joints {
         Ok(Self::sorted(nodes, &listed))
     }
 
-    /// Joints in an order in which parents come before their children, and otherwise as it was.
-    fn sorted(nodes: &Nodes, listed: &[usize]) -> Self {
+    /// SkinJoints in an order in which parents come before their children, and otherwise as it was.
+    fn sorted(nodes: &NodeTree, listed: &[usize]) -> Self {
         let above = nearest_above(nodes, listed);
         let mut joint_of = vec![None; nodes.parents.len()];
         let mut joints = Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new() };
@@ -83,8 +87,8 @@ impl Joints {
     }
 }
 
-/// For every node, the nearest of the listed ones that it hangs from.
-fn nearest_above(nodes: &Nodes, listed: &[usize]) -> Vec<Option<usize>> {
+/// For each node, its nearest listed ancestor.
+fn nearest_above(nodes: &NodeTree, listed: &[usize]) -> Vec<Option<usize>> {
     let mut is_listed = vec![false; nodes.parents.len()];
     listed.iter().for_each(|node| is_listed[*node] = true);
     let mut above = vec![None; nodes.parents.len()];

@@ -1,47 +1,41 @@
 use std::collections::{BTreeSet, HashSet};
 
-use super::buffers::Buffers;
-use super::file::{Animation, Channel, File};
-use super::nodes::{Local, Nodes, Parts, at_node};
-use super::sampler::{Interpolation, Sampler};
+use super::buffers::GltfBuffers;
+use super::file::{GltfAnimation, GltfChannel, GltfFile};
+use super::nodes::{NodeTransform, NodeTree, TransformParts, at_node};
+use super::part::AnimatedPart;
+use super::sampler::{Interpolation, KeySampler};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
-use crate::io::value::Object;
+use crate::io::value::JsonObject;
 
-/// What moves the nodes.
-pub struct Tracks<'a>(Vec<Track<'a>>);
+/// The animated values of all nodes.
+pub struct NodeTracks<'a>(Vec<NodeTrack<'a>>);
 
-struct Track<'a> {
+struct NodeTrack<'a> {
     node: usize,
-    part: Part,
-    sampler: Sampler<'a>,
+    part: AnimatedPart,
+    sampler: KeySampler<'a>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Part {
-    Translation,
-    Rotation,
-    Scale,
-}
-
-/// A channel of an animation that counts, where it stands, and the accessors that it takes.
-pub struct Chosen<'a> {
+/// An animation channel that is used, with its field and its accessors.
+pub struct UsedChannel<'a> {
     node: usize,
-    part: Part,
+    part: AnimatedPart,
     interpolation: Interpolation,
     input: usize,
     output: usize,
     at: &'a JsonPath,
 }
 
-/// The channels of an animation that move one of the nodes that are needed.
+/// The channels of an animation that move a needed node.
 pub fn chosen<'a>(
-    animation: &Animation,
+    animation: &GltfAnimation,
     at: &'a JsonPath,
-    nodes: &Nodes,
+    nodes: &NodeTree,
     is_needed: &[bool],
-) -> Result<Vec<Chosen<'a>>, FieldError> {
+) -> Result<Vec<UsedChannel<'a>>, FieldError> {
     let mut seen = HashSet::new();
     let mut all = Vec::new();
     for (index, channel) in animation.channels.0.iter().enumerate() {
@@ -54,12 +48,12 @@ pub fn chosen<'a>(
         if !is_needed {
             continue;
         }
-        if let Local::Matrix(_) = nodes.locals[node] {
+        if let NodeTransform::Matrix(_) = nodes.locals[node] {
             let reason = "a node that moves cannot have a matrix";
             return Err(FieldError::new(at_node(node).key("matrix"), reason));
         }
         if !seen.insert((node, part)) {
-            let reason = format!("node {node} is moved so by a channel before");
+            let reason = format!("an earlier channel moves the same part of node {node}");
             return Err(FieldError::new(at_channel(), reason));
         }
         let place = channel.sampler.0 as usize;
@@ -70,80 +64,80 @@ pub fn chosen<'a>(
         let at_sampler = || at.clone().key("samplers").index(place);
         let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
         let interpolation = Interpolation::new(name).ok_or_else(|| {
-            let reason = format!("is {name:?}; it must be LINEAR, STEP or CUBICSPLINE");
+            let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
             FieldError::new(at_sampler().key("interpolation"), reason)
         })?;
         let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
-        all.push(Chosen { node, part, interpolation, input, output, at });
+        all.push(UsedChannel { node, part, interpolation, input, output, at });
     }
     Ok(all)
 }
 
-fn moved(channel: &Channel) -> Option<(usize, Part)> {
-    let Object(target) = &channel.target;
+fn moved(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
+    let JsonObject(target) = &channel.target;
     let part = match target.path.as_str() {
-        "translation" => Part::Translation,
-        "rotation" => Part::Rotation,
-        "scale" => Part::Scale,
+        "translation" => AnimatedPart::Translation,
+        "rotation" => AnimatedPart::Rotation,
+        "scale" => AnimatedPart::Scale,
         _ => return None,
     };
     Some((target.node?.0 as usize, part))
 }
 
-/// Reads the buffers that channels need.
+/// Reads the buffers of the used channels.
 pub fn buffers<'a>(
     source: &'a Source,
-    file: &File,
-    chosen: &[Chosen<'_>],
-) -> Result<Buffers<'a>, FieldError> {
+    file: &GltfFile,
+    chosen: &[UsedChannel<'_>],
+) -> Result<GltfBuffers<'a>, FieldError> {
     let accessors: BTreeSet<usize> =
         chosen.iter().flat_map(|chosen| [chosen.input, chosen.output]).collect();
     let needed: Result<BTreeSet<usize>, FieldError> =
         accessors.into_iter().map(|accessor| super::rows::buffer_of(file, accessor)).collect();
     let needed: Vec<usize> = needed?.into_iter().collect();
-    Buffers::read(source, file, &needed)
+    GltfBuffers::read(source, file, &needed)
 }
 
-impl<'a> Tracks<'a> {
+impl<'a> NodeTracks<'a> {
     pub fn new(
-        file: &File,
-        buffers: &'a Buffers<'_>,
-        chosen: &[Chosen<'_>],
+        file: &GltfFile,
+        buffers: &'a GltfBuffers<'_>,
+        chosen: &[UsedChannel<'_>],
     ) -> Result<Self, FieldError> {
-        /// So that few bytes that are read again and again do not take hours.
+        /// Bounds the time for few bytes that many channels share.
         const MOST_KEYS: usize = 20_000_000;
         let mut tracks = Vec::with_capacity(chosen.len());
         let mut keys = 0_usize;
-        for Chosen { node, part, interpolation, input, output, at } in chosen {
+        for UsedChannel { node, part, interpolation, input, output, at } in chosen {
             let (node, part, accessors) = (*node, *part, [*input, *output]);
-            let sampler = Sampler::new(file, buffers, accessors, part, *interpolation)?;
+            let sampler = KeySampler::new(file, buffers, accessors, part, *interpolation)?;
             keys = keys.saturating_add(sampler.len());
             if keys > MOST_KEYS {
-                let reason = format!("has more than {MOST_KEYS} keys; fewer are possible");
+                let reason = format!("must have at most {MOST_KEYS} keys");
                 return Err(FieldError::new((*at).clone(), reason));
             }
-            tracks.push(Track { node, part, sampler });
+            tracks.push(NodeTrack { node, part, sampler });
         }
-        for (track, Chosen { input, output, .. }) in tracks.iter().zip(chosen) {
+        for (track, UsedChannel { input, output, .. }) in tracks.iter().zip(chosen) {
             track.sampler.check([*input, *output])?;
         }
         Ok(Self(tracks))
     }
 
-    /// All times of keys, in no order.
+    /// Times of all keys, unsorted.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().flat_map(|track| (0..track.sampler.len()).map(|key| track.sampler.time(key)))
     }
 
-    /// Moves the nodes to where they are at a time, in seconds.
-    pub fn pose(&self, time: f64, locals: &mut [Local]) {
-        for Track { node, part, sampler } in &self.0 {
-            if let Some(Local::Parts(parts)) = locals.get_mut(*node) {
-                let Parts { translation, rotation, scale } = parts;
+    /// Sets the transforms of the nodes at a time, in seconds.
+    pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
+        for NodeTrack { node, part, sampler } in &self.0 {
+            if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(*node) {
+                let TransformParts { translation, rotation, scale } = parts;
                 match part {
-                    Part::Translation => *translation = sampler.point(time),
-                    Part::Rotation => *rotation = sampler.rotation(time),
-                    Part::Scale => *scale = sampler.point(time),
+                    AnimatedPart::Translation => *translation = sampler.point(time),
+                    AnimatedPart::Rotation => *rotation = sampler.rotation(time),
+                    AnimatedPart::Scale => *scale = sampler.point(time),
                 }
             }
         }

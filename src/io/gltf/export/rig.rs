@@ -1,6 +1,6 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
-use super::GlbError;
+use super::error::GlbError;
 use crate::document::{Arm, Channel, Document, RigKind};
 use crate::io::gltf::frame::frame;
 use crate::kinematics::skeleton::{Joint, Skeleton};
@@ -9,52 +9,52 @@ use crate::rig::{ArmRig, Cone, Part};
 
 /// The shown rig, arm or skeleton, as bones in the world, in metres.
 ///
-/// In f64, in which a skeleton far from the origin is as exact as near it.
-pub struct Figure {
+/// In f64, so that a skeleton far from the origin is exact.
+pub struct GltfRig {
     document: Document,
     metres_per_unit: f64,
     /// Parents before their children.
-    pub bones: Vec<Bone>,
-    /// Where each is in the bind pose.
-    pub rest: Vec<Placed>,
+    pub bones: Vec<RigBone>,
+    /// Placements in the bind pose.
+    pub rest: Vec<BonePlacement>,
 }
 
-/// What does not change in time.
-pub struct Bone {
+/// The constant part of a bone.
+pub struct RigBone {
     pub name: String,
     pub parent: Option<usize>,
-    /// Whether a joint of its own stands at its tip: where nothing else tells how long it is.
+    /// Whether a node is at its tip, because no child has its length.
     pub has_tip: bool,
     pub is_leaf: bool,
-    /// How thick it is where it begins, and where it ends; in metres.
+    /// Radii at base and tip, in metres.
     pub radii: [f64; 2],
-    /// Which of the two limbs' colours it has.
+    /// Index of its colour.
     pub shade: usize,
 }
 
-/// Where a bone is: in the world, in metres.
+/// The placement of a bone in the world, in metres.
 #[derive(Clone, Copy)]
-pub struct Placed {
+pub struct BonePlacement {
     pub base: DVec3,
     /// From base to tip.
     pub along: DVec3,
-    /// Where the joint's own x and y point; of any length.
+    /// The joint's x and y axes, of any length.
     pub x: DVec3,
     pub y: DVec3,
 }
 
-impl Placed {
-    /// Rigid, in the world: y along the bone; that of a bone without length is the joint's own.
+impl BonePlacement {
+    /// Rotation in the world: y along the bone; a bone without length has the joint's y.
     pub fn frame(&self) -> DMat3 {
         let has_direction = self.along.try_normalize().is_some();
         frame(if has_direction { self.along } else { self.y }, self.x)
     }
 }
 
-impl Figure {
+impl GltfRig {
     pub fn new(document: &Document) -> Result<Self, GlbError> {
         let metres_per_unit = f64::from(document.metres_per_unit());
-        let mut figure = Self {
+        let mut rig = Self {
             document: document.clone(),
             metres_per_unit,
             bones: Vec::new(),
@@ -62,21 +62,21 @@ impl Figure {
         };
         match document.rig {
             RigKind::Arm => {
-                figure.rest = figure.metric(straight_arm(document));
-                figure.bones = figure.limbs();
+                rig.rest = rig.metric(straight_arm(document));
+                rig.bones = rig.limbs();
             }
             RigKind::Skeleton => {
                 let skeleton = document.skeleton();
-                figure.rest = figure.metric(placed(skeleton, |_| DMat3::IDENTITY));
-                figure.bones = figure.joints(skeleton.joints());
+                rig.rest = rig.metric(placed(skeleton, |_| DMat3::IDENTITY));
+                rig.bones = rig.joints(skeleton.joints());
             }
         }
-        if figure.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(figure) }
+        if rig.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(rig) }
     }
 
-    /// Where the bones are at a time, in seconds.
-    pub fn at(&mut self, time: f64) -> Vec<Placed> {
-        // Not `at`, which would copy all keys for every frame.
+    /// Placements of all bones at a time, in seconds.
+    pub fn at(&mut self, time: f64) -> Vec<BonePlacement> {
+        // `at` would copy all keys for every frame.
         self.document.keys_to(time);
         let document = &self.document;
         self.metric(match document.rig {
@@ -85,13 +85,13 @@ impl Figure {
         })
     }
 
-    /// Whether anything that poses the rig changes in time.
+    /// Whether the pose changes in time.
     pub fn is_moving(&self) -> bool {
         self.document.is_posed_by_time()
     }
 
-    /// In metres what was in the document's units.
-    fn metric(&self, mut placed: Vec<Placed>) -> Vec<Placed> {
+    /// Converts the document's units to metres.
+    fn metric(&self, mut placed: Vec<BonePlacement>) -> Vec<BonePlacement> {
         for bone in &mut placed {
             bone.base *= self.metres_per_unit;
             bone.along *= self.metres_per_unit;
@@ -99,7 +99,7 @@ impl Figure {
         placed
     }
 
-    fn limbs(&self) -> Vec<Bone> {
+    fn limbs(&self) -> Vec<RigBone> {
         let Document { arm, keys, .. } = &self.document;
         let rig = arm.rig(&arm.pose());
         let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
@@ -107,7 +107,7 @@ impl Figure {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
         };
         vec![
-            Bone {
+            RigBone {
                 name: "upper".to_owned(),
                 parent: None,
                 has_tip: keys.has(Channel::Upper) || stretches,
@@ -115,7 +115,7 @@ impl Figure {
                 radii: radii(rig.upper()),
                 shade: 0,
             },
-            Bone {
+            RigBone {
                 name: "lower".to_owned(),
                 parent: Some(0),
                 has_tip: true,
@@ -126,7 +126,7 @@ impl Figure {
         ]
     }
 
-    fn joints(&self, joints: &[Joint]) -> Vec<Bone> {
+    fn joints(&self, joints: &[Joint]) -> Vec<RigBone> {
         let scale = self.document.skeleton().transform().as_daffine3().matrix3;
         let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
         let reach = f64::from(self.document.skeleton_rig.reach()) * self.metres_per_unit;
@@ -138,7 +138,7 @@ impl Figure {
                 are_leaves[parent] = false;
             }
         }
-        let bone = |(index, joint): (usize, &Joint)| Bone {
+        let bone = |(index, joint): (usize, &Joint)| RigBone {
             name: joint.name.clone(),
             parent: joint.parent,
             has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
@@ -150,8 +150,8 @@ impl Figure {
     }
 }
 
-/// How thick a bone is where it begins and where it ends: as its own radius says, yet so that it
-/// looks like a bone whatever that is, on a skeleton of such a reach. All in metres.
+/// Radii at base and tip: the bone's own radius, clamped so that it looks like a bone on a skeleton of
+/// such a reach. All in metres.
 fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
     const THICKEST: (f64, f64) = (0.45, 0.028);
     const POINT: f64 = 0.02;
@@ -165,13 +165,13 @@ fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
     [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
 }
 
-/// R, rigid in f64: what it is off in f32 would add up along a long chain.
+/// R, orthogonal in f64: f32 rounding would add up along a long chain.
 fn turned(joint: &Joint) -> DMat3 {
     let rotation = joint.local_rotation().as_dmat3();
     DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
 }
 
-fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed> {
+fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
     let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
     for joint in skeleton.joints() {
         let above = joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent]);
@@ -179,7 +179,7 @@ fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed
             above * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
         );
     }
-    let place = |(joint, full): (&Joint, DAffine3)| Placed {
+    let place = |(joint, full): (&Joint, DAffine3)| BonePlacement {
         base: full.translation,
         along: full.matrix3 * joint.axis.as_dvec3(),
         x: full.matrix3.x_axis,
@@ -188,12 +188,12 @@ fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Placed
     skeleton.joints().iter().zip(full).map(place).collect()
 }
 
-/// Along the Root's +x, its hinge facing as in a Socket that is not turned.
-fn straight_arm(document: &Document) -> Vec<Placed> {
+/// The arm along the Root's +x, with the hinge of an unrotated Socket.
+fn straight_arm(document: &Document) -> Vec<BonePlacement> {
     limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
 }
 
-fn posed_arm(document: &Document) -> Vec<Placed> {
+fn posed_arm(document: &Document) -> Vec<BonePlacement> {
     let arm = &document.arm;
     let pose = arm.pose();
     let rig: ArmRig = arm.rig(&pose);
@@ -203,13 +203,13 @@ fn posed_arm(document: &Document) -> Vec<Placed> {
     limbs(arm, bones, [turn(Part::UpperLimb), turn(Part::LowerLimb)])
 }
 
-/// The limbs by how each is turned: it lies along x, and bends about z.
-fn limbs(arm: &Arm, bones: TwoBone, turns: [DMat3; 2]) -> Vec<Placed> {
+/// Placements of the limbs by their rotations. A limb is along x and bends about z.
+fn limbs(arm: &Arm, bones: TwoBone, turns: [DMat3; 2]) -> Vec<BonePlacement> {
     let lengths = [bones.upper(), bones.lower()].map(f64::from);
     let mut base = arm.root.as_dvec3();
     let limb = |(turn, length): (DMat3, f64)| {
         let along = turn.x_axis.normalize_or(DVec3::X) * length;
-        let limb = Placed { base, along, x: turn.z_axis, y: turn.x_axis };
+        let limb = BonePlacement { base, along, x: turn.z_axis, y: turn.x_axis };
         base += along;
         limb
     };

@@ -2,45 +2,43 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::angles;
 use super::names::{distinct, word};
-use super::place::Place;
+use super::transform::SkeletonTransform;
 use crate::document::{Arm, Document, RigKind};
 use crate::kinematics::skeleton::{Joint, Skeleton};
 
-/// The nodes of a hierarchy: parents before their children, and what hangs from a node right after
-/// it.
-pub struct Figure {
+/// The nodes of a hierarchy in the order of the file: each node is followed by its descendants.
+pub struct BvhRig {
     pub names: Vec<String>,
     pub parents: Vec<Option<usize>>,
-    /// What the nodes are.
-    kind: Kind,
+    /// The joints or limbs of the nodes.
+    kind: BvhRigKind,
 }
 
-enum Kind {
+enum BvhRigKind {
     Arm,
-    /// For every node the joint that it is; none for the one that holds several roots.
+    /// The joint of each node; `None` for the new root above several ones.
     Skeleton(Vec<Option<usize>>),
 }
 
-/// How a figure stands, in units of the scene.
+/// The pose of a rig in one frame, in units of the scene.
 #[derive(Clone, Debug)]
-pub struct Stance {
-    /// For every node, where its base is from its parent's when nothing is turned; of the first one
-    /// where it is in the world.
+pub struct BvhPose {
+    /// The offset of each node from its parent without rotations; of the first one, its world position.
     pub offsets: Vec<DVec3>,
-    /// For every node where its bone ends when nothing is turned, if nothing hangs from it.
+    /// The tip of each leaf's bone without rotations.
     pub ends: Vec<Option<DVec3>>,
-    /// For every node what turns it against its parent, in the world.
+    /// The rotation of each node relative to its parent, in world axes.
     pub turns: Vec<DMat3>,
 }
 
-impl Figure {
-    /// What a document shows; nothing of a skeleton without joints.
+impl BvhRig {
+    /// The shown rig; `None` for a skeleton without joints.
     pub fn new(document: &Document) -> Option<Self> {
         match document.rig {
             RigKind::Arm => Some(Self {
                 names: ["upper", "lower"].map(str::to_owned).into(),
                 parents: vec![None, Some(0)],
-                kind: Kind::Arm,
+                kind: BvhRigKind::Arm,
             }),
             RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
         }
@@ -72,41 +70,48 @@ impl Figure {
             next.extend(children[joint].iter().rev().map(|child| (*child, Some(node))));
         }
         let names = distinct(&names);
-        (!nodes.is_empty()).then_some(Self { names, parents, kind: Kind::Skeleton(nodes) })
+        (!nodes.is_empty()).then_some(Self { names, parents, kind: BvhRigKind::Skeleton(nodes) })
     }
 
-    /// How it stands in a document that is brought to a time.
-    pub fn stance(&self, document: &Document, place: &Place, time: f64) -> Stance {
+    /// The pose of the rig in a document evaluated at a time.
+    pub fn pose(&self, document: &Document, transform: &SkeletonTransform, time: f64) -> BvhPose {
         match &self.kind {
-            Kind::Arm => arm(&document.arm),
-            Kind::Skeleton(nodes) => self.skeleton(nodes, &document.skeleton_rig.at(time), place),
+            BvhRigKind::Arm => arm(&document.arm),
+            BvhRigKind::Skeleton(nodes) => {
+                self.skeleton(nodes, &document.skeleton_rig.at(time), transform)
+            }
         }
     }
 
-    fn skeleton(&self, nodes: &[Option<usize>], skeleton: &Skeleton, place: &Place) -> Stance {
+    fn skeleton(
+        &self,
+        nodes: &[Option<usize>],
+        skeleton: &Skeleton,
+        transform: &SkeletonTransform,
+    ) -> BvhPose {
         let joint = |node: &Option<usize>| node.and_then(|joint| skeleton.joint(joint));
         let offset = |node| match joint(node) {
-            None => place.origin(),
-            Some(joint) => place.vector(joint.offset.as_dvec3()),
+            None => transform.origin(),
+            Some(joint) => transform.vector(joint.offset.as_dvec3()),
         };
         let mut offsets: Vec<DVec3> = nodes.iter().map(offset).collect();
         if let (Some(Some(_)), Some(first)) = (nodes.first(), offsets.first_mut()) {
-            *first += place.origin();
+            *first += transform.origin();
         }
         let mut is_leaf = vec![true; nodes.len()];
         for parent in self.parents.iter().flatten() {
             is_leaf[*parent] = false;
         }
-        let end = |joint: &Joint| place.vector(joint.axis.as_dvec3());
+        let end = |joint: &Joint| transform.vector(joint.axis.as_dvec3());
         let ends = nodes.iter().zip(is_leaf);
         let ends = ends.map(|(node, is_leaf)| joint(node).filter(|_| is_leaf).map(end)).collect();
         let local = |node| joint(node).map_or(DMat3::IDENTITY, local_rotation);
         let locals: Vec<DMat3> = nodes.iter().map(local).collect();
-        Stance { offsets, ends, turns: place.turns(&self.parents, &locals) }
+        BvhPose { offsets, ends, turns: transform.turns(&self.parents, &locals) }
     }
 }
 
-/// As [`Joint::local_rotation`], in f64.
+/// [`Joint::local_rotation`] in f64.
 fn local_rotation(joint: &Joint) -> DMat3 {
     let turned = angles::matrix(joint.rotation.as_dvec3());
     if joint.frame == Mat3::IDENTITY {
@@ -117,7 +122,7 @@ fn local_rotation(joint: &Joint) -> DMat3 {
 }
 
 /// Two bones along +x; the elbow is a hinge about z.
-fn arm(arm: &Arm) -> Stance {
+fn arm(arm: &Arm) -> BvhPose {
     let pose = arm.pose();
     let (along, out) = (f64::from(pose.along), f64::from(pose.out));
     let upper = out.atan2(along);
@@ -126,7 +131,7 @@ fn arm(arm: &Arm) -> Stance {
     let socket = DMat3::from_rotation_x(f64::from(pose.spin));
     let bones = arm.bones.stretched(pose.stretch);
     let bone = |length: f32| Vec3::new(length, 0.0, 0.0).as_dvec3();
-    Stance {
+    BvhPose {
         offsets: vec![arm.root.as_dvec3(), bone(bones.upper())],
         ends: vec![None, Some(bone(bones.lower()))],
         turns: vec![

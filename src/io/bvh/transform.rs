@@ -1,26 +1,26 @@
 use glam::{Affine3A, DMat3, DVec3, Mat3};
 use nalgebra::Matrix3;
 
-/// Where a skeleton stands in the world, M · p + t, taken apart for a format that can only turn.
+/// A skeleton's transform M · p + t, decomposed for a format that has rotations only.
 ///
-/// Where M = s·Q, with Q at right angles (and maybe a mirror), a turn R in the skeleton is the turn
-/// Q·R·Qᵀ in the world. Where M stretches unevenly, shears or flattens, there is none: the joints
-/// are turned by the W that bring M nearest to M·G, where G is a joint's turn in the skeleton.
-pub struct Place {
+/// If M = s·Q with Q orthogonal (possibly a mirror), a rotation R in the skeleton is the rotation
+/// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists: the joints
+/// get the rotations W that bring M nearest to M·G, where G is a joint's rotation in the skeleton.
+pub struct SkeletonTransform {
     matrix: DMat3,
     translation: DVec3,
-    /// Q, where there is one.
+    /// Q, if it exists.
     turn: Option<DMat3>,
 }
 
-impl Place {
+impl SkeletonTransform {
     pub fn new(transform: Affine3A) -> Self {
         let matrix = Mat3::from(transform.matrix3).as_dmat3();
         let translation = transform.translation.as_dvec3();
         Self { matrix, translation, turn: turn(matrix) }
     }
 
-    /// Whether turns in the skeleton are turns in the world.
+    /// Whether rotations in the skeleton are rotations in the world.
     pub fn is_even(&self) -> bool {
         self.turn.is_some()
     }
@@ -33,8 +33,8 @@ impl Place {
         self.matrix * vector
     }
 
-    /// What each joint is turned by in the world, against its parent, from what it is turned by in
-    /// the skeleton. Parents come first.
+    /// Rotations relative to the parents in world axes, from rotations in the skeleton. Parents come
+    /// first.
     pub fn turns(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
         if let Some(turn) = self.turn {
             return locals.iter().map(|local| turn * *local * turn.transpose()).collect();
@@ -54,17 +54,17 @@ impl Place {
 
 /// Q of a matrix s·Q.
 fn turn(matrix: DMat3) -> Option<DMat3> {
-    /// How far a frame's axes may be from right angles and one length, as for frames of joints.
+    /// Tolerance for right angles and equal lengths, as for frames of joints.
     const EVEN: f64 = 1e-5;
     let square = matrix.transpose() * matrix;
     let size = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
     let is_even = size > 0.0 && (square * size.recip()).abs_diff_eq(DMat3::IDENTITY, EVEN);
-    // As exactly at right angles as f64 is: the world's own f32 matrix is not.
+    // Orthogonal in f64; the f32 matrix is only nearly so.
     let sign = matrix.determinant().signum();
     is_even.then(|| nearest(matrix * (sign / size.sqrt())) * sign)
 }
 
-/// The rotation that is nearest to a matrix: of all W the one with the least ‖W − matrix‖.
+/// The rotation W nearest to a matrix: the least ‖W − matrix‖.
 fn nearest(matrix: DMat3) -> DMat3 {
     const PRECISION: f64 = 1e-15;
     const STEPS: usize = 1000;
@@ -79,7 +79,7 @@ fn nearest(matrix: DMat3) -> DMat3 {
     let Some((u, v_t)) = decomposed else {
         return DMat3::IDENTITY;
     };
-    // Singular values come in order: if one must be mirrored, it is the least.
+    // Singular values are sorted: the last, smallest one is mirrored.
     let mirror = (u * v_t).determinant().signum();
     let rotation = u * Matrix3::from_diagonal(&[1.0, 1.0, mirror].into()) * v_t;
     let rotation = DMat3::from_cols_slice(rotation.as_slice());
@@ -101,9 +101,9 @@ mod tests {
     fn a_mirrored_and_scaled_place_is_even_and_a_stretched_one_is_not() {
         let turned = Affine3A::from_rotation_x(0.7) * Affine3A::from_rotation_z(2.0);
         let scaled = |x, y, z| Affine3A::from_scale((x, y, z).into()) * turned;
-        assert!(Place::new(scaled(-0.3, 0.3, 0.3)).is_even());
-        assert!(!Place::new(scaled(0.3, 0.3, 0.301)).is_even());
-        assert!(!Place::new(scaled(0.0, 1.0, 1.0)).is_even());
-        assert!(!Place::new(scaled(0.0, 0.0, 0.0)).is_even());
+        assert!(SkeletonTransform::new(scaled(-0.3, 0.3, 0.3)).is_even());
+        assert!(!SkeletonTransform::new(scaled(0.3, 0.3, 0.301)).is_even());
+        assert!(!SkeletonTransform::new(scaled(0.0, 1.0, 1.0)).is_even());
+        assert!(!SkeletonTransform::new(scaled(0.0, 0.0, 0.0)).is_even());
     }
 }

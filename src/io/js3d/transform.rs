@@ -2,14 +2,17 @@ use std::collections::{HashMap, HashSet};
 
 use glam::{DAffine3, DQuat, DVec3, DVec4};
 
-use super::file::{Scene, Transform};
+use super::file::{Js3dScene, Js3dTransform};
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::value::{Numbers, Point};
+use crate::io::value::{JsonNumbers, JsonPoint};
 
-/// Where the first instance of a mesh stands in the world; a mesh without an instance is at the
-/// origin.
-pub fn of(scene: &Scene, mesh: &str, odd: &mut FieldWarnings) -> Result<DAffine3, FieldError> {
+/// World transform of the first instance of a mesh; identity without an instance.
+pub fn of_mesh(
+    scene: &Js3dScene,
+    mesh: &str,
+    odd: &mut FieldWarnings,
+) -> Result<DAffine3, FieldError> {
     let instances = &scene.instances.0.skinned_meshes.0;
     let at = JsonPath::root().key("scene").key("instances").key("skinned_meshes");
     let mut of_mesh =
@@ -27,8 +30,8 @@ pub fn of(scene: &Scene, mesh: &str, odd: &mut FieldWarnings) -> Result<DAffine3
     }
 }
 
-/// The product of a transform and all those above it. `field` is where its name stands.
-fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, FieldError> {
+/// World transform: the product of a transform and all its ancestors. `field` is the one that names it.
+fn world(scene: &Js3dScene, name: &str, field: JsonPath) -> Result<DAffine3, FieldError> {
     let mut place = DAffine3::IDENTITY;
     let (mut next, mut field) = (Some(name), field);
     let transforms: HashMap<_, _> =
@@ -36,7 +39,7 @@ fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, FieldEr
     let mut seen = HashSet::new();
     while let Some(name) = next {
         if !seen.insert(name) {
-            return Err(FieldError::new(field, format!("transform {name:?} hangs from itself")));
+            return Err(FieldError::new(field, format!("transform {name:?} is its own ancestor")));
         }
         let Some(transform) = transforms.get(name) else {
             return Err(FieldError::new(field, format!("there is no transform called {name:?}")));
@@ -44,7 +47,7 @@ fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, FieldEr
         let at = JsonPath::root().key("scene").key("transforms").key(name);
         place = local(&at, transform)? * place;
         if !place.as_affine3a().is_finite() {
-            return Err(FieldError::new(at, "leads beyond 3.4028235e38 in the world"));
+            return Err(FieldError::new(at, "overflows 3.4028235e38 in the world"));
         }
         field = at.key("parent");
         next = transform.parent.as_deref();
@@ -52,14 +55,15 @@ fn world(scene: &Scene, name: &str, field: JsonPath) -> Result<DAffine3, FieldEr
     Ok(place)
 }
 
-fn local(at: &JsonPath, transform: &Transform) -> Result<DAffine3, FieldError> {
-    let Transform { translation, rotation, scale, .. } = transform;
-    let or = |point: &Option<Point>, usual: DVec3| point.map_or(usual, |Point(p)| p.as_dvec3());
+fn local(at: &JsonPath, transform: &Js3dTransform) -> Result<DAffine3, FieldError> {
+    let Js3dTransform { translation, rotation, scale, .. } = transform;
+    let or =
+        |point: &Option<JsonPoint>, usual: DVec3| point.map_or(usual, |JsonPoint(p)| p.as_dvec3());
     let rotation = match rotation {
-        Some(Numbers(rotation)) => {
+        Some(JsonNumbers(rotation)) => {
             let turn = DVec4::from_array(rotation.map(f64::from)).try_normalize();
             turn.map(DQuat::from_vec4).ok_or_else(|| {
-                let reason = "four zeros turn nothing; no rotation is [0, 0, 0, 1]";
+                let reason = "must not be four zeros; [0, 0, 0, 1] is no rotation";
                 FieldError::new(at.clone().key("rotation"), reason)
             })?
         }

@@ -1,0 +1,96 @@
+use glam::{DMat3, DQuat, DVec3};
+
+use super::error::GlbError;
+use super::rig::{BonePlacement, GltfRig};
+use crate::io::gltf::names::UniqueNames;
+
+/// The joint nodes of a file: one for every bone, in the same order, then those at tips.
+pub struct JointNodes {
+    pub nodes: Vec<JointNode>,
+    /// Transforms in the bind pose.
+    pub rest: Vec<RigidTransform>,
+}
+
+pub struct JointNode {
+    /// Unique.
+    pub name: String,
+    pub parent: Option<usize>,
+    /// The bone whose base or tip it is at.
+    pub bone: usize,
+    pub is_tip: bool,
+}
+
+/// A rigid transform relative to the parent, in metres.
+#[derive(Clone, Copy)]
+pub struct RigidTransform {
+    pub translation: DVec3,
+    pub rotation: DQuat,
+}
+
+impl JointNodes {
+    /// The names of the node above all joints and of the node with the mesh.
+    pub const ARMATURE: &str = "Armature";
+    pub const MESH: &str = "Limbs";
+
+    pub fn new(rig: &GltfRig) -> Result<Self, GlbError> {
+        let mut names = UniqueNames::from([Self::ARMATURE, Self::MESH]);
+        let joints = rig.bones.iter().enumerate().map(|(bone, joint)| JointNode {
+            name: names.free(&joint.name),
+            parent: joint.parent,
+            bone,
+            is_tip: false,
+        });
+        let mut nodes: Vec<JointNode> = joints.collect();
+        for bone in (0..nodes.len()).filter(|bone| rig.bones[*bone].has_tip) {
+            let name = names.free(&format!("{}_tip", nodes[bone].name));
+            nodes.push(JointNode { name, parent: Some(bone), bone, is_tip: true });
+        }
+        let mut bones = Self { nodes, rest: Vec::new() };
+        bones.rest = bones.locals(&rig.rest, None)?;
+        Ok(bones)
+    }
+
+    /// The node at the tip of each bone, if any.
+    pub fn tips(&self) -> Vec<Option<usize>> {
+        let mut tips = vec![None; self.nodes.len()];
+        for (node, tip) in self.nodes.iter().enumerate().filter(|(_, node)| node.is_tip) {
+            tips[tip.bone] = Some(node);
+        }
+        tips
+    }
+
+    /// Transforms relative to the parents, for bones placed so at a time in seconds.
+    pub fn locals(
+        &self,
+        placed: &[BonePlacement],
+        time: Option<f64>,
+    ) -> Result<Vec<RigidTransform>, GlbError> {
+        let frames: Vec<DMat3> = placed.iter().map(BonePlacement::frame).collect();
+        let local = |node: &JointNode| {
+            let BonePlacement { base, along, .. } = placed[node.bone];
+            let local = match node.parent {
+                _ if node.is_tip => RigidTransform {
+                    translation: DVec3::Y * along.length(),
+                    rotation: DQuat::IDENTITY,
+                },
+                Some(parent) => {
+                    let above = frames[parent].transpose();
+                    RigidTransform {
+                        translation: above * (base - placed[parent].base),
+                        rotation: DQuat::from_mat3(&(above * frames[node.bone])).normalize(),
+                    }
+                }
+                None => RigidTransform {
+                    translation: base,
+                    rotation: DQuat::from_mat3(&frames[node.bone]).normalize(),
+                },
+            };
+            let fits = [base, base + along, local.translation].map(|v| v.as_vec3().is_finite());
+            if fits != [true; 3] {
+                return Err(GlbError::TooFar { joint: node.name.clone(), time });
+            }
+            Ok(local)
+        };
+        self.nodes.iter().map(local).collect()
+    }
+}
