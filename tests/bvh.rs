@@ -537,7 +537,7 @@ fn names_that_are_there_twice_are_changed_with_a_remark() {
     let first = warnings[0].to_string();
     assert_eq!(
         first,
-        "line 3, column 7: [\"left arm\"]: another joint is called the same; this one is called \
+        "line 3, column 7: [\"left arm\"]: must be unique; this joint is renamed to \
          \"left arm_2\""
     );
     assert!(warnings[20].reason.contains("10 more"));
@@ -581,7 +581,7 @@ fn more_frames_than_are_said_are_ignored_with_a_remark() {
     assert_eq!(opened.warnings.len(), 1);
     assert_eq!(
         opened.warnings[0].to_string(),
-        "line 20, column 1: 1 frames are said; what follows them is ignored"
+        "line 20, column 1: ignored: text after the 1 frames of the header"
     );
     assert!(opened.document.keys.is_empty());
 }
@@ -592,25 +592,17 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         ("ROOT", "", "line 2, column 2: found \"hip\", expected ROOT"),
         ("hip\n", "\n", "line 3, column 1: a name is missing after ROOT"),
         ("hip\n{", "hip\n", "line 4, column 2: hip: found \"OFFSET\", expected {"),
-        (
-            " OFFSET 1 2 3\n",
-            "",
-            "line 14, column 1: hip: OFFSET is missing: it says where the joint is",
-        ),
+        (" OFFSET 1 2 3\n", "", "line 14, column 1: hip: OFFSET is missing"),
         ("1 2 3", "1 2", "line 5, column 2: hip: found \"CHANNELS\", expected a number"),
-        (
-            "1 2 3",
-            "1 2 nan",
-            "line 4, column 13: hip: nan is out of range; it must be between ±3.4",
-        ),
+        ("1 2 3", "1 2 nan", "line 4, column 13: hip: must be between ±3.4"),
         ("1 2 3", "1 2 1e39", "line 4, column 13: hip: 1e39 is out of range"),
         (
             "1 2 3",
             "1 2 3 4",
             "line 4, column 15: hip: found \"4\", expected OFFSET, CHANNELS, JOINT,",
         ),
-        ("1 2 3", "1 2 3\nOFFSET 1 2 3", "line 5, column 1: hip: OFFSET stands twice"),
-        ("CHANNELS 3", "CHANNELS 7", "line 5, column 11: hip: 7 channels are more than there are"),
+        ("1 2 3", "1 2 3\nOFFSET 1 2 3", "line 5, column 1: hip: this joint has a second OFFSET"),
+        ("CHANNELS 3", "CHANNELS 7", "line 5, column 11: hip: must be from 0 to 6 channels, got 7"),
         (
             "CHANNELS 3",
             "CHANNELS -3",
@@ -626,8 +618,8 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
             "Wrotation",
             "line 5, column 23: hip: found \"Wrotation\", expected a channel",
         ),
-        ("Xrotation", "Zrotation", "line 5, column 23: hip: Zrotation stands twice in CHANNELS"),
-        ("End Site", "End", "line 11, column 3: knee: Site must stand after End"),
+        ("Xrotation", "Zrotation", "line 5, column 23: hip: CHANNELS must have Zrotation once"),
+        ("End Site", "End", "line 11, column 3: knee: End must be followed by Site"),
         (
             "OFFSET 0 0 5",
             "",
@@ -641,32 +633,28 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         ("MOTION", "", "expected ROOT or MOTION"),
         ("Frames: 2", "Frames 2", "line 17, column 1: found \"Frames\", expected Frames:"),
         ("Frames: 2", "Frames: 2.5", "line 17, column 9: found \"2.5\", expected a whole number"),
-        ("Frames: 2", "Frames: 4", "line 17, column 9: 4 frames are said, and there are 2"),
+        ("Frames: 2", "Frames: 4", "line 17, column 9: must be the number of frames, 2, got 4"),
         (
             "Frames: 2",
             "Frames: 999999999999",
-            "999999999999 frames of 0.04 s are longer than 86400 s",
+            "must last at most 86400 s, got 999999999999 frames of 0.04 s",
         ),
         (
             "Frame Time: 0.04",
             "Frame: 0.04",
             "line 18, column 1: found \"Frame:\", expected Frame Time:",
         ),
-        ("0.04", "0", "line 18, column 13: Frame Time is 0 s; it must be above 0"),
-        ("0.04", "-1", "line 18, column 13: Frame Time is -1 s; it must be above 0"),
+        ("0.04", "0", "line 18, column 13: Frame Time must be above 0 s, got 0"),
+        ("0.04", "-1", "line 18, column 13: Frame Time must be above 0 s, got -1"),
         ("0.04", "inf", "line 18, column 13: found \"inf\", expected a time in seconds"),
-        ("0.04", "1e5", "line 18, column 13: 2 frames of 100000 s are longer than 86400 s"),
+        ("0.04", "1e5", "line 18, column 13: must last at most 86400 s, got 2 frames of 100000 s"),
         (
             "10 20 40 7",
             "10 20",
-            "line 20, column 6: hip: frame 1 has 2 numbers; it must have 4, and the",
+            "line 20, column 6: hip: frame 1 must have 4 numbers, got 2 before",
         ),
-        (
-            "10 20 40 7",
-            "10 20 40",
-            "line 20, column 9: knee: frame 1 has 3 numbers; it must have 4",
-        ),
-        ("10 20 40 7", "10 20 40 7 8", "line 20, column 12: frame 1 has 5 numbers; it must have 4"),
+        ("10 20 40 7", "10 20 40", "line 20, column 9: knee: frame 1 must have 4 numbers, got 3"),
+        ("10 20 40 7", "10 20 40 7 8", "line 20, column 12: frame 1 must have 4 numbers, got 5"),
         (
             "10 20 40 7",
             "10 x 40 7",
@@ -685,7 +673,7 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
     assert!(refusal("HIERARCHY").contains("found the end of the file, expected ROOT"));
     let late = SMALL.replace(" CHANNELS 3 Zrotation Xrotation Yrotation\n", "");
     let late = late.replace(" }\n}\n", " }\n CHANNELS 0\n}\n");
-    assert!(refusal(&late).contains("CHANNELS must stand before what hangs from the joint"));
+    assert!(refusal(&late).contains("CHANNELS must be before the joint's children"));
     let many = "JOINT a { OFFSET 0 0 0 }\n".repeat(Skeleton::MOST_JOINTS);
     let many = format!("HIERARCHY ROOT a\n{{ OFFSET 0 0 0 {many} }}");
     assert!(refusal(&many).contains("at most 10000 joints"));

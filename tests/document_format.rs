@@ -152,8 +152,8 @@ fn what_is_no_document_is_told_apart() {
         ("[1]", "line 1, column 1: invalid type: sequence, expected an object: {…}"),
         (
             "{\"a\":1}",
-            "line 1, column 1: neither \"format\" is there, as in a document of ik-arm, nor \
-             \"scene\", as in a .js3d file of Scotty3D, nor \"asset\", as in glTF",
+            "line 1, column 1: must have \"format\" (a document of ik-arm), \"scene\" (a .js3d file of \
+             Scotty3D) or \"asset\" (glTF)",
         ),
         (
             "{\n\"format\":\"png\",\"version\":2}",

@@ -346,11 +346,11 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         ),
         (
             format!("\"bones\":[{}]", parent(0)),
-            format!("line 3, column 10: {at}.bones[0].parent: bone 0 hangs from bone 0 itself"),
+            format!("line 3, column 10: {at}.bones[0].parent: bone 0 is a descendant of bone 0"),
         ),
         (
             format!("\"bones\":[{one},{},{},{}]", parent(2), parent(3), parent(1)),
-            format!("line 5, column 10: {at}.bones[3].parent: bone 1 hangs from bone 3 itself"),
+            format!("line 5, column 10: {at}.bones[3].parent: bone 1 is a descendant of bone 3"),
         ),
         (
             "\"bones\":[{\"extent\":[0,1]}]".to_owned(),
@@ -377,7 +377,7 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         ),
         (
             "\"bones\":[{\"extent\":[0,1,0],\"radius\":-2}]".to_owned(),
-            format!("line 2, column 37: {at}.bones[0].radius: is -2; it must be 0 or more"),
+            format!("line 2, column 37: {at}.bones[0].radius: must be 0 or more, got -2"),
         ),
         (
             "\"bones\":[],\"base\":[3e38,0,0],\"base_offset\":[3e38,0,0]".to_owned(),
@@ -422,16 +422,16 @@ fn a_place_in_the_world_that_cannot_be_is_named() {
         ),
         (
             "\"B\":{\"parent\":\"A\"},\n\"A\":{\"parent\":\"B\"}",
-            "line 3, column 29: scene.transforms.B.parent: transform \"A\" hangs from itself",
+            "line 3, column 29: scene.transforms.B.parent: transform \"A\" is its own ancestor",
         ),
         (
             "\"A\":{\"parent\":\"A\"}",
-            "line 3, column 29: scene.transforms.A.parent: transform \"A\" hangs from itself",
+            "line 3, column 29: scene.transforms.A.parent: transform \"A\" is its own ancestor",
         ),
         (
             "\"A\":{\"rotation\":[0,0,0,0]}",
-            "line 3, column 31: scene.transforms.A.rotation: four zeros turn nothing; no rotation is \
-             [0, 0, 0, 1]",
+            "line 3, column 31: scene.transforms.A.rotation: must not be four zeros; \
+             [0, 0, 0, 1] is no rotation",
         ),
         (
             "\"A\":{\"rotation\":[0,0,1]}",
@@ -440,7 +440,7 @@ fn a_place_in_the_world_that_cannot_be_is_named() {
         ),
         (
             "\"A\":{\"parent\":\"B\",\"scale\":[1e30,1,1]},\"B\":{\"scale\":[1e30,1,1]}",
-            "line 3, column 57: scene.transforms.B: leads beyond 3.4028235e38 in the world",
+            "line 3, column 57: scene.transforms.B: overflows 3.4028235e38 in the world",
         ),
         ("\"A\":{},\"A\":{}", "line 3, column 24: scene.transforms: duplicate name \"A\""),
     ] {
@@ -451,7 +451,7 @@ fn a_place_in_the_world_that_cannot_be_is_named() {
 
 #[test]
 fn a_scene_without_a_skeleton_is_refused() {
-    let reason = "there is no skeleton; one is under the name of a mesh, as its `skeleton`";
+    let reason = "must have a mesh with a `skeleton`";
     for (text, place) in [
         ("{\"scene\":{}}", "line 1, column 10"),
         ("{\"scene\":{\"skinned_meshes\":{}}}", "line 1, column 28"),

@@ -305,7 +305,7 @@ fn a_joint_that_is_too_far_away_is_named() {
     document.metres = Some(10.0);
     assert_eq!(
         refusal(&document),
-        "joint \"far\" is farther than 3.4028235e38 m from the origin without rotations; bring it \
+        "joint \"far\" is farther than 3.4028235e38 m from the origin in the bind pose; bring it \
          nearer, or make metres_per_unit smaller"
     );
 }
