@@ -115,3 +115,38 @@ fn a_name_of_version_1_in_a_file_of_version_2_is_unknown_and_the_warning_has_the
         ]
     );
 }
+
+#[test]
+fn every_field_of_a_saved_document_is_documented() {
+    fn fields(value: &serde_json::Value, names: &mut std::collections::BTreeSet<String>) {
+        match value {
+            serde_json::Value::Object(object) => {
+                names.extend(object.keys().cloned());
+                object.values().for_each(|value| fields(value, names));
+            }
+            serde_json::Value::Array(array) => array.iter().for_each(|value| fields(value, names)),
+            _ => {}
+        }
+    }
+    let docs = fs::read_to_string(Path::new(FOLDER).join("docs/files.md")).expect("text");
+    let (documents, _) = docs.split_once("## Version 1").expect("a heading");
+    let mut names = std::collections::BTreeSet::new();
+    for (_, path) in versions() {
+        let json = io::to_json(&open(&path).document).expect("finite numbers");
+        fields(&serde_json::from_str(&json).expect("JSON"), &mut names);
+    }
+    assert!(names.len() > 60, "{names:?}");
+    for name in names {
+        let is_documented =
+            documents.contains(&format!("`{name}`")) || documents.contains(&format!(".{name}`"));
+        assert!(is_documented, "{name}");
+    }
+}
+
+#[test]
+fn the_example_in_the_documentation_opens_without_a_warning() {
+    let docs = fs::read_to_string(Path::new(FOLDER).join("docs/files.md")).expect("text");
+    let (_, example) = docs.split_once("```json\n").expect("an example");
+    let (example, _) = example.split_once("```").expect("its end");
+    assert_eq!(io::parse("files.md", example, None).expect("opens").warnings, []);
+}
