@@ -55,7 +55,7 @@ fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
 /// Every point of the document is where the file has it, at every frame.
 fn assert_same(document: &Document, exported: &Exported, per_unit: f32) {
     let read = open(text(exported)).document;
-    let frames = io::Frames::of_pose(document, None).expect("frames");
+    let frames = io::ExportFrames::of_pose(document, None).expect("frames");
     for frame in 0..frames.count() {
         let expected = points(document, frames.time(frame));
         let found = points(&read, frames.since_first(frame));
