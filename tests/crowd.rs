@@ -21,7 +21,7 @@ fn crowd(arms: u32) -> Crowd {
 fn arrays(crowd: &Crowd) -> CrowdArrays {
     let mut arrays = CrowdArrays::default();
     arrays.resize(crowd);
-    arrays.ask(crowd);
+    arrays.set_targets(crowd);
     arrays
 }
 

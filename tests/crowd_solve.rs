@@ -11,7 +11,7 @@ fn a_crowd_has_the_bits_of_a_batch() {
     let crowd = Crowd { arms: ARMS, bones, time: 3.25, solved_by: SolvedBy::Cpu };
     let mut arrays = CrowdArrays::default();
     arrays.resize(&crowd);
-    arrays.ask(&crowd);
+    arrays.set_targets(&crowd);
     arrays.solve(bones).expect("a batch");
 
     let [x, y, z] = &arrays.cursor;

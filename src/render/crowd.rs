@@ -253,7 +253,7 @@ impl CrowdRenderer {
     }
 
     fn solve(&mut self, gpu: &Gpu, crowd: &Crowd) -> Result<CrowdTimes, CrowdError> {
-        self.arrays.ask(crowd);
+        self.arrays.set_targets(crowd);
         let solve = match crowd.solved_by {
             SolvedBy::Gpu => self
                 .solver

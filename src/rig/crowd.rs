@@ -116,7 +116,7 @@ impl CrowdArrays {
     }
 
     /// Sets every cursor and spin to where it is at the crowd's time.
-    pub fn ask(&mut self, crowd: &Crowd) {
+    pub fn set_targets(&mut self, crowd: &Crowd) {
         let time = (crowd.time / Crowd::PERIOD).rem_euclid(1.0);
         let Self { cursor: [x, y, z], cos, sin, .. } = self;
         follow(time, crowd.bones.outer_limit(), [x, y, z], [cos, sin]);
