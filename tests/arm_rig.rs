@@ -12,7 +12,7 @@ use ik_arm::rig::{ArmRig, Cone, Part};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
-/// The hierarchy as the paper has it.
+/// The hierarchy of Palmieri's report, written out in f64.
 const PARENTS: [(Part, Option<Part>); 11] = [
     (Part::Root, None),
     (Part::Limb, Some(Part::Root)),

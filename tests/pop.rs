@@ -27,7 +27,7 @@ fn arm(reference: TwistReference, softness: f32) -> Ik {
     Ik { bones, reference, soft_reach: soft(softness) }
 }
 
-/// As a drag leaves it: each pose goes on from the one before.
+/// Moments of a drag: each pose continues from the one before.
 fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Moment> {
     let (mut facing, mut transported) = (Facing::default(), None);
     let poses = cursors.into_iter().map(|cursor| {

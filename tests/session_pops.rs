@@ -53,7 +53,7 @@ fn cure(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     drag(session);
     let spikes = standing(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
-    let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a remedy");
+    let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a fix");
     session.apply(pop_fix.action());
     assert_eq!(session.message(), None);
     assert_eq!(PopFix::new(&spikes[0], session.arm()), None, "it is taken");

@@ -1,4 +1,4 @@
-//! Section 3 of the paper, every kind of input, and the accuracy against an f64 twin.
+//! Section 3 of Palmieri's report, every kind of input, and accuracy against an f64 solution.
 
 mod common;
 

@@ -10,7 +10,7 @@ use crate::common::Random;
 /// The seed's arm.
 const LONGEST: f64 = 500.0;
 
-/// A line with a hand and a swivel, written as JSON.
+/// A JSON line with a hand and a twist reference.
 fn line(hand: Vec3, twist_reference: &str) -> String {
     let Vec3 { x, y, z } = hand;
     format!(r#"{{"hand":[{x},{y},{z}],"reference":{twist_reference}}}"#)
@@ -57,7 +57,7 @@ fn hand(random: &mut Random) -> Vec3 {
     }
 }
 
-/// A swivel as it is written, with what its formulas say for a Pointer: e₀, and the gain.
+/// A twist reference as JSON, with the formulas of its direction e₀ and its gain.
 struct Formula {
     twist_reference: String,
     outward: fn(w: DVec3, pole: DVec3) -> DVec3,
@@ -140,7 +140,7 @@ fn a_pole_is_relative_to_the_root() {
 }
 
 #[test]
-fn where_a_swivel_is_singular_the_gain_is_null_and_the_elbow_as_the_limbs() {
+fn where_a_reference_is_singular_the_gain_is_null_and_the_elbow_is_the_limbs() {
     let hand = Vec3::new(250.0, 120.0, 60.0);
     for (hand, twist_reference) in [
         (Vec3::new(0.0, 400.0, 0.0), r#""limb""#.to_owned()),
@@ -269,7 +269,7 @@ fn what_is_carried_survives_bad_and_blank_lines() {
 }
 
 #[test]
-fn transport_starts_again_after_a_line_with_another_swivel() {
+fn transport_restarts_after_a_line_with_another_reference() {
     let [first, second, third] = way();
     let alone = answers(&solve(&third));
     for other in [
@@ -336,7 +336,7 @@ fn without_transport_no_line_knows_of_another() {
 // Bad ones
 
 #[test]
-fn a_swivel_that_there_is_not_is_told_which_there_are() {
+fn an_unknown_reference_is_refused_with_the_list_of_references() {
     let all = r#"expected "limb", {"pole":[x,y,z]}, "stereographic" or "transport""#;
     for (twist_reference, found) in [
         (r#""limp""#, r#"invalid value: string "limp""#),

@@ -45,9 +45,9 @@ pub fn saving(document: &Document) -> Result<(), Broken> {
     let opened = io::parse("soak.json", &text, None)
         .map_err(|error| Broken(format!("what is saved can be opened: {error}")))?;
     hold!(opened.warnings.is_empty(), "nothing is odd in what is saved: {:?}", opened.warnings);
-    hold!(opened.document == *document, "what is saved is opened as it was");
+    hold!(opened.document == *document, "a saved document opens unchanged");
     let again = io::to_json(&opened.document).ok();
-    hold!(again.as_ref() == Some(&text), "what is opened is saved as it was, to the last byte");
+    hold!(again.as_ref() == Some(&text), "an opened document is saved with the same bytes");
     Ok(())
 }
 
@@ -77,9 +77,9 @@ pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken
         let same = saved(first.document())? == saved(began)?;
         hold!(same, "all undone, it is saved as the document of the beginning");
     }
-    hold!(is_same(session.shown(), &present.0), "undone and done again, it is shown as it was");
+    hold!(is_same(session.shown(), &present.0), "undo and redo restore what is shown");
     let same = saved(session.document())? == present.1;
-    hold!(same, "undone and done again, it is saved as it was");
+    hold!(same, "undo and redo restore what is saved");
     Ok(steps)
 }
 

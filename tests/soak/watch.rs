@@ -159,9 +159,9 @@ impl Watch {
                 | Action::Transaction(TransactionAction::Undo)
         );
         if let Some(before) = self.before_edit.as_ref().filter(|_| takes_back && !is_replaced) {
-            hold!(is_same(document, before), "a change taken back leaves no trace");
+            hold!(is_same(document, before), "a cancelled transaction leaves no trace");
             let same = past::saved(document)? == past::saved(before)?;
-            hold!(same, "a change taken back leaves no trace in a file");
+            hold!(same, "a cancelled transaction leaves no trace in a file");
         }
         self.before_edit = match self.session.is_editing() {
             true => Some(self.before_edit.take().unwrap_or_else(|| before.document.clone())),
@@ -177,7 +177,7 @@ impl Watch {
                 .saved
                 .as_ref()
                 .is_some_and(|it| past::has_same_content(it, session.document()));
-            hold!(is_saved, "what counts as saved is as it was saved");
+            hold!(is_saved, "a document that counts as saved equals the saved one");
         }
         let is_written = matches!(action, Action::File(FileAction::Saved(_))) && !is_replaced;
         hold!(!is_written || !session.is_unsaved(), "what has just been saved is saved");

@@ -96,7 +96,7 @@ fn showing_a_value_does_not_change_it_nor_does_going_through_its_field() {
 }
 
 #[test]
-fn the_elbow_spin_wraps() {
+fn the_socket_twist_wraps() {
     let mut bench = Bench::new();
     for (typed, shown) in
         [("370", 10.0), ("-10", 350.0), ("725", 5.0), ("360", 0.0), ("90°", 90.0), ("-360", 0.0)]

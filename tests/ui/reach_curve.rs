@@ -1,4 +1,4 @@
-//! How far the hand goes for what it is asked, as a curve.
+//! Plot of the hand's distance over the Cursor's.
 
 use egui::accesskit::Role;
 use egui::{Rect, vec2};

@@ -59,7 +59,7 @@ fn place(bench: &Bench, time: f64) -> Pos2 {
 }
 
 #[test]
-fn the_key_button_keys_hand_and_elbow_spin_of_an_arm() {
+fn the_key_button_keys_hand_and_twist_of_an_arm() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([PlaybackAction::SetTime(1.5)]);
     bench.click(Role::Button, "Key");

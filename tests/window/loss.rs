@@ -27,7 +27,7 @@ fn lose_device(program: &Program) {
 fn assert_comes_back(program: &Program, before: &RgbImage) {
     wait_for("a frame of the new device", || program.has_drawn_since_error().then_some(()));
     program.mouse_to(NOWHERE);
-    program.wait_until("the picture as it was before the loss", |now| {
+    program.wait_until("the same picture as before the loss", |now| {
         is_same_above_the_status(before, now)
     });
 }
