@@ -663,7 +663,7 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         (
             "10 20 40 7",
             "10 20 40 inf",
-            "line 20, column 10: knee: Xposition of frame 1: inf is out of",
+            "line 20, column 10: knee: Xposition of frame 1: must be between ±3.4028235e38, got inf",
         ),
     ] {
         let text = SMALL.replacen(right, wrong, 1);
