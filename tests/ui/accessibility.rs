@@ -153,7 +153,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 }
 
 #[test]
-fn the_viewport_is_an_image_that_says_how_the_arm_stands() {
+fn the_viewport_is_an_image_that_says_how_far_the_arm_reaches() {
     let bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
     let name = "Viewport. Too far: the arm is straight and points at the Cursor, 100.0 short.";
     let rect = bench.rect(Role::Image, name);

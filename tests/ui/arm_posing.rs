@@ -71,7 +71,7 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
 }
 
 #[test]
-fn what_the_hand_leads_cannot_be_set_while_the_angles_lead() {
+fn ik_settings_are_disabled_in_fk() {
     let mut bench = Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles)]);
     let before = bench.hand();
     let rail = bench.rect(Role::Slider, "Hand x");
@@ -189,7 +189,7 @@ fn the_elbow_is_measured_from_elsewhere_and_stays() {
 }
 
 #[test]
-fn the_pole_is_dragged_in_the_view_and_taken_back() {
+fn the_pole_is_dragged_in_the_view_and_cancelled() {
     let mut bench = Bench::after([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
     let (before, elbow) = (bench.session().arm().pole, bench.session().pose().elbow);
     let at = pole_place(&bench);
@@ -272,7 +272,7 @@ fn every_control_of_the_posing_has_a_tooltip() {
 }
 
 #[test]
-fn k_keys_what_leads() {
+fn k_keys_the_channels_of_the_pose_mode() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([EditAction::PinHand(true)]);
     bench.key(egui::Key::K);
@@ -289,7 +289,7 @@ fn k_keys_what_leads() {
 }
 
 #[test]
-fn the_panels_of_a_measured_and_of_a_led_arm_look_as_they_did() {
+fn the_panels_in_pole_and_fk_mode_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut bench = Bench::after([

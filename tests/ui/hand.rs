@@ -43,7 +43,7 @@ pub fn grab(bench: &mut Bench, at: Pos2) {
 }
 
 #[test]
-fn the_hand_is_under_the_pointer_from_the_first_pixel_to_the_last_also_past_the_limits() {
+fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_limits() {
     for mut bench in [Bench::new(), Bench::of_size(SMALL)] {
         let start = bench.cursor_place();
         grab(&mut bench, start);
@@ -80,7 +80,7 @@ fn the_hand_is_under_the_pointer_from_the_first_pixel_to_the_last_also_past_the_
 }
 
 #[test]
-fn a_hand_taken_beside_its_middle_keeps_its_distance_from_the_pointer() {
+fn a_hand_taken_beside_its_middle_keeps_its_distance_from_the_mouse() {
     let mut bench = Bench::new();
     let (start, beside) = (bench.cursor_place(), vec2(7.0, -5.0));
     grab(&mut bench, start + beside);
@@ -176,7 +176,7 @@ fn esc_and_the_right_button_take_a_drag_back() {
 }
 
 #[test]
-fn a_drag_over_a_panel_goes_on_and_can_be_taken_back_there() {
+fn a_drag_over_a_panel_goes_on_and_can_be_cancelled_there() {
     let mut bench = odd();
     let before = *bench.session().arm();
     let start = bench.cursor_place();
@@ -243,7 +243,7 @@ fn an_arrow_along_the_view_cannot_be_taken() {
 }
 
 #[test]
-fn the_pointer_shows_what_can_be_taken() {
+fn the_mouse_cursor_shows_handles() {
     let mut bench = Bench::new();
     let icon = |bench: &Bench| bench.harness.output().platform_output.cursor_icon;
     let place = bench.cursor_place();

@@ -77,7 +77,7 @@ fn ctrl_snaps_to_tens_and_with_shift_to_ones() {
 }
 
 #[test]
-fn a_typed_offset_leads_until_it_is_accepted_or_taken_back() {
+fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
     for accept in [true, false] {
         let mut bench = odd();
         let before = bench.hand();

@@ -84,7 +84,7 @@ fn it_says_when_the_hand_does_not_lead_alone() {
 }
 
 #[test]
-fn hovering_reads_the_curve_at_the_pointer() {
+fn hovering_reads_the_curve_at_the_mouse() {
     let mut bench = bench(0.0, 1.0, 300.0);
     let rect = plot(&bench);
     let mut asked = Vec::new();

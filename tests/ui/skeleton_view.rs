@@ -107,7 +107,7 @@ fn a_turned_view_keeps_the_selection() {
 }
 
 #[test]
-fn the_bone_under_the_pointer_is_pointed_out() {
+fn the_bone_under_the_mouse_is_pointed_out() {
     let mut bench = bench();
     let at = bone_place(&bench, "c");
     bench.move_to(at);
@@ -118,7 +118,7 @@ fn the_bone_under_the_pointer_is_pointed_out() {
 }
 
 #[test]
-fn a_tip_that_is_dragged_stays_under_the_pointer_and_bones_keep_their_lengths() {
+fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
     let mut bench = bench();
     let start = tip_place(&bench, "c");
     bench.move_to(start);
@@ -155,7 +155,7 @@ fn escape_takes_a_pose_back_bit_for_bit() {
 }
 
 #[test]
-fn a_tip_comes_back_to_where_it_was_when_the_pointer_does() {
+fn a_tip_comes_back_to_where_it_was_when_the_mouse_does() {
     let mut bench = bench();
     let before = bench.session().skeleton_rig().clone();
     let start = tip_place(&bench, "c");
@@ -181,7 +181,7 @@ fn a_root_that_is_a_point_moves_with_all_that_hangs_from_it() {
 }
 
 #[test]
-fn a_ring_turns_its_angle_alone_by_as_much_as_the_pointer_goes_around() {
+fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
     for axis in 0..3 {
         let mut bench = bench();
         let b = joint(&bench, "b");
@@ -305,7 +305,7 @@ fn a_moving_target_is_dragged_along_its_way() {
 }
 
 #[test]
-fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_pointer() {
+fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_mouse() {
     let mut bench = bench();
     let c = joint(&bench, "c");
     bench.apply([SelectAction::Joints(vec![c])]);

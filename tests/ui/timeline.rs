@@ -76,7 +76,7 @@ fn the_key_button_keys_hand_and_twist_of_an_arm() {
 }
 
 #[test]
-fn the_time_follows_the_pointer_on_the_ruler_from_frame_to_frame() {
+fn the_time_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     let mut bench = keyed();
     let document = bench.session().document().clone();
     let (from, to) = (place(&bench, 1.01), place(&bench, 3.495));
@@ -261,7 +261,7 @@ fn half_the_speed_goes_half_as_far() {
 }
 
 #[test]
-fn at_its_end_the_time_begins_again_or_stands() {
+fn at_its_end_playback_loops_or_stops() {
     let mut bench = keyed();
     bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
@@ -370,7 +370,7 @@ fn the_time_is_dragged_in_its_number_from_frame_to_frame() {
 }
 
 #[test]
-fn the_wheel_zooms_about_the_pointer_and_a_double_click_shows_all_again() {
+fn the_wheel_zooms_about_the_mouse_and_a_double_click_shows_all_again() {
     let mut bench = keyed();
     let before = key_of_hand(&bench, 2.0);
     let gap = |bench: &Bench| key_of_hand(bench, 2.0).x - key_of_hand(bench, 1.0).x;

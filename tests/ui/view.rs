@@ -84,7 +84,7 @@ fn alt_turns_the_view_even_over_a_handle() {
 }
 
 #[test]
-fn turning_moves_with_the_pointer_keeps_the_horizon_and_returns_to_perspective() {
+fn turning_moves_with_the_mouse_keeps_the_horizon_and_returns_to_perspective() {
     let mut bench = Bench::after([ViewAction::SetCamera(Camera::default().along(AxisView::Front))]);
     let at = bench.empty_place();
     bench.drag(Primary, at, at + vec2(0.0, 4000.0));
@@ -98,7 +98,7 @@ fn turning_moves_with_the_pointer_keeps_the_horizon_and_returns_to_perspective()
 }
 
 #[test]
-fn panning_keeps_what_is_taken_under_the_pointer() {
+fn panning_keeps_what_is_taken_under_the_mouse() {
     let mut bench = Bench::new();
     let target = bench.session().camera().target;
     let at = bench.place(target);
@@ -110,7 +110,7 @@ fn panning_keeps_what_is_taken_under_the_pointer() {
 }
 
 #[test]
-fn the_wheel_zooms_to_the_pointer() {
+fn the_wheel_zooms_to_the_mouse() {
     let mut bench = Bench::new();
     let (_, right, up) = bench.session().camera().basis();
     let point = bench.session().camera().target + right * 180.0 - up * 90.0;

@@ -42,13 +42,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let (arm, seed) = (session.arm(), Arm::default().cursor());
+    let (arm, default) = (session.arm(), Arm::default().cursor());
     let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
     let hand = PointSliders {
         name: "Hand",
         labels: AXES,
         value: arm.cursor(),
-        default: seed,
+        default,
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
         tooltip: "Move the Cursor, the hand's target, relative to the Root",
@@ -59,7 +59,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         Cursor::World(pin) => {
             let pinned = PointSliders {
                 value: pin,
-                default: arm.root + seed,
+                default: arm.root + default,
                 range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
                 tooltip: "Move the Cursor, the hand's target, in world space",
                 ..hand
@@ -95,7 +95,7 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (palette, bones) = (style::palette(ui), session.arm().bones);
-    let (seed, unit) = (Arm::default().bones, session.arm_unit());
+    let (default, unit) = (Arm::default().bones, session.arm_unit());
     let range = (LENGTH_RANGE.0 * unit, LENGTH_RANGE.1 * unit);
     let upper = Slider {
         name: "Upper length",
@@ -104,7 +104,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         tooltip: "Set the length from shoulder to elbow",
         value: bones.upper(),
         range,
-        default: seed.upper(),
+        default: default.upper(),
         step: unit,
         ..Slider::default()
     };
@@ -116,7 +116,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         tooltip: "Set the length from elbow to hand",
         value: bones.lower(),
         range,
-        default: seed.lower(),
+        default: default.lower(),
         step: unit,
         ..Slider::default()
     };

@@ -15,7 +15,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let soft_reach = session.arm().soft_reach;
     let [softness, stretch, angle] =
         [soft_reach.softness(), soft_reach.max_stretch(), soft_reach.min_elbow_angle()];
-    let seed = SoftReach::default();
+    let default = SoftReach::default();
     // Clamped to the nearest valid values.
     let set = |softness: f32, stretch: f32, angle: f32| {
         let widest = PI - 1e-3;
@@ -24,7 +24,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             stretch.max(1.0),
             angle.clamp(0.0, widest),
         );
-        EditAction::SetSoftReach(soft_reach.unwrap_or(seed))
+        EditAction::SetSoftReach(soft_reach.unwrap_or(default))
     };
     let slider = Slider {
         name: "Softness",
@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         tooltip: "Slow the hand near its limits so that the elbow does not snap",
         value: softness,
         range: (0.0, MOST_SOFT),
-        default: seed.softness(),
+        default: default.softness(),
         step: 0.1,
         ..Slider::default()
     };
@@ -43,7 +43,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         tooltip: "Let the limbs stretch up to this factor",
         value: stretch,
         range: (1.0, MOST_STRETCHED),
-        default: seed.max_stretch(),
+        default: default.max_stretch(),
         step: 0.1,
         ..Slider::default()
     };
