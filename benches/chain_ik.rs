@@ -25,7 +25,7 @@ fn cases(joints: usize) -> Vec<(Skeleton, [TipTarget; 1])> {
     let mut random = Random(7);
     let case = |_| {
         let skeleton = chain(&mut random, joints, 1.0);
-        let target = reachable(&mut random, &skeleton, &[joints])[0];
+        let target = reachable(&mut random, &skeleton, &[JointId::new(joints)])[0];
         (skeleton, [target])
     };
     (0..64).map(case).collect()

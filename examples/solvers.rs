@@ -52,7 +52,7 @@ impl Kind {
     /// A rig in its bind pose or any other, and targets that it can reach.
     fn case(self, random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
         let (mut skeleton, tips) = match self {
-            Self::Chain(joints) => (chain(random, joints, 1.0), vec![joints]),
+            Self::Chain(joints) => (chain(random, joints, 1.0), vec![joints.into()]),
             Self::Tree(targets) => tree(random, targets, 1.0),
         };
         let targets = reachable(random, &skeleton, &tips);

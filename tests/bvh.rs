@@ -44,9 +44,9 @@ fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
     let pose = skeleton.pose();
     let mut points = HashMap::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {
-        points.insert(joint.name.clone(), pose.base(index));
-        if skeleton.children(index).next().is_none() {
-            points.insert(format!("{}_tip", joint.name), pose.tip(index));
+        points.insert(joint.name.clone(), pose.base(JointId::new(index)));
+        if skeleton.children(JointId::new(index)).next().is_none() {
+            points.insert(format!("{}_tip", joint.name), pose.tip(JointId::new(index)));
         }
     }
     points
@@ -80,7 +80,7 @@ fn key_rotations(random: &mut Random, document: &mut Document) {
     for joint in 0..document.skeleton().joints().len() {
         for _ in 0..random.below(4) {
             let (time, angles) = (random.within(0.0..1.0), 3.0 * random.angles());
-            document.keys.insert(Channel::Rotation(joint), f64::from(time), angles);
+            document.keys.insert(Channel::Rotation(JointId::new(joint)), f64::from(time), angles);
         }
     }
 }
@@ -114,7 +114,7 @@ fn a_single_roots_offset_moves_in_the_file_too() {
     let mut document = shown(skeletons::chain(&mut random, 5, 1.0));
     document.skeleton_mut().set_transform(even_transform(&mut random)).expect("finite");
     for time in [0.0, 0.5, 1.0] {
-        document.keys.insert(Channel::Offset(0), time, random.vector(2.0));
+        document.keys.insert(Channel::Offset(JointId::new(0)), time, random.vector(2.0));
     }
     let exported = export(&document);
     assert_eq!(exported.notes, Vec::<String>::new());
@@ -183,8 +183,8 @@ fn a_small_skeleton_is_this_text() {
         let joint = Joint { offset, ..Joint::new(name, Some(parent), axis) };
         skeleton.add(joint).expect("joint")
     };
-    let thigh = add(&mut skeleton, "thigh", 0, Vec3::ZERO, Vec3::new(0.0, 0.5, 0.0));
-    add(&mut skeleton, "the_hip", 0, Vec3::X, Vec3::ZERO);
+    let thigh = add(&mut skeleton, "thigh", JointId::new(0), Vec3::ZERO, Vec3::new(0.0, 0.5, 0.0));
+    add(&mut skeleton, "the_hip", JointId::new(0), Vec3::X, Vec3::ZERO);
     add(&mut skeleton, "shin", thigh, Vec3::new(0.0, 0.5, 0.0), Vec3::new(0.0, 0.25, 0.0));
     let mut document = shown(skeleton);
     document.timeline = Timeline { start: 1.0, end: 1.1, frame_rate: 10 };
@@ -259,7 +259,7 @@ fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
     };
     document.keys.insert(Channel::Hand, 0.0, Vec3::X);
     assert_eq!(frames(&document, None), 1);
-    document.keys.insert(Channel::Rotation(1), 0.0, Vec3::X);
+    document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::X);
     assert_eq!((frames(&document, None), frames(&document, Some(7))), (241, 57));
     for fps in [0, 1001] {
         let refused = io::to_bvh(&document, Some(fps), BvhUnit::Metres, &Progress::default());
@@ -273,7 +273,7 @@ fn angles_go_on_over_full_turns() {
     document.skeleton_mut().set_transform(even_transform(&mut Random(8))).expect("finite");
     for (time, turns) in [(0.0, 0.0), (8.0, 2.0)] {
         let angles = Vec3::new(0.3, -0.2, 1.0) * turns * std::f32::consts::TAU;
-        document.keys.insert(Channel::Rotation(1), time, angles);
+        document.keys.insert(Channel::Rotation(JointId::new(1)), time, angles);
     }
     let exported = export(&document);
     let motion = text(&exported).lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1);
@@ -290,7 +290,7 @@ fn angles_go_on_over_full_turns() {
     }
     assert!(farthest > 360.0, "{farthest}");
     let read = open(text(&exported)).document;
-    let keyed = read.keys.track(Channel::Rotation(1)).expect("keyed").knots();
+    let keyed = read.keys.track(Channel::Rotation(JointId::new(1))).expect("keyed").knots();
     for pair in keyed.windows(2) {
         let jump = (pair[1].value - pair[0].value).abs().max_element();
         assert!(jump <= std::f32::consts::PI, "{jump}");
@@ -324,7 +324,7 @@ fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
     }
     let mut forest = shown(forest);
     for time in [0.0, 1.0] {
-        forest.keys.insert(Channel::Offset(0), time, Vec3::splat(time as f32));
+        forest.keys.insert(Channel::Offset(JointId::new(0)), time, Vec3::splat(time as f32));
     }
     let exported = export(&forest);
     assert!(text(&exported).starts_with("HIERARCHY\nROOT skeleton_1\n"), "{}", text(&exported));
@@ -361,11 +361,11 @@ fn what_no_file_holds_is_refused() {
     };
     assert!(refused(&shown(Skeleton::default())).contains("no joint"));
     let mut far = Skeleton::with_root("far");
-    far.change(0, |root| root.offset = Vec3::splat(3e38)).expect("finite");
+    far.change(JointId::new(0), |root| root.offset = Vec3::splat(3e38)).expect("finite");
     assert_eq!(refused(&shown(far)), "\"far\" is beyond 3.4028235e38; bring it nearer to 0");
     let mut long = shown(Skeleton::with_root("root"));
     long.timeline = Timeline { start: 0.0, end: 86_000.0, frame_rate: 1000 };
-    long.keys.insert(Channel::Rotation(0), 0.0, Vec3::X);
+    long.keys.insert(Channel::Rotation(JointId::new(0)), 0.0, Vec3::X);
     assert!(refused(&long).contains("more than 100000000 numbers"));
 }
 
@@ -382,7 +382,7 @@ fn an_export_stops_when_it_is_told_to() {
 fn a_very_deep_skeleton_goes_out_and_in() {
     let mut joints = vec![Joint::new("0", None, Vec3::Y)];
     for index in 1..Skeleton::MOST_JOINTS {
-        let joint = Joint::new(&index.to_string(), Some(index - 1), Vec3::Y);
+        let joint = Joint::new(&index.to_string(), Some(JointId::new(index - 1)), Vec3::Y);
         joints.push(Joint { offset: Vec3::Y, ..joint });
     }
     let document = shown(Skeleton::from_joints(joints).expect("a chain"));
@@ -402,7 +402,7 @@ fn a_small_file_is_read_as_it_says() {
     let Opened { document, warnings, order, skeletons } = open(SMALL);
     let joints = document.skeleton().joints();
     let name = |index: usize| (joints[index].name.as_str(), joints[index].parent);
-    assert_eq!((name(0), name(1)), (("hip", None), ("knee", Some(0))));
+    assert_eq!((name(0), name(1)), (("hip", None), ("knee", Some(JointId::new(0)))));
     // A position channel stands in the place of one component of the offset.
     assert_eq!(
         (joints[0].offset, joints[1].offset),
@@ -410,7 +410,7 @@ fn a_small_file_is_read_as_it_says() {
     );
     assert_eq!((joints[0].axis, joints[1].axis), ((7.0, 4.0, 0.0).into(), (0.0, 0.0, 5.0).into()));
     let keyed: Vec<_> = document.keys.tracks().map(|(channel, _)| channel).collect();
-    assert_eq!(keyed, [Channel::Rotation(0)]);
+    assert_eq!(keyed, [Channel::Rotation(JointId::new(0))]);
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25 });
     assert_eq!((document.rig, document.metres), (RigKind::Skeleton, Some(0.01)));
     assert_eq!(document.camera, document.skeleton_rig.first_view());
@@ -494,7 +494,7 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
             let size = 400.0 * joints as f64;
             for joint in 0..joints {
                 let expected = expected[frame][joint + 1];
-                let found = pose.full(joint);
+                let found = pose.full(JointId::new(joint));
                 let off = found.translation.as_dvec3().distance(expected.translation);
                 assert!(off < 1e-5 * size, "{off}\n{text}");
                 let turned = found.transform_vector3(Vec3::ONE).as_dvec3();
@@ -568,7 +568,7 @@ fn frames_are_at_whole_parts_of_a_second_where_the_file_means_that() {
     ] {
         let text = SMALL.replace("0.04", said).replace("Frames: 2", "Frames: 3") + "10 20 50 7\n";
         let document = open(&text).document;
-        let knots = document.keys.track(Channel::Rotation(0)).expect("keyed").knots();
+        let knots = document.keys.track(Channel::Rotation(JointId::new(0))).expect("keyed").knots();
         assert_eq!((document.timeline.frame_rate, knots.len()), (frame_rate, 3), "{said}");
         assert!((knots[2].time - end).abs() < 1e-12 && document.timeline.end == knots[2].time);
         assert!(document.timeline.is_valid());

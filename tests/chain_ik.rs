@@ -25,7 +25,7 @@ fn by(method: Method) -> SolverOptions {
     SolverOptions { method, ..SolverOptions::default() }
 }
 
-fn target(joint: usize, point: Vec3) -> TipTarget {
+fn target(joint: JointId, point: Vec3) -> TipTarget {
     TipTarget { joint, point, weight: 1.0 }
 }
 
@@ -34,7 +34,7 @@ fn straight(joints: usize) -> Skeleton {
     let mut skeleton = Skeleton::with_root("root");
     for index in 0..joints {
         let offset = if index == 0 { Vec3::ZERO } else { Vec3::Y };
-        let joint = Joint::new(&format!("j{index}"), Some(index), Vec3::Y);
+        let joint = Joint::new(&format!("j{index}"), Some(JointId::new(index)), Vec3::Y);
         skeleton.add(Joint { offset, ..joint }).expect("joint");
     }
     skeleton
@@ -49,7 +49,7 @@ fn error(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
 fn reached(
     method: Method,
     share: f32,
-    mut case: impl FnMut(&mut Random) -> (Skeleton, Vec<usize>),
+    mut case: impl FnMut(&mut Random) -> (Skeleton, Vec<JointId>),
 ) -> usize {
     let mut random = Random(20);
     let count = (0..CASES).filter(|index| {
@@ -72,7 +72,7 @@ fn chains_reached(method: Method, joints: usize, share: f32) -> usize {
     let mut nth = 0;
     reached(method, share, |random| {
         nth += 1;
-        (chain(random, joints, [1.0, 500.0][nth % 2]), vec![joints])
+        (chain(random, joints, [1.0, 500.0][nth % 2]), vec![JointId::new(joints)])
     })
 }
 
@@ -137,10 +137,10 @@ fn trees_bring_several_tips_to_their_targets_by_damped_least_squares() {
 }
 
 /// X of a joint's own space in f64, from the formula, in skeleton space.
-fn twin(skeleton: &Skeleton, joint: usize, angles: &[DVec3]) -> DMat4 {
-    let Joint { parent, offset, frame, .. } = &skeleton.joints()[joint];
+fn twin(skeleton: &Skeleton, joint: JointId, angles: &[DVec3]) -> DMat4 {
+    let Joint { parent, offset, frame, .. } = &skeleton.joints()[joint.index()];
     let above = parent.map_or(DMat4::IDENTITY, |parent| twin(skeleton, parent, angles));
-    let DVec3 { x, y, z } = angles[joint];
+    let DVec3 { x, y, z } = angles[joint.index()];
     let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
     let frame = frame.as_dmat3();
     let rotation = frame * turned * frame.transpose();
@@ -153,8 +153,8 @@ fn the_jacobian_is_the_derivative_of_the_tip() {
     let mut random = Random(3);
     for _ in 0..300 {
         let skeleton = forest(&mut random, 12);
-        let joint = random.below(12);
-        let axis = skeleton.joints()[joint].axis.as_dvec3();
+        let joint = JointId::new(random.below(12));
+        let axis = skeleton[joint].axis.as_dvec3();
         let mut angles: Vec<_> =
             skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
         let columns = jacobian(&skeleton, joint);
@@ -171,7 +171,7 @@ fn the_jacobian_is_the_derivative_of_the_tip() {
                 let expected = (tip(STEP) - tip(-STEP)) / (2.0 * STEP);
                 let off = column[angle].as_dvec3().distance(expected);
                 assert!(off <= 1e-4 * expected.length().max(1e-2), "{off} of {expected}");
-                if !skeleton.hangs_from(joint, turning) {
+                if !skeleton.hangs_from(joint, turning.into()) {
                     assert_eq!(column[angle], Vec3::ZERO);
                 }
             }
@@ -185,7 +185,7 @@ fn anything(random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
     let mut skeleton = forest(random, joints);
     skeleton.set_transform(transform(random)).expect("transform");
     let mut targets = Vec::new();
-    for joint in 0..joints {
+    for joint in skeleton.ids() {
         if random.chance(0.3) {
             let weight = random.within(0.1..3.0);
             targets.push(TipTarget { joint, point: random.vector(5.0), weight });
@@ -205,7 +205,9 @@ fn every_step_keeps_limits_locked_joints_joints_off_the_path_and_roots() {
         for _ in 0..200 {
             let (mut skeleton, targets) = anything(&mut random);
             let before = skeleton.clone();
-            let is_moved = |index: usize| targets.iter().any(|t| before.hangs_from(t.joint, index));
+            let is_moved = |index: usize| {
+                targets.iter().any(|t| before.hangs_from(t.joint, JointId::new(index)))
+            };
             let mut solve = ChainSolver::new(&skeleton, &targets, &by(method)).expect("solve");
             for _ in 0..15 {
                 solve.step();
@@ -238,10 +240,12 @@ fn limits_let_targets_be_reached_that_are_within_them() {
                 let limits = [(); 3].map(|()| Some(limit(&mut random)));
                 skeleton.change(joint, |joint| joint.limits = limits).expect("limits");
             }
-            let targets = reachable(&mut random, &skeleton, &[5]);
+            let targets = reachable(&mut random, &skeleton, &[JointId::new(5)]);
             solve(&mut skeleton, &targets, &by(method)).expect("solve");
             assert!(is_within_limits(&skeleton));
-            count += usize::from(error(&skeleton, &targets) <= 1e-3 * length(&skeleton, &[5]));
+            count += usize::from(
+                error(&skeleton, &targets) <= 1e-3 * length(&skeleton, &[JointId::new(5)]),
+            );
         }
         println!("{method:?}: {count} of 300");
         assert!(count * 100 >= 300 * least, "{method:?}: {count} of 300");
@@ -269,10 +273,10 @@ fn mirrored_and_scaled_skeletons_reach_their_targets() {
             let joints = if method == Method::TwoBone { 2 } else { 6 };
             let mut skeleton = chain(&mut random, joints, 1.0);
             skeleton.set_transform(transform(&mut random)).expect("transform");
-            let targets = reachable(&mut random, &skeleton, &[joints]);
+            let targets = reachable(&mut random, &skeleton, &[JointId::new(joints)]);
             let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
             let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
-            let length = scale * length(&skeleton, &[joints]);
+            let length = scale * length(&skeleton, &[JointId::new(joints)]);
             assert!(error(&skeleton, &targets) <= 1e-3 * length, "{report:?}, length {length}");
         }
     }
@@ -301,9 +305,9 @@ fn out_of_reach_the_chain_stretches_towards_the_target_and_rests() {
             } else if case % 3 > 0 {
                 shake(&mut random, &mut skeleton);
             }
-            let length = length(&skeleton, &[joints]);
+            let length = length(&skeleton, &[JointId::new(joints)]);
             let distance = length * [1.02, 1.5, 3.0, 1e6][case % 4 / 2 * 2 + case / 4 % 2];
-            let targets = [target(joints, random.direction() * distance)];
+            let targets = [target(JointId::new(joints), random.direction() * distance)];
             // Half a step: at the gimbal a whole one goes back and forth.
             let mut options = SolverOptions { step: 0.4, ..by(method) };
             if ![Method::Fabrik, Method::Ccd, Method::TwoBone].contains(&method) {
@@ -353,7 +357,7 @@ fn a_straight_chain_leaves_the_line_of_its_target() {
             let skeleton = straight(joints);
             let length = joints as f32;
             for along in [0.9, 0.5, 0.1, 0.0, -0.1, -0.5, -0.9, -1.0, -2.0] {
-                let targets = [target(joints, Vec3::Y * along * length)];
+                let targets = [target(JointId::new(joints), Vec3::Y * along * length)];
                 let mut bent = skeleton.clone();
                 let mut options = by(method);
                 options.iterations = options.iterations.max(Some(20 * method.budget()));
@@ -373,12 +377,12 @@ fn a_knee_that_bends_one_way_only_leaves_the_line_that_way() {
         for range in [0.0..2.5, -2.5..0.0_f32] {
             let mut skeleton = Skeleton::default();
             skeleton.add(Joint::new("thigh", None, -Vec3::Y)).expect("thigh");
-            let mut shin = Joint::new("shin", Some(0), -Vec3::Y);
+            let mut shin = Joint::new("shin", Some(JointId::new(0)), -Vec3::Y);
             shin.offset = -Vec3::Y;
             let still = Some(Limit { min: 0.0, max: 0.0 });
             shin.limits = [Some(Limit { min: range.start, max: range.end }), still, still];
             skeleton.add(shin).expect("shin");
-            let targets = [target(1, Vec3::Y * -1.4)];
+            let targets = [target(JointId::new(1), Vec3::Y * -1.4)];
             let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
             assert!(is_within_limits(&skeleton));
             assert!(report.error <= 2e-3, "{report:?} {range:?}");
@@ -392,7 +396,7 @@ fn free_roots_go_wherever_their_targets_are() {
         let mut random = Random(37);
         for case in 0..60 {
             let (mut skeleton, tips) = if case % 2 == 0 {
-                (chain(&mut random, 5, 1.0), vec![5])
+                (chain(&mut random, 5, 1.0), vec![5.into()])
             } else {
                 tree(&mut random, 2, 1.0)
             };
@@ -420,15 +424,18 @@ fn free_roots_go_wherever_their_targets_are() {
 fn the_heavier_of_two_targets_that_conflict_is_nearer() {
     for method in ITERATIVE {
         let mut skeleton = Skeleton::with_root("root");
-        skeleton.add(Joint::new("trunk", Some(0), Vec3::Y * 2.0)).expect("trunk");
+        skeleton.add(Joint::new("trunk", Some(JointId::new(0)), Vec3::Y * 2.0)).expect("trunk");
         for (name, side) in [("left", -Vec3::X), ("right", Vec3::X)] {
-            let joint = Joint { offset: Vec3::Y * 2.0, ..Joint::new(name, Some(1), side) };
+            let joint =
+                Joint { offset: Vec3::Y * 2.0, ..Joint::new(name, Some(JointId::new(1)), side) };
             skeleton.add(joint).expect("arm");
         }
         for (left, right) in [(5.0, 1.0), (1.0, 5.0), (500.0, 100.0)] {
             let mut solved = skeleton.clone();
-            let mut targets =
-                [target(2, Vec3::new(-3.0, 1.5, 0.2)), target(3, Vec3::new(3.0, 1.5, 0.2))];
+            let mut targets = [
+                target(JointId::new(2), Vec3::new(-3.0, 1.5, 0.2)),
+                target(JointId::new(3), Vec3::new(3.0, 1.5, 0.2)),
+            ];
             targets[0].weight = left;
             targets[1].weight = right;
             let report = solve(&mut solved, &targets, &by(method)).expect("solve");
@@ -466,7 +473,7 @@ fn a_solve_follows_its_targets() {
         let length = 6.0;
         let at = |turn: f32| {
             let point = Vec3::new(turn.cos(), turn.sin(), (2.0 * turn).sin()) * 0.5 * length;
-            [target(6, point)]
+            [target(JointId::new(6), point)]
         };
         let mut solve = ChainSolver::new(&skeleton, &at(0.0), &by(method)).expect("solve");
         for step in 0..100 {
@@ -477,13 +484,18 @@ fn a_solve_follows_its_targets() {
             assert!(error(&skeleton, &targets) <= 1e-2 * length, "{:?}", solve.report());
         }
         // Out of reach and back.
-        solve.retarget(&[target(6, Vec3::X * 10.0 * length)]).expect("the same joint");
+        solve
+            .retarget(&[target(JointId::new(6), Vec3::X * 10.0 * length)])
+            .expect("the same joint");
         assert!(!solve.report().resting);
         assert!(!solve.run().converged);
         solve.retarget(&at(1.0)).expect("the same joint");
         assert!(solve.run().error <= 1e-2 * length, "{:?}", solve.report());
-        assert_eq!(solve.retarget(&[]), Err(SolveError::NoJoint(6)));
-        assert_eq!(solve.retarget(&[target(5, Vec3::X)]), Err(SolveError::NoJoint(5)));
+        assert_eq!(solve.retarget(&[]), Err(SolveError::NoJoint(JointId::new(6))));
+        assert_eq!(
+            solve.retarget(&[target(JointId::new(5), Vec3::X)]),
+            Err(SolveError::NoJoint(JointId::new(5)))
+        );
     }
 }
 
@@ -492,14 +504,19 @@ fn a_solve_that_comes_back_to_where_it_began_writes_that() {
     for method in [Method::Ccd, Method::Fabrik] {
         let mut skeleton = straight(1);
         let mut solve =
-            ChainSolver::new(&skeleton, &[target(1, Vec3::X)], &by(method)).expect("solve");
+            ChainSolver::new(&skeleton, &[target(JointId::new(1), Vec3::X)], &by(method))
+                .expect("solve");
         solve.run();
         solve.write(&mut skeleton);
-        assert!(skeleton.tip(1).distance(Vec3::X) < 1e-6);
-        solve.retarget(&[target(1, Vec3::Y)]).expect("the same joint");
+        assert!(skeleton.tip(JointId::new(1)).distance(Vec3::X) < 1e-6);
+        solve.retarget(&[target(JointId::new(1), Vec3::Y)]).expect("the same joint");
         solve.run();
         solve.write(&mut skeleton);
-        assert!(skeleton.tip(1).distance(Vec3::Y) < 1e-6, "{method:?}: {:?}", solve.report());
+        assert!(
+            skeleton.tip(JointId::new(1)).distance(Vec3::Y) < 1e-6,
+            "{method:?}: {:?}",
+            solve.report()
+        );
     }
 }
 
@@ -507,7 +524,7 @@ fn a_solve_that_comes_back_to_where_it_began_writes_that() {
 fn a_target_that_is_next_to_nothing_from_a_joint_does_not_stretch_its_bone() {
     for method in ITERATIVE {
         let mut skeleton = straight(1);
-        let targets = [target(1, Vec3::new(3e-23, 2e-23, 1e-23))];
+        let targets = [target(JointId::new(1), Vec3::new(3e-23, 2e-23, 1e-23))];
         let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
         let seen = error(&skeleton, &targets);
         assert!((seen - report.error).abs() <= 1e-5, "{report:?} but {seen}");
@@ -531,7 +548,7 @@ fn a_step_beyond_numbers_leaves_angles_that_are_numbers() {
     for root in [Root::Fixed, Root::Free] {
         let mut skeleton = straight(3);
         let options = SolverOptions { step: f32::MAX, root, ..by(Method::TransposeFixed) };
-        let targets = [target(3, Vec3::new(1.0, 0.5, 0.0))];
+        let targets = [target(JointId::new(3), Vec3::new(1.0, 0.5, 0.0))];
         solve(&mut skeleton, &targets, &options).expect("solve");
         let is_whole = |joint: &Joint| joint.rotation.is_finite() && joint.offset.is_finite();
         assert!(skeleton.joints().iter().all(is_whole), "{root:?}");
@@ -542,10 +559,10 @@ fn a_step_beyond_numbers_leaves_angles_that_are_numbers() {
 fn a_free_root_goes_no_farther_than_numbers_and_says_so() {
     let mut skeleton = straight(2);
     skeleton.set_transform(Affine3A::from_scale(Vec3::splat(1e-30))).expect("transform");
-    let targets = [target(2, Vec3::X * 1e38)];
+    let targets = [target(JointId::new(2), Vec3::X * 1e38)];
     let options = SolverOptions { root: Root::Free, ..by(Method::Fabrik) };
     let report = solve(&mut skeleton, &targets, &options).expect("solve");
-    let seen = skeleton.tip(2).as_dvec3().distance(targets[0].point.as_dvec3());
+    let seen = skeleton.tip(JointId::new(2)).as_dvec3().distance(targets[0].point.as_dvec3());
     assert!((f64::from(report.error) / seen - 1.0).abs() < 1e-3, "{report:?} but {seen}");
 }
 
@@ -569,11 +586,11 @@ fn numbers_stay_numbers_at_every_edge() {
             for case in 0..scales.len() * 12 {
                 let scale = scales[case % scales.len()];
                 let (mut skeleton, tips) = match case / scales.len() {
-                    0..4 => (chain(&mut random, 4, scale), vec![4]),
-                    4..6 => (chain(&mut random, 1, scale), vec![1]),
+                    0..4 => (chain(&mut random, 4, scale), vec![4.into()]),
+                    4..6 => (chain(&mut random, 1, scale), vec![1.into()]),
                     6..8 => tree(&mut random, 3, scale),
-                    8 => (chain(&mut random, 3, 0.0), vec![3, 1]),
-                    _ => (Skeleton::with_root("root"), vec![0]),
+                    8 => (chain(&mut random, 3, 0.0), vec![3.into(), 1.into()]),
+                    _ => (Skeleton::with_root("root"), vec![0.into()]),
                 };
                 if case % 5 == 0 && skeleton.joints().len() > 2 {
                     skeleton.set_axis(1, Vec3::ZERO).expect("axis");
@@ -600,9 +617,12 @@ fn huge_and_tiny_skeletons_solve_as_others_do() {
             let mut random = Random(53);
             for _ in 0..20 {
                 let mut skeleton = chain(&mut random, 2, scale);
-                let targets = reachable(&mut random, &skeleton, &[2]);
+                let targets = reachable(&mut random, &skeleton, &[JointId::new(2)]);
                 let report = solve(&mut skeleton, &targets, &by(method)).expect("solve");
-                assert!(report.error <= 1e-3 * length(&skeleton, &[2]), "{report:?} at {scale}");
+                assert!(
+                    report.error <= 1e-3 * length(&skeleton, &[JointId::new(2)]),
+                    "{report:?} at {scale}"
+                );
             }
         }
     }
@@ -612,17 +632,17 @@ fn huge_and_tiny_skeletons_solve_as_others_do() {
 fn two_bones_keep_the_elbow_on_its_side() {
     let mut skeleton = Skeleton::default();
     skeleton.add(Joint::new("upper", None, Vec3::X)).expect("upper");
-    let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(0), Vec3::X) };
+    let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(JointId::new(0)), Vec3::X) };
     skeleton.add(lower).expect("lower");
     for side in [1.0, -1.0] {
-        skeleton.set_rotation(0, Vec3::Z * side).expect("rotation");
-        skeleton.set_rotation(1, Vec3::Z * -2.0 * side).expect("rotation");
+        skeleton.set_rotation(JointId::new(0), Vec3::Z * side).expect("rotation");
+        skeleton.set_rotation(JointId::new(1), Vec3::Z * -2.0 * side).expect("rotation");
         for along in [0.1, 0.5, 1.0, 1.5, 1.99] {
             let mut solved = skeleton.clone();
-            let targets = [target(1, Vec3::X * along)];
+            let targets = [target(JointId::new(1), Vec3::X * along)];
             let report = solve(&mut solved, &targets, &by(Method::TwoBone)).expect("solve");
             assert!(report.converged, "{report:?}");
-            let elbow = solved.base(1);
+            let elbow = solved.base(JointId::new(1));
             assert!(elbow.y * side > 0.0 && elbow.z.abs() < 1e-5, "{elbow}");
         }
     }
@@ -637,15 +657,24 @@ fn what_cannot_be_solved_is_refused() {
         ChainSolver::new(&skeleton, targets, options).map(|_| ()).expect_err("refused")
     };
     let at = |joint| target(joint, Vec3::ONE);
-    assert_eq!(refused(&[at(4)], &options), SolveError::NoJoint(4));
-    assert_eq!(refused(&[at(3), at(3)], &options), SolveError::TwoTargets(3));
-    let nowhere = target(3, Vec3::new(0.0, f32::INFINITY, 0.0));
-    assert_eq!(refused(&[nowhere], &options), SolveError::Point { joint: 3, point: nowhere.point });
+    assert_eq!(refused(&[at(JointId::new(4))], &options), SolveError::NoJoint(JointId::new(4)));
+    assert_eq!(
+        refused(&[at(JointId::new(3)), at(JointId::new(3))], &options),
+        SolveError::TwoTargets(JointId::new(3))
+    );
+    let nowhere = target(JointId::new(3), Vec3::new(0.0, f32::INFINITY, 0.0));
+    assert_eq!(
+        refused(&[nowhere], &options),
+        SolveError::Point { joint: JointId::new(3), point: nowhere.point }
+    );
     for weight in [0.0, -1.0, f32::INFINITY] {
-        let light = TipTarget { weight, ..at(3) };
-        assert_eq!(refused(&[light], &options), SolveError::Weight { joint: 3, weight });
+        let light = TipTarget { weight, ..at(JointId::new(3)) };
+        assert_eq!(
+            refused(&[light], &options),
+            SolveError::Weight { joint: JointId::new(3), weight }
+        );
     }
-    let field = |options: SolverOptions| match refused(&[at(3)], &options) {
+    let field = |options: SolverOptions| match refused(&[at(JointId::new(3))], &options) {
         SolveError::Option { field, .. } => field,
         other => panic!("{other}"),
     };
@@ -665,8 +694,11 @@ fn a_transform_that_flattens_is_refused() {
         {
             let transform = Affine3A { matrix3, ..Affine3A::IDENTITY };
             skeleton.set_transform(transform).expect("finite");
-            let refused =
-                ChainSolver::new(&skeleton, &[target(2, Vec3::ONE)], &SolverOptions::default());
+            let refused = ChainSolver::new(
+                &skeleton,
+                &[target(JointId::new(2), Vec3::ONE)],
+                &SolverOptions::default(),
+            );
             assert_eq!(refused, Err(SolveError::Flat));
         }
     }
@@ -676,24 +708,27 @@ fn a_transform_that_flattens_is_refused() {
 fn two_bones_are_refused_where_there_are_not_two() {
     let mut random = Random(67);
     let skeleton = chain(&mut random, 4, 1.0);
-    let refused = |skeleton: &Skeleton, joints: &[usize]| {
+    let refused = |skeleton: &Skeleton, joints: &[JointId]| {
         let targets: Vec<_> = joints.iter().map(|joint| target(*joint, Vec3::ONE)).collect();
         match ChainSolver::new(skeleton, &targets, &by(Method::TwoBone)) {
-            Err(SolveError::TwoBone { joint, reason }) => (joint, reason),
+            Err(SolveError::TwoBone { joint, reason }) => (joint.index(), reason),
             other => panic!("{other:?}"),
         }
     };
-    assert_eq!(refused(&skeleton, &[0]), (0, "it has no parent"));
-    assert_eq!(refused(&skeleton, &[1]), (1, "its parent is locked"));
-    assert_eq!(refused(&skeleton, &[3, 4]), (4, "another target moves the same joint"));
+    assert_eq!(refused(&skeleton, &[JointId::new(0)]), (0, "it has no parent"));
+    assert_eq!(refused(&skeleton, &[JointId::new(1)]), (1, "its parent is locked"));
+    assert_eq!(
+        refused(&skeleton, &[JointId::new(3), JointId::new(4)]),
+        (4, "another target moves the same joint")
+    );
     let mut locked = skeleton.clone();
-    locked.change(3, |joint| joint.locked = true).expect("lock");
-    assert_eq!(refused(&locked, &[3]), (3, "it is locked"));
+    locked.change(JointId::new(3), |joint| joint.locked = true).expect("lock");
+    assert_eq!(refused(&locked, &[JointId::new(3)]), (3, "it is locked"));
     let mut short = skeleton.clone();
-    short.set_axis(3, Vec3::ZERO).expect("axis");
-    assert_eq!(refused(&short, &[3]), (3, "one of the two bones has no length"));
+    short.set_axis(JointId::new(3), Vec3::ZERO).expect("axis");
+    assert_eq!(refused(&short, &[JointId::new(3)]), (3, "one of the two bones has no length"));
     // One arm may hang from another.
-    let targets = reachable(&mut random, &skeleton, &[4, 2]);
+    let targets = reachable(&mut random, &skeleton, &[JointId::new(4), JointId::new(2)]);
     let report = solve(&mut skeleton.clone(), &targets, &by(Method::TwoBone)).expect("two arms");
     assert!(report.converged, "{report:?}");
 }
@@ -705,7 +740,7 @@ fn nothing_to_do_leaves_every_angle_as_it_is() {
         let mut skeleton = chain(&mut random, 2, 1.0);
         shake(&mut random, &mut skeleton);
         let before = skeleton.clone();
-        let targets = [target(2, skeleton.tip(2))];
+        let targets = [target(JointId::new(2), skeleton.tip(JointId::new(2)))];
         assert!(solve(&mut skeleton, &targets, &by(method)).expect("solve").converged);
         assert_eq!(skeleton, before);
     }
@@ -718,7 +753,7 @@ fn world_errors_use_the_inverse_of_the_transform_in_f64() {
     let mut skeleton = chain(&mut random, 4, 1.0);
     let small = DAffine3::from_scale(DVec3::splat(1e-3)).as_affine3a();
     skeleton.set_transform(small).expect("transform");
-    let targets = reachable(&mut random, &skeleton, &[4]);
+    let targets = reachable(&mut random, &skeleton, &[JointId::new(4)]);
     let options = SolverOptions { tolerance: Some(1e-6), ..SolverOptions::default() };
     let report = solve(&mut skeleton, &targets, &options).expect("solve");
     assert!(report.converged && report.error <= 1e-6, "{report:?}");
@@ -767,10 +802,12 @@ fn bones_whose_squares_are_no_numbers_are_turned_by_numbers_or_not_at_all() {
             for _ in 0..20 {
                 let mut skeleton = chain(&mut random, 3, 1.0);
                 let long = random.direction() * unit;
-                skeleton.set_axis(3, long).expect("finite");
+                skeleton.set_axis(JointId::new(3), long).expect("finite");
                 let point = random.direction() * unit;
                 let options = SolverOptions { method, root, ..SolverOptions::default() };
-                if let Ok(report) = solve(&mut skeleton, &[target(3, point)], &options) {
+                if let Ok(report) =
+                    solve(&mut skeleton, &[target(JointId::new(3), point)], &options)
+                {
                     assert!(report.error.is_finite(), "{report:?}");
                 }
                 for joint in skeleton.joints() {

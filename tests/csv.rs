@@ -4,7 +4,7 @@
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, Example, MotionError, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 fn table(document: &Document, fps: Option<u32>) -> String {
     let exported = io::to_csv(document, fps, &Progress::default()).expect("it is written");
@@ -15,7 +15,7 @@ fn table(document: &Document, fps: Option<u32>) -> String {
 #[test]
 fn a_small_skeleton_is_this_table() {
     let mut skeleton = Skeleton::with_root("hip, \"left\"");
-    let thigh = Joint { offset: Vec3::X, ..Joint::new("thigh", Some(0), Vec3::Y) };
+    let thigh = Joint { offset: Vec3::X, ..Joint::new("thigh", Some(JointId::new(0)), Vec3::Y) };
     skeleton.add(thigh).expect("joint");
     skeleton.add(Joint::new("point", Some(0), Vec3::ZERO)).expect("joint");
     let skeleton_rig = SkeletonRig::new(skeleton);

@@ -89,7 +89,16 @@ fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
     ));
     let rig = &opened.document.skeleton_rig;
     let base = |joint| rig.skeleton.base(joint);
-    assert_eq!([base(0), base(1), base(2), base(3)].map(|base| base.y), [0.0, 1.0, 3.0, 0.0]);
+    assert_eq!(
+        [
+            base(JointId::new(0)),
+            base(JointId::new(1)),
+            base(JointId::new(2)),
+            base(JointId::new(3))
+        ]
+        .map(|base| base.y),
+        [0.0, 1.0, 3.0, 0.0]
+    );
     assert_eq!(rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
     assert_eq!(rig.skeleton.joints()[1].radius, 0.2);
     assert_eq!((rig.targets.len(), rig.solver), (0, SolverOptions::default()));
@@ -534,9 +543,10 @@ fn the_human_stands_on_the_ground_within_its_limits() {
 fn the_snake_lies_in_an_s() {
     let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton_rig;
     let posed = snake.at(0.0).pose();
-    let turn = |joint: usize| {
+    let turn = |index: usize| {
+        let (joint, next) = (JointId::new(index), JointId::new(index + 1));
         let (before, after) =
-            (posed.tip(joint) - posed.base(joint), posed.tip(joint + 1) - posed.tip(joint));
+            (posed.tip(joint) - posed.base(joint), posed.tip(next) - posed.tip(joint));
         before.cross(after).y
     };
     let turns: Vec<_> = (0..23).map(turn).collect();
@@ -565,8 +575,8 @@ fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
     let value = |channel, time| keys.value(channel, time).expect("keyed").to_array();
     assert_eq!(value(Channel::Hand, 1.5), [4.0, 5.0, 6.0]);
     assert_eq!(value(Channel::Twist, 9.0), [7.0, 0.0, 0.0]);
-    assert_eq!(value(Channel::Rotation(0), 1.5), [0.0, 0.0, 2.0]);
-    assert_eq!(value(Channel::Enabled(0), 1.5), [0.0; 3]);
+    assert_eq!(value(Channel::Rotation(JointId::new(0)), 1.5), [0.0, 0.0, 2.0]);
+    assert_eq!(value(Channel::Enabled(JointId::new(0)), 1.5), [0.0; 3]);
     assert_eq!(value(Channel::Overlay(Overlay::Cursor), 0.0), [1.0, 0.0, 0.0]);
     assert!(!keys.has(Channel::Root));
     assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24 });

@@ -161,7 +161,7 @@ fn the_snake_some_seconds_later_is_another_picture() {
 #[test]
 fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let document = example("human");
-    let selected = Overlays { selection: vec![6], ..Overlays::default() };
+    let selected = Overlays { selection: vec![JointId::new(6)], ..Overlays::default() };
     let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
     let bind = document.skeleton().bind_pose();

@@ -40,7 +40,7 @@ fn the_smallest_scene_opens() {
     assert_eq!((joint.name.as_str(), joint.parent, joint.locked), ("bone_0", None, false));
     assert_eq!((joint.offset, joint.axis, joint.rotation), (Vec3::ZERO, Vec3::Y, Vec3::ZERO));
     assert!(joint.radius > 0.0);
-    assert_eq!((warnings, order, skeletons), (vec![], vec![0], vec!["X".to_owned()]));
+    assert_eq!((warnings, order, skeletons), (vec![], vec![JointId::new(0)], vec!["X".to_owned()]));
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn parents_that_follow_their_children_are_brought_before_them() {
     let joints = opened.document.skeleton().joints();
     let name = |index: usize| joints[opened.order[index]].name.as_str();
     assert_eq!([0, 1, 2, 3].map(name), ["bone_0", "bone_1", "bone_2", "bone_3"]);
-    let parent = |index: usize| joints[opened.order[index]].parent;
+    let parent = |index: usize| joints[opened.order[index].index()].parent;
     let [a, b, c, _] = [0, 1, 2, 3].map(|index| opened.order[index]);
     assert_eq!([0, 1, 2, 3].map(parent), [Some(c), None, Some(b), Some(a)]);
 }

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
 use ik_arm::io::Example;
-use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::skeleton::{JointId, Limit};
 
 fn number(value: f32) -> Vec3 {
     Vec3::new(value, 0.0, 0.0)
@@ -26,10 +26,10 @@ fn every_channel_gives_the_document_its_value_and_nothing_else_changes() {
         (Channel::Upper, number(123.0)),
         (Channel::Lower, number(45.0)),
         (Channel::Translation, point),
-        (Channel::Rotation(2), Vec3::new(0.1, 0.05, -0.1)),
-        (Channel::Offset(2), point),
-        (Channel::Target(8), point),
-        (Channel::Enabled(8), on),
+        (Channel::Rotation(JointId::new(2)), Vec3::new(0.1, 0.05, -0.1)),
+        (Channel::Offset(JointId::new(2)), point),
+        (Channel::Target(JointId::new(8)), point),
+        (Channel::Enabled(JointId::new(8)), on),
         (Channel::Overlay(Overlay::Cursor), on),
     ] {
         let mut keyed = document.clone();

@@ -26,7 +26,7 @@ fn named(names: &[&str]) -> Scene {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     *document.skeleton_mut() = skeleton;
     document.display = Display::from_iter([Overlay::Labels]);
-    let selection = (0..names.len()).collect();
+    let selection = (0..names.len()).map(JointId::new).collect();
     let mut scene =
         Scene::new(&document, &Overlays { selection, ..Overlays::default() }, Theme::Dark);
     assert_eq!(scene.labels.len(), names.len());

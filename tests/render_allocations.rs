@@ -5,7 +5,7 @@
 use allocation_counter::measure;
 use glam::Vec3;
 use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, RigKind, Theme};
-use ik_arm::kinematics::skeleton::Skeleton;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, Renderer};
 use ik_arm::scene::{Ball, Line, Scene, Shell};
 use ik_arm::session::Overlays;

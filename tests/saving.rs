@@ -24,7 +24,7 @@ const TO: &str = "IK_ARM_TEST_SAVES_TO";
 fn document(joints: usize) -> Document {
     let joint = |index: usize| Joint {
         rotation: Vec3::splat(index as f32 / 7.0),
-        ..Joint::new(&format!("joint_{index}"), index.checked_sub(1), Vec3::Y)
+        ..Joint::new(&format!("joint_{index}"), index.checked_sub(1).map(JointId::new), Vec3::Y)
     };
     let skeleton = Skeleton::from_joints((0..joints).map(joint).collect()).expect("a skeleton");
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };

@@ -11,7 +11,7 @@ use ik_arm::document::{
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
@@ -33,8 +33,8 @@ fn points() -> impl Strategy<Value = Vec3> + Clone {
     [numbers(), numbers(), numbers()].prop_map(Vec3::from_array)
 }
 
-fn joints() -> std::ops::Range<usize> {
-    0..9
+fn joints() -> impl Strategy<Value = JointId> + Clone {
+    (0_usize..9).prop_map(JointId::new)
 }
 
 fn rays() -> impl Strategy<Value = Ray> {
@@ -222,11 +222,11 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     let rig = session.skeleton_rig();
     let joints = rig.skeleton.joints();
     prop_assert_eq!(session.skeleton_pose().len(), joints.len());
-    prop_assert!(session.selection().iter().all(|joint| *joint < joints.len()));
-    prop_assert!(session.pointed().is_none_or(|joint| joint < joints.len()));
+    prop_assert!(session.selection().iter().all(|joint| *joint < JointId::new(joints.len())));
+    prop_assert!(session.pointed().is_none_or(|joint| joint < JointId::new(joints.len())));
     let mut names = std::collections::HashSet::new();
     for (index, joint) in joints.iter().enumerate() {
-        prop_assert!(joint.parent.is_none_or(|parent| parent < index));
+        prop_assert!(joint.parent.is_none_or(|parent| parent < JointId::new(index)));
         prop_assert!(joint.rotation.is_finite() && joint.axis.is_finite());
         prop_assert!(joint.offset.is_finite(), "{} at {}", joint.name, joint.offset);
         prop_assert!(names.insert(&joint.name), "two are called {}", joint.name);
@@ -234,7 +234,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     }
     let mut targeted = std::collections::HashSet::new();
     for target in &rig.targets {
-        prop_assert!(target.joint < joints.len() && targeted.insert(target.joint));
+        prop_assert!(target.joint < JointId::new(joints.len()) && targeted.insert(target.joint));
         prop_assert!(target.home.is_finite() && target.weight > 0.0);
     }
     check_arm(session.arm(), session.pose())?;

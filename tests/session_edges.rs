@@ -4,6 +4,7 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
     Action, Constraint, Drag, DragInput, EditAction, FileAction, Grip, Handle, Motion,
@@ -79,15 +80,19 @@ fn what_is_about_a_fourth_axis_is_not_done() {
         session.apply(EditAction::SetLimit { joint: 0, axis, limit: None });
         assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
         let (line, plane) = (Handle::Axis(axis), Handle::Plane(axis));
-        for grip in
-            [Grip::Hand(line), Grip::Pole(plane), Grip::Target(0, line), Grip::Tip(0, plane)]
-                .into_iter()
-                .chain([Grip::Shoulder(axis), Grip::Ring(0, axis)])
+        for grip in [
+            Grip::Hand(line),
+            Grip::Pole(plane),
+            Grip::Target(JointId::new(0), line),
+            Grip::Tip(JointId::new(0), plane),
+        ]
+        .into_iter()
+        .chain([Grip::Shoulder(axis), Grip::Ring(JointId::new(0), axis)])
         {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             assert!(!session.is_editing(), "{grip:?} holds nothing");
         }
-        assert_eq!(session.ring(0, axis), None);
+        assert_eq!(session.ring(JointId::new(0), axis), None);
         let grip = Grip::Hand(Handle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {

@@ -11,8 +11,8 @@ use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
 
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.
-fn twin(skeleton: &Skeleton, joint: usize, is_turned: bool, to_base: bool) -> DMat4 {
-    let Joint { parent, offset, rotation, frame, .. } = &skeleton.joints()[joint];
+fn twin(skeleton: &Skeleton, joint: JointId, is_turned: bool, to_base: bool) -> DMat4 {
+    let Joint { parent, offset, rotation, frame, .. } = &skeleton.joints()[joint.index()];
     let above = parent.map_or_else(
         || world(skeleton.transform()),
         |parent| twin(skeleton, parent, is_turned, false),
@@ -45,20 +45,23 @@ fn forward_kinematics_is_the_product_of_matrices() {
         let (pose, bind) = (skeleton.pose(), skeleton.bind_pose());
         for (index, joint) in skeleton.joints().iter().enumerate() {
             let axis = joint.axis.as_dvec3();
-            let full = twin(&skeleton, index, true, false);
-            assert!(is_near(skeleton.base(index), full.transform_point3(DVec3::ZERO)));
-            assert!(is_near(skeleton.tip(index), full.transform_point3(axis)));
-            assert!(is_near(pose.base(index), full.transform_point3(DVec3::ZERO)));
-            assert!(is_near(pose.tip(index), full.transform_point3(axis)));
+            let full = twin(&skeleton, JointId::new(index), true, false);
+            assert!(is_near(
+                skeleton.base(JointId::new(index)),
+                full.transform_point3(DVec3::ZERO)
+            ));
+            assert!(is_near(skeleton.tip(JointId::new(index)), full.transform_point3(axis)));
+            assert!(is_near(pose.base(JointId::new(index)), full.transform_point3(DVec3::ZERO)));
+            assert!(is_near(pose.tip(JointId::new(index)), full.transform_point3(axis)));
             for unit in [Vec3::X, Vec3::Y, Vec3::Z] {
-                let point = skeleton.full_transform(index).transform_point3(unit);
+                let point = skeleton.full_transform(JointId::new(index)).transform_point3(unit);
                 assert!(is_near(point, full.transform_point3(unit.as_dvec3())));
-                let to_base = twin(&skeleton, index, true, true);
-                let point = skeleton.transform_to_base(index).transform_point3(unit);
+                let to_base = twin(&skeleton, JointId::new(index), true, true);
+                let point = skeleton.transform_to_base(JointId::new(index)).transform_point3(unit);
                 assert!(is_near(point, to_base.transform_point3(unit.as_dvec3())));
             }
-            let bound = twin(&skeleton, index, false, false);
-            assert!(is_near(bind.tip(index), bound.transform_point3(axis)));
+            let bound = twin(&skeleton, JointId::new(index), false, false);
+            assert!(is_near(bind.tip(JointId::new(index)), bound.transform_point3(axis)));
         }
     }
 }
@@ -68,14 +71,14 @@ fn turning_a_joint_moves_what_hangs_from_it_and_nothing_else_by_a_bit() {
     let mut random = Random(2);
     for _ in 0..300 {
         let mut skeleton = forest(&mut random, 12);
-        let turned = random.below(12);
+        let turned = JointId::new(random.below(12));
         let before = skeleton.pose();
         skeleton.change(turned, |joint| joint.limits = [None; 3]).expect("joint");
-        let angles = skeleton.joints()[turned].rotation + Vec3::new(0.3, -0.4, 0.5);
+        let angles = skeleton[turned].rotation + Vec3::new(0.3, -0.4, 0.5);
         skeleton.set_rotation(turned, angles).expect("angles");
         let after = skeleton.pose();
         assert_eq!(before.base(turned), after.base(turned), "its own base");
-        for joint in 0..12 {
+        for joint in skeleton.ids() {
             if skeleton.hangs_from(joint, turned) {
                 assert_ne!(before.full(joint), after.full(joint));
             } else {
@@ -90,13 +93,16 @@ fn turning_a_joint_moves_what_hangs_from_it_and_nothing_else_by_a_bit() {
 fn each_joint_of_a_chain_of_three_moves_itself_and_those_after_it() {
     let mut skeleton = Skeleton::default();
     for (index, offset) in [Vec3::new(1.0, 2.0, 0.0), Vec3::Y, Vec3::Y].into_iter().enumerate() {
-        let joint = Joint::new(&format!("c{index}"), index.checked_sub(1), Vec3::Y);
+        let joint =
+            Joint::new(&format!("c{index}"), index.checked_sub(1).map(JointId::new), Vec3::Y);
         skeleton.add(Joint { offset, ..joint }).expect("joint");
     }
     let quarter = Vec3::Z * FRAC_PI_2;
     let tips_after = |turned: &[usize]| {
         let mut posed = skeleton.clone();
-        turned.iter().for_each(|joint| posed.set_rotation(*joint, quarter).expect("angles"));
+        turned
+            .iter()
+            .for_each(|joint| posed.set_rotation(JointId::new(*joint), quarter).expect("angles"));
         [0, 1, 2].map(|joint| posed.tip(joint))
     };
     let is_at = |tips: [Vec3; 3], expected: [[f32; 2]; 3]| {
@@ -117,21 +123,25 @@ fn x_is_turned_about_first_in_the_joints_own_frame() {
     // The frame's x is the bone's y, its y the bone's z, its z the bone's x.
     let frame = Mat3::from_cols(Vec3::Y, Vec3::Z, Vec3::X);
     skeleton.add(Joint { frame, ..Joint::new("only", None, Vec3::X) }).expect("joint");
-    skeleton.set_rotation(0, Vec3::new(FRAC_PI_2, 0.0, FRAC_PI_2)).expect("angles");
+    skeleton.set_rotation(JointId::new(0), Vec3::new(FRAC_PI_2, 0.0, FRAC_PI_2)).expect("angles");
     // About y: x goes to −z; about x: −z goes to y.
-    assert!(skeleton.tip(0).distance(Vec3::Y) < 1e-6, "{}", skeleton.tip(0));
+    assert!(
+        skeleton.tip(JointId::new(0)).distance(Vec3::Y) < 1e-6,
+        "{}",
+        skeleton.tip(JointId::new(0))
+    );
 }
 
 /// Parents before children, names that differ, numbers, angles within limits.
 fn assert_is_one(skeleton: &Skeleton) {
     let joints = skeleton.joints();
     assert_eq!(Skeleton::from_joints(joints.to_vec()).expect("a skeleton").joints(), joints);
-    for (index, joint) in joints.iter().enumerate() {
-        assert!(joint.parent.is_none_or(|parent| parent < index));
+    for (id, joint) in skeleton.iter() {
+        assert!(joint.parent.is_none_or(|parent| parent < id));
         assert_eq!(joint.clamped(joint.rotation), joint.rotation);
-        assert_eq!(skeleton.find(&joint.name), Some(index));
-        let children: Vec<_> = skeleton.children(index).collect();
-        assert!(children.iter().all(|child| joints[*child].parent == Some(index)));
+        assert_eq!(skeleton.find(&joint.name), Some(id));
+        let children: Vec<_> = skeleton.children(id).collect();
+        assert!(children.iter().all(|child| skeleton[*child].parent == Some(id)));
     }
 }
 
@@ -153,8 +163,8 @@ fn whatever_is_done_leaves_a_skeleton() {
 /// Whether it was done.
 fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
     // Often a joint that is not there, or a name that is.
-    let joint = random.below(skeleton.joints().len() + 2);
-    let parent = random.chance(0.8).then(|| random.below(skeleton.joints().len() + 2));
+    let joint = JointId::new(random.below(skeleton.joints().len() + 2));
+    let parent = random.chance(0.8).then(|| random.below(skeleton.joints().len() + 2).into());
     let name = format!("j{}", random.below(30));
     match random.below(7) {
         0 | 1 => skeleton.add(Joint::new(&name, parent, random.vector(1.0))).is_ok(),
@@ -167,11 +177,14 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
         5 if random.chance(0.3) => {
             let count = skeleton.joints().len();
             let falling: Vec<_> =
-                (0..count).filter(|other| skeleton.hangs_from(*other, joint)).collect();
+                skeleton.ids().filter(|other| skeleton.hangs_from(*other, joint)).collect();
             let names: Vec<_> = skeleton.joints().iter().map(|joint| joint.name.clone()).collect();
-            let moved = skeleton.remove(&[joint]);
+            let Ok(moved) = skeleton.remove(&[joint]) else {
+                assert!(joint.index() >= count);
+                return false;
+            };
             assert_eq!(skeleton.joints().len() + falling.len(), count);
-            for (old, name) in names.iter().enumerate() {
+            for (old, name) in (0..).map(JointId::new).zip(&names) {
                 assert_eq!(moved.get(old).is_none(), falling.contains(&old));
                 assert_eq!(moved.get(old), skeleton.find(name));
             }
@@ -182,14 +195,14 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
 }
 
 /// What hangs from a joint without limits stays where it is, and so does everything else.
-fn reparent(skeleton: &mut Skeleton, joint: usize, parent: Option<usize>) -> bool {
+fn reparent(skeleton: &mut Skeleton, joint: JointId, parent: Option<JointId>) -> bool {
     let before = skeleton.clone();
     let Ok(moved) = skeleton.reparent(joint, parent) else { return false };
     let now = moved.get(joint).expect("it is still there");
-    assert_eq!(skeleton.joints()[now].parent, parent.and_then(|parent| moved.get(parent)));
-    for old in 0..before.joints().len() {
+    assert_eq!(skeleton.joints()[now.index()].parent, parent.and_then(|parent| moved.get(parent)));
+    for old in before.ids() {
         let new = moved.get(old).expect("all are still there");
-        if before.joints()[joint].is_limited() && before.hangs_from(old, joint) {
+        if before.joints()[joint.index()].is_limited() && before.hangs_from(old, joint) {
             continue;
         }
         let (here, there) = (before.tip(old), skeleton.tip(new));
@@ -201,11 +214,13 @@ fn reparent(skeleton: &mut Skeleton, joint: usize, parent: Option<usize>) -> boo
 #[test]
 fn children_on_a_tip_stay_on_it_when_the_bone_changes() {
     let mut skeleton = Skeleton::with_root("root");
-    skeleton.add(Joint::new("bone", Some(0), Vec3::Y)).expect("bone");
+    skeleton.add(Joint::new("bone", Some(JointId::new(0)), Vec3::Y)).expect("bone");
     for (name, offset) in [("on", Vec3::Y), ("beside", Vec3::X)] {
-        skeleton.add(Joint { offset, ..Joint::new(name, Some(1), Vec3::Y) }).expect("child");
+        skeleton
+            .add(Joint { offset, ..Joint::new(name, Some(JointId::new(1)), Vec3::Y) })
+            .expect("child");
     }
-    skeleton.set_axis(1, Vec3::Z * 2.0).expect("axis");
+    skeleton.set_axis(JointId::new(1), Vec3::Z * 2.0).expect("axis");
     assert_eq!([2, 3].map(|joint| skeleton.joints()[joint].offset), [Vec3::Z * 2.0, Vec3::X]);
 }
 
@@ -214,18 +229,27 @@ fn what_no_skeleton_can_have_is_refused() {
     let root = || Joint::new("root", None, Vec3::Y);
     let one = Skeleton::from_joints(vec![root()]).expect("one joint");
     let added = |joint: Joint| one.clone().add(joint).expect_err("refused");
-    let child = || Joint::new("child", Some(0), Vec3::Y);
+    let child = || Joint::new("child", Some(JointId::new(0)), Vec3::Y);
 
-    assert_eq!(one.clone().set_rotation(1, Vec3::ZERO), Err(SkeletonError::NoJoint(1)));
-    assert_eq!(one.clone().rename(1, "x"), Err(SkeletonError::NoJoint(1)));
-    assert_eq!(one.clone().reparent(0, Some(3)), Err(SkeletonError::NoJoint(3)));
-    assert_eq!(one.clone().reparent(0, Some(0)), Err(SkeletonError::Cycle { joint: 0, parent: 0 }));
+    let [first, second, absent] = [0, 1, 3].map(JointId::new);
+    assert_eq!(one.clone().set_rotation(second, Vec3::ZERO), Err(SkeletonError::NoJoint(second)));
+    assert_eq!(one.clone().remove(&[first, absent]), Err(SkeletonError::NoJoint(absent)));
+    assert_eq!(one.clone().dissolve(&[first, absent]), Err(SkeletonError::NoJoint(absent)));
+    assert_eq!(one.clone().rename(second, "x"), Err(SkeletonError::NoJoint(second)));
+    assert_eq!(one.clone().reparent(first, Some(absent)), Err(SkeletonError::NoJoint(absent)));
     assert_eq!(
-        added(Joint { parent: Some(1), ..child() }),
-        SkeletonError::Parent { joint: 1, parent: 1 }
+        one.clone().reparent(first, Some(first)),
+        Err(SkeletonError::Cycle { joint: first, parent: first })
+    );
+    assert_eq!(
+        added(Joint { parent: Some(second), ..child() }),
+        SkeletonError::Parent { joint: second, parent: second }
     );
     assert_eq!(added(Joint { name: " ".into(), ..child() }), SkeletonError::NoName);
-    assert_eq!(added(Joint::new("root", Some(0), Vec3::Y)), SkeletonError::Name("root".into()));
+    assert_eq!(
+        added(Joint::new("root", Some(JointId::new(0)), Vec3::Y)),
+        SkeletonError::Name("root".into())
+    );
     assert_eq!(
         Skeleton::from_joints(vec![root(), root()]),
         Err(SkeletonError::Name("root".into()))
@@ -236,19 +260,19 @@ fn what_no_skeleton_can_have_is_refused() {
         ("axis", Joint { axis: value, ..child() }),
         ("rotation", Joint { rotation: value, ..child() }),
     ] {
-        assert_eq!(added(joint), SkeletonError::NotFinite { joint: 1, field, value });
+        assert_eq!(added(joint), SkeletonError::NotFinite { joint: second, field, value });
     }
     assert_eq!(
         added(Joint { radius: -1.0, ..child() }),
-        SkeletonError::Radius { joint: 1, value: -1.0 }
+        SkeletonError::Radius { joint: second, value: -1.0 }
     );
     for frame in [Mat3::ZERO, -Mat3::IDENTITY, Mat3::from_diagonal(Vec3::splat(1.001))] {
-        assert_eq!(added(Joint { frame, ..child() }), SkeletonError::Frame { joint: 1 });
+        assert_eq!(added(Joint { frame, ..child() }), SkeletonError::Frame { joint: second });
     }
     let limit = Limit { min: 1.0, max: 0.5 };
     assert_eq!(
         added(Joint { limits: [None, Some(limit), None], ..child() }),
-        SkeletonError::Limit { joint: 1, axis: 'y', min: 1.0, max: 0.5 }
+        SkeletonError::Limit { joint: second, axis: 'y', min: 1.0, max: 0.5 }
     );
     let flat = Affine3A::from_translation(value);
     assert_eq!(one.clone().set_transform(flat), Err(SkeletonError::Transform));

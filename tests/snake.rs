@@ -6,7 +6,7 @@ use std::cell::Cell;
 use glam::Vec3;
 use ik_arm::document::FollowPath;
 use ik_arm::kinematics::follow;
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 const WAY: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
 
@@ -17,7 +17,10 @@ fn snake() -> Skeleton {
     for index in 0..24_usize {
         let axis = Vec3::NEG_X * (0.05 + 0.01 * (index % 5) as f32);
         let parent = index.checked_sub(1);
-        let joint = Joint { offset, ..Joint::new(&format!("joint {index}"), parent, axis) };
+        let joint = Joint {
+            offset,
+            ..Joint::new(&format!("joint {index}"), parent.map(JointId::new), axis)
+        };
         snake.add(joint).expect("a joint");
         offset = axis;
     }
@@ -37,7 +40,7 @@ fn every_joint_is_on_the_path_of_the_head() {
     for time in [0.0, 1.7, 100.0] {
         let pose = WAY.pose(&snake(), time).pose();
         for joint in 0..pose.len() {
-            for point in [pose.base(joint), pose.tip(joint)] {
+            for point in [pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))] {
                 assert!(from_way(point) < 2e-4, "{point} of joint {joint} at {time} s");
             }
         }
@@ -50,9 +53,9 @@ fn the_head_leads_and_bones_keep_their_lengths() {
     for time in [0.0, 0.4, 3.0, 8.99] {
         let pose = WAY.pose(&snake, time).pose();
         let head = WAY.path(WAY.head(time)) + Vec3::Y * 0.07;
-        assert!(pose.base(0).distance(head) < 1e-6);
+        assert!(pose.base(JointId::new(0)).distance(head) < 1e-6);
         for (joint, before) in snake.joints().iter().enumerate() {
-            let length = pose.base(joint).distance(pose.tip(joint));
+            let length = pose.base(JointId::new(joint)).distance(pose.tip(JointId::new(joint)));
             assert!((length - before.axis.length()).abs() < 1e-5, "{length} of joint {joint}");
         }
     }
@@ -74,7 +77,7 @@ fn the_body_trails_behind_the_head_and_never_overtakes_it() {
 
 #[test]
 fn time_goes_on_smoothly_and_comes_around() {
-    let place = |time: f64| WAY.pose(&snake(), time).pose().tip(23);
+    let place = |time: f64| WAY.pose(&snake(), time).pose().tip(JointId::new(23));
     for step in 0..200 {
         let time = f64::from(step) * 0.05;
         let moved = place(time).distance(place(time + 1e-3));
@@ -95,7 +98,7 @@ fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
     let mut point = Skeleton::default();
     point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
     let posed = WAY.pose(&point, 1.0).pose();
-    assert_eq!(posed.base(0), posed.tip(0));
+    assert_eq!(posed.base(JointId::new(0)), posed.tip(JointId::new(0)));
 }
 
 #[test]

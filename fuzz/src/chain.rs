@@ -4,7 +4,7 @@ use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, Report, Root, SolverOptions, TipTarget, jacobian,
 };
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 use super::bits::Bits;
 use super::opened::is_readable;
@@ -18,7 +18,7 @@ pub fn chain(data: &[u8]) {
     let targets = targets(bits, &skeleton);
     let options = options(bits);
     for joint in 0..skeleton.joints().len() {
-        let _ = jacobian(&skeleton, joint);
+        let _ = jacobian(&skeleton, JointId::new(joint));
     }
     for method in Method::ALL {
         solve(&skeleton, &targets, &SolverOptions { method, ..options }, bits.finite_vector());
@@ -50,7 +50,7 @@ fn joint(bits: &mut Bits<'_>, index: usize, before: &[Joint]) -> Joint {
     let parent =
         if what & 3 == 0 { bits.below(index + 1).checked_sub(1) } else { index.checked_sub(1) };
     let on_tip = parent.and_then(|parent| before.get(parent)).map(|parent| parent.axis);
-    let joint = Joint::new(&format!("joint {index}"), parent, bits.vector());
+    let joint = Joint::new(&format!("joint {index}"), parent.map(JointId::new), bits.vector());
     Joint {
         offset: if what & 4 == 0 { on_tip.unwrap_or_default() } else { bits.vector() },
         rotation: if what & 8 == 0 { Vec3::ZERO } else { bits.vector() },
@@ -87,7 +87,7 @@ fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<TipTarget> {
     let places = skeleton.joints().len() + 1;
     let count = 1 + bits.below(MOST);
     let target = |_| TipTarget {
-        joint: bits.below(places),
+        joint: JointId::new(bits.below(places)),
         point: bits.vector(),
         weight: if bits.coin() { 1.0 } else { bits.number() },
     };
@@ -143,14 +143,14 @@ impl Case<'_> {
     fn check(&mut self, after: &Skeleton, targets: &[TipTarget], report: Report) {
         let Self { before, options, .. } = *self;
         let is_free = options.root == Root::Free;
-        let on_path: HashSet<usize> =
+        let on_path: HashSet<JointId> =
             targets.iter().flat_map(|target| before.ancestors(target.joint)).collect();
-        for (index, (was, is)) in before.joints().iter().zip(after.joints()).enumerate() {
+        for ((joint, was), is) in before.iter().zip(after.joints()) {
             let by = options.method;
             assert!(is.rotation.is_finite() && is.offset.is_finite(), "{by:?}: {is:?}");
             assert_eq!(is.clamped(is.rotation), is.rotation, "{by:?}: {is:?}");
-            let may_move = is_free && is.parent.is_none() && on_path.contains(&index);
-            let may_turn = !was.locked && on_path.contains(&index);
+            let may_move = is_free && is.parent.is_none() && on_path.contains(&joint);
+            let may_turn = !was.locked && on_path.contains(&joint);
             let offset = if may_move { is.offset } else { was.offset };
             let rotation = if may_turn { is.rotation } else { was.rotation };
             assert_eq!(*is, Joint { offset, rotation, ..was.clone() }, "{by:?}");
@@ -217,7 +217,7 @@ impl Twin {
     fn new(skeleton: &Skeleton, target: &TipTarget) -> Self {
         let joints = skeleton.joints();
         let mut path: Vec<_> =
-            skeleton.ancestors(target.joint).map(|joint| &joints[joint]).collect();
+            skeleton.ancestors(target.joint).map(|joint| &joints[joint.index()]).collect();
         path.reverse();
         let mut turn = DMat3::IDENTITY;
         // From the root: it may be far from all else.
@@ -229,7 +229,7 @@ impl Twin {
             }
             turn *= local(joint);
         }
-        let axis = joints[target.joint].axis.as_dvec3();
+        let axis = joints[target.joint.index()].axis.as_dvec3();
         let matrix = skeleton.transform().matrix3.as_dmat3();
         let root = path.first().map_or(DVec3::ZERO, |root| matrix * root.offset.as_dvec3());
         let origin = skeleton.transform().translation.as_dvec3();

@@ -2,7 +2,7 @@ use std::collections::HashSet;
 
 use ik_arm::document::Document;
 use ik_arm::io::{self, Opened};
-use ik_arm::kinematics::skeleton::Skeleton;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 
 /// What is in a file, if it is one: checked; or else checks that the error is one to read.
 pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
@@ -47,14 +47,14 @@ fn check(opened: &Opened) {
 fn check_skeleton(document: &Document, order: &[usize]) {
     let rig = &document.skeleton_rig;
     let joints = rig.skeleton.joints();
-    assert!(order.iter().all(|joint| *joint < joints.len()), "{order:?}");
+    assert!(order.iter().all(|joint| joint.index() < joints.len()), "{order:?}");
     let mut again = Skeleton::from_joints(joints.to_vec()).expect("one that can be");
     again.set_transform(rig.skeleton.transform()).expect("one that can be");
     assert_eq!(again, *rig.skeleton);
 
     let aimed: HashSet<_> = rig.targets.iter().map(|target| target.joint).collect();
     assert_eq!(aimed.len(), rig.targets.len());
-    assert!(aimed.into_iter().all(|joint| joint < joints.len()));
+    assert!(aimed.into_iter().all(|joint| joint.index() < joints.len()));
 }
 
 fn check_poses(document: &Document) {

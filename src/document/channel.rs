@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{Arm, Cursor, Document, Overlay, RigKind, SkeletonRig, TwistReferenceKind, Wrist};
-use crate::kinematics::skeleton::JointRemap;
+use crate::kinematics::skeleton::{JointId, JointRemap};
 
 /// One thing of a document that keys can change in time.
 ///
@@ -36,13 +36,13 @@ pub enum Channel {
     /// Where the skeleton's own origin is, in the world.
     Translation,
     /// A joint's Euler angles in radians, unwrapped.
-    Rotation(usize),
+    Rotation(JointId),
     /// A joint's offset from its parent's base.
-    Offset(usize),
+    Offset(JointId),
     /// Where the target of a joint is, in the world: its home.
-    Target(usize),
+    Target(JointId),
     /// Whether the target of a joint counts.
-    Enabled(usize),
+    Enabled(JointId),
     /// Whether a layer is shown.
     Overlay(Overlay),
 }
@@ -139,7 +139,7 @@ impl Channel {
             return Self::OF_ARM.into_iter().filter(shapes).collect();
         }
         let SkeletonRig { skeleton, targets, .. } = &document.skeleton_rig;
-        let joints = skeleton.joints().iter().enumerate();
+        let joints = skeleton.iter();
         let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
         let mut channels = vec![Self::Translation];
         channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
@@ -178,7 +178,7 @@ impl Channel {
     }
 
     /// The joint that it belongs to.
-    pub fn joint(self) -> Option<usize> {
+    pub fn joint(self) -> Option<JointId> {
         match self {
             Self::Rotation(joint)
             | Self::Offset(joint)

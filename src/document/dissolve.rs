@@ -1,13 +1,13 @@
 use super::{Channel, Document};
-use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
 
 /// A child that loses its parent and is attached to the next ancestor that stays.
 struct Orphan {
-    child: usize,
+    child: JointId,
     /// `None` makes it a root.
-    parent: Option<usize>,
+    parent: Option<JointId>,
     /// The deleted joints between both.
-    between: Vec<usize>,
+    between: Vec<JointId>,
 }
 
 impl Document {
@@ -18,7 +18,7 @@ impl Document {
     /// # Errors
     ///
     /// If a child's place below its new parent would not be finite.
-    pub fn dissolve(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
+    pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         let before = self.clone();
         let moved = self.skeleton_mut().dissolve(joints)?;
         self.follow(&moved);
@@ -49,7 +49,7 @@ impl Document {
         times.sort_by(f64::total_cmp);
         times.dedup();
 
-        let mut angles = before.skeleton().joints()[orphan.child].rotation;
+        let mut angles = before.skeleton()[orphan.child].rotation;
         for time in times {
             let posed = before.at(time);
             let skeleton = posed.skeleton();
@@ -65,8 +65,8 @@ impl Document {
     }
 }
 
-fn orphans(skeleton: &Skeleton, deleted: &[usize]) -> Vec<Orphan> {
-    let orphan = |child: usize| {
+fn orphans(skeleton: &Skeleton, deleted: &[JointId]) -> Vec<Orphan> {
+    let orphan = |child: JointId| {
         let mut above = skeleton.ancestors(child).skip(1).peekable();
         let mut between = Vec::new();
         while let Some(joint) = above.next_if(|joint| deleted.contains(joint)) {
@@ -75,7 +75,7 @@ fn orphans(skeleton: &Skeleton, deleted: &[usize]) -> Vec<Orphan> {
         let is_orphan = !between.is_empty() && !deleted.contains(&child);
         is_orphan.then(|| Orphan { child, parent: above.next(), between })
     };
-    (0..skeleton.joints().len()).filter_map(orphan).collect()
+    skeleton.ids().filter_map(orphan).collect()
 }
 
 #[cfg(test)]
@@ -93,7 +93,7 @@ mod tests {
         joints.map(|(at, joint)| (joint.name.clone(), pose.base(at), pose.tip(at))).collect()
     }
 
-    fn assert_children_stay(document: &Document, deleted: &[usize], times: &[f64]) {
+    fn assert_children_stay(document: &Document, deleted: &[JointId], times: &[f64]) {
         let mut after = document.clone();
         after.dissolve(deleted).expect("dissolved");
         let names: Vec<_> =
@@ -127,9 +127,13 @@ mod tests {
         let document = human();
         let count = document.skeleton().joints().len();
         for joint in 0..count {
-            assert_children_stay(&document, &[joint], &[0.0]);
+            assert_children_stay(&document, &[JointId::new(joint)], &[0.0]);
         }
-        assert_children_stay(&document, &[0, 1, 2, 5], &[0.0]);
+        assert_children_stay(
+            &document,
+            &[JointId::new(0), JointId::new(1), JointId::new(2), JointId::new(5)],
+            &[0.0],
+        );
     }
 
     #[test]
@@ -138,10 +142,10 @@ mod tests {
         let shoulder = 1;
         for (time, angle) in [(0.0, 0.2), (1.0, -0.7), (2.5, 1.1)] {
             let rotation = Vec3::new(angle, -angle, 0.5 * angle);
-            document.keys.insert(Channel::Rotation(shoulder), time, rotation);
+            document.keys.insert(Channel::Rotation(JointId::new(shoulder)), time, rotation);
         }
-        document.keys.insert(Channel::Rotation(shoulder + 1), 0.5, Vec3::splat(0.3));
-        document.keys.insert(Channel::Rotation(shoulder + 1), 2.0, Vec3::splat(-0.2));
-        assert_children_stay(&document, &[shoulder], &[0.0, 0.5, 1.0, 2.0, 2.5]);
+        document.keys.insert(Channel::Rotation(JointId::new(shoulder + 1)), 0.5, Vec3::splat(0.3));
+        document.keys.insert(Channel::Rotation(JointId::new(shoulder + 1)), 2.0, Vec3::splat(-0.2));
+        assert_children_stay(&document, &[JointId::new(shoulder)], &[0.0, 0.5, 1.0, 2.0, 2.5]);
     }
 }

@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
-use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::{follow, rotation_between};
 
 /// The way of a snake: its head goes around in waves, and its body follows.
@@ -46,7 +46,7 @@ impl FollowPath {
     pub fn write_pose(&self, skeleton: &Skeleton, time: f64, pose: &mut SkeletonPose) {
         let mut chain = self.chain(skeleton, time).peekable();
         skeleton.write_pose_with(pose, |index, joint| {
-            match chain.next_if(|(followed, ..)| *followed == index) {
+            match chain.next_if(|(followed, ..)| *followed == JointId::new(index)) {
                 Some((_, offset, rotation)) => {
                     Affine3A { matrix3: joint.rotation_by(rotation), translation: offset.into() }
                 }
@@ -56,10 +56,10 @@ impl FollowPath {
     }
 
     /// Index, offset and Euler angles of each joint on the path, parents first.
-    fn chain(&self, skeleton: &Skeleton, time: f64) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
+    fn chain(&self, skeleton: &Skeleton, time: f64) -> impl Iterator<Item = (JointId, Vec3, Vec3)> {
         const STRIDES_PER_WAVE: f64 = 64.0;
         let joints = skeleton.joints();
-        let lengths = chain(skeleton).map(|joint| joints[joint].axis.length());
+        let lengths = chain(skeleton).map(|joint| joints[joint.index()].axis.length());
         let stride = 1.0 / (STRIDES_PER_WAVE * f64::from(self.waves.max(1)));
         let head = self.head(time);
         let tips = follow::behind(|s| self.path(s), head, stride, lengths);
@@ -67,7 +67,7 @@ impl FollowPath {
         let mut base = self.path(head);
         let mut above = Mat3A::IDENTITY;
         chain(skeleton).zip(tips).map(move |(index, tip)| {
-            let joint = &joints[index];
+            let joint = &joints[index.index()];
             let turn =
                 rotation_between(joint.axis.into(), above.transpose() * Vec3A::from(tip - base));
             let mut rotation = joint.clamped(joint.angles_of(Mat3A::from_quat(turn)));
@@ -107,7 +107,7 @@ impl FollowPath {
 }
 
 /// The first root, its first child, and so on.
-fn chain(skeleton: &Skeleton) -> impl Iterator<Item = usize> {
-    let root = skeleton.joints().iter().position(|joint| joint.parent.is_none());
+fn chain(skeleton: &Skeleton) -> impl Iterator<Item = JointId> {
+    let root = skeleton.ids().find(|joint| skeleton[*joint].parent.is_none());
     std::iter::successors(root, |joint| skeleton.children(*joint).next())
 }

@@ -29,7 +29,7 @@ pub use wrist::{HandSpace, Wrist};
 
 use serde::{Deserialize, Serialize};
 
-use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
 
 /// Everything that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,8 +105,8 @@ impl Document {
     /// # Errors
     ///
     /// None; [`Document::dissolve`] has some.
-    pub fn delete(&mut self, joints: &[usize]) -> Result<JointRemap, SkeletonError> {
-        let moved = self.skeleton_mut().remove(joints);
+    pub fn delete(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
+        let moved = self.skeleton_mut().remove(joints)?;
         self.follow(&moved);
         Ok(moved)
     }

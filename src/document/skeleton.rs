@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Camera, FollowPath, Shared};
 use crate::kinematics::chain_ik::{self, SolverOptions};
-use crate::kinematics::skeleton::{JointRemap, Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 
 /// A skeleton with its targets, and how it is brought to them.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct SkeletonRig {
 /// Where the tip of a joint's bone is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    pub joint: usize,
+    pub joint: JointId,
     /// Where it is at time 0, in the world.
     pub home: Vec3,
     pub weight: f32,
@@ -72,7 +72,7 @@ impl TargetMotion {
 
 impl Target {
     /// An enabled target that stays.
-    pub fn new(joint: usize, home: Vec3, radius: f32) -> Self {
+    pub fn new(joint: JointId, home: Vec3, radius: f32) -> Self {
         Self { joint, home, weight: 1.0, enabled: true, motion: TargetMotion::still(radius) }
     }
 
@@ -119,7 +119,7 @@ impl SkeletonRig {
     }
 
     /// The target of a joint.
-    pub fn target(&self, joint: usize) -> Option<usize> {
+    pub fn target(&self, joint: JointId) -> Option<usize> {
         self.targets.iter().position(|target| target.joint == joint)
     }
 
@@ -176,7 +176,8 @@ impl SkeletonRig {
         reach.resize(joints.len(), 0.0);
         let mut farthest = 0.0_f32;
         for (index, joint) in joints.iter().enumerate() {
-            let above = joint.parent.map_or(0.0, |parent| reach[parent] + joint.offset.length());
+            let above =
+                joint.parent.map_or(0.0, |parent| reach[parent.index()] + joint.offset.length());
             reach[index] = above;
             farthest = farthest.max(above + joint.axis.length());
         }
@@ -209,7 +210,7 @@ impl SkeletonRig {
     }
 
     /// A sphere around the bones of some joints, if there are any.
-    pub fn bounds_of(&self, pose: &SkeletonPose, joints: &[usize]) -> Option<(Vec3, f32)> {
+    pub fn bounds_of(&self, pose: &SkeletonPose, joints: &[JointId]) -> Option<(Vec3, f32)> {
         let ends = joints.iter().flat_map(|joint| [pose.base(*joint), pose.tip(*joint)]);
         let (centre, radius) = around(ends)?;
         Some((centre, radius.max(0.05 * self.reach())))

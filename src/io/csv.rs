@@ -4,8 +4,8 @@ use super::Progress;
 use super::frames::{ExportFrames, FrameEvaluator};
 use super::motion::{Exported, MotionError};
 use crate::document::{Document, RigKind};
-use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skeleton::is_within_numbers;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
@@ -70,7 +70,7 @@ impl Columns {
         let joints = skeleton.joints();
         let mut is_end: Vec<bool> = joints.iter().map(|joint| joint.axis != Vec3::ZERO).collect();
         for parent in joints.iter().filter_map(|joint| joint.parent) {
-            is_end[parent] = false;
+            is_end[parent.index()] = false;
         }
         let ends: Vec<usize> = (0..joints.len()).filter(|joint| is_end[*joint]).collect();
         let tips = ends.iter().map(|joint| format!("{}_tip", joints[*joint].name));
@@ -93,8 +93,8 @@ impl Columns {
             }
             RigKind::Skeleton => {
                 let pose = document.skeleton_rig.at(time).pose();
-                let bases = (0..pose.len()).map(|joint| pose.base(joint));
-                bases.chain(self.ends.iter().map(|joint| pose.tip(*joint))).collect()
+                let bases = pose.ids().map(|joint| pose.base(joint));
+                bases.chain(self.ends.iter().map(|joint| pose.tip(JointId::new(*joint)))).collect()
             }
         }
     }

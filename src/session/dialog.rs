@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Export, FileAction, Session};
 use crate::document::Document;
+use crate::kinematics::skeleton::JointId;
 
 /// A window over the others. All but the statistics take the keyboard and the mouse.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,12 +51,12 @@ pub enum Dialog {
     },
     /// Asks for a joint's name, which is shown as it is typed.
     Rename {
-        joint: usize,
+        joint: JointId,
         name: String,
     },
     /// Asks whether the children of deleted joints stay.
     DeleteJoints {
-        joints: Vec<usize>,
+        joints: Vec<JointId>,
     },
 }
 

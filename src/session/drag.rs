@@ -1,5 +1,6 @@
 use super::point_drag::{Constraint, DragInput, Handle, PointDrag};
 use super::turn_drag::TurnDrag;
+use crate::kinematics::skeleton::JointId;
 
 /// What can be taken hold of in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,11 +14,11 @@ pub enum Grip {
     /// The ring about which the elbow bends.
     Bend,
     /// The target of a joint.
-    Target(usize, Handle),
+    Target(JointId, Handle),
     /// The tip of a joint's bone.
-    Tip(usize, Handle),
+    Tip(JointId, Handle),
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns.
-    Ring(usize, usize),
+    Ring(JointId, usize),
 }
 
 impl Grip {

@@ -77,7 +77,7 @@ pub use view_drag::{Motion, ViewDrag};
 
 use crate::document::{Arm, Camera, Channel, Document, RigKind, SkeletonRig};
 use crate::io;
-use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 use crowd::Crowding;
 use history::{Overrides, State};
@@ -121,8 +121,8 @@ pub struct Session {
     selected_keys: Vec<Key>,
     clipboard: Clipboard,
     /// Joints; the last one is the one that is worked on.
-    selection: Vec<usize>,
-    pointed: Option<usize>,
+    selection: Vec<JointId>,
+    pointed: Option<JointId>,
     playback: Playback,
     crowding: Crowding,
     solver_run: Option<SolverRun>,
@@ -283,17 +283,17 @@ impl Session {
     }
 
     /// Selected joints, the one that is worked on last.
-    pub fn selection(&self) -> &[usize] {
+    pub fn selection(&self) -> &[JointId] {
         &self.selection
     }
 
     /// The selected joint that is worked on.
-    pub fn selected(&self) -> Option<usize> {
+    pub fn selected(&self) -> Option<JointId> {
         self.selection.last().copied()
     }
 
     /// The joint that the pointer is on, in the viewport or in the tree.
-    pub fn pointed(&self) -> Option<usize> {
+    pub fn pointed(&self) -> Option<JointId> {
         self.pointed
     }
 
@@ -364,8 +364,8 @@ impl Session {
         self.watch_elbow();
         self.shown.skeleton_rig.write_pose(self.playback.time, &mut self.skeleton_pose);
         let count = self.skeleton_pose.len();
-        self.selection.retain(|joint| *joint < count);
-        self.pointed = self.pointed.filter(|joint| *joint < count);
+        self.selection.retain(|joint| joint.index() < count);
+        self.pointed = self.pointed.filter(|joint| joint.index() < count);
         let skeleton = self.shown.skeleton();
         self.comparison.take_if(|comparison| !comparison.is_of(skeleton));
         self.retain_keys();
@@ -379,13 +379,13 @@ impl Session {
         }
     }
 
-    fn select(&mut self, joints: Vec<usize>) {
+    fn select(&mut self, joints: Vec<JointId>) {
         self.selection = joints;
-        self.selection.retain(|joint| *joint < self.skeleton_pose.len());
+        self.selection.retain(|joint| joint.index() < self.skeleton_pose.len());
         self.forget_trail();
     }
 
-    fn point(&mut self, joint: Option<usize>) {
-        self.pointed = joint.filter(|joint| *joint < self.skeleton_pose.len());
+    fn point(&mut self, joint: Option<JointId>) {
+        self.pointed = joint.filter(|joint| joint.index() < self.skeleton_pose.len());
     }
 }

@@ -4,7 +4,7 @@ use super::trail::write_onion_skins;
 use super::{Comparison, Session};
 use crate::document::Arm;
 use crate::kinematics::chain_ik::Method;
-use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::rig::Crowd;
 
@@ -14,9 +14,9 @@ pub struct Overlays {
     /// In seconds.
     pub time: f64,
     /// Joints that are selected; the last one is the one that is worked on.
-    pub selection: Vec<usize>,
+    pub selection: Vec<JointId>,
     /// The joint that the pointer is on.
-    pub pointed: Option<usize>,
+    pub pointed: Option<JointId>,
     /// The skeleton as solvers in a race have it.
     pub ghosts: Vec<Ghost>,
     /// What was carried along with the Pointer, from which transport would measure the elbow.

@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::{OnionSkin, Overlays, Session};
 use crate::document::{Document, Overlay, RigKind};
+use crate::kinematics::skeleton::JointId;
 
 impl Session {
     /// Where the hand, or the selected joint's tip, is at every frame.
@@ -82,7 +83,7 @@ pub(super) fn write_onion_skins(
 }
 
 /// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.
-fn walk(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
+fn walk(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Joints times points: what a large skeleton may cost.
     const MOST_POSES: usize = 100_000;

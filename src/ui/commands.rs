@@ -39,13 +39,10 @@ pub(in crate::ui) fn frame_all(session: &Session) -> ViewAction {
 /// Deletes the selected joints, or opens a dialog about children that are not selected.
 pub(in crate::ui) fn delete(session: &Session) -> Action {
     let joints = session.selection().to_vec();
-    let is_left = |parent: Option<usize>| parent.is_some_and(|parent| joints.contains(&parent));
-    let skeleton = &session.skeleton();
-    let leaves_children = skeleton
-        .joints()
-        .iter()
-        .enumerate()
-        .any(|(child, joint)| is_left(joint.parent) && !joints.contains(&child));
+    let is_left = |parent: Option<JointId>| parent.is_some_and(|parent| joints.contains(&parent));
+    let skeleton = session.skeleton();
+    let leaves_children =
+        skeleton.iter().any(|(child, joint)| is_left(joint.parent) && !joints.contains(&child));
     if leaves_children {
         ShellAction::OpenDialog(Dialog::DeleteJoints { joints }).into()
     } else {

@@ -2,11 +2,12 @@
 
 use crate::document::{Channel, Overlay, RigKind, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
+use crate::kinematics::skeleton::JointId;
 use crate::session::Session;
 
 /// Name of a channel, such as "Hand" or "left_1 · rotation".
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
-    let of_joint = |joint: usize, what: &str| {
+    let of_joint = |joint: JointId, what: &str| {
         let name = session.skeleton().joint(joint).map_or("–", |joint| &joint.name);
         format!("{name} · {what}")
     };

@@ -84,7 +84,7 @@ fn describe_skeleton(session: &Session) -> String {
             ),
         });
     }
-    match session.selected().and_then(|joint| joints.get(joint)) {
+    match session.selected().and_then(|joint| joints.get(joint.index())) {
         Some(joint) => line.insert(0, joint.name.clone()),
         None => line.push("click a joint to select it, drag its tip to pose".to_owned()),
     }

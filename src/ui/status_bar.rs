@@ -84,7 +84,9 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     const AT_LIMIT: f32 = 1e-5;
     let joints = session.skeleton().joints();
     let angle = match grip {
-        Grip::Ring(joint, axis) => joints.get(joint).map(|joint| joint.rotation[axis.min(2)]),
+        Grip::Ring(joint, axis) => {
+            joints.get(joint.index()).map(|joint| joint.rotation[axis.min(2)])
+        }
         _ => None,
     };
     let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec3};
 use ik_arm::kinematics::chain_ik::TipTarget;
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 use super::Random;
 
@@ -14,7 +14,7 @@ pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
     for index in 0..joints {
         let direction = if is_straight { Vec3::Y } else { random.direction() };
         let axis = direction * unit * random.within(0.5..1.5);
-        let joint = Joint { offset, ..Joint::new(&format!("j{index}"), Some(index), axis) };
+        let joint = Joint { offset, ..Joint::new(&format!("j{index}"), Some(index.into()), axis) };
         skeleton.add(joint).expect("joint");
         offset = axis;
     }
@@ -27,7 +27,7 @@ pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<usize
     let mut skeleton = chain(random, 2, unit);
     let mut tips = Vec::new();
     for _ in 0..ends {
-        let mut parent = 1 + random.below(skeleton.joints().len() - 1);
+        let mut parent = JointId::new(1 + random.below(skeleton.joints().len() - 1));
         for _ in 0..2 + random.below(4) {
             parent = sprout(random, &mut skeleton, parent, unit);
         }
@@ -36,9 +36,9 @@ pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<usize
     (skeleton, tips)
 }
 
-fn sprout(random: &mut Random, skeleton: &mut Skeleton, parent: usize, unit: f32) -> usize {
+fn sprout(random: &mut Random, skeleton: &mut Skeleton, parent: JointId, unit: f32) -> JointId {
     let axis = random.direction() * unit * random.within(0.5..1.5);
-    let tip = skeleton.joints()[parent].axis;
+    let tip = skeleton[parent].axis;
     let offset = if random.chance(0.2) { random.direction() * unit * 0.5 } else { tip };
     let name = skeleton.free_name("j");
     skeleton.add(Joint { offset, ..Joint::new(&name, Some(parent), axis) }).expect("joint")
@@ -48,7 +48,7 @@ fn sprout(random: &mut Random, skeleton: &mut Skeleton, parent: usize, unit: f32
 pub fn forest(random: &mut Random, joints: usize) -> Skeleton {
     let mut list = Vec::new();
     for index in 0..joints {
-        let parent = (index > 0 && random.chance(0.9)).then(|| random.below(index));
+        let parent = (index > 0 && random.chance(0.9)).then(|| random.below(index).into());
         let axis = if random.chance(0.1) { Vec3::ZERO } else { random.vector(1.0) };
         let mut joint = Joint::new(&format!("j{index}"), parent, axis);
         joint.offset = random.vector(1.0);
@@ -72,31 +72,32 @@ pub fn limit(random: &mut Random) -> Limit {
 
 /// Gives every joint that is not locked a random rotation.
 pub fn shake(random: &mut Random, skeleton: &mut Skeleton) {
-    for joint in 0..skeleton.joints().len() {
-        if !skeleton.joints()[joint].locked {
+    for joint in skeleton.ids() {
+        if !skeleton[joint].locked {
             skeleton.set_rotation(joint, random.angles()).expect("angles");
         }
     }
 }
 
 /// Targets that can all be reached at once: the tips of a random pose.
-pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[usize]) -> Vec<TipTarget> {
+pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[JointId]) -> Vec<TipTarget> {
     let mut posed = skeleton.clone();
     shake(random, &mut posed);
-    let target = |joint: &usize| TipTarget { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
+    let target =
+        |joint: &JointId| TipTarget { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
     tips.iter().map(target).collect()
 }
 
 /// Length of the longest chain from a root to one of the tips, without the root's own offset.
-pub fn length(skeleton: &Skeleton, tips: &[usize]) -> f32 {
+pub fn length(skeleton: &Skeleton, tips: &[JointId]) -> f32 {
     let joints = skeleton.joints();
     let path = |tip: &usize| {
         let offsets: f64 = skeleton
             .ancestors(*tip)
-            .filter(|joint| joints[*joint].parent.is_some())
-            .map(|joint| joints[joint].offset.as_dvec3().length())
+            .filter(|joint| skeleton[*joint].parent.is_some())
+            .map(|joint| skeleton[joint].offset.as_dvec3().length())
             .sum();
-        (offsets + joints[*tip].axis.as_dvec3().length()) as f32
+        (offsets + skeleton[*tip].axis.as_dvec3().length()) as f32
     };
     tips.iter().map(path).fold(0.0, f32::max)
 }

@@ -6,6 +6,7 @@ use crate::common::Random;
 use crate::common::damage::{message, mutations};
 use crate::documents::{example, glb, keyed_arm};
 use crate::text;
+use ik_arm::kinematics::skeleton::JointId;
 
 fn open(bytes: &[u8]) {
     match io::read("damaged", bytes, None) {

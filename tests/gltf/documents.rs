@@ -3,7 +3,7 @@
 use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document, RigKind, Timeline, TwistReferenceKind};
 use ik_arm::io::{self, Example, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 
 use crate::common::Random;
@@ -83,11 +83,11 @@ fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
         let (turns, moves) = (random.chance(0.7), random.chance(0.2));
         for time in times() {
             if turns {
-                document.keys.insert(Channel::Rotation(joint), time, random.angles());
+                document.keys.insert(Channel::Rotation(JointId::new(joint)), time, random.angles());
             }
             if moves {
                 let offset = offset + random.vector(0.1 * size);
-                document.keys.insert(Channel::Offset(joint), time, offset);
+                document.keys.insert(Channel::Offset(JointId::new(joint)), time, offset);
             }
         }
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{Mat4, Vec3};
 use ik_arm::document::{Channel, Document, RigKind, Theme, Timeline};
 use ik_arm::io::{self, GlbError, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Palette;
 use serde_json::Value;
 
@@ -159,10 +159,11 @@ fn a_joints_y_is_along_its_bone() {
     let glb = exported(&document);
     let bind = document.skeleton().bind_pose();
     for (joint, world) in glb.worlds().iter().take(bind.len()).enumerate() {
-        let along = (bind.tip(joint) - bind.base(joint)).normalize_or_zero();
+        let along =
+            (bind.tip(JointId::new(joint)) - bind.base(JointId::new(joint))).normalize_or_zero();
         let y = world.y_axis.truncate();
         assert!(along == Vec3::ZERO || y.distance(along) < 1e-5, "{}: {y}", glb.name(joint));
-        assert!(world.w_axis.truncate().distance(bind.base(joint)) < 1e-5);
+        assert!(world.w_axis.truncate().distance(bind.base(JointId::new(joint))) < 1e-5);
     }
 }
 
@@ -223,7 +224,7 @@ fn only_what_leaves_its_rest_has_a_channel() {
     assert_eq!((path.as_str(), &times[..]), ("rotation", &[vec![0.0]][..]));
 
     for (time, angle) in [(1.0, 0.0), (2.0, 1.0)] {
-        document.keys.insert(Channel::Rotation(6), time, Vec3::Z * angle);
+        document.keys.insert(Channel::Rotation(JointId::new(6)), time, Vec3::Z * angle);
     }
     let moved: Vec<usize> =
         channels(&exported(&document)).iter().map(|moving| moving.node).collect();
@@ -298,7 +299,7 @@ fn a_skeleton_without_joints_is_refused() {
 #[test]
 fn a_joint_that_is_too_far_away_is_named() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    let far = Joint { offset: Vec3::X * 3e38, ..Joint::new("far", Some(0), Vec3::Y) };
+    let far = Joint { offset: Vec3::X * 3e38, ..Joint::new("far", Some(JointId::new(0)), Vec3::Y) };
     let joints = vec![Joint::new("root", None, Vec3::Y), far];
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     glb(&document);
@@ -314,7 +315,10 @@ fn a_joint_that_is_too_far_away_is_named() {
 fn huge_and_tiny_skeletons_stay_finite() {
     for size in [1e-44, 1e-30, 1e30, 1e38] {
         let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-        let tip = Joint { offset: Vec3::Y * size, ..Joint::new("b", Some(0), Vec3::X * size) };
+        let tip = Joint {
+            offset: Vec3::Y * size,
+            ..Joint::new("b", Some(JointId::new(0)), Vec3::X * size)
+        };
         let joints = vec![Joint::new("a", None, Vec3::Y * size), tip];
         *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
         document.skeleton_mut().set_rotation(0, Vec3::ONE).expect("angles");

@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use glam::{Quat, Vec3};
 use ik_arm::document::{Channel, RigKind};
 use ik_arm::io::{self, Opened};
-use ik_arm::kinematics::skeleton::Skeleton;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use serde_json::{Value, json};
 
 use crate::common::damage::message;
@@ -56,7 +56,7 @@ fn a_text_and_a_binary_file_give_the_same_joints() {
     );
     assert_eq!(
         (opened.skeletons.as_slice(), opened.order.as_slice()),
-        (&["skin".to_owned()][..], &[0, 1, 2][..])
+        (&["skin".to_owned()][..], &[0, 1, 2].map(JointId::new)[..])
     );
     assert_eq!(io::read("x.glb", &text.binary()[..], None).expect("it opens"), opened);
 }
@@ -75,7 +75,10 @@ fn nodes_between_joints_and_scaled_ones_above_are_in_the_offsets() {
     let opened = open(&text);
     let joints = opened.document.skeleton().joints();
     assert_eq!((joints[0].name.as_str(), joints[1].name.as_str()), ("hip", "knee"));
-    assert_eq!((joints[1].parent, opened.order.as_slice()), (Some(0), &[1, 0][..]));
+    assert_eq!(
+        (joints[1].parent, opened.order.as_slice()),
+        (Some(JointId::new(0)), &[1, 0].map(JointId::new)[..])
+    );
     assert_near(joints[0].offset, Vec3::new(2.0, 0.0, 7.0));
     assert_near(joints[1].offset, Vec3::new(-2.0, 0.0, 0.0));
     assert_near(joints[0].axis, joints[1].offset);
@@ -91,8 +94,8 @@ fn a_matrix_stands_for_translation_rotation_and_scale() {
         &[0, 1],
     );
     let skeleton = skeleton(&text);
-    assert_near(skeleton.base(0), Vec3::new(1.0, 2.0, 3.0));
-    assert_near(skeleton.base(1), Vec3::new(1.0, 5.0, 3.0));
+    assert_near(skeleton.base(JointId::new(0)), Vec3::new(1.0, 2.0, 3.0));
+    assert_near(skeleton.base(JointId::new(1)), Vec3::new(1.0, 5.0, 3.0));
 }
 
 #[test]
@@ -174,7 +177,7 @@ fn rotations_turn_the_shorter_way_and_steps_stay() {
     let timeline = opened.document.timeline;
     assert_eq!((timeline.start, timeline.end, timeline.frame_rate), (1.0, 2.0, 24));
     let tracks: Vec<Channel> = opened.document.keys.tracks().map(|(channel, _)| channel).collect();
-    assert_eq!(tracks, [Channel::Rotation(0), Channel::Offset(2)]);
+    assert_eq!(tracks, [Channel::Rotation(JointId::new(0)), Channel::Offset(JointId::new(2))]);
     let eighth = Quat::from_rotation_z(FRAC_PI_2 / 2.0) * Vec3::Y;
     assert_near(base(&opened, 1.5, "b"), eighth);
     assert_near(base(&opened, 1.5, "c"), eighth * 2.0);
@@ -266,7 +269,7 @@ fn angles_go_on_beyond_half_a_turn() {
     let turned = text.floats(4, &quarters(&turns));
     text.animate(0, "rotation", "LINEAR", times, turned);
     let document = open(&text).document;
-    let last = document.keys.value(Channel::Rotation(0), 3.0).expect("keyed");
+    let last = document.keys.value(Channel::Rotation(JointId::new(0)), 3.0).expect("keyed");
     assert!((last.z - 6.0 * FRAC_PI_2).abs() < 1e-4, "{last}");
 }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::{self, Opened};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::rig::Part;
 
 use crate::common::Random;
@@ -22,7 +22,9 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
             let skeleton = document.skeleton_rig.at(time);
             let pose = skeleton.pose();
             let joints = skeleton.joints().iter().enumerate();
-            joints.map(|(index, joint)| (joint.name.clone(), pose.base(index))).collect()
+            joints
+                .map(|(index, joint)| (joint.name.clone(), pose.base(JointId::new(index))))
+                .collect()
         }
         RigKind::Arm => {
             let rig = document.arm.rig(&document.arm.pose());
@@ -119,8 +121,12 @@ fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
     assert_eq!(names(is), names(was));
     for (index, joint) in was.joints().iter().enumerate() {
         assert_eq!(is.joints()[index].parent, joint.parent);
-        if was.children(index).next().is_none() {
-            assert!(is.tip(index).distance(was.tip(index)) < 1e-4, "{}", joint.name);
+        if was.children(JointId::new(index)).next().is_none() {
+            assert!(
+                is.tip(JointId::new(index)).distance(was.tip(JointId::new(index))) < 1e-4,
+                "{}",
+                joint.name
+            );
         }
     }
 }
@@ -140,14 +146,14 @@ fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
     let joint = |index: usize| {
         let parent = index.checked_sub(1);
         let offset = parent.map_or(Vec3::ZERO, |_| Vec3::Y);
-        Joint { offset, ..Joint::new(&format!("j{index}"), parent, Vec3::Y) }
+        Joint { offset, ..Joint::new(&format!("j{index}"), parent.map(JointId::new), Vec3::Y) }
     };
     let joints = (0..Skeleton::MOST_JOINTS).map(joint).collect();
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     for joint in 0..Skeleton::MOST_JOINTS {
         for (time, angle) in [(0.0, 0.0), (0.125, 0.002)] {
             let angles = Vec3::splat(angle * (joint % 7) as f32);
-            document.keys.insert(Channel::Rotation(joint), time, angles);
+            document.keys.insert(Channel::Rotation(JointId::new(joint)), time, angles);
         }
     }
     let opened = reopened(&document);

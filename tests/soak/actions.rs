@@ -6,6 +6,7 @@ use ik_arm::session::{Action, EditAction, FileAction, Session};
 use crate::common::Random;
 use crate::kinds::{KINDS, Kind, Sort};
 use crate::values::Values;
+use ik_arm::kinematics::skeleton::JointId;
 
 pub struct Actions {
     random: Random,

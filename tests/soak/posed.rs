@@ -2,7 +2,7 @@
 
 use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
-use ik_arm::kinematics::skeleton::{Skeleton, SkeletonPose};
+use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
 use ik_arm::session::{Drag, Grip, PointDrag, Session, TurnDrag};
 
@@ -78,7 +78,7 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
     let back = (stand.determinant().abs() > 1e-30).then(|| stand.inverse());
     let size = |m: DMat3| m.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
     for (index, joint) in joints.iter().enumerate() {
-        let (base, tip) = (pose.base(index), pose.tip(index));
+        let (base, tip) = (pose.base(JointId::new(index)), pose.tip(JointId::new(index)));
         hold!(base.is_finite() && tip.is_finite(), "{:?} is somewhere: {base} {tip}", joint.name);
         let Some(back) = back else { continue };
         let [base, tip] = [base, tip].map(Vec3::as_dvec3);

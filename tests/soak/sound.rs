@@ -8,7 +8,7 @@ use ik_arm::document::{
     Arm, Camera, Channel, Document, FollowPath, Quantity, SkeletonRig, Target, Wrist,
 };
 use ik_arm::kinematics::chain_ik::SolverOptions;
-use ik_arm::kinematics::skeleton::{Joint, Limit};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
 use ik_arm::session::Session;
 
 use crate::{Broken, hold};
@@ -108,7 +108,10 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
 fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
     let Joint { name, parent, offset, axis, rotation, frame, limits, locked: _, radius } = joint;
     hold!(!name.trim().is_empty(), "joint {index} has a name");
-    hold!(parent.is_none_or(|parent| parent < index), "{name:?} hangs from one before it");
+    hold!(
+        parent.is_none_or(|parent| parent < JointId::new(index)),
+        "{name:?} hangs from one before it"
+    );
     let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
     hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
     hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
@@ -122,7 +125,7 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
 
 fn target(target: &Target, joints: usize) -> Result<(), Broken> {
     let Target { joint, home, weight, enabled: _, motion } = target;
-    hold!(*joint < joints, "a target is of a joint: {joint} of {joints}");
+    hold!(*joint < JointId::new(joints), "a target is of a joint: {joint} of {joints}");
     hold!(home.is_finite() && is_above_0(*weight), "a target can be aimed at: {target:?}");
     hold!(motion.radius.is_finite() && is_above_0(motion.period), "a target goes: {target:?}");
     Ok(())

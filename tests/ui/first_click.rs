@@ -6,6 +6,7 @@ use glam::Vec3;
 use ik_arm::session::{EditAction, SelectAction, TransactionAction, ViewAction};
 
 use crate::bench::Bench;
+use ik_arm::kinematics::skeleton::JointId;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
@@ -17,7 +18,8 @@ fn names(bench: &Bench) -> Vec<String> {
 /// Every base and tip, on screen.
 fn ends(bench: &Bench) -> Vec<egui::Pos2> {
     let pose = bench.session().skeleton_pose();
-    let points = (0..pose.len()).flat_map(|joint| [pose.base(joint), pose.tip(joint)]);
+    let points = (0..pose.len())
+        .flat_map(|joint| [pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))]);
     points.map(|point| bench.place(point)).collect()
 }
 
@@ -81,7 +83,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     bench.settle();
     assert_eq!(names(&bench).len(), 2, "a click places the first bone");
     assert!(!bench.says("Click to place the first joint"));
-    let tip = bench.session().skeleton_pose().tip(1);
+    let tip = bench.session().skeleton_pose().tip(JointId::new(1));
     assert!(bench.place(tip).distance(centre + vec2(0.0, -120.0)) < 2.0, "where the mouse is");
 
     bench.apply([SelectAction::Joints(Vec::new())]);

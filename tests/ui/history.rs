@@ -13,6 +13,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use ik_arm::kinematics::skeleton::JointId;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;

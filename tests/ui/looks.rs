@@ -10,6 +10,7 @@ use ik_arm::session::{Action, EditAction, FileAction, Navigation, SelectAction, 
 
 use crate::bench::{Bench, SMALL};
 use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
+use ik_arm::kinematics::skeleton::JointId;
 
 const THEMES: [Theme; 2] = [Theme::Dark, Theme::Light];
 

@@ -13,6 +13,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use ik_arm::kinematics::skeleton::JointId;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
@@ -58,8 +59,8 @@ fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selec
 fn a_joint_is_named_after_a_click_on_it() {
     let mut bench = human();
     let joint = joint_named(&bench, "head");
-    let tip = bench.session().skeleton_pose().tip(joint);
-    let base = bench.session().skeleton_pose().base(joint);
+    let tip = bench.session().skeleton_pose().tip(JointId::new(joint));
+    let base = bench.session().skeleton_pose().base(JointId::new(joint));
     bench.click_at(bench.place(base.lerp(tip, 0.5)));
     bench.settle();
     assert_eq!(bench.session().selected(), Some(joint));
@@ -90,7 +91,10 @@ fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_int
     let text = |text: &str| Event::Text(text.to_owned());
     bench.frame([press(Key::F2), press(Key::A), text("a"), press(Key::T), text("t")]);
     bench.settle();
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Rename { joint: 3, name: "at".to_owned() }));
+    assert_eq!(
+        bench.session().dialog(),
+        Some(&Dialog::Rename { joint: JointId::new(3), name: "at".to_owned() })
+    );
 }
 
 #[test]
@@ -220,9 +224,9 @@ fn after_a_limit_the_reading_says_what_was_turned() {
         (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
     let limit = limits[axis].expect("limited");
-    let ring = bench.session().ring(joint, axis).expect("the free axis has a ring");
+    let ring = bench.session().ring(JointId::new(joint), axis).expect("the free axis has a ring");
     for fixed in (0..3).filter(|other| *other != axis) {
-        assert_eq!(bench.session().ring(joint, fixed), None, "a fixed axis has none");
+        assert_eq!(bench.session().ring(JointId::new(joint), fixed), None, "a fixed axis has none");
     }
     let grip = Grip::Ring(joint, axis);
     let before = bench.session().skeleton().joints()[joint].rotation[axis];
@@ -280,7 +284,9 @@ fn deleting_a_joint_asks_what_becomes_of_its_children() {
     };
     let places = |bench: &Bench| -> Vec<(Vec3, Vec3)> {
         let pose = bench.session().skeleton_pose();
-        (0..pose.len()).map(|joint| (pose.base(joint), pose.tip(joint))).collect()
+        (0..pose.len())
+            .map(|joint| (pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))))
+            .collect()
     };
     let before = (names(&bench), places(&bench));
     bench.apply([SelectAction::Joints(vec![shoulder])]);

@@ -15,6 +15,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, SMALL};
+use ik_arm::kinematics::skeleton::JointId;
 
 /// A root with three joints in a chain, built by pressing buttons.
 fn built() -> Bench {
@@ -72,11 +73,16 @@ fn a_new_skeleton_is_a_locked_point_on_which_children_are_hung_one_on_the_other(
     let skeleton = &bench.session().skeleton();
     let joints = skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
-    for (joint, it) in joints.iter().enumerate().skip(1) {
-        assert_eq!(it.parent, Some(joint - 1));
-        assert!(skeleton.base(joint).distance(skeleton.tip(joint - 1)) < 1e-6);
+    for (joint, it) in skeleton.iter().skip(1) {
+        let above = JointId::new(joint.index() - 1);
+        assert_eq!(it.parent, Some(above));
+        assert!(skeleton.base(joint).distance(skeleton.tip(above)) < 1e-6);
     }
-    assert_eq!(bench.session().selection(), [3], "the new one can be gone on from");
+    assert_eq!(
+        bench.session().selection(),
+        [3].map(JointId::new),
+        "the new one can be gone on from"
+    );
 }
 
 #[test]
@@ -116,7 +122,7 @@ fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
     bench.click(Role::Button, "Delete");
     bench.click(Role::Button, "Delete children too");
     assert_eq!(names(&bench), ["root", "joint"]);
-    assert_eq!(bench.session().selection(), [1]);
+    assert_eq!(bench.session().selection(), [1].map(JointId::new));
     select(&mut bench, "root");
     bench.click(Role::Button, "Delete");
     bench.click(Role::Button, "Delete children too");
@@ -143,12 +149,12 @@ fn a_joint_hangs_from_the_parent_that_is_chosen_and_stays_where_it_is() {
     let mut bench = built();
     let (base, tip) = {
         let pose = bench.session().skeleton_pose();
-        (pose.base(3), pose.tip(3))
+        (pose.base(JointId::new(3)), pose.tip(JointId::new(3)))
     };
     choose_item(&mut bench, "Parent", "root");
     let rig = bench.session().skeleton_rig();
     let moved = rig.skeleton.find("joint_2").expect("there");
-    assert_eq!(rig.skeleton.joints()[moved].parent, Some(0));
+    assert_eq!(rig.skeleton.joints()[moved.index()].parent, Some(JointId::new(0)));
     let pose = bench.session().skeleton_pose();
     assert!(pose.base(moved).distance(base) < 1e-5 && pose.tip(moved).distance(tip) < 1e-5);
     assert_eq!(bench.session().selected(), Some(moved));
@@ -163,9 +169,9 @@ fn a_slider_turns_a_joint_and_all_that_hangs_from_it_and_nothing_else() {
     let skeleton = &bench.session().skeleton();
     assert!((skeleton.joints()[2].rotation.z - FRAC_PI_2).abs() < 1e-6);
     let pose = bench.session().skeleton_pose();
-    assert_eq!(pose.tip(1), before.tip(1));
+    assert_eq!(pose.tip(JointId::new(1)), before.tip(JointId::new(1)));
     for joint in [2, 3] {
-        assert!(pose.tip(joint).distance(before.tip(joint)) > 0.5);
+        assert!(pose.tip(JointId::new(joint)).distance(before.tip(JointId::new(joint))) > 0.5);
     }
 }
 
@@ -321,7 +327,7 @@ fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
     assert!(time > 0.8, "{time} s");
     let at = bench.session().skeleton_rig().targets[0].at(time);
     assert!(at.distance(target.home) > 0.1 * target.motion.radius);
-    let tip = bench.session().skeleton_pose().tip(3);
+    let tip = bench.session().skeleton_pose().tip(JointId::new(3));
     assert!(tip.distance(at) < 0.2, "{tip} follows {at}");
     assert!(bench.session().is_running(), "it goes on as long as the target does");
     bench.key(Key::Space);
@@ -338,7 +344,14 @@ fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
     let before = bench.session().skeleton_pose().clone();
     bench.click_at(bench.rect(Role::Button, "Play").center());
     bench.wait(1.0);
-    assert!(bench.session().skeleton_pose().base(0).distance(before.base(0)) > 0.05);
+    assert!(
+        bench
+            .session()
+            .skeleton_pose()
+            .base(JointId::new(0))
+            .distance(before.base(JointId::new(0)))
+            > 0.05
+    );
     let document = bench.session().document().clone();
     bench.wait(0.5);
     assert_eq!(bench.session().document(), &document, "playing writes nothing");
@@ -355,20 +368,20 @@ fn a_snake_moves_when_it_is_played_and_its_joints_cannot_be_turned_by_hand() {
 fn the_tree_selects_one_more_or_none_and_follows_the_arrow_keys() {
     let mut bench = built();
     select(&mut bench, "joint");
-    assert_eq!(bench.session().selection(), [1]);
+    assert_eq!(bench.session().selection(), [1].map(JointId::new));
     bench.hold(Modifiers::SHIFT);
     select(&mut bench, "joint_2");
-    assert_eq!(bench.session().selection(), [1, 3]);
+    assert_eq!(bench.session().selection(), [1, 3].map(JointId::new));
     select(&mut bench, "joint");
-    assert_eq!(bench.session().selection(), [3]);
+    assert_eq!(bench.session().selection(), [3].map(JointId::new));
     bench.hold(Modifiers::NONE);
     select(&mut bench, "joint");
     bench.focus(Role::Button, "Joint joint");
     bench.key(Key::ArrowDown);
-    assert_eq!(bench.session().selection(), [2]);
+    assert_eq!(bench.session().selection(), [2].map(JointId::new));
     bench.key(Key::ArrowUp);
     bench.key(Key::ArrowUp);
-    assert_eq!(bench.session().selection(), [0]);
+    assert_eq!(bench.session().selection(), [0].map(JointId::new));
 }
 
 #[test]
@@ -388,7 +401,9 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.key(Key::T);
     assert!(bench.session().skeleton_rig().targets.is_empty());
     bench.key(Key::F2);
-    assert!(matches!(bench.session().dialog(), Some(Dialog::Rename { joint: 2, .. })));
+    assert!(
+        matches!(bench.session().dialog(), Some(Dialog::Rename { joint, .. }) if joint.index() == 2)
+    );
     bench.frame([]);
     bench.type_text("a");
     assert_eq!(names(&bench).len(), 3, "a letter in a text box is a letter");
@@ -396,7 +411,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.settle();
     bench.apply([ShellAction::CloseDialog]);
     bench.key_with(Modifiers::COMMAND, Key::A);
-    assert_eq!(bench.session().selection(), [0, 1, 2]);
+    assert_eq!(bench.session().selection(), [0, 1, 2].map(JointId::new));
     bench.key(Key::Escape);
     assert!(bench.session().selection().is_empty());
     bench.apply([SelectAction::Joints(vec![1])]);
@@ -418,7 +433,7 @@ fn a_bone_is_made_longer_and_what_sits_on_its_tip_goes_with_it() {
     bench.settle();
     let skeleton = &bench.session().skeleton();
     assert!((skeleton.joints()[2].axis.length() - 2.5).abs() < 1e-6);
-    assert!(skeleton.base(3).distance(skeleton.tip(2)) < 1e-6);
+    assert!(skeleton.base(JointId::new(3)).distance(skeleton.tip(JointId::new(2))) < 1e-6);
 }
 
 #[test]

@@ -18,12 +18,12 @@ const LEFT: PointerButton = PointerButton::Primary;
 /// A root that is a point with a bent chain of three on it, and a short bone aside.
 fn skeleton() -> Skeleton {
     let mut skeleton = Skeleton::with_root("root");
-    let add = |skeleton: &mut Skeleton, name: &str, parent: usize, axis: Vec3| {
-        let offset = skeleton.joints()[parent].axis;
+    let add = |skeleton: &mut Skeleton, name: &str, parent: JointId, axis: Vec3| {
+        let offset = skeleton.joints()[parent.index()].axis;
         let joint = Joint { offset, ..Joint::new(name, Some(parent), axis) };
         skeleton.add(joint).expect("a joint")
     };
-    let a = add(&mut skeleton, "a", 0, Vec3::new(0.2, 1.0, 0.0));
+    let a = add(&mut skeleton, "a", JointId::new(0), Vec3::new(0.2, 1.0, 0.0));
     let b = add(&mut skeleton, "b", a, Vec3::new(0.8, 0.3, 0.1));
     add(&mut skeleton, "c", b, Vec3::new(0.7, -0.4, 0.2));
     add(&mut skeleton, "d", a, Vec3::new(-0.6, 0.2, 0.0));
@@ -44,7 +44,7 @@ fn joint(bench: &Bench, name: &str) -> usize {
 }
 
 fn tip(bench: &Bench, name: &str) -> Vec3 {
-    bench.session().skeleton_pose().tip(joint(bench, name))
+    bench.session().skeleton_pose().tip(JointId::new(joint(bench, name)))
 }
 
 fn tip_place(bench: &Bench, name: &str) -> Pos2 {
@@ -55,7 +55,7 @@ fn tip_place(bench: &Bench, name: &str) -> Pos2 {
 fn bone_place(bench: &Bench, name: &str) -> Pos2 {
     let pose = bench.session().skeleton_pose();
     let joint = joint(bench, name);
-    bench.place(pose.base(joint).midpoint(pose.tip(joint)))
+    bench.place(pose.base(JointId::new(joint)).midpoint(pose.tip(JointId::new(joint))))
 }
 
 /// A point of a ring around the selected joint, so many radians along from where it starts.
@@ -91,9 +91,9 @@ fn shift_and_a_click_add_a_bone_or_take_it_away() {
     bench.hold(Modifiers::SHIFT);
     bench.click_at(places[1]);
     bench.click_at(places[2]);
-    assert_eq!(bench.session().selection(), [1, 2, 3]);
+    assert_eq!(bench.session().selection(), [1, 2, 3].map(JointId::new));
     bench.click_at(places[1]);
-    assert_eq!(bench.session().selection(), [1, 3]);
+    assert_eq!(bench.session().selection(), [1, 3].map(JointId::new));
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
     bench.move_to(start);
     assert_eq!(bench.harness.output().platform_output.cursor_icon, CursorIcon::Grab);
     bench.press(LEFT);
-    let root = bench.session().skeleton_pose().base(0);
+    let root = bench.session().skeleton_pose().base(JointId::new(0));
     for step in 1..=20 {
         let pointer = start + vec2(-4.0, -5.0) * step as f32;
         bench.move_to(pointer);
@@ -133,9 +133,9 @@ fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
     }
     bench.release(LEFT);
     let (before, pose) = (skeleton(), bench.session().skeleton_pose().clone());
-    assert_eq!(bits(pose.base(0)), bits(root));
+    assert_eq!(bits(pose.base(JointId::new(0))), bits(root));
     for (index, joint) in before.joints().iter().enumerate() {
-        let length = pose.base(index).distance(pose.tip(index));
+        let length = pose.base(JointId::new(index)).distance(pose.tip(JointId::new(index)));
         assert!((length - joint.axis.length()).abs() < 1e-4);
     }
     assert!(bench.session().selection().is_empty(), "a drag selects nothing");
@@ -192,12 +192,12 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
             bench.move_to(at);
             bench.press(LEFT);
             let drag = bench.session().drag().map(Drag::grip);
-            if drag != Some(Grip::Ring(b, axis)) {
+            if drag != Some(Grip::Ring(JointId::new(b), axis)) {
                 bench.key(Key::Escape);
                 bench.release(LEFT);
                 bench.apply([SelectAction::Joints(vec![b])]);
             }
-            drag == Some(Grip::Ring(b, axis))
+            drag == Some(Grip::Ring(JointId::new(b), axis))
         };
         let from = (0..16)
             .map(|part| part as f32 * PI / 8.0)
@@ -245,7 +245,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
             bench.press(LEFT);
             assert!(matches!(
                 bench.session().drag().map(Drag::grip),
-                Some(Grip::Target(joint, _)) if joint == c
+                Some(Grip::Target(joint, _)) if joint == JointId::new(c)
             ));
         }
         bench.move_to(pointer);

@@ -8,7 +8,7 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::Example;
-use ik_arm::kinematics::skeleton::Joint;
+use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Knot, Spline};
 use ik_arm::session::{
     Action, EditAction, FileAction, PlaybackAction, TransactionAction, ViewAction,
@@ -506,8 +506,8 @@ fn ten_thousand_channels_are_scrolled_in_no_time() {
     for joint in 0..5_000 {
         for frame in 0..3 {
             let time = f64::from(frame) * 0.5 + joint as f64 * 1e-4;
-            document.keys.insert(Channel::Rotation(joint), time, Vec3::ZERO);
-            document.keys.insert(Channel::Offset(joint), time, Vec3::ONE);
+            document.keys.insert(Channel::Rotation(JointId::new(joint)), time, Vec3::ZERO);
+            document.keys.insert(Channel::Offset(JointId::new(joint)), time, Vec3::ONE);
         }
     }
     let mut bench = Bench::with_timeline(LARGE);

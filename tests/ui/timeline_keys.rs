@@ -10,6 +10,7 @@ use ik_arm::session::{
 
 use crate::bench::{Bench, LARGE};
 use crate::timeline::{HAND, key_of_hand, keyed, times};
+use ik_arm::kinematics::skeleton::JointId;
 
 fn is_keyed(bench: &Bench, channel: Channel) -> bool {
     !times(bench, channel).is_empty()
@@ -57,7 +58,7 @@ fn k_keys_the_selected_joints() {
     ]);
     bench.key(Key::K);
     let keyed: Vec<_> = bench.session().document().keys.tracks().map(|it| it.0).collect();
-    assert_eq!(keyed, [Channel::Rotation(8), Channel::Target(8)]);
+    assert_eq!(keyed, [Channel::Rotation(JointId::new(8)), Channel::Target(JointId::new(8))]);
 }
 
 #[test]
@@ -152,7 +153,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 3, "the key went");
-    assert!(!is_keyed(&bench, Channel::Rotation(1)));
+    assert!(!is_keyed(&bench, Channel::Rotation(JointId::new(1))));
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 3, "in the timeline it never means joints");
@@ -162,7 +163,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 2, "the joint was clicked last");
-    assert!(is_keyed(&bench, Channel::Rotation(1)));
+    assert!(is_keyed(&bench, Channel::Rotation(JointId::new(1))));
 }
 
 #[test]

@@ -120,7 +120,7 @@ fn solve(
     rig: &mut SkeletonRig,
     args: &PoseArgs,
     method: Method,
-    order: &[usize],
+    order: &[JointId],
     file: &str,
 ) -> Result<Report, PoseCommandError> {
     let options = SolverOptions {
@@ -145,7 +145,7 @@ fn with_file_indices(mut error: SolveError, order: &[usize]) -> SolveError {
         | Point { joint, .. }
         | Weight { joint, .. }
         | TwoBone { joint, .. } => {
-            *joint = order.iter().position(|other| other == joint).unwrap_or(*joint);
+            *joint = order.iter().position(|other| other == joint).map_or(*joint, JointId::new);
         }
         Option { .. } | Flat => {}
     }

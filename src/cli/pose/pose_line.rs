@@ -3,7 +3,7 @@ use serde::Serialize;
 
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
-use crate::kinematics::skeleton::is_within_numbers;
+use crate::kinematics::skeleton::{JointId, is_within_numbers};
 
 /// Output of the command: one line of JSON.
 #[derive(Serialize)]
@@ -15,9 +15,9 @@ pub struct PoseLine<'a> {
 
 #[derive(Serialize)]
 struct JointLine<'a> {
-    index: usize,
+    index: JointId,
     name: &'a str,
-    parent: Option<usize>,
+    parent: Option<JointId>,
     rotation_deg: Vec3,
     base: Vec3,
     tip: Vec3,
@@ -26,7 +26,7 @@ struct JointLine<'a> {
 
 #[derive(Serialize)]
 struct TargetLine {
-    joint: usize,
+    joint: JointId,
     target: Vec3,
     tip: Vec3,
     error: f32,
@@ -48,25 +48,25 @@ impl<'a> PoseLine<'a> {
     /// The name of a joint whose position overflows.
     pub fn new(
         rig: &'a SkeletonRig,
-        order: &[usize],
+        order: &[JointId],
         time: f64,
         report: Option<Report>,
     ) -> Result<Self, &'a str> {
-        let mut index_of = vec![0; order.len()];
+        let mut index_of = vec![JointId::default(); order.len()];
         for (index, joint) in order.iter().enumerate() {
-            index_of[*joint] = index;
+            index_of[joint.index()] = JointId::new(index);
         }
         let pose = rig.skeleton.pose();
         let joints = order.iter().enumerate().map(|(index, &joint)| {
-            let bone = &rig.skeleton.joints()[joint];
+            let bone = &rig.skeleton[joint];
             let (full, tip) = (pose.full(joint), pose.tip(joint));
             if !(is_within_numbers(full.translation.into()) && is_within_numbers(tip)) {
                 return Err(bone.name.as_str());
             }
             Ok(JointLine {
-                index,
+                index: JointId::new(index),
                 name: &bone.name,
-                parent: bone.parent.map(|parent| index_of[parent]),
+                parent: bone.parent.map(|parent| index_of[parent.index()]),
                 rotation_deg: degrees(bone.rotation),
                 base: pose.base(joint),
                 tip,

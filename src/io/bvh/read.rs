@@ -10,7 +10,7 @@ use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
-use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 /// Whether a text is BVH, by its first word.
 pub fn is_bvh(text: &str) -> bool {
@@ -34,7 +34,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let mut warnings = rename(source, &mut nodes);
     warnings.extend(odd.map(|odd| source.remark_about(odd.at, &odd.joint, &odd.reason)));
     let document = document(&nodes, &motion).map_err(wrong)?;
-    Ok(Opened { order: (0..nodes.len()).collect(), document, warnings, skeletons })
+    Ok(Opened { order: document.skeleton().ids().collect(), document, warnings, skeletons })
 }
 
 /// Renames joints that have the name of another one, with a warning each.
@@ -128,7 +128,7 @@ fn key(
     if changes(|channel| matches!(channel, BvhChannel::Position(_))) {
         for (frame, row) in rows.clone().enumerate() {
             let time = motion.timing.time(frame);
-            keys.insert(document::Channel::Offset(joint), time, offset(node, row));
+            keys.insert(document::Channel::Offset(JointId::new(joint)), time, offset(node, row));
         }
     }
     let mut angles = first_angles(node, first);
@@ -137,7 +137,7 @@ fn key(
         for (frame, row) in rows.enumerate() {
             angles = angles::nearest(turn(node, row), angles);
             let time = motion.timing.time(frame);
-            keys.insert(document::Channel::Rotation(joint), time, angles.as_vec3());
+            keys.insert(document::Channel::Rotation(JointId::new(joint)), time, angles.as_vec3());
         }
     }
     FirstFrame { offset: offset(node, first), rotation }
@@ -191,8 +191,8 @@ fn axes(nodes: &[BvhNode], joints: &[Joint]) -> Vec<Vec3> {
     let mut sums = vec![(DVec3::ZERO, 0_u32); joints.len()];
     for joint in joints {
         if let Some(parent) = joint.parent {
-            sums[parent].0 += joint.offset.as_dvec3();
-            sums[parent].1 += 1;
+            sums[parent.index()].0 += joint.offset.as_dvec3();
+            sums[parent.index()].1 += 1;
         }
     }
     let axis = |(node, (sum, count)): (&BvhNode, (DVec3, u32))| {

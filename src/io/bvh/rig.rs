@@ -4,7 +4,7 @@ use super::angles;
 use super::names::{distinct, word};
 use super::transform::SkeletonTransform;
 use crate::document::{Arm, Document, RigKind};
-use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 /// The nodes of a hierarchy in the order of the file: each node is followed by its descendants.
 pub struct BvhRig {
@@ -50,7 +50,7 @@ impl BvhRig {
         let mut roots = Vec::new();
         for (index, joint) in joints.iter().enumerate() {
             match joint.parent {
-                Some(parent) => children[parent].push(index),
+                Some(parent) => children[parent.index()].push(index),
                 None => roots.push(index),
             }
         }

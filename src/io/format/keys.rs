@@ -83,7 +83,7 @@ impl ChannelFields {
             time: Seconds(time),
             values: value.to_array().into_iter().take(width).map(JsonNumber).collect(),
         };
-        let joint = channel.joint().and_then(|joint| u32::try_from(joint).ok());
+        let joint = channel.joint().and_then(|joint| u32::try_from(joint.index()).ok());
         Self {
             channel: name,
             joint: joint.map(Whole),
@@ -102,7 +102,7 @@ impl ChannelFields {
         };
         let target = || {
             let joint = joint()?;
-            match document.skeleton_rig.target(joint) {
+            match document.skeleton_rig.target(JointId::new(joint)) {
                 Some(_) => Ok(joint),
                 None => {
                     let reason = format!("must be a joint with a target, got {joint}");
@@ -124,10 +124,10 @@ impl ChannelFields {
             ChannelName::Stretch => Channel::Stretch,
             ChannelName::HandOrientation => Channel::Wrist,
             ChannelName::Translation => Channel::Translation,
-            ChannelName::Rotation => Channel::Rotation(joint()?),
-            ChannelName::Offset => Channel::Offset(joint()?),
-            ChannelName::Target => Channel::Target(target()?),
-            ChannelName::Enabled => Channel::Enabled(target()?),
+            ChannelName::Rotation => Channel::Rotation(JointId::new(joint()?)),
+            ChannelName::Offset => Channel::Offset(JointId::new(joint()?)),
+            ChannelName::Target => Channel::Target(JointId::new(target()?)),
+            ChannelName::Enabled => Channel::Enabled(JointId::new(target()?)),
             ChannelName::Overlay => Channel::Overlay(self.overlay.ok_or_else(|| {
                 FieldError::new(at.clone(), "`overlay` is missing: each overlay has this channel")
             })?),

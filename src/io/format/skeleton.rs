@@ -81,11 +81,13 @@ impl SkeletonFields {
 fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -> JsonPath {
     let at = |joint: usize| at_joints.clone().index(joint);
     match error {
-        SkeletonError::Parent { joint, .. } => at(*joint).key("parent"),
-        SkeletonError::Radius { joint, .. } => at(*joint).key("radius"),
-        SkeletonError::Frame { joint } => at(*joint).key("frame"),
-        SkeletonError::NotFinite { joint, field, .. } => at(*joint).key(field),
-        SkeletonError::Limit { joint, axis, .. } => at(*joint).key("limits").key(&axis.to_string()),
+        SkeletonError::Parent { joint, .. } => at(joint.index()).key("parent"),
+        SkeletonError::Radius { joint, .. } => at(joint.index()).key("radius"),
+        SkeletonError::Frame { joint } => at(joint.index()).key("frame"),
+        SkeletonError::NotFinite { joint, field, .. } => at(joint.index()).key(field),
+        SkeletonError::Limit { joint, axis, .. } => {
+            at(joint.index()).key("limits").key(&axis.to_string())
+        }
         SkeletonError::NoName => {
             let empty = names.iter().position(|name| name.trim().is_empty());
             at(empty.unwrap_or_default()).key("name")

@@ -10,6 +10,7 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+use crate::kinematics::skeleton::JointId;
 
 #[derive(Serialize, Deserialize)]
 pub struct TargetFields {
@@ -91,7 +92,7 @@ impl TargetFields {
 
     fn target(&self, at: &JsonPath, joints: usize, radius: f32) -> Result<Target, FieldError> {
         let joint = joint(at.clone().key("joint"), self.joint, joints)?;
-        let default = Target::new(joint, self.home.0, radius);
+        let default = Target::new(JointId::new(joint), self.home.0, radius);
         let motion = match &self.motion {
             Some(JsonObject(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
             None => default.motion,

@@ -9,7 +9,7 @@ use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
 /// A skeleton, and the joint of every bone in the file's order.
 pub struct SkeletonWithOrder {
     pub skeleton: Skeleton,
-    pub order: Vec<usize>,
+    pub order: Vec<JointId>,
 }
 
 pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, FieldError> {
@@ -20,9 +20,9 @@ pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, Fie
     let parents: Vec<_> = file.bones.iter().map(|JsonObject(bone)| bone.parent()).collect();
     let bones = parents_first(&parents)
         .map_err(|(bone, reason)| FieldError::new(at_bone(bone).key("parent"), reason))?;
-    let mut order = vec![0; bones.len()];
+    let mut order = vec![JointId::default(); bones.len()];
     for (joint, bone) in bones.iter().enumerate() {
-        order[*bone] = joint;
+        order[*bone] = joint.into();
     }
     let root = file.base.0 + file.base_offset.0;
     if !root.is_finite() {

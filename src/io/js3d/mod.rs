@@ -75,7 +75,7 @@ fn rig(
     name: &str,
     file: &Js3dSkeleton,
     odd: &mut FieldWarnings,
-) -> Result<(SkeletonRig, Vec<usize>), FieldError> {
+) -> Result<(SkeletonRig, Vec<JointId>), FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
     let place = transform::of_mesh(scene, name, odd)?;
     let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
@@ -92,7 +92,7 @@ fn targets(
     at: &JsonPath,
     file: &Js3dSkeleton,
     place: DAffine3,
-    order: &[usize],
+    order: &[JointId],
     circle: f32,
     odd: &mut FieldWarnings,
 ) -> Result<Vec<Target>, FieldError> {
@@ -102,8 +102,8 @@ fn targets(
     let mut own = vec![None; order.len()];
     for (handle, JsonObject(file)) in file.handles.iter().flatten().enumerate() {
         let target = target(&at_handle(handle), file, place, order, circle)?;
-        let Some(own) = own[target.joint] else {
-            own[target.joint] = Some(targets.len());
+        let Some(own) = own[target.joint.index()] else {
+            own[target.joint.index()] = Some(targets.len());
             targets.push((handle, target));
             continue;
         };
@@ -122,7 +122,7 @@ fn target(
     at: &JsonPath,
     handle: &Js3dHandle,
     place: DAffine3,
-    order: &[usize],
+    order: &[JointId],
     circle: f32,
 ) -> Result<Target, FieldError> {
     let bone = handle.bone.0 as usize;

@@ -14,7 +14,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::Configuration;
 use super::problem::Problem;
-use crate::kinematics::skeleton::{EulerAngles, Skeleton};
+use crate::kinematics::skeleton::{EulerAngles, JointId, Skeleton};
 
 /// d tip / d angle for every joint's angles about x, y and z, in skeleton space. Zero for joints
 /// that do not carry the tip.
@@ -22,7 +22,7 @@ use crate::kinematics::skeleton::{EulerAngles, Skeleton};
 /// # Panics
 ///
 /// If there is no such joint.
-pub fn jacobian(skeleton: &Skeleton, joint: usize) -> Vec<[Vec3; 3]> {
+pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
     let pose = skeleton.pose_in_skeleton();
     let mut columns = vec![[Vec3::ZERO; 3]; skeleton.joints().len()];
     for index in skeleton.ancestors(joint) {
@@ -30,7 +30,8 @@ pub fn jacobian(skeleton: &Skeleton, joint: usize) -> Vec<[Vec3; 3]> {
         let parent = above.parent.map_or(Mat3A::IDENTITY, |parent| pose.full(parent).matrix3);
         let axes = parent * Mat3A::from(above.frame) * EulerAngles(above.rotation).axes();
         let arm = Vec3A::from(pose.tip(joint) - pose.base(index));
-        columns[index] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
+        columns[index.index()] =
+            [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
     }
     columns
 }

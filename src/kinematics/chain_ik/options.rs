@@ -1,6 +1,8 @@
 use glam::Vec3;
 use thiserror::Error;
 
+use crate::kinematics::skeleton::JointId;
+
 /// How the joints are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
@@ -54,7 +56,7 @@ impl Method {
 /// Where the tip of a joint's bone is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipTarget {
-    pub joint: usize,
+    pub joint: JointId,
     /// In the world.
     pub point: Vec3,
     /// How much it counts beside other targets; above 0.
@@ -117,19 +119,19 @@ pub struct Report {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
     #[error("there is no joint {0} to bring to a target")]
-    NoJoint(usize),
+    NoJoint(JointId),
     #[error("joint {0} has more than one target")]
-    TwoTargets(usize),
+    TwoTargets(JointId),
     #[error("the target of joint {joint} is at {point}; it must be finite numbers")]
-    Point { joint: usize, point: Vec3 },
+    Point { joint: JointId, point: Vec3 },
     #[error("the weight of joint {joint}'s target is {weight}; it must be a finite number above 0")]
-    Weight { joint: usize, weight: f32 },
+    Weight { joint: JointId, weight: f32 },
     #[error("{field} is {value}; it must be a finite number {bound}")]
     Option { field: &'static str, value: f32, bound: &'static str },
     #[error("the skeleton's transform flattens space; targets cannot be brought into it")]
     Flat,
     #[error("two-bone cannot move joint {joint}: {reason}")]
-    TwoBone { joint: usize, reason: &'static str },
+    TwoBone { joint: JointId, reason: &'static str },
 }
 
 impl SolverOptions {

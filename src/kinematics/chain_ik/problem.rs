@@ -14,12 +14,12 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
 use super::{Method, Root, SolveError, SolverOptions, TipTarget};
-use crate::kinematics::skeleton::{Joint, Limit, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 /// A joint that turns, and all that is rigidly attached to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
-    pub joint: usize,
+    pub joint: JointId,
     /// None for what hangs from the root's place itself.
     pub parent: Option<usize>,
     pub tree: usize,
@@ -42,7 +42,7 @@ impl Body {
 /// A target, brought into the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Goal {
-    pub joint: usize,
+    pub joint: JointId,
     pub body: Option<usize>,
     pub tree: usize,
     /// The tip that is to come there, in the body's space.
@@ -59,7 +59,7 @@ pub(super) struct Goal {
 /// What hangs from one root.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tree {
-    pub root: usize,
+    pub root: JointId,
     /// Where the root stands before it moves, in skeleton space.
     pub origin: DVec3,
 }
@@ -194,18 +194,18 @@ impl Problem {
 
     fn add_bodies(&mut self, skeleton: &Skeleton, on_path: &[bool]) -> Vec<Option<Place>> {
         let mut places: Vec<Option<Place>> = vec![None; on_path.len()];
-        for (index, joint) in skeleton.joints().iter().enumerate().filter(|(i, _)| on_path[*i]) {
-            let place = match joint.parent.and_then(|parent| places[parent]) {
+        for (id, joint) in skeleton.iter().filter(|(id, _)| on_path[id.index()]) {
+            let place = match joint.parent.and_then(|parent| places[parent.index()]) {
                 Some(above) => self.hang(joint, above),
-                None => self.plant(index, joint),
+                None => self.plant(id, joint),
             };
-            places[index] = Some(self.release(index, joint, place));
+            places[id.index()] = Some(self.release(id, joint, place));
         }
         places
     }
 
-    fn plant(&mut self, index: usize, joint: &Joint) -> Place {
-        self.trees.push(Tree { root: index, origin: joint.offset.as_dvec3() });
+    fn plant(&mut self, root: JointId, joint: &Joint) -> Place {
+        self.trees.push(Tree { root, origin: joint.offset.as_dvec3() });
         let tree = self.trees.len() - 1;
         Place { body: None, to_body: Affine3A::IDENTITY, tree, path: 0.0 }
     }
@@ -218,14 +218,14 @@ impl Problem {
     }
 
     /// From the joint's base to its own space: through a new body if it can turn.
-    fn release(&mut self, index: usize, joint: &Joint, at: Place) -> Place {
+    fn release(&mut self, id: JointId, joint: &Joint, at: Place) -> Place {
         if joint.locked {
             let matrix3 = at.to_body.matrix3 * joint.local_rotation();
             return Place { to_body: Affine3A { matrix3, ..at.to_body }, ..at };
         }
         let frame = Mat3A::from(joint.frame);
         self.bodies.push(Body {
-            joint: index,
+            joint: id,
             parent: at.body,
             tree: at.tree,
             pivot: at.to_body.translation,
@@ -247,8 +247,8 @@ impl Problem {
     ) {
         let heaviest = targets.iter().map(|target| target.weight).fold(0.0, f32::max);
         for target in targets {
-            let Some(place) = places[target.joint] else { continue };
-            let axis = self.scaled(skeleton.joints()[target.joint].axis);
+            let Some(place) = places[target.joint.index()] else { continue };
+            let axis = self.scaled(skeleton[target.joint].axis);
             let reach = place.path as f32 + axis.length();
             // Beyond reach only the direction counts. The fixed step is stable as long as the
             // target is less than about twice as far as the tip can be; others bear all that
@@ -314,7 +314,7 @@ fn within_numbers(point: DVec3) -> DVec3 {
 
 pub(super) fn check(skeleton: &Skeleton, targets: &[TipTarget]) -> Result<(), SolveError> {
     for (index, &TipTarget { joint, point, weight }) in targets.iter().enumerate() {
-        if joint >= skeleton.joints().len() {
+        if skeleton.joint(joint).is_none() {
             return Err(SolveError::NoJoint(joint));
         }
         if targets[..index].iter().any(|other| other.joint == joint) {
@@ -325,7 +325,7 @@ pub(super) fn check(skeleton: &Skeleton, targets: &[TipTarget]) -> Result<(), So
     Ok(())
 }
 
-pub(super) fn check_numbers(joint: usize, point: Vec3, weight: f32) -> Result<(), SolveError> {
+pub(super) fn check_numbers(joint: JointId, point: Vec3, weight: f32) -> Result<(), SolveError> {
     if !point.is_finite() {
         return Err(SolveError::Point { joint, point });
     }
@@ -353,7 +353,7 @@ fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
     let mut on_path = vec![false; skeleton.joints().len()];
     for target in targets {
         for joint in skeleton.ancestors(target.joint) {
-            on_path[joint] = true;
+            on_path[joint.index()] = true;
         }
     }
     on_path
@@ -361,12 +361,11 @@ fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
 
 /// Of the paths from roots to tips.
 fn longest(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
-    let joints = skeleton.joints();
     let path = |target: &TipTarget| {
         let inner =
-            skeleton.ancestors(target.joint).filter(|joint| joints[*joint].parent.is_some());
-        let offsets: f64 = inner.map(|joint| joints[joint].offset.as_dvec3().length()).sum();
-        offsets + joints[target.joint].axis.as_dvec3().length()
+            skeleton.ancestors(target.joint).filter(|joint| skeleton[*joint].parent.is_some());
+        let offsets: f64 = inner.map(|joint| skeleton[joint].offset.as_dvec3().length()).sum();
+        offsets + skeleton[target.joint].axis.as_dvec3().length()
     };
     targets.iter().map(path).fold(0.0, f64::max)
 }

@@ -37,12 +37,12 @@ impl TwoBones {
         let mut pairs: Vec<Pair> = Vec::new();
         for (index, goal) in rig.goals.iter().enumerate() {
             let refuse = |reason| SolveError::TwoBone { joint: goal.joint, reason };
-            let joint = &skeleton.joints()[goal.joint];
+            let joint = &skeleton[goal.joint];
             let parent = joint.parent.ok_or_else(|| refuse("it has no parent"))?;
             if joint.locked {
                 return Err(refuse("it is locked"));
             }
-            if skeleton.joints()[parent].locked {
+            if skeleton[parent].locked {
                 return Err(refuse("its parent is locked"));
             }
             let place = |joint| rig.bodies.iter().position(|body| body.joint == joint);

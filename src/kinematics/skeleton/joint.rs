@@ -1,6 +1,6 @@
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
-use super::{EulerAngles, SkeletonError, nearest_angles};
+use super::{EulerAngles, JointId, SkeletonError, nearest_angles};
 
 /// A ball joint and its bone.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,7 +8,7 @@ pub struct Joint {
     /// No two joints of a skeleton have the same.
     pub name: String,
     /// What it hangs from: a joint before it in the list.
-    pub parent: Option<usize>,
+    pub parent: Option<JointId>,
     /// From the parent's base to this one's, in the parent's space; usually the parent's axis, so
     /// that the joint sits on its tip. Of a root: from the skeleton's origin.
     pub offset: Vec3,
@@ -35,7 +35,7 @@ pub struct Limit {
 
 impl Joint {
     /// A free joint that sits on its parent's base, a tenth as thick as its bone is long.
-    pub fn new(name: &str, parent: Option<usize>, axis: Vec3) -> Self {
+    pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
         Self {
             name: name.to_owned(),
             parent,
@@ -109,7 +109,7 @@ impl Joint {
         self.rotation = self.clamped(self.rotation);
     }
 
-    pub(super) fn check(&self, joint: usize) -> Result<(), SkeletonError> {
+    pub(super) fn check(&self, joint: JointId) -> Result<(), SkeletonError> {
         const ORTHONORMAL: f32 = 1e-5;
         if let Some(parent) = self.parent.filter(|parent| *parent >= joint) {
             return Err(SkeletonError::Parent { joint, parent });

@@ -26,13 +26,17 @@ mod build;
 mod error;
 mod euler;
 mod joint;
+mod joint_id;
 mod pose;
+
+use core::ops::Index;
 
 use glam::{Affine3A, Vec3};
 
 pub use build::JointRemap;
 pub use error::SkeletonError;
 pub use joint::{Joint, Limit};
+pub use joint_id::JointId;
 pub use pose::{SkeletonPose, is_within_numbers};
 
 pub(crate) use euler::{EulerAngles, angle_triples, nearest_angles};
@@ -42,10 +46,10 @@ pub(crate) use joint::within;
 ///
 /// ```
 /// use glam::Vec3;
-/// use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+/// use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 ///
 /// let mut skeleton = Skeleton::with_root("hip");
-/// let thigh = skeleton.add(Joint::new("thigh", Some(0), Vec3::Y))?;
+/// let thigh = skeleton.add(Joint::new("thigh", Some(JointId::new(0)), Vec3::Y))?;
 /// let shin = skeleton.add(Joint { offset: Vec3::Y, ..Joint::new("shin", Some(thigh), Vec3::Y) })?;
 ///
 /// skeleton.set_rotation(thigh, Vec3::new(0.0, 0.0, std::f32::consts::FRAC_PI_2))?;
@@ -85,7 +89,7 @@ impl Skeleton {
         }
         let mut names = std::collections::HashSet::new();
         for (index, joint) in joints.iter().enumerate() {
-            joint.check(index)?;
+            joint.check(index.into())?;
             if !names.insert(joint.name.as_str()) {
                 return Err(SkeletonError::Name(joint.name.clone()));
             }
@@ -99,26 +103,40 @@ impl Skeleton {
         &self.joints
     }
 
-    pub fn joint(&self, joint: usize) -> Option<&Joint> {
-        self.joints.get(joint)
+    pub fn joint(&self, joint: JointId) -> Option<&Joint> {
+        self.joints.get(joint.index())
     }
 
-    pub fn find(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
+    /// The indices of all joints, parents before children.
+    pub fn ids(&self) -> impl DoubleEndedIterator<Item = JointId> + ExactSizeIterator + use<> {
+        (0..self.joints.len()).map(JointId::new)
     }
 
-    pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        let is_child = move |(_, child): &(usize, &Joint)| child.parent == Some(joint);
-        self.joints.iter().enumerate().filter(is_child).map(|(index, _)| index)
+    /// All joints with their indices, parents before children.
+    pub fn iter(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (JointId, &Joint)> + ExactSizeIterator + Clone {
+        self.joints.iter().enumerate().map(|(index, joint)| (JointId::new(index), joint))
+    }
+
+    /// The joint of a name.
+    pub fn find(&self, name: &str) -> Option<JointId> {
+        self.joints.iter().position(|joint| joint.name == name).map(JointId::new)
+    }
+
+    /// The joints whose parent is `joint`.
+    pub fn children(&self, joint: JointId) -> impl Iterator<Item = JointId> + '_ {
+        self.iter().filter(move |(_, child)| child.parent == Some(joint)).map(|(child, _)| child)
     }
 
     /// The joint, its parent, and so on up to its root.
-    pub fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(Some(joint), |joint| self.joints.get(*joint)?.parent)
+    pub fn ancestors(&self, joint: JointId) -> impl Iterator<Item = JointId> + '_ {
+        let first = self.joint(joint).map(|_| joint);
+        std::iter::successors(first, |joint| self.joint(*joint)?.parent)
     }
 
     /// Whether `joint` is `ancestor` or hangs from it.
-    pub fn hangs_from(&self, joint: usize, ancestor: usize) -> bool {
+    pub fn hangs_from(&self, joint: JointId, ancestor: JointId) -> bool {
         self.ancestors(joint).any(|above| above == ancestor)
     }
 
@@ -140,6 +158,17 @@ impl Skeleton {
     }
 }
 
+impl Index<JointId> for Skeleton {
+    type Output = Joint;
+
+    /// # Panics
+    ///
+    /// If there is no such joint; [`Skeleton::joint`] returns `None` then.
+    fn index(&self, joint: JointId) -> &Joint {
+        &self.joints[joint.index()]
+    }
+}
+
 /// Forward kinematics. For more than one joint, [`Skeleton::pose`] computes each once.
 impl Skeleton {
     /// Where a joint's rotation begins: its full transform without its own R, in the world.
@@ -147,27 +176,27 @@ impl Skeleton {
     /// # Panics
     ///
     /// As all of these, if there is no such joint.
-    pub fn transform_to_base(&self, joint: usize) -> Affine3A {
-        let Joint { parent, offset, .. } = &self.joints[joint];
+    pub fn transform_to_base(&self, joint: JointId) -> Affine3A {
+        let Joint { parent, offset, .. } = &self[joint];
         let above = parent.map_or(self.transform, |parent| self.full_transform(parent));
         above * Affine3A::from_translation(*offset)
     }
 
     /// X with the skeleton's transform in front: from the joint's own space to the world.
-    pub fn full_transform(&self, joint: usize) -> Affine3A {
+    pub fn full_transform(&self, joint: JointId) -> Affine3A {
         let mut path: Vec<_> = self.ancestors(joint).collect();
         path.reverse();
-        path.into_iter().fold(self.transform, |above, joint| above * self.joints[joint].local())
+        path.into_iter().fold(self.transform, |above, joint| above * self[joint].local())
     }
 
     /// Where a joint's bone begins, in the world.
-    pub fn base(&self, joint: usize) -> Vec3 {
+    pub fn base(&self, joint: JointId) -> Vec3 {
         self.full_transform(joint).translation.into()
     }
 
     /// Where a joint's bone ends, in the world.
-    pub fn tip(&self, joint: usize) -> Vec3 {
-        self.full_transform(joint).transform_point3(self.joints[joint].axis)
+    pub fn tip(&self, joint: JointId) -> Vec3 {
+        self.full_transform(joint).transform_point3(self[joint].axis)
     }
 
     /// Every joint as it is turned now, in the world.

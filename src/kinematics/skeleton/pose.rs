@@ -1,6 +1,6 @@
 use glam::{Affine3A, Vec3};
 
-use super::Joint;
+use super::{Joint, JointId};
 
 /// Where every joint of a skeleton is; what is beyond numbers is at their end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,7 +36,7 @@ impl SkeletonPose {
         posed.clear();
         posed.reserve(joints.len());
         for (index, joint) in joints.iter().enumerate() {
-            let above = joint.parent.map_or(transform, |parent| posed[parent].full);
+            let above = joint.parent.map_or(transform, |parent| posed[parent.index()].full);
             let mut full = above * local(index, joint);
             let mut tip = full.transform_point3(joint.axis);
             if !(full.is_finite() && tip.is_finite()) {
@@ -55,23 +55,28 @@ impl SkeletonPose {
         self.joints.is_empty()
     }
 
+    /// The indices of all joints.
+    pub fn ids(&self) -> impl DoubleEndedIterator<Item = JointId> + ExactSizeIterator + use<> {
+        (0..self.len()).map(JointId::new)
+    }
+
     /// From the joint's own space.
     ///
     /// # Panics
     ///
     /// As all of these, if there is no such joint.
-    pub fn full(&self, joint: usize) -> Affine3A {
-        self.joints[joint].full
+    pub fn full(&self, joint: JointId) -> Affine3A {
+        self.joints[joint.index()].full
     }
 
     /// Where its bone begins.
-    pub fn base(&self, joint: usize) -> Vec3 {
+    pub fn base(&self, joint: JointId) -> Vec3 {
         self.full(joint).translation.into()
     }
 
     /// Where its bone ends.
-    pub fn tip(&self, joint: usize) -> Vec3 {
-        self.joints[joint].tip
+    pub fn tip(&self, joint: JointId) -> Vec3 {
+        self.joints[joint.index()].tip
     }
 
     /// Every base and tip.

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use crate::document::{Document, RigKind};
+use crate::kinematics::skeleton::JointId;
 use crate::rig::Part;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
@@ -48,7 +49,7 @@ fn add_skin(scene: &mut Scene, skin: &OnionSkin, rig: RigKind, colour: Colour, r
             add(elbow, hand);
         }
         RigKind::Skeleton => {
-            (0..skin.pose.len()).for_each(|joint| add(skin.pose.base(joint), skin.pose.tip(joint)));
+            skin.pose.ids().for_each(|joint| add(skin.pose.base(joint), skin.pose.tip(joint)));
         }
     }
 }

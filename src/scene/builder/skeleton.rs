@@ -85,9 +85,9 @@ fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<boo
     are_leaves.resize(joints.len(), true);
     for (joint, parent) in joints.iter().map(|joint| joint.parent).enumerate() {
         if let Some(parent) = parent {
-            let is_bone = joints[parent].axis != Vec3::ZERO;
-            depths[joint] = depths[parent] + usize::from(is_bone);
-            are_leaves[parent] = false;
+            let is_bone = joints[parent.index()].axis != Vec3::ZERO;
+            depths[joint] = depths[parent.index()] + usize::from(is_bone);
+            are_leaves[parent.index()] = false;
         }
     }
 }
@@ -120,7 +120,7 @@ impl DrawnSkeleton<'_> {
         (self.joints[joint].radius * self.scale).clamp(0.25 * limit, limit)
     }
 
-    fn tip_radius(&self, joint: usize) -> f32 {
+    fn tip_radius(&self, joint: JointId) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let radius = self.radius(joint);
         if length > SLENDER * radius { radius * TAPER } else { radius }
@@ -129,9 +129,12 @@ impl DrawnSkeleton<'_> {
     /// Colour of a bone: the limbs' colours alternate from parent to child, and the accent marks the selection.
     fn colour(&self, scene: &Scene, joint: usize, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
-        let plain =
-            if self.depths[joint].is_multiple_of(2) { palette.upper } else { palette.lower };
-        let colour = match self.joints[joint].locked {
+        let plain = if self.depths[joint.index()].is_multiple_of(2) {
+            palette.upper
+        } else {
+            palette.lower
+        };
+        let colour = match self.joints[joint.index()].locked {
             true => palette.joint,
             false => plain,
         };
@@ -144,21 +147,21 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    fn add_bone(&self, scene: &mut Scene, joint: usize, colour: Colour) {
+    fn add_bone(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
         let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
         if base != tip {
             scene.add_solid(base, tip, radius, self.tip_radius(joint), colour);
         }
         let ball = if base == tip { colour } else { scene.palette.joint };
         scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
-        if self.are_leaves[joint] && base != tip {
+        if self.are_leaves[joint.index()] && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
         }
     }
 
     fn add_ghost(&self, scene: &mut Scene, colour: Colour) {
-        for joint in 0..self.pose.len() {
+        for joint in self.pose.ids() {
             let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
             let radius = self.radius(joint) * GHOST;
             if base != tip {
@@ -168,7 +171,7 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    fn add_shadow(&self, scene: &mut Scene, joint: usize) {
+    fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
         let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
         let limb = Shadow { base, base_radius: radius, tip, tip_radius: self.tip_radius(joint) };
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());

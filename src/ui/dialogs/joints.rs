@@ -28,7 +28,7 @@ pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], action
 pub(super) fn rename(
     ui: &mut Ui,
     session: &Session,
-    joint: usize,
+    joint: JointId,
     name: &str,
     is_new: bool,
     actions: &mut Actions,

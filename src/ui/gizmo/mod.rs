@@ -10,6 +10,7 @@ pub(in crate::ui) mod view_axes;
 use egui::{Painter, Pos2, Ui};
 
 use crate::document::RigKind;
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Session};
 use crate::ui::viewport::projection::ScreenProjection;
 use arm::ArmGizmo;

@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Handle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
@@ -36,7 +37,7 @@ struct ScreenBone {
 }
 
 struct TargetMark {
-    joint: usize,
+    joint: JointId,
     at: Pos2,
     enabled: bool,
 }
@@ -79,7 +80,7 @@ impl SkeletonGizmo {
             let ((a_selected, a_near), (b_selected, b_near)) = (rank(a), rank(b));
             a_selected.cmp(&b_selected).then(a_near.total_cmp(&b_near))
         })?;
-        Some(Grip::Tip(joint, Handle::Free))
+        Some(Grip::Tip(JointId::new(joint), Handle::Free))
     }
 
     /// The joint whose bone is at a screen position, nearest to the eye.
@@ -115,7 +116,7 @@ impl SkeletonGizmo {
             painter.circle_stroke(target.at, TARGET, Stroke::new(1.5, faded(grip, colour)));
         }
         for (joint, bone) in self.bones.iter().enumerate() {
-            let grip = Grip::Tip(joint, Handle::Free);
+            let grip = Grip::Tip(JointId::new(joint), Handle::Free);
             if stand_out(grip) {
                 painter.circle_stroke(bone.tip, TIP, Stroke::new(2.0, bright(strong)));
             }
@@ -136,20 +137,21 @@ impl SkeletonGizmo {
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
     let joints = rig.skeleton.joints();
-    let bone = |joint: usize| {
+    let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
-        let is_root_point = joints[joint].parent.is_none() && joints[joint].axis == Vec3::ZERO;
+        let is_root_point =
+            rig.skeleton[joint].parent.is_none() && rig.skeleton[joint].axis == Vec3::ZERO;
         let nowhere = Pos2::new(f32::INFINITY, f32::INFINITY);
         ScreenBone {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
             can_be_posed: rig.follow_path.is_none()
-                && (is_root_point || joints[joint].axis != Vec3::ZERO),
+                && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
         }
     };
-    (0..pose.len()).map(bone).collect()
+    pose.ids().map(bone).collect()
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {

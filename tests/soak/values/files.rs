@@ -74,7 +74,7 @@ impl Values<'_> {
                     (Box::new(FileAction::SaveAs(self.path())), Box::new(self.dialog()));
                 Dialog::Replace { path: self.path(), then, back }
             }
-            _ => Dialog::Rename { joint: self.joint(), name: self.name() },
+            _ => Dialog::Rename { joint: JointId::new(self.joint()), name: self.name() },
         }
     }
 }
@@ -94,7 +94,7 @@ fn long_chain() -> Skeleton {
     let joint = |index: usize| {
         let parent = index.checked_sub(1);
         let offset = if parent.is_some() { Vec3::Y } else { Vec3::ZERO };
-        Joint { offset, ..Joint::new(&format!("j{index}"), parent, Vec3::Y) }
+        Joint { offset, ..Joint::new(&format!("j{index}"), parent.map(JointId::new), Vec3::Y) }
     };
     let mut chain =
         Skeleton::from_joints((0..Skeleton::MOST_JOINTS).map(joint).collect()).expect("a skeleton");

@@ -2,7 +2,7 @@
 
 use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::skeleton::{JointId, Limit};
 
 use super::Values;
 
@@ -18,7 +18,7 @@ impl Values<'_> {
             return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]);
         }
         match self.session.selected() {
-            Some(joint) if self.chance(0.3) => joint,
+            Some(joint) if self.chance(0.3) => joint.index(),
             _ => self.random.below(joints),
         }
     }
@@ -29,7 +29,7 @@ impl Values<'_> {
         if targets.is_empty() || self.chance(0.1) {
             return self.joint();
         }
-        targets[self.random.below(targets.len())].joint
+        targets[self.random.below(targets.len())].joint.index()
     }
 
     /// None, one or several, with repetitions.
@@ -92,7 +92,13 @@ impl Values<'_> {
         let motion =
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
-        Target { joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
+        Target {
+            joint: JointId::new(joint),
+            home,
+            weight: self.above_0(2.0),
+            enabled: self.chance(0.9),
+            motion,
+        }
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {

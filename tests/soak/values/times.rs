@@ -4,6 +4,7 @@ use ik_arm::document::{Channel, Timeline};
 use ik_arm::session::Key;
 
 use super::Values;
+use ik_arm::kinematics::skeleton::JointId;
 
 impl Values<'_> {
     pub fn time(&mut self) -> f64 {
@@ -39,10 +40,10 @@ impl Values<'_> {
         }
         let joint = self.joint();
         match self.random.below(20) {
-            0 => Channel::Rotation(joint),
-            1 => Channel::Offset(joint),
-            2 | 3 => Channel::Target(self.aimed()),
-            4 => Channel::Enabled(self.aimed()),
+            0 => Channel::Rotation(JointId::new(joint)),
+            1 => Channel::Offset(JointId::new(joint)),
+            2 | 3 => Channel::Target(JointId::new(self.aimed())),
+            4 => Channel::Enabled(JointId::new(self.aimed())),
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
             _ => self.one_of(&Channel::OF_ARM),

@@ -7,6 +7,7 @@ use ik_arm::document::{AxisView, Camera, Overlay, Ray};
 use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion, PointDrag};
 
 use super::Values;
+use ik_arm::kinematics::skeleton::JointId;
 
 impl Values<'_> {
     pub fn place(&mut self) -> Vec2 {
@@ -65,9 +66,9 @@ impl Values<'_> {
             2 => Grip::Pole(self.handle()),
             3 => Grip::Shoulder(self.axis()),
             4 => Grip::Bend,
-            5 => Grip::Target(self.aimed(), self.handle()),
-            6 => Grip::Tip(joint, self.handle()),
-            _ => Grip::Ring(joint, self.axis()),
+            5 => Grip::Target(JointId::new(self.aimed()), self.handle()),
+            6 => Grip::Tip(JointId::new(joint), self.handle()),
+            _ => Grip::Ring(JointId::new(joint), self.axis()),
         }
     }
 

@@ -3,7 +3,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use super::error::GlbError;
 use crate::document::{Arm, Channel, Document, RigKind};
 use crate::io::gltf::frame::frame;
-use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{ArmRig, Cone, Part};
 
@@ -134,13 +134,14 @@ impl GltfRig {
         let mut are_leaves = vec![true; joints.len()];
         for (index, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent {
-                depths[index] = depths[parent] + usize::from(joints[parent].axis != Vec3::ZERO);
-                are_leaves[parent] = false;
+                depths[index] =
+                    depths[parent.index()] + usize::from(joints[parent.index()].axis != Vec3::ZERO);
+                are_leaves[parent.index()] = false;
             }
         }
         let bone = |(index, joint): (usize, &Joint)| RigBone {
             name: joint.name.clone(),
-            parent: joint.parent,
+            parent: joint.parent.map(JointId::index),
             has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
             is_leaf: are_leaves[index],
             radii: radii(f64::from(joint.radius) * metres, self.rest[index].along.length(), reach),
@@ -174,7 +175,8 @@ fn turned(joint: &Joint) -> DMat3 {
 fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
     let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
     for joint in skeleton.joints() {
-        let above = joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent]);
+        let above =
+            joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent.index()]);
         full.push(
             above * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
         );

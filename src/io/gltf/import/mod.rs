@@ -53,7 +53,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     Ok(Opened {
         document,
         warnings: source.warnings(&odd),
-        order: order.into_iter().filter_map(|joint| kept[joint]).collect(),
+        order: order.into_iter().filter_map(|joint| kept[joint]).map(JointId::new).collect(),
         skeletons: names,
     })
 }

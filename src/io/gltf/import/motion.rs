@@ -114,7 +114,7 @@ pub fn sample(
         for (index, motion) in motions.iter_mut().enumerate() {
             let joint = &mut joints[index];
             let (above, origin) = match joint.parent {
-                Some(parent) => (turns[parent].transpose(), placed[parent].base),
+                Some(parent) => (turns[parent.index()].transpose(), placed[parent.index()].base),
                 None => (DMat3::IDENTITY, DVec3::ZERO),
             };
             let offset = (above * (placed[index].base - origin)).as_vec3();

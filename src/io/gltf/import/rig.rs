@@ -19,7 +19,7 @@ pub fn joints(file: &GltfFile, joints: &SkinJoints, rest: &[JointPlacement]) -> 
         Joint {
             offset: (rest[index].base - origin).as_vec3(),
             frame: rest[index].frame.as_mat3(),
-            ..Joint::new(&name, parent, Vec3::ZERO)
+            ..Joint::new(&name, parent.map(JointId::new), Vec3::ZERO)
         }
     };
     joints.nodes.iter().enumerate().map(joint).collect()
@@ -80,7 +80,7 @@ pub fn build(
     }
     let mut left = Vec::with_capacity(next);
     for (mut joint, is_tip) in joints.into_iter().zip(are_tips) {
-        joint.parent = joint.parent.and_then(|parent| kept[parent]);
+        joint.parent = joint.parent.and_then(|parent| kept[parent.index()].map(JointId::new));
         left.extend((!is_tip).then_some(joint));
     }
     document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(left)?);
@@ -93,10 +93,10 @@ pub fn build(
 fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     let mut are_leaves = vec![true; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
-        are_leaves[parent] = false;
+        are_leaves[parent.index()] = false;
     }
     let is_tip = |(index, joint): (usize, &Joint)| {
-        let parent = joint.parent.map(|parent| joints[parent].name.as_str());
+        let parent = joint.parent.map(|parent| joints[parent.index()].name.as_str());
         let is_named = parent.is_some() && joint.name.strip_suffix("_tip") == parent;
         is_named && are_leaves[index] && !moves[index]
     };
@@ -110,7 +110,7 @@ fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
     for (index, joint) in joints.iter().enumerate() {
         if let Some(parent) = joint.parent {
-            children[parent].push(index);
+            children[parent.index()].push(index);
         }
     }
     for (index, children) in children.into_iter().enumerate() {
@@ -150,10 +150,10 @@ fn add_keys(
     for ((motion, moves), joint) in motions.iter().zip(moves).zip(kept) {
         let Some(joint) = *joint else { continue };
         if motion.turns() {
-            add(Channel::Rotation(joint), &motion.rotations);
+            add(Channel::Rotation(JointId::new(joint)), &motion.rotations);
         }
         if *moves {
-            add(Channel::Offset(joint), &motion.offsets);
+            add(Channel::Offset(JointId::new(joint)), &motion.offsets);
         }
     }
 }

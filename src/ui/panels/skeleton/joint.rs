@@ -33,7 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &
 fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let shown = match session.skeleton_rig().follow_path {
-        Some(_) => session.skeleton_rig().at(session.time()).joints()[index].rotation,
+        Some(_) => session.skeleton_rig().at(session.time())[index].rotation,
         None => joint.rotation,
     };
     for (axis, label) in AXES.into_iter().enumerate() {
@@ -151,7 +151,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
 
 fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     let skeleton = &session.skeleton();
-    let name = |joint: Option<usize>| match joint.and_then(|joint| skeleton.joint(joint)) {
+    let name = |joint: Option<JointId>| match joint.and_then(|joint| skeleton.joint(joint)) {
         Some(joint) => joint.name.clone(),
         None => "none".to_owned(),
     };
@@ -161,7 +161,7 @@ fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
             .width(ui.available_width().min(150.0))
             .truncate();
         let response = combo.show_ui(ui, |ui| {
-            let others = (0..skeleton.joints().len()).filter(|j| !skeleton.hangs_from(*j, index));
+            let others = skeleton.ids().filter(|j| !skeleton.hangs_from(*j, index));
             for parent in std::iter::once(None).chain(others.map(Some)) {
                 if ui.selectable_label(joint.parent == parent, name(parent)).clicked() {
                     actions.push(EditAction::ReparentJoint { joint: index, parent });

@@ -26,7 +26,7 @@ struct OutlinerFocus(bool);
 
 /// A joint with its depth in the tree.
 struct OutlinerRow {
-    joint: usize,
+    joint: JointId,
     depth: usize,
 }
 
@@ -61,19 +61,19 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Rows in depth-first order, so that children follow their parent.
 fn rows(session: &Session) -> Vec<OutlinerRow> {
-    let joints = session.skeleton().joints();
-    let mut children = vec![Vec::new(); joints.len()];
+    let skeleton = session.skeleton();
+    let mut children = vec![Vec::new(); skeleton.joints().len()];
     let mut open = Vec::new();
-    for (joint, it) in joints.iter().enumerate().rev() {
+    for (joint, it) in skeleton.iter().rev() {
         match it.parent {
-            Some(parent) => children[parent].push(joint),
+            Some(parent) => children[parent.index()].push(joint),
             None => open.push(OutlinerRow { joint, depth: 0 }),
         }
     }
-    let mut rows = Vec::with_capacity(joints.len());
+    let mut rows = Vec::with_capacity(children.len());
     while let Some(row) = open.pop() {
         let depth = row.depth + 1;
-        open.extend(children[row.joint].iter().map(|&joint| OutlinerRow { joint, depth }));
+        open.extend(children[row.joint.index()].iter().map(|&joint| OutlinerRow { joint, depth }));
         rows.push(row);
     }
     rows
@@ -81,7 +81,7 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
 
 fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     let rig = session.skeleton_rig();
-    let joint = &rig.skeleton.joints()[row.joint];
+    let joint = &rig.skeleton[row.joint];
     let selected = session.selection().contains(&row.joint);
     let indent = INDENT * row.depth.min(12) as f32;
     let font = TextStyle::Body.resolve(ui.style());

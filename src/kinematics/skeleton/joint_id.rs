@@ -1,0 +1,44 @@
+use core::fmt;
+
+/// The index of a joint in its skeleton.
+///
+/// It means nothing without the skeleton: edits that move joints return a
+/// [`JointRemap`](super::JointRemap). For an index that a skeleton does not have,
+///
+/// - lookups and tree queries return `None` or nothing,
+/// - edits and solvers return an error and change nothing,
+/// - indexing and transforms panic, as indexing a slice does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
+pub struct JointId(usize);
+
+impl JointId {
+    /// The joint at a position of [`Skeleton::joints`](super::Skeleton::joints).
+    pub const fn new(index: usize) -> Self {
+        Self(index)
+    }
+
+    /// The position in [`Skeleton::joints`](super::Skeleton::joints).
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl From<usize> for JointId {
+    fn from(index: usize) -> Self {
+        Self(index)
+    }
+}
+
+impl From<JointId> for usize {
+    fn from(joint: JointId) -> Self {
+        joint.0
+    }
+}
+
+/// The index alone.
+impl fmt::Display for JointId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
