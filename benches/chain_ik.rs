@@ -10,7 +10,7 @@ use common::Random;
 use common::skeletons::{chain, reachable};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget, solve};
-use ik_arm::kinematics::skeleton::Skeleton;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 
 const METHODS: [Method; 5] = [
     Method::TransposeFixed,

@@ -10,7 +10,7 @@ use common::{Random, skeletons};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
 
 fn export(document: &Document) -> Exported {
     export_in(document, BvhUnit::default())
@@ -301,8 +301,8 @@ fn angles_go_on_over_full_turns() {
 fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
     let mut document = shown(skeletons::chain(&mut Random(9), 3, 1.0));
     let offset = document.skeleton().joints()[2].offset;
-    document.keys.insert(Channel::Offset(2), 0.0, offset);
-    document.keys.insert(Channel::Offset(2), 1.0, offset + Vec3::X);
+    document.keys.insert(Channel::Offset(JointId::new(2)), 0.0, offset);
+    document.keys.insert(Channel::Offset(JointId::new(2)), 1.0, offset + Vec3::X);
     let exported = export(&document);
     assert_eq!(exported.notes.len(), 1);
     assert!(exported.notes[0].starts_with("the offset of \"j1\" changes"), "{:?}", exported.notes);
@@ -414,7 +414,7 @@ fn a_small_file_is_read_as_it_says() {
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25 });
     assert_eq!((document.rig, document.metres), (RigKind::Skeleton, Some(0.01)));
     assert_eq!(document.camera, document.skeleton_rig.first_view());
-    assert_eq!((warnings, order, skeletons), (vec![], vec![0, 1], vec!["hip".to_owned()]));
+    assert_eq!((warnings, order, skeletons), (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()]));
     assert!(io::parse("x", SMALL, Some("hip")).is_ok());
     let error = io::parse("x", SMALL, Some("knee")).expect_err("no skeleton").to_string();
     assert_eq!(error, "x has no skeleton called \"knee\"; it has \"hip\"");
@@ -549,7 +549,7 @@ fn a_bone_goes_to_the_only_child_or_to_the_middle_of_several() {
         JOINT b { OFFSET 2 4 0 JOINT c { OFFSET 0 6 0 } }\n\
         JOINT d { OFFSET 0 4 0 } }\nMOTION\nFrames: 0\nFrame Time: 1\n";
     let joints = open(text).document.skeleton().clone();
-    let axis = |name| joints.joints()[joints.find(name).expect("there")].axis;
+    let axis = |name| joints.joints()[joints.find(name).expect("there").index()].axis;
     assert_eq!(axis("a"), Vec3::new(1.0, 4.0, 0.0));
     assert_eq!(axis("b"), Vec3::new(0.0, 6.0, 0.0));
     assert_eq!((axis("c"), axis("d")), (Vec3::ZERO, Vec3::ZERO));

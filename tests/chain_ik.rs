@@ -8,7 +8,7 @@ use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, Report, Root, SolveError, SolverOptions, TipTarget, jacobian, solve,
 };
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, JointId};
 
 const CASES: usize = 1_000;
 
@@ -238,7 +238,7 @@ fn limits_let_targets_be_reached_that_are_within_them() {
             let mut skeleton = chain(&mut random, 5, 1.0);
             for joint in 1..=5 {
                 let limits = [(); 3].map(|()| Some(limit(&mut random)));
-                skeleton.change(joint, |joint| joint.limits = limits).expect("limits");
+                skeleton.change(JointId::new(joint), |joint| joint.limits = limits).expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &[JointId::new(5)]);
             solve(&mut skeleton, &targets, &by(method)).expect("solve");
@@ -593,7 +593,7 @@ fn numbers_stay_numbers_at_every_edge() {
                     _ => (Skeleton::with_root("root"), vec![0.into()]),
                 };
                 if case % 5 == 0 && skeleton.joints().len() > 2 {
-                    skeleton.set_axis(1, Vec3::ZERO).expect("axis");
+                    skeleton.set_axis(JointId::new(1), Vec3::ZERO).expect("axis");
                 }
                 let distances = [0.0, 0.5 * scale, 1e8 * scale.min(1.0), f32::MAX / 4.0];
                 let far = distances[case / scales.len() % 4];

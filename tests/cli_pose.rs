@@ -357,7 +357,7 @@ fn a_time_moves_what_moves_by_itself_and_the_targets() {
     let snake = Scene::example("snake");
     let document = Example::find("snake").expect("there").open().expect("opens").document;
     let pose = document.skeleton_rig.at(2.5).pose();
-    assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(0));
+    assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 
     let mut document = keyed_chain();
     let target = &mut document.skeleton_rig.targets[0];

@@ -17,7 +17,7 @@ fn a_small_skeleton_is_this_table() {
     let mut skeleton = Skeleton::with_root("hip, \"left\"");
     let thigh = Joint { offset: Vec3::X, ..Joint::new("thigh", Some(JointId::new(0)), Vec3::Y) };
     skeleton.add(thigh).expect("joint");
-    skeleton.add(Joint::new("point", Some(0), Vec3::ZERO)).expect("joint");
+    skeleton.add(Joint::new("point", Some(JointId::new(0)), Vec3::ZERO)).expect("joint");
     let skeleton_rig = SkeletonRig::new(skeleton);
     let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
     document.timeline = Timeline { start: -1.0, end: 0.0, frame_rate: 2 };
@@ -70,7 +70,7 @@ fn what_moves_by_itself_moves_in_the_table() {
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     for (frame, row) in rows.records().enumerate().step_by(60) {
         let row = row.expect("a row");
-        let head = document.skeleton_rig.at(document.timeline.time(frame)).pose().base(0);
+        let head = document.skeleton_rig.at(document.timeline.time(frame)).pose().base(JointId::new(0));
         let found = [2, 3, 4].map(|column| row[column].parse::<f32>().expect("a number"));
         assert_eq!(Vec3::from_array(found), head);
     }

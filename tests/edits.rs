@@ -7,7 +7,7 @@ use ik_arm::document::{
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     EditAction, PlaybackAction, PoseMode, SelectAction, Session, TransactionAction,
@@ -66,26 +66,26 @@ examples! {
         EditAction::ShowOverlay(Overlay::Labels, false),
     ];
     ShowRig: [EditAction::ShowRig(RigKind::Skeleton)];
-    AddChild: [EditAction::AddChild { parent: LEAF, tip: Some(Vec3::ONE) }];
+    AddChild: [EditAction::AddChild { parent: JointId::new(LEAF), tip: Some(Vec3::ONE) }];
     AddJoint: [EditAction::AddJoint { tip: None }];
     AddRoot: [EditAction::AddRoot];
     DeleteJoints: [
-        EditAction::DeleteJoints(vec![AIMED]),
-        EditAction::DeleteJoints(vec![INNER, LEAF]),
+        EditAction::DeleteJoints(vec![JointId::new(AIMED)]),
+        EditAction::DeleteJoints(vec![JointId::new(INNER), JointId::new(LEAF)]),
     ];
-    DissolveJoints: [EditAction::DissolveJoints(vec![INNER])];
-    RenameJoint: [EditAction::RenameJoint { joint: INNER, name: "renamed".to_owned() }];
-    ReparentJoint: [EditAction::ReparentJoint { joint: AIMED, parent: None }];
-    SetRotation: [EditAction::SetRotation { joint: INNER, rotation: Vec3::splat(0.2) }];
-    SetAxis: [EditAction::SetAxis { joint: INNER, axis: Vec3::splat(0.3) }];
+    DissolveJoints: [EditAction::DissolveJoints(vec![JointId::new(INNER)])];
+    RenameJoint: [EditAction::RenameJoint { joint: JointId::new(INNER), name: "renamed".to_owned() }];
+    ReparentJoint: [EditAction::ReparentJoint { joint: JointId::new(AIMED), parent: None }];
+    SetRotation: [EditAction::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.2) }];
+    SetAxis: [EditAction::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
     SetLimit: [EditAction::SetLimit {
-        joint: INNER,
+        joint: JointId::new(INNER),
         axis: 1,
         limit: Some(Limit { min: -0.1, max: 0.1 }),
     }];
     SetLocked: [
-        EditAction::SetLocked { joint: INNER, locked: true },
-        EditAction::SetLocked { joint: AIMED, locked: true },
+        EditAction::SetLocked { joint: JointId::new(INNER), locked: true },
+        EditAction::SetLocked { joint: JointId::new(AIMED), locked: true },
     ];
     SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath {
         radius: 1.0,
@@ -94,9 +94,9 @@ examples! {
         period: 5.0,
     }))];
     SetTranslation: [EditAction::SetTranslation(Vec3::X)];
-    AddTarget: [EditAction::AddTarget(INNER)];
-    RemoveTarget: [EditAction::RemoveTarget(AIMED)];
-    SetTarget: [EditAction::SetTarget(Target::new(AIMED, Vec3::Z * 3.0, 1.0))];
+    AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
+    RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
+    SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
     SetSolver: [EditAction::SetSolver(SolverOptions {
         method: Method::Fabrik,
         damping: 0.3,
@@ -128,7 +128,7 @@ fn session() -> Session {
         EditAction::SetTwist(1.0),
         EditAction::SetWrist(Vec3::new(0.1, -0.4, 0.2)),
         EditAction::ShowOverlay(Overlay::Axes, true),
-        EditAction::SetTarget(Target::new(AIMED, Vec3::new(1.0, 2.0, 3.0), 1.0)),
+        EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0)),
         EditAction::StepSolver,
         EditAction::Key(vec![KEYED]),
     ] {

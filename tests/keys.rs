@@ -78,8 +78,8 @@ fn lengths_stay_above_0_where_their_spline_does_not() {
 fn angles_stay_within_the_limits_of_their_joint() {
     let mut document = human();
     let limits = [Some(Limit { min: -0.5, max: 0.5 }), None, None];
-    document.skeleton_mut().change(1, |joint| joint.limits = limits).expect("possible");
-    document.keys.insert(Channel::Rotation(1), 0.0, Vec3::new(3.0, 30.0, -3.0));
+    document.skeleton_mut().change(JointId::new(1), |joint| joint.limits = limits).expect("possible");
+    document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::new(3.0, 30.0, -3.0));
     let joint = document.at(0.0).skeleton().joints()[1].clone();
     assert_eq!(joint.rotation, Vec3::new(0.5, 30.0, -3.0));
 }
@@ -123,11 +123,11 @@ fn keys_follow_their_joints() {
     let mut document = human();
     let target: &Target = &document.skeleton_rig.targets[0];
     let (hand, joints) = (target.joint, document.skeleton().joints().to_vec());
-    for joint in [hand, 15] {
+    for joint in [hand, JointId::new(15)] {
         document.keys.insert(Channel::Rotation(joint), 0.0, Vec3::X);
     }
     document.keys.insert(Channel::Root, 0.0, Vec3::X);
-    let moved = document.skeleton_mut().remove(&[hand]);
+    let moved = document.skeleton_mut().remove(&[hand]).expect("removed");
     document.keys.follow(&moved);
     let tracks: Vec<Channel> = document.keys.tracks().map(|(channel, _)| channel).collect();
     let foot = document.skeleton().find(&joints[15].name).expect("it is still there");

@@ -82,7 +82,7 @@ fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
 fn named(name: &str) -> Scene {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     *document.skeleton_mut() = Skeleton::with_root(name);
-    let overlays = Overlays { selection: vec![0], ..Overlays::default() };
+    let overlays = Overlays { selection: vec![JointId::new(0)], ..Overlays::default() };
     Scene::new(&document, &overlays, Theme::Dark)
 }
 

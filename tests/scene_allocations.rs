@@ -97,8 +97,8 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
     target.motion.path = TargetPath::FigureEight;
     for (time, angle) in [(0.0, 0.2), (1.0, 0.9)] {
         let turned = Vec3::splat(angle);
-        document.skeleton_mut().set_rotation(3, turned).expect("a joint");
-        document.key(Channel::Rotation(3), time);
+        document.skeleton_mut().set_rotation(JointId::new(3), turned).expect("a joint");
+        document.key(Channel::Rotation(JointId::new(3)), time);
     }
     let mut bench = Bench::new(document);
     bench.session.apply(SelectAction::Joints(vec![joints - 1]));
@@ -107,11 +107,11 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
         Action::from(PlaybackAction::SetTime(0.1)),
         PlaybackAction::SetTime(0.6).into(),
         EditAction::StepSolver.into(),
-        SelectAction::Hover(Some(2)).into(),
+        SelectAction::Hover(Some(JointId::new(2))).into(),
         SelectAction::Hover(None).into(),
-        SelectAction::Joints(vec![joints - 1, 4]).into(),
-        SelectAction::Joints(vec![3]).into(),
-        SelectAction::Joints(vec![joints - 1]).into(),
+        SelectAction::Joints(vec![JointId::new(joints - 1), JointId::new(4)]).into(),
+        SelectAction::Joints(vec![JointId::new(3)]).into(),
+        SelectAction::Joints(vec![JointId::new(joints - 1)]).into(),
     ]);
 }
 

@@ -426,14 +426,14 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
 fn selected_and_copied_keys_follow_their_joints() {
     let mut session = Session::default();
     session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
-    let channels: Vec<Channel> = (0..19).map(Channel::Rotation).collect();
+    let channels: Vec<Channel> = (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
     session.apply(EditAction::Key(channels));
-    let name = |session: &Session, joint: usize| session.skeleton().joints()[joint].name.clone();
-    let foot = name(&session, 15);
-    session.apply(SelectAction::Keys(vec![(Channel::Rotation(15), 0.0)]));
-    session.apply(SelectAction::Channels(vec![Channel::Rotation(15)]));
+    let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
+    let foot = name(&session, JointId::new(15));
+    session.apply(SelectAction::Keys(vec![(Channel::Rotation(JointId::new(15)), 0.0)]));
+    session.apply(SelectAction::Channels(vec![Channel::Rotation(JointId::new(15))]));
     session.apply(SelectAction::CopyKeys);
-    session.apply(EditAction::DeleteJoints(vec![8]));
+    session.apply(EditAction::DeleteJoints(vec![JointId::new(8)]));
     let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
     assert_eq!(name(&session, joint), foot);
     assert!(session.selected_channels().contains(&Channel::Rotation(joint)));

@@ -77,7 +77,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
     for axis in [3, usize::MAX] {
         let mut session = session();
         let before = session.document().clone();
-        session.apply(EditAction::SetLimit { joint: 0, axis, limit: None });
+        session.apply(EditAction::SetLimit { joint: JointId::new(0), axis, limit: None });
         assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
         let (line, plane) = (Handle::Axis(axis), Handle::Plane(axis));
         for grip in [
@@ -108,20 +108,21 @@ fn what_is_about_a_fourth_axis_is_not_done() {
 #[test]
 fn a_pointer_is_on_no_joint_that_is_not_there() {
     let mut session = session();
-    for (joint, expected) in [(Some(0), Some(0)), (Some(1), None), (Some(usize::MAX), None)] {
-        session.apply(SelectAction::Hover(joint));
-        assert_eq!(session.pointed(), expected);
+    for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
+        let joint = JointId::new(joint);
+        session.apply(SelectAction::Hover(Some(joint)));
+        assert_eq!(session.pointed(), is_there.then_some(joint));
     }
 }
 
 #[test]
 fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
     let mut session = session();
-    session.apply(EditAction::AddChild { parent: 0, tip: None });
-    session.apply(EditAction::Key(vec![Channel::Rotation(1), Channel::Hand]));
+    session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
+    session.apply(EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
     session.apply(TransactionAction::Begin);
-    session.apply(EditAction::DeleteJoints(vec![1]));
-    let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(1), 0.0)];
+    session.apply(EditAction::DeleteJoints(vec![JointId::new(1)]));
+    let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(JointId::new(1)), 0.0)];
     session.apply(EditAction::MoveKeys { keys, by: 1.0 });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
@@ -146,16 +147,16 @@ fn keys_that_are_made_while_others_move_stay() {
 
 #[test]
 fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
-    let hang = EditAction::AddChild { parent: 0, tip: Some(Vec3::Y) };
+    let hang = EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) };
     for change in [
-        EditAction::DeleteJoints(vec![2]),
+        EditAction::DeleteJoints(vec![JointId::new(2)]),
         EditAction::AddRoot,
-        EditAction::ReparentJoint { joint: 2, parent: None },
+        EditAction::ReparentJoint { joint: JointId::new(2), parent: None },
     ] {
         let mut session = session();
         session.apply(hang.clone());
-        session.apply(EditAction::AddChild { parent: 1, tip: None });
-        let grip = Grip::Tip(1, Handle::Free);
+        session.apply(EditAction::AddChild { parent: JointId::new(1), tip: None });
+        let grip = Grip::Tip(JointId::new(1), Handle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         assert!(session.drag().is_some());
         session.apply(change);
@@ -169,17 +170,17 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
 #[test]
 fn a_race_ends_when_the_joints_become_others() {
     for change in [
-        Action::from(EditAction::DeleteJoints(vec![3])),
+        Action::from(EditAction::DeleteJoints(vec![JointId::new(3)])),
         EditAction::AddRoot.into(),
         TransactionAction::Undo.into(),
     ] {
         let mut session = session();
         session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
-        session.apply(EditAction::AddChild { parent: 0, tip: None });
+        session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
         session.apply(SolverAction::Compare(true));
         session.apply(PlaybackAction::Advance(1.0));
         assert_eq!(session.overlays().ghosts.len(), 6);
-        session.apply(EditAction::SetRotation { joint: 1, rotation: Vec3::X });
+        session.apply(EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::X });
         assert!(session.comparison().is_some());
         if change == Action::Transaction(TransactionAction::Undo) {
             session.apply(TransactionAction::Undo);
@@ -229,7 +230,7 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
         ],
         vec![
             Action::from(FileAction::NewSkeleton),
-            EditAction::AddChild { parent: 0, tip: Some(Vec3::splat(far)) }.into(),
+            EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::splat(far)) }.into(),
         ],
         vec![
             EditAction::SetRoot(Vec3::splat(far)).into(),
@@ -260,12 +261,13 @@ fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
     let mut session = session();
     let far = Vec3::new(-1e19, 0.7, -f32::MAX);
     for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
-        session.apply(EditAction::AddChild { parent, tip });
+        session.apply(EditAction::AddChild { parent: JointId::new(parent), tip });
     }
     session.apply(EditAction::AddRoot);
-    session.apply(EditAction::SetRotation { joint: 1, rotation: Vec3::new(1.0, -3.0, 2.0) });
+    session.apply(EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::new(1.0, -3.0, 2.0) });
     for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
-        session.apply(EditAction::ReparentJoint { joint, parent });
+        let parent = parent.map(JointId::new);
+        session.apply(EditAction::ReparentJoint { joint: JointId::new(joint), parent });
         for joint in session.skeleton().joints() {
             assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
         }
@@ -280,7 +282,7 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
     for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
         session.apply(TransactionAction::Begin);
         for x in [1.0, x] {
-            session.apply(EditAction::SetRotation { joint: 0, rotation: Vec3::new(x, 0.0, 0.0) });
+            session.apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::new(x, 0.0, 0.0) });
         }
         session.apply(EditAction::SetHand(Vec3::X * hand));
         session.apply(TransactionAction::Commit);
@@ -330,11 +332,11 @@ fn the_same_revision_is_saved_as_the_same_text() {
 fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
-        session.apply(EditAction::SetRotation { joint: 0, rotation: Vec3::X * angle });
-        let axis = session.ring(0, 0).expect("a ring").axis;
+        session.apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
+        let axis = session.ring(JointId::new(0), 0).expect("a ring").axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
         let (one, other) = axis.any_orthonormal_pair();
-        let grip = Grip::Ring(0, 0);
+        let grip = Grip::Ring(JointId::new(0), 0);
         session.apply(TransactionAction::Grab { grip, ray: seen(one), forward: -axis });
         for precise in [false, true] {
             session.apply(TransactionAction::Drag(DragInput {

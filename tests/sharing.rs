@@ -5,7 +5,7 @@
 use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
 use ik_arm::session::{
     Action, EditAction, PlaybackAction, Preferences, Session, TransactionAction,
 };
@@ -19,7 +19,7 @@ const BYTES_PER_KEY: u64 = 512;
 fn chain() -> Skeleton {
     let joint = |index: usize| Joint {
         offset: if index == 0 { Vec3::ZERO } else { Vec3::Y * 0.1 },
-        ..Joint::new(&format!("joint_{index}"), index.checked_sub(1), Vec3::Y * 0.1)
+        ..Joint::new(&format!("joint_{index}"), index.checked_sub(1).map(JointId::new), Vec3::Y * 0.1)
     };
     Skeleton::from_joints((0..JOINTS).map(joint).collect()).expect("a chain")
 }
@@ -32,16 +32,16 @@ fn session() -> Session {
         ..Document::default()
     };
     let mut session = Session::with_document(Preferences::default(), document);
-    session.apply(turn(1, 0.1));
+    session.apply(turn(JointId::new(1), 0.1));
     session
 }
 
-fn turn(joint: usize, angle: f32) -> Action {
+fn turn(joint: JointId, angle: f32) -> Action {
     EditAction::SetRotation { joint, rotation: Vec3::splat(angle) }.into()
 }
 
 fn key() -> Action {
-    EditAction::Key((0..KEYED).map(Channel::Rotation).collect()).into()
+    EditAction::Key((0..KEYED).map(JointId::new).map(Channel::Rotation).collect()).into()
 }
 
 fn counted(session: &mut Session, action: Action) -> AllocationInfo {
@@ -59,7 +59,7 @@ fn copy() -> u64 {
 #[test]
 fn turning_one_joint_copies_the_skeleton_once() {
     let mut session = session();
-    let taken = counted(&mut session, turn(500, 0.2)).bytes_total;
+    let taken = counted(&mut session, turn(JointId::new(500), 0.2)).bytes_total;
     assert!(taken < copy() * 11 / 10, "{taken} bytes");
 }
 
@@ -79,7 +79,7 @@ fn keying_many_channels_takes_the_memory_of_the_keys() {
 
     // An unkeyed edit becomes a key: what is shown copies the skeleton, the document does not.
     session.apply(PlaybackAction::SetTime(1.0));
-    session.apply(turn(3, 0.4));
+    session.apply(turn(JointId::new(3), 0.4));
     let taken = counted(&mut session, key()).bytes_total;
     assert!(taken < copy() + KEYED as u64 * BYTES_PER_KEY, "{taken} bytes");
     assert_eq!(session.document().keys.count(), 2 * KEYED);

@@ -7,7 +7,7 @@ use std::f32::consts::FRAC_PI_2;
 use common::Random;
 use common::skeletons::{forest, limit, transform};
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError, JointId};
 
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.
@@ -103,7 +103,7 @@ fn each_joint_of_a_chain_of_three_moves_itself_and_those_after_it() {
         turned
             .iter()
             .for_each(|joint| posed.set_rotation(JointId::new(*joint), quarter).expect("angles"));
-        [0, 1, 2].map(|joint| posed.tip(joint))
+        [0, 1, 2].map(|joint| posed.tip(JointId::new(joint)))
     };
     let is_at = |tips: [Vec3; 3], expected: [[f32; 2]; 3]| {
         for (tip, [x, y]) in tips.into_iter().zip(expected) {

@@ -44,7 +44,7 @@ fn check(opened: &Opened) {
     is_read_as_it_is_written(document);
 }
 
-fn check_skeleton(document: &Document, order: &[usize]) {
+fn check_skeleton(document: &Document, order: &[JointId]) {
     let rig = &document.skeleton_rig;
     let joints = rig.skeleton.joints();
     assert!(order.iter().all(|joint| joint.index() < joints.len()), "{order:?}");

@@ -90,14 +90,14 @@ mod tests {
         let posed = document.at(time);
         let pose = posed.skeleton_rig.at(time).pose();
         let joints = posed.skeleton().joints().iter().enumerate();
-        joints.map(|(at, joint)| (joint.name.clone(), pose.base(at), pose.tip(at))).collect()
+        joints.map(|(at, joint)| (joint.name.clone(), pose.base(JointId::new(at)), pose.tip(JointId::new(at)))).collect()
     }
 
     fn assert_children_stay(document: &Document, deleted: &[JointId], times: &[f64]) {
         let mut after = document.clone();
         after.dissolve(deleted).expect("dissolved");
         let names: Vec<_> =
-            deleted.iter().map(|at| &document.skeleton().joints()[*at].name).collect();
+            deleted.iter().map(|at| &document.skeleton().joints()[at.index()].name).collect();
         for time in times {
             let mut before = places(document, *time);
             before.retain(|(name, ..)| !names.contains(&name));
@@ -117,7 +117,7 @@ mod tests {
         for joint in 0..count {
             let turn = |axis: f32| (joint as f32 * 1.7 + axis).sin() * 0.8;
             let rotation = Vec3::new(turn(0.0), turn(1.0), turn(2.0));
-            document.skeleton_mut().set_rotation(joint, rotation).expect("turned");
+            document.skeleton_mut().set_rotation(JointId::new(joint), rotation).expect("turned");
         }
         document
     }

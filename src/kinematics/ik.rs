@@ -1,14 +1,13 @@
-//! The arm's inverse kinematics with all its choices: what the elbow's spin is measured from, and how
-//! the hand meets its limits.
+//! Inverse kinematics of the arm with a choice of twist reference and of soft limits.
 //!
-//! [`TwoBone`] is the exact arm of the seed; [`Ik`] puts a [`TwistReference`] and a [`SoftReach`] around it.
-//! With [`TwistReference::Limb`] and nothing softened the two give the same, bit for bit.
+//! [`Ik`] combines a [`TwoBone`] with a [`TwistReference`] and a [`SoftReach`]. With
+//! [`TwistReference::Limb`] and hard limits its results are those of [`TwoBone`], bit for bit.
 //!
 //! Everything is in Root space, right-handed; lengths share any one unit, angles are radians.
 //!
-//! # How fast the elbow can go
+//! # Bound on the elbow speed
 //!
-//! With root, spin and lengths constant, no stretch, and a cursor no nearer to the shoulder than
+//! With root, twist and lengths constant, no stretch, and a cursor no nearer to the shoulder than
 //! 0.05·L, the elbow is at most
 //!
 //! ```text
@@ -26,7 +25,7 @@ use super::soft_reach::SoftReach;
 use super::twist::{TransportedFrame, TwistReference, angle_from_limb, respun};
 use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 
-/// Bones with what their elbow's spin is measured from and how their hand meets its limits.
+/// Bones with a twist reference and soft limits.
 ///
 /// ```
 /// use glam::Vec3;
@@ -38,7 +37,7 @@ use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 /// let ik = Ik {
 ///     bones: TwoBone::new(200.0, 300.0)?,
 ///     reference: TwistReference::Stereographic(Stereographic::default()),
-///     softening: SoftReach::new(0.1, 1.0, 0.0)?,
+///     soft_reach: SoftReach::new(0.1, 1.0, 0.0)?,
 /// };
 /// let solved = ik.solve(Vec3::new(0.0, 490.0, 0.0), 0.0, Facing::default(), None);
 /// assert!(solved.pose.distance < 490.0, "the hand lags behind before the arm is straight");
@@ -46,27 +45,32 @@ use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ik {
+    /// The two bones.
     pub bones: TwoBone,
+    /// Origin of the twist angle.
     pub reference: TwistReference,
+    /// Behaviour of the hand near its limits.
     pub soft_reach: SoftReach,
 }
 
-/// A solved arm, with what the next solve goes on from.
+/// A solved arm, with the state that the next solve continues from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved {
+    /// The pose.
     pub pose: TwoBonePose,
-    /// Where the spin was measured from.
+    /// The Pointer with the direction from which the twist was measured.
     pub transported: TransportedFrame,
-    /// r' = dD/dd, how fast the hand goes for the cursor, outwards.
+    /// r' = dD/dd, the hand's radial speed per radial speed of the cursor.
     pub slope: f32,
 }
 
 impl Ik {
-    /// Poses the hand at `cursor` with the elbow turned by `spin` (ψ) from the reference.
+    /// Poses the hand at `cursor` with the elbow at the twist `spin` (ψ) from the reference.
     ///
-    /// `last` and `transported` are [`TwoBonePose::facing`] and [`Solved::transported`] of the last pose, for callers
-    /// that keep them: they decide where the cursor or the reference does not, and transport goes on
-    /// from them. Without a past it begins at the stereographic direction.
+    /// `last` and `transported` are [`TwoBonePose::facing`] and [`Solved::transported`] of the previous
+    /// pose. They resolve a cursor without a direction and a singular reference, and
+    /// [`TwistReference::Transport`] continues from them; without them it begins at the stereographic
+    /// direction.
     ///
     /// With softness or stretch the hand is [`Reach::Reached`] when it is within 1e-6·L of the
     /// cursor.
@@ -102,12 +106,11 @@ impl Ik {
         Solved { pose, transported, slope: extent.slope }
     }
 
-    /// The cursor and the spin ψ, in [0, 2π), that give a pose: the hand where it is, the elbow out to
-    /// the same side, also of a straight or folded arm.
+    /// Inverse of [`Self::solve`]: cursor and twist ψ in [0, 2π) of a pose. The side of the elbow is
+    /// kept for a straight or folded arm too.
     ///
-    /// A soft limit that the hand cannot have come to keeps it from there. A limit that stretches says
-    /// how long the limbs are where the hand is: a pose with others keeps its hand and gets another
-    /// elbow.
+    /// A hand that soft limits cannot reach is brought as near as they allow. Stretch is a function of
+    /// the hand's distance: a pose with another stretch keeps its hand and changes its elbow.
     pub fn matching(
         &self,
         pose: &TwoBonePose,

@@ -1,4 +1,4 @@
-//! Pure numbers: solvers that know nothing of files, windows or GPUs.
+//! Inverse and forward kinematics as pure functions of numbers.
 
 pub mod batch;
 pub mod chain_ik;

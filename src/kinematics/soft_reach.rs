@@ -1,13 +1,13 @@
-//! How far the hand goes for a cursor: softly up to the limits, or past them by stretching.
+//! Soft limits: distance of the hand for a distance of the cursor, with softness and stretch.
 //!
-//! Near a straight arm the elbow moves like 1/√(L − D): a hand that runs into the outer limit stops
-//! dead while its elbow snaps. Softness lets the hand lag behind the cursor before that; stretching
-//! makes the limbs longer instead; a smallest elbow angle keeps the arm from folding up.
+//! Near a straight arm the elbow speed grows like 1/√(L − D): the hand stops at the outer limit while
+//! the elbow snaps. Softness lets the hand lag behind the cursor before the limit; stretch lengthens
+//! the limbs instead; a minimum elbow angle keeps the arm from folding.
 //!
-//! With d how far the cursor is from the shoulder, L = d₁ + d₂, δ = d₁ − d₂:
+//! With d the distance of the cursor from the shoulder, L = d₁ + d₂, δ = d₁ − d₂:
 //!
 //! ```text
-//! d_min = max(|δ|, √(d₁² + d₂² − 2 d₁ d₂ cos φ_min))           by the smallest elbow angle φ_min
+//! d_min = max(|δ|, √(d₁² + d₂² − 2 d₁ d₂ cos φ_min))           for the minimum elbow angle φ_min
 //! s = 0:   d' = clamp(d, d_min, L)
 //! s > 0:   w = s (L − d_min)/2,   d_a = L − w,   d_b = d_min + w
 //!          d > d_a:  d' = d_a + w (1 − exp(−(d − d_a)/w))
@@ -17,17 +17,16 @@
 //! D = σ d', limbs σ d₁ and σ d₂
 //! ```
 //!
-//! The curve has slope 1 at both joins, is monotone, and never asks for more than the cursor does on
-//! the outer side: the hand does not overshoot. Softness 0 without the rest is a plain clamp.
+//! The curve has slope 1 at both joins, is monotone, and on the outer side never exceeds the cursor's
+//! distance: the hand does not overshoot. With the defaults it is a plain clamp.
 //!
 //! Lengths share any one unit; angles are radians.
 //!
 //! # What breaks
 //!
-//! - The hand is not at the cursor where it is softened: that is the point. Only stretching brings it
-//!   there again.
-//! - Stretching stops short at `max_stretch`, with a corner in the curve.
-//! - A cursor that crosses the shoulder itself makes the hand jump by 2·d_min, whatever the softness.
+//! - Within the soft zones the hand is not at the cursor, by design, unless stretch closes the gap.
+//! - Stretch ends at `max_stretch`, with a corner in the curve.
+//! - A cursor that crosses the shoulder makes the hand jump by 2·d_min, whatever the softness.
 //!
 //! # Sources
 //!
@@ -37,7 +36,7 @@ use thiserror::Error;
 
 use super::two_bone::TwoBone;
 
-/// How the hand meets its limits. As it is by default, exactly and hard.
+/// Behaviour of the hand near its limits; hard limits by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftReach {
     softness: f32,
@@ -45,26 +44,26 @@ pub struct SoftReach {
     min_elbow_angle: f32,
 }
 
-/// A softening that no arm can have.
+/// An invalid [`SoftReach`].
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{field} is {value}; it must be {range}")]
 pub struct SoftReachError {
     /// `"softness"`, `"max_stretch"` or `"min_elbow_angle"`.
     pub field: &'static str,
-    /// What was given.
+    /// The refused value.
     pub value: f32,
-    /// What would be right.
+    /// The valid range.
     pub range: &'static str,
 }
 
-/// How far a hand goes.
+/// Distance of the hand, with stretch and slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// D, from the shoulder to the hand.
     pub distance: f32,
-    /// σ, how many times as long the limbs are.
+    /// σ, the factor by which the limbs are lengthened.
     pub stretch: f32,
-    /// dD/dd, how fast the hand goes for the cursor, outwards.
+    /// dD/dd, the hand's radial speed per radial speed of the cursor.
     pub slope: f32,
 }
 
@@ -75,10 +74,12 @@ impl Default for SoftReach {
 }
 
 impl SoftReach {
+    /// Soft limits of a softness in [0, 1), a finite `max_stretch` of at least 1, and a
+    /// `min_elbow_angle` in [0, π).
+    ///
     /// # Errors
     ///
-    /// Refuses a softness outside [0, 1), a `max_stretch` below 1 or not finite, and a smallest elbow
-    /// angle outside [0, π).
+    /// [`SoftReachError`] for a value outside its range.
     pub fn new(
         softness: f32,
         max_stretch: f32,
@@ -97,34 +98,34 @@ impl SoftReach {
         Ok(Self { softness, max_stretch, min_elbow_angle })
     }
 
-    /// s, from 0 to less than 1.
+    /// The softness s, in [0, 1).
     pub fn softness(self) -> f32 {
         self.softness
     }
 
-    /// How many times as long the limbs may become, 1 or more.
+    /// Maximum factor by which the limbs are lengthened, at least 1.
     pub fn max_stretch(self) -> f32 {
         self.max_stretch
     }
 
-    /// φ_min, how far the elbow is open at least; radians.
+    /// Minimum inner angle φ_min at the elbow, radians.
     pub fn min_elbow_angle(self) -> f32 {
         self.min_elbow_angle
     }
 
-    /// Whether it changes nothing: the solver's own clamp does.
+    /// Whether the limits are a plain clamp.
     pub fn is_hard(self) -> bool {
         self == Self::default()
     }
 
-    /// d_min, the nearest that the hand comes to the shoulder.
+    /// d_min, the hand's minimum distance from the shoulder.
     pub fn least_distance(self, bones: TwoBone) -> f32 {
         Limits::new(self, bones).least as f32
     }
 
-    /// How far a cursor is from the shoulder that brings the hand to a distance: the inverse of
-    /// [`Self::extent`]. The hand meets its limits only in the infinite: there, and beyond, a cursor
-    /// 17 soft zones away brings it as near as f32 tells. Where stretching begins, the cursor is at the hand.
+    /// Distance of the cursor for a distance of the hand: the inverse of [`Self::extent`]. The hand
+    /// approaches a soft limit asymptotically: at the limit or beyond, the result is 17 soft zones
+    /// away, which is exact to f32. Where stretch begins, the cursor is at the hand.
     pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
         let limits = Limits::new(self, bones);
         let (d, longest) = (f64::from(distance), f64::from(self.max_stretch));
@@ -135,7 +136,7 @@ impl SoftReach {
         if is_stretched_to_it { distance } else { saturated(limits.harden(d / longest).max(d)) }
     }
 
-    /// How far the hand goes for a cursor at a distance from the shoulder (finite, 0 or more).
+    /// Distance of the hand for a distance of the cursor from the shoulder (finite, 0 or more).
     pub fn extent(self, bones: TwoBone, cursor_distance: f32) -> Extent {
         let limits = Limits::new(self, bones);
         let d = f64::from(cursor_distance);

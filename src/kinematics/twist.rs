@@ -1,30 +1,29 @@
-//! Which way the elbow points: the direction that its spin ψ is measured from.
+//! Twist references: directions from which the twist angle ψ of the elbow is measured.
 //!
-//! ŵ is the Pointer's direction. A reference gives a unit vector e₀ ⟂ ŵ, and the elbow stands out
-//! along
+//! ŵ is the Pointer's direction. A reference gives a unit vector e₀ ⟂ ŵ, and the elbow is on the side
 //!
 //! ```text
 //! e = cos ψ e₀ + sin ψ (ŵ × e₀)
 //! ```
 //!
-//! All is in Root space, right-handed; angles are radians.
+//! Everything is in Root space, right-handed; angles are radians.
 //!
 //! # What breaks
 //!
 //! No choice of e₀ that depends on ŵ alone is smooth for every ŵ (a hair on a ball cannot be combed
-//! flat); what differs is where it is singular, and how widely that is felt. The gain g tells: how far
-//! e turns against a direction that is carried along without turning, for every radian that the
-//! Pointer turns. It is worst across the way to the singular direction.
+//! flat). References differ in where they are singular and how widely that is felt, which the gain g
+//! measures: radians by which e₀ rotates against a parallel-transported direction, per radian of
+//! rotation of the Pointer. It is largest across the direction to the singularity.
 //!
 //! | reference | e₀ | singular at | gain |
 //! | --- | --- | --- | --- |
 //! | [`TwistReference::Limb`] | the Limb frame's +y | ŵ = ±y | \|tan θ_y\| |
 //! | [`TwistReference::Pole`] p | p less its part along ŵ, normalised | ŵ ∥ p | \|cot ∠(ŵ, p)\| |
 //! | [`TwistReference::Stereographic`] | k × ŵ normalised, k = (ŵ − R) × V | ŵ = R | tan(½ ∠(ŵ, −R)) |
-//! | [`TwistReference::Transport`] | the last one, carried | none | 0 |
+//! | [`TwistReference::Transport`] | the previous one, transported | none | 0 |
 //!
-//! What is carried around a closed loop comes back turned by the solid angle of the loop (its
-//! holonomy): transport suits a live drag, and keys are to be measured from another reference.
+//! Parallel transport around a closed loop returns e₀ rotated by the solid angle of the loop (its
+//! holonomy): transport suits a live drag; keys are measured from another reference.
 //!
 //! # Sources
 //!
@@ -38,31 +37,31 @@ use glam::{DVec3, Vec3};
 
 use super::two_bone::Facing;
 
-/// What the elbow's spin is measured from.
+/// Origin of the twist angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum TwistReference {
-    /// The Limb frame's +y, as in the seed: up, as far as the Pointer lets it.
+    /// The Limb frame's +y: up, less its part along the Pointer.
     #[default]
     Limb,
-    /// Towards a point of Root space.
+    /// Direction towards a point of Root space.
     Pole(Vec3),
-    /// As on a map of all directions that leaves out one.
+    /// Stereographic map, singular in one direction only.
     Stereographic(Stereographic),
-    /// As it was, carried along by the least turn of the Pointer.
+    /// The previous direction, parallel-transported along the Pointer's least rotation.
     Transport,
 }
 
-/// A map of all directions: unit vectors at right angles.
+/// Stereographic map of directions, given by two perpendicular unit vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereographic {
-    /// R, the one direction where the elbow has no reference: where the hand never goes.
+    /// R, the singular direction, chosen where the hand never goes.
     singular: Vec3,
     /// V.
     up: Vec3,
 }
 
-/// The last Pointer with the direction that the elbow was measured from: what transport goes on
-/// from, and what decides where the others are singular.
+/// A Pointer with its twist reference: the state of [`TwistReference::Transport`], which also resolves
+/// the other references where they are singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportedFrame {
     /// ŵ, a unit vector.
@@ -79,20 +78,20 @@ impl Default for Stereographic {
 }
 
 impl Stereographic {
-    /// With the direction that is left out (any length but 0), and one that is up when the Pointer
-    /// faces the other way; nothing where the two are parallel or no directions.
+    /// A map that is singular along `singular` (any length but 0) and whose e₀ is `up` at the opposite
+    /// Pointer; `None` if the two are parallel or have no direction.
     pub fn new(singular: Vec3, up: Vec3) -> Option<Self> {
         let singular = singular.as_dvec3().try_normalize()?;
         let up = up.as_dvec3().reject_from_normalized(singular).try_normalize()?;
         Some(Self { singular: singular.as_vec3(), up: up.as_vec3() })
     }
 
-    /// R.
+    /// The singular direction R.
     pub fn singular(self) -> Vec3 {
         self.singular
     }
 
-    /// V.
+    /// The direction V, which is e₀ at −R.
     pub fn up(self) -> Vec3 {
         self.up
     }
@@ -104,13 +103,13 @@ impl Stereographic {
 }
 
 impl TransportedFrame {
-    /// Where a pose without a past begins: the stereographic direction.
+    /// Initial frame of a pose without a previous one: the stereographic direction.
     pub fn new(facing: Facing) -> Self {
         let map = TwistReference::Stereographic(Stereographic::default());
         Self { direction: facing.direction, outward: map.outward(facing, None) }
     }
 
-    /// TransportedFrame along to another Pointer, by the least turn between the two:
+    /// Parallel transport to another Pointer, by the least rotation between the two:
     /// e₀' = e₀ − (e₀·ŵ')/(1 + ŵ·ŵ')·(ŵ + ŵ'). Between opposite Pointers e₀ stays, made
     /// perpendicular again.
     #[must_use]
@@ -127,9 +126,8 @@ impl TransportedFrame {
         Self { direction, outward: outward.as_vec3() }
     }
 
-    /// How far another's e₀ is turned from this one's about its Pointer, in (−π, π]. On the same way
-    /// from the same start this is the way's holonomy: 0 if what was carried came back, else the
-    /// solid angle that the way goes around.
+    /// Angle about the Pointer from this e₀ to another's, in (−π, π]. For the two ends of a closed path
+    /// it is the path's holonomy, the solid angle that the path encloses.
     pub fn turn_to(self, other: Self) -> f32 {
         let from = self.to(other.direction).outward.as_dvec3();
         let (w, to) = (other.direction.as_dvec3(), other.outward.as_dvec3());
@@ -138,8 +136,8 @@ impl TransportedFrame {
 }
 
 impl TwistReference {
-    /// e₀, a unit vector perpendicular to the Pointer. Where the reference is singular, what is
-    /// carried decides if there is something, else the Limb frame's +y.
+    /// e₀, a unit vector perpendicular to the Pointer. Where the reference is singular, it is that of
+    /// the transported `last` frame, else the Limb frame's +y.
     pub fn outward(self, facing: Facing, last: Option<TransportedFrame>) -> Vec3 {
         let w = unit(facing.direction);
         let own = match self {
@@ -157,8 +155,8 @@ impl TwistReference {
         }
     }
 
-    /// ψ_ref, the angle of e₀ about the Pointer from the Limb frame's +y, in (−π, π]: what is added
-    /// to ψ for [`TwoBone::solve_from`](super::two_bone::TwoBone::solve_from).
+    /// ψ_ref, the angle of e₀ about the Pointer from the Limb frame's +y, in (−π, π]; it is added to ψ
+    /// for [`TwoBone::solve_from`](super::two_bone::TwoBone::solve_from).
     pub fn angle(self, facing: Facing, last: Option<TransportedFrame>) -> f32 {
         match self {
             Self::Limb => 0.0,
@@ -166,7 +164,7 @@ impl TwistReference {
         }
     }
 
-    /// g: see the module. Infinite where the reference is singular.
+    /// The gain g (see the module); infinite where the reference is singular.
     pub fn gain(self, facing: Facing) -> f32 {
         let w = unit(facing.direction);
         let gain = match self {
@@ -187,20 +185,20 @@ impl TwistReference {
     }
 }
 
-/// The angle about the Pointer from the Limb frame's +y to a direction perpendicular to the Pointer,
-/// in (−π, π].
+/// Angle about the Pointer from the Limb frame's +y to a direction perpendicular to the Pointer, in
+/// (−π, π].
 pub fn angle_from_limb(facing: Facing, outward: Vec3) -> f32 {
     let limb = facing.limb_frame();
     outward.dot(limb.z_axis).atan2(outward.dot(limb.y_axis))
 }
 
-/// ψ that leaves the elbow where it is when it is measured from another direction: `spin` is from
-/// `from`, both are angles from the Limb's +y. In [0, 2π).
+/// The twist ψ, in [0, 2π), measured from another reference without moving the elbow. `from` and `to`
+/// are the references' angles from the Limb's +y.
 pub fn respun(spin: f32, from: f32, to: f32) -> f32 {
     wrapped_turn(f64::from(spin) + f64::from(from) - f64::from(to))
 }
 
-/// An angle without its whole turns, in [0, 2π).
+/// An angle wrapped to [0, 2π).
 pub fn wrapped(angle: f32) -> f32 {
     wrapped_turn(f64::from(angle))
 }
@@ -211,7 +209,7 @@ fn wrapped_turn(angle: f64) -> f32 {
     if wrapped < TAU { wrapped } else { 0.0 }
 }
 
-/// From the Pointer towards a pole; nothing where the pole is on the Pointer's line or at the
+/// Unit vector from the Pointer towards a pole; `None` for a pole on the Pointer's line or at the
 /// shoulder.
 fn towards(pole: Vec3, w: DVec3) -> Option<DVec3> {
     const ON_LINE: f64 = 1e-6;

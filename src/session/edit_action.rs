@@ -5,7 +5,7 @@ use crate::document::{
     Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
 };
 use crate::kinematics::chain_ik::SolverOptions;
-use crate::kinematics::skeleton::Limit;
+use crate::kinematics::skeleton::{JointId, Limit};
 use crate::kinematics::soft_reach::SoftReach;
 
 /// A change of the document. Each is one undo step and has a label.
@@ -56,7 +56,7 @@ pub enum EditAction {
     /// the bone of its parent.
     AddChild {
         /// The joint that gets a child.
-        parent: usize,
+        parent: JointId,
         /// End of the new bone, in world space.
         tip: Option<Vec3>,
     },
@@ -68,41 +68,41 @@ pub enum EditAction {
     /// Adds a joint without a parent.
     AddRoot,
     /// Deletes joints and all their descendants.
-    DeleteJoints(Vec<usize>),
+    DeleteJoints(Vec<JointId>),
     /// Deletes joints; their children are attached to the next remaining ancestor and do not move.
-    DissolveJoints(Vec<usize>),
+    DissolveJoints(Vec<JointId>),
     /// Renames a joint; names are unique.
     RenameJoint {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// Its new name.
         name: String,
     },
     /// Attaches a joint to another parent; the joint does not move.
     ReparentJoint {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// Its new parent; `None` for a root.
-        parent: Option<usize>,
+        parent: Option<JointId>,
     },
     /// Sets the Euler angles of a joint about x, y and z in radians.
     SetRotation {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// Its angles.
         rotation: Vec3,
     },
     /// Sets the bone of a joint, from base to tip.
     SetAxis {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// Its bone.
         axis: Vec3,
     },
     /// Sets or removes the limit of an angle.
     SetLimit {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// 0, 1 or 2 for x, y or z.
         axis: usize,
         /// Its limit; `None` for unlimited.
@@ -111,7 +111,7 @@ pub enum EditAction {
     /// Locks or unlocks a joint: solvers do not turn locked joints.
     SetLocked {
         /// The joint.
-        joint: usize,
+        joint: JointId,
         /// Whether it is locked.
         locked: bool,
     },
@@ -121,9 +121,9 @@ pub enum EditAction {
     SetTranslation(Vec3),
 
     /// Adds a target at the tip of a joint.
-    AddTarget(usize),
+    AddTarget(JointId),
     /// Removes the target of a joint, with its keys.
-    RemoveTarget(usize),
+    RemoveTarget(JointId),
     /// Replaces the target of the joint that it names.
     SetTarget(Target),
     /// Sets the solver and its options.

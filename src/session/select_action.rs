@@ -1,13 +1,14 @@
 use super::Key;
 use crate::document::Channel;
+use crate::kinematics::skeleton::JointId;
 
 /// Changes what is selected or copied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SelectAction {
     /// Selects these joints and no others; the last one is the active one.
-    Joints(Vec<usize>),
+    Joints(Vec<JointId>),
     /// Sets the joint under the mouse.
-    Hover(Option<usize>),
+    Hover(Option<JointId>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),
     /// Selects these channels and no others.

@@ -2,6 +2,7 @@
 
 use crate::document::{AxisView, Camera};
 use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
+use crate::kinematics::skeleton::JointId;
 
 pub(in crate::ui) fn open() -> FileAction {
     FileAction::AskPath(Dialog::open())

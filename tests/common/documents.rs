@@ -8,7 +8,7 @@ use ik_arm::document::{
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, JointId};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::TransportedFrame;
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
@@ -19,7 +19,7 @@ use super::Random;
 pub fn document(random: &mut Random) -> Document {
     let arm = arm(random);
     let mut rig = SkeletonRig::new(skeleton(random));
-    for joint in 0..rig.skeleton.joints().len() {
+    for joint in rig.skeleton.ids() {
         if random.below(3) == 0 {
             let paths = [TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight];
             let motion = TargetMotion {
@@ -109,7 +109,7 @@ fn arm(random: &mut Random) -> Arm {
 fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let overlays = Overlay::all().map(Channel::Overlay);
     let joints = (0..rig.skeleton.joints().len())
-        .flat_map(|joint| [Channel::Rotation(joint), Channel::Offset(joint)]);
+        .flat_map(|joint| [Channel::Rotation(JointId::new(joint)), Channel::Offset(JointId::new(joint))]);
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
     let all = Channel::OF_ARM.into_iter().chain(overlays).chain([Channel::Translation]);
@@ -135,7 +135,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
 fn skeleton(random: &mut Random) -> Skeleton {
     let count = random.below(12);
     let joints = (0..count).map(|index| {
-        let parent = (index > 0 && random.below(4) > 0).then(|| random.below(index));
+        let parent = (index > 0 && random.below(4) > 0).then(|| random.below(index).into());
         let turn = [(); 4].map(|()| random.within(-1.0..1.0));
         Joint {
             name: format!("{} \"é\\\n{index}", random.below(100)),

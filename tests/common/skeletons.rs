@@ -23,7 +23,7 @@ pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
 
 /// A trunk and `ends` branches of two to five joints, each from any joint before it; one joint in five
 /// is away from its parent's tip. Returns the skeleton and the last joint of each branch.
-pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<usize>) {
+pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<JointId>) {
     let mut skeleton = chain(random, 2, unit);
     let mut tips = Vec::new();
     for _ in 0..ends {
@@ -90,8 +90,7 @@ pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[JointId]) -> 
 
 /// Length of the longest chain from a root to one of the tips, without the root's own offset.
 pub fn length(skeleton: &Skeleton, tips: &[JointId]) -> f32 {
-    let joints = skeleton.joints();
-    let path = |tip: &usize| {
+    let path = |tip: &JointId| {
         let offsets: f64 = skeleton
             .ancestors(*tip)
             .filter(|joint| skeleton[*joint].parent.is_some())

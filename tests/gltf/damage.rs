@@ -81,7 +81,7 @@ fn deep_nesting_is_an_error_and_a_deep_tree_is_not() {
         "{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}{{}}],\"skins\":[{{\"joints\":[150000]}}]}}"
     );
     let opened = io::parse("deep", &text, None).expect("it opens");
-    assert_eq!(opened.document.skeleton().base(0), glam::Vec3::Y * 150_000.0);
+    assert_eq!(opened.document.skeleton().base(JointId::new(0)), glam::Vec3::Y * 150_000.0);
 }
 
 #[test]

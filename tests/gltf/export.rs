@@ -112,7 +112,7 @@ fn joints_have_the_documents_names_and_the_leaves_have_tips() {
     let glb = exported(&example("human"));
     let document = example("human");
     let joints = document.skeleton().joints();
-    let parents: HashSet<usize> = joints.iter().filter_map(|joint| joint.parent).collect();
+    let parents: HashSet<usize> = joints.iter().filter_map(|joint| joint.parent).map(JointId::index).collect();
     for (index, joint) in joints.iter().enumerate() {
         assert_eq!(glb.name(index), joint.name);
         let is_bone_and_leaf = !parents.contains(&index) && joint.axis != Vec3::ZERO;
@@ -212,11 +212,11 @@ fn every_number_is_finite() {
 fn only_what_leaves_its_rest_has_a_channel() {
     let mut document = example("ten-joints");
     for joint in 0..document.skeleton().joints().len() {
-        document.skeleton_mut().set_rotation(joint, Vec3::ZERO).expect("angles");
+        document.skeleton_mut().set_rotation(JointId::new(joint), Vec3::ZERO).expect("angles");
     }
     assert!(exported(&document).json.get("animations").is_none());
 
-    document.skeleton_mut().set_rotation(4, Vec3::X).expect("angles");
+    document.skeleton_mut().set_rotation(JointId::new(4), Vec3::X).expect("angles");
     let glb = exported(&document);
     let [Moving { node: 4, path, times, .. }] = &channels(&glb)[..] else {
         panic!("another channel")
@@ -321,7 +321,7 @@ fn huge_and_tiny_skeletons_stay_finite() {
         };
         let joints = vec![Joint::new("a", None, Vec3::Y * size), tip];
         *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
-        document.skeleton_mut().set_rotation(0, Vec3::ONE).expect("angles");
+        document.skeleton_mut().set_rotation(JointId::new(0), Vec3::ONE).expect("angles");
         let glb = exported(&document);
         for Moving { values, .. } in channels(&glb) {
             assert!(values.iter().flatten().all(|number| number.is_finite()), "{size}");

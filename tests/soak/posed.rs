@@ -104,8 +104,8 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
 /// Every reference to a joint, target or key exists.
 fn places(session: &Session) -> Result<(), Broken> {
     let joints = session.skeleton().joints().len();
-    hold!(session.selection().iter().all(|joint| *joint < joints), "selected joints are there");
-    hold!(session.pointed().is_none_or(|joint| joint < joints), "the joint pointed at is there");
+    hold!(session.selection().iter().all(|joint| *joint < JointId::new(joints)), "selected joints are there");
+    hold!(session.pointed().is_none_or(|joint| joint < JointId::new(joints)), "the joint pointed at is there");
     let document = session.document();
     for (channel, time) in session.selected_keys() {
         let key = document.keys.track(*channel).and_then(|track| track.get(*time));

@@ -92,19 +92,19 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     bench.hold(Modifiers::NONE);
     bench.settle();
     assert_eq!(names(&bench).len(), 3, "Ctrl+click with nothing selected continues the last one");
-    assert_eq!(bench.session().skeleton().joints()[2].parent, Some(1));
+    assert_eq!(bench.session().skeleton().joints()[2].parent, Some(JointId::new(1)));
 
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench.key(Key::A);
     bench.settle();
-    assert_eq!(bench.session().skeleton().joints()[3].parent, Some(2), "and so does A");
+    assert_eq!(bench.session().skeleton().joints()[3].parent, Some(JointId::new(2)), "and so does A");
 }
 
 #[test]
 fn a_skeleton_without_any_joint_gets_a_root_and_a_joint_by_one_click() {
     for by_key in [false, true] {
         let mut bench = new_skeleton();
-        bench.apply([EditAction::DeleteJoints(vec![0])]);
+        bench.apply([EditAction::DeleteJoints(vec![JointId::new(0)])]);
         assert!(names(&bench).is_empty());
         assert!(bench.says("Click to place the first joint"));
         if by_key {

@@ -123,17 +123,17 @@ fn the_view_and_the_selection_are_no_steps() {
     let mut bench = Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))]);
     let camera = *bench.session().camera();
     bench.apply([
-        Action::from(SelectAction::Joints(vec![3])),
+        Action::from(SelectAction::Joints(vec![JointId::new(3)])),
         ViewAction::SetCamera(camera.orbited(1.0, 0.1)).into(),
     ]);
     bench.apply([PlaybackAction::SetTime(2.0)]);
     assert_eq!(bench.session().undo_name(), None);
     assert!(!bench.session().is_unsaved());
     bench.apply([
-        Action::from(EditAction::SetLocked { joint: 3, locked: true }),
+        Action::from(EditAction::SetLocked { joint: JointId::new(3), locked: true }),
         TransactionAction::Undo.into(),
     ]);
-    assert_eq!(bench.session().selection(), [3]);
+    assert_eq!(bench.session().selection(), [3].map(JointId::new));
     assert_eq!(*bench.session().camera(), camera.orbited(1.0, 0.1));
     assert_eq!(bench.session().time(), 2.0);
 }

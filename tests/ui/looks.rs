@@ -138,7 +138,7 @@ fn the_panels_look_as_they_did() {
     let human = Example::find("human").expect("an example");
     let skeleton = [
         Action::from(FileAction::OpenExample(human)),
-        SelectAction::Joints(vec![8]).into(),
+        SelectAction::Joints(vec![JointId::new(8)]).into(),
         EditAction::StepSolver.into(),
     ];
     for theme in THEMES {

@@ -8,7 +8,7 @@ use egui::{DroppedFile, Event, Key, Modifiers};
 use glam::Vec3;
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::kinematics::skeleton::Limit;
+use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::session::{Action, EditAction, Effect, FileAction, SelectAction, SolverAction};
 
 use crate::bench::{Bench, SMALL};
@@ -140,7 +140,7 @@ fn a_number_can_be_typed_with_its_unit() {
     bench.click(Role::CheckBox, "Limit x");
     enter_field(&mut bench, "x maximum", "30°", Key::Enter);
     let joint = bench.session().selected().expect("one");
-    let limit = bench.session().skeleton().joints()[joint].limits[0].expect("limited");
+    let limit = bench.session().skeleton().joints()[joint.index()].limits[0].expect("limited");
     assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
 }
 
@@ -165,7 +165,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
     bench.key(Key::ArrowDown);
     bench.settle();
     let next = bench.session().selected().expect("one");
-    assert_eq!(bench.session().skeleton().joints()[next].name, "left_3");
+    assert_eq!(bench.session().skeleton().joints()[next.index()].name, "left_3");
     bench.key(Key::ArrowUp);
     bench.settle();
     assert_eq!(bench.session().selection(), clicked);
@@ -184,7 +184,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
 fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
-    bench.apply([EditAction::DeleteJoints(vec![0])]);
+    bench.apply([EditAction::DeleteJoints(vec![JointId::new(0)])]);
     for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F] {
         bench.key(key);
         bench.settle();
@@ -225,7 +225,7 @@ fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
     for example in Example::ALL {
         let mut bench = Bench::of_size(SMALL);
         bench.apply([FileAction::OpenExample(example)]);
-        bench.apply([SelectAction::Joints(vec![0])]);
+        bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
         bench.harness.check_accessibility();
         let joint = bench.session().skeleton_rig().targets.first().map(|target| target.joint);
         bench.apply([
@@ -256,7 +256,7 @@ fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
     bench.settle();
     bench.click(Role::CheckBox, "Follow path");
     assert_eq!(bench.session().skeleton_rig().follow_path, None);
-    bench.apply([SelectAction::Joints(vec![1])]);
+    bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.enter("Rotation x", "10");
     let angle = bench.session().skeleton().joints()[1].rotation.x;
     assert!((angle.to_degrees() - 10.0).abs() < 1e-3);
@@ -270,10 +270,10 @@ fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
     bench.click(Role::Button, "Add target");
     let before = bench.viewport();
     let name = "a name of many letters ".repeat(3);
-    bench.apply([EditAction::RenameJoint { joint: 1, name: name.clone() }]);
+    bench.apply([EditAction::RenameJoint { joint: JointId::new(1), name: name.clone() }]);
     bench.apply([
-        Action::from(EditAction::AddChild { parent: 1, tip: None }),
-        SelectAction::Joints(vec![1]).into(),
+        Action::from(EditAction::AddChild { parent: JointId::new(1), tip: None }),
+        SelectAction::Joints(vec![JointId::new(1)]).into(),
     ]);
     assert_eq!(bench.viewport(), before);
     for field in ["Bone x", "Bone z", "Length"] {

@@ -94,7 +94,7 @@ fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "hand"]);
-    bench.apply([EditAction::RenameJoint { joint: 1, name: "hand".to_owned() }]);
+    bench.apply([EditAction::RenameJoint { joint: JointId::new(1), name: "hand".to_owned() }]);
     assert_eq!(names(&bench)[1], "joint");
     assert!(bench.says("Two joints are called \"hand\""));
 }
@@ -390,7 +390,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.choose(&["File", "New skeleton"]);
     let empty = bench.empty_place();
     bench.move_to(empty);
-    bench.apply([SelectAction::Joints(vec![0])]);
+    bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
     bench.key(Key::A);
     bench.key(Key::A);
     assert_eq!(names(&bench).len(), 3);
@@ -414,7 +414,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     assert_eq!(bench.session().selection(), [0, 1, 2].map(JointId::new));
     bench.key(Key::Escape);
     assert!(bench.session().selection().is_empty());
-    bench.apply([SelectAction::Joints(vec![1])]);
+    bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.key(Key::Delete);
     bench.settle();
     bench.key(Key::Enter);
@@ -498,13 +498,13 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
     let mut bench = Bench::of_size(SMALL);
     bench.choose(&["File", "New skeleton"]);
     let name = "a name of many letters ".repeat(4);
-    bench.apply([EditAction::RenameJoint { joint: 0, name }]);
-    bench.apply((0..200).map(|parent| EditAction::AddChild { parent, tip: None }));
+    bench.apply([EditAction::RenameJoint { joint: JointId::new(0), name }]);
+    bench.apply((0..200).map(|parent| EditAction::AddChild { parent: JointId::new(parent), tip: None }));
     assert_eq!(names(&bench).len(), 201);
-    assert_eq!(bench.session().selected(), Some(200));
+    assert_eq!(bench.session().selected(), Some(JointId::new(200)));
     bench.apply([
-        Action::from(EditAction::AddTarget(200)),
-        SelectAction::Joints((0..201).collect()).into(),
+        Action::from(EditAction::AddTarget(JointId::new(200))),
+        SelectAction::Joints((0..201).map(JointId::new).collect()).into(),
     ]);
     bench.settle();
 }

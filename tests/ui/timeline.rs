@@ -484,9 +484,9 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
 fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([FileAction::OpenExample(Example::find("human").expect("an example"))]);
-    let names = |joint: usize| bench.session().skeleton().joints()[joint].name.clone();
-    let (turned, reached) = (names(1), names(8));
-    bench.apply([EditAction::Key(vec![Channel::Rotation(1), Channel::Target(8), Channel::Hand])]);
+    let names = |joint: JointId| bench.session().skeleton()[joint].name.clone();
+    let (turned, reached) = (names(JointId::new(1)), names(JointId::new(8)));
+    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Target(JointId::new(8)), Channel::Hand])]);
     for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
     {
         assert!(bench.shows(Role::Button, &format!("Channel {name}")), "{name}");
@@ -500,7 +500,7 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
 fn ten_thousand_channels_are_scrolled_in_no_time() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     for joint in document.skeleton().joints().len()..5_000 {
-        let joint = Joint::new(&format!("j{joint}"), Some(0), Vec3::ONE);
+        let joint = Joint::new(&format!("j{joint}"), Some(JointId::new(0)), Vec3::ONE);
         document.skeleton_mut().add(joint).expect("room");
     }
     for joint in 0..5_000 {

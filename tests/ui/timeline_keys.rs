@@ -54,7 +54,7 @@ fn k_keys_the_selected_joints() {
     let human = Example::find("human").expect("an example");
     bench.apply([
         Action::from(FileAction::OpenExample(human)),
-        SelectAction::Joints(vec![8]).into(),
+        SelectAction::Joints(vec![JointId::new(8)]).into(),
     ]);
     bench.key(Key::K);
     let keyed: Vec<_> = bench.session().document().keys.tracks().map(|it| it.0).collect();
@@ -146,7 +146,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.choose(&["File", "New skeleton"]);
     bench.click(Role::Button, "Add child");
     bench.click(Role::Button, "Add child");
-    bench.apply([EditAction::Key(vec![Channel::Rotation(1)])]);
+    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1))])]);
     let joints = |bench: &Bench| bench.session().skeleton_pose().len();
     let key = |bench: &Bench| bench.rect(Role::Button, "Keys at 0.00 s").center();
     bench.click_at(key(&bench));
@@ -157,7 +157,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 3, "in the timeline it never means joints");
-    bench.apply([EditAction::Key(vec![Channel::Rotation(1)])]);
+    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1))])]);
     bench.click_at(key(&bench));
     bench.click(Role::Button, "Joint joint_1");
     bench.key(Key::Delete);

@@ -28,7 +28,7 @@ fn read_fields(source: &Source) -> Result<Opened, OpenError> {
     })?;
     let document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
     Ok(Opened {
-        order: (0..document.skeleton().joints().len()).collect(),
+        order: document.skeleton().ids().collect(),
         document,
         warnings: source.warnings(&warnings),
         skeletons: Vec::new(),

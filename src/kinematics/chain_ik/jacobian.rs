@@ -1,4 +1,4 @@
-//! How tips move with angles.
+//! The Jacobian: derivatives of tips by angles.
 //!
 //! The column of the Jacobian J for one Euler angle of a joint with base b, for a tip p, is a × (p −
 //! b), a the unit vector that the angle turns about. What a force F at p does to that angle, Jᵀ F,
@@ -7,7 +7,7 @@
 //!
 //! # Source
 //!
-//! S. Buss, *Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and DampedLeastSquares
+//! S. Buss, *Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and Damped
 //! Least Squares methods*, 2004.
 
 use glam::{Mat3A, Vec3, Vec3A};
@@ -16,8 +16,8 @@ use super::configuration::Configuration;
 use super::problem::Problem;
 use crate::kinematics::skeleton::{EulerAngles, JointId, Skeleton};
 
-/// d tip / d angle for every joint's angles about x, y and z, in skeleton space. Zero for joints
-/// that do not carry the tip.
+/// Derivatives of a tip by every joint's angles about x, y and z, in skeleton space; zero for joints
+/// that are not ancestors of the tip.
 ///
 /// # Panics
 ///
@@ -81,7 +81,7 @@ impl Wrenches {
     }
 }
 
-/// Configuration turned and moved by a step, within limits. What a step would bring beyond all numbers stays.
+/// Applies a step within the limits; non-finite components are left unchanged.
 pub(super) fn advance(
     rig: &Problem,
     from: (&[Vec3], &[Vec3A]),

@@ -1,4 +1,4 @@
-//! Inverse kinematics of skeletons: brings tips of bones to targets.
+//! Inverse kinematics of skeletons: moves tips of bones to targets.
 //!
 //! With p a tip, t its target and w its weight, every method lowers
 //!
@@ -6,29 +6,27 @@
 //! f = Σ ½ w |p − t|²
 //! ```
 //!
-//! by turning the joints between targets and roots, as far as their limits let it. Locked joints and
-//! those on no such path stay as they are, bit for bit. Targets are in the world; the solve runs in
-//! skeleton space, so that mirrored and scaled skeletons are right; errors and the tolerance are in
-//! the world again.
+//! by rotating the joints between targets and roots within their limits. Locked joints and joints on no
+//! such path are unchanged, bit for bit. Targets, errors and the tolerance are in the world; the solve
+//! runs in skeleton space, so that mirrored and scaled skeletons are right.
 //!
-//! | method | moves | where limits are in the way |
+//! | method | moves | at limits |
 //! | --- | --- | --- |
-//! | [`Method::TransposeFixed`], [`Method::Transpose`] | all angles, along the slope of f | stays at the limit |
-//! | [`Method::DampedLeastSquares`] | all angles, towards where f would be least if it were quadratic | solves with the others |
-//! | [`Method::Ccd`] | one joint after the other | best angle within |
-//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within, on the way back: may stop short |
+//! | [`Method::TransposeFixed`], [`Method::Transpose`] | all angles, along the gradient of f | stops at the limit |
+//! | [`Method::DampedLeastSquares`] | all angles, to the minimum of a quadratic model of f | solves for the other angles |
+//! | [`Method::Ccd`] | one joint after the other | best angle within the limits |
+//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short |
 //! | [`Method::TwoBone`] | two joints, at once | stops short |
 //!
-//! A target out of reach is no error: the chain stretches towards it and comes to rest. Everything
-//! is deterministic.
+//! A target out of reach is not an error: the chain straightens towards it and the solve stalls. Results
+//! are deterministic.
 //!
 //! # What breaks
 //!
-//! - A solve comes to rest where f is least *nearby*: limits can make that a place from which the
-//!   target is reached only by a detour.
-//! - Near y = ±90° two of a joint's angles turn about one axis; methods that move angles lose a
-//!   direction there. CCD and FABRIK do not (without limits).
-//! - Far from a moving root's start, single precision is coarse: its offset has seven digits.
+//! - A solve stalls at a *local* minimum of f, which limits can cause away from the target.
+//! - Near y = ±90° (gimbal lock) two of a joint's angles rotate about one axis; methods that move
+//!   angles lose a direction there. CCD and FABRIK do not, without limits.
+//! - A root that moves far from its start has an offset of single precision, seven digits.
 
 mod align;
 mod ccd;
@@ -57,7 +55,7 @@ use stall::Stall;
 use transpose::Transpose;
 use two_bone::TwoBones;
 
-/// A solve under way: what it needs from one iteration to the next.
+/// An iterative solve of a skeleton and its targets.
 ///
 /// ```
 /// use glam::Vec3;
@@ -101,6 +99,8 @@ enum Worker {
 }
 
 impl ChainSolver {
+    /// Prepares a solve; no iteration is made.
+    ///
     /// # Errors
     ///
     /// See [`SolveError`].
@@ -132,11 +132,12 @@ impl ChainSolver {
         Ok(solve)
     }
 
+    /// Progress so far.
     pub fn report(&self) -> Report {
         self.report
     }
 
-    /// One iteration; none where the solve has converged or rests.
+    /// Makes one iteration, unless the solve has converged or stalled.
     pub fn step(&mut self) -> Report {
         if self.is_done() {
             return self.report;
@@ -153,7 +154,7 @@ impl ChainSolver {
         self.report
     }
 
-    /// Until every tip is near enough, nothing gets better, or so many iterations are over.
+    /// Iterates until the solve converges, stalls or is out of iterations.
     pub fn run(&mut self) -> Report {
         while !self.is_over() {
             self.step();
@@ -161,18 +162,17 @@ impl ChainSolver {
         self.report
     }
 
-    /// Whether [`run`](Self::run) would do nothing: it has converged, rests, or has made all the
-    /// iterations that it may make.
+    /// Whether the solve has converged, stalled or is out of iterations.
     pub fn is_over(&self) -> bool {
         self.is_done() || self.report.iterations >= self.budget
     }
 
-    /// Moves the targets: the same joints, in the same order, with the weights they had. Starts
-    /// from the present pose; iterations are counted anew.
+    /// Moves the targets of the same joints, in the same order and with the same weights, and restarts
+    /// from the current pose with no iterations made.
     ///
     /// # Errors
     ///
-    /// Refuses points and weights that are not numbers, and joints that are not the solve's.
+    /// [`SolveError::NoJoint`] for other joints; [`SolveError::Point`]; [`SolveError::Weight`].
     pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
         for (index, goal) in self.rig.goals.iter().enumerate() {
             if targets.get(index).map(|target| target.joint) != Some(goal.joint) {
@@ -191,8 +191,8 @@ impl ChainSolver {
         Ok(())
     }
 
-    /// Puts the solved angles into the skeleton, each triple the one nearest to the angles there;
-    /// and where roots have gone, if they may. It is the skeleton that the solve is of.
+    /// Writes the solved angles, each triple nearest to the present one, and the offsets of free roots
+    /// into the skeleton of the solve.
     pub fn write(&self, skeleton: &mut Skeleton) {
         if self.rig.free {
             for (index, tree) in self.rig.trees.iter().enumerate() {
@@ -348,6 +348,8 @@ impl Worker {
     }
 }
 
+/// Solves a skeleton in place with a new [`ChainSolver`].
+///
 /// # Errors
 ///
 /// See [`SolveError`].

@@ -3,25 +3,26 @@ use thiserror::Error;
 
 use crate::kinematics::skeleton::JointId;
 
-/// How the joints are found.
+/// Solver method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Gradient descent by the Jacobian's transpose with one step length throughout.
+    /// Jacobian transpose with a fixed step length.
     TransposeFixed,
-    /// The same with a step length that is searched for.
+    /// Jacobian transpose with a line search.
     Transpose,
-    /// DampedLeastSquares least squares.
+    /// Damped least squares (Levenberg–Marquardt).
     DampedLeastSquares,
     /// Cyclic coordinate descent.
     Ccd,
-    /// Constraint relaxation, forward and backward.
+    /// Forward and backward reaching (FABRIK).
     #[default]
     Fabrik,
-    /// Closed form, for a target's joint and its parent.
+    /// Closed form for a target's joint and its parent.
     TwoBone,
 }
 
 impl Method {
+    /// All methods.
     pub const ALL: [Self; 6] = [
         Self::TransposeFixed,
         Self::Transpose,
@@ -31,7 +32,7 @@ impl Method {
         Self::TwoBone,
     ];
 
-    /// As the command line and files have it.
+    /// Name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::TransposeFixed => "transpose-fixed",
@@ -43,7 +44,7 @@ impl Method {
         }
     }
 
-    /// After how many iterations [`ChainSolver::run`](super::ChainSolver::run) gives up, unless asked otherwise.
+    /// Default maximum number of iterations of [`ChainSolver::run`](super::ChainSolver::run).
     pub fn budget(self) -> u32 {
         match self {
             Self::Fabrik | Self::Ccd => 2_000,
@@ -53,29 +54,32 @@ impl Method {
     }
 }
 
-/// Where the tip of a joint's bone is asked to be.
+/// A target for the tip of a joint's bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipTarget {
+    /// The joint whose tip is to reach the target.
     pub joint: JointId,
-    /// In the world.
+    /// Position in the world.
     pub point: Vec3,
-    /// How much it counts beside other targets; above 0.
+    /// Weight relative to other targets, above 0.
     pub weight: f32,
 }
 
-/// What every method is told.
+/// Options of all methods.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverOptions {
+    /// The method.
     pub method: Method,
-    /// At most so many; the method's [budget](Method::budget) if nothing is said.
+    /// Maximum number of iterations; `None` for the [method's default](Method::budget).
     pub iterations: Option<u32>,
-    /// How near every tip must come to its target, in the world; 1e-4 of the chain's length if
-    /// nothing is said.
+    /// Maximum distance from any tip to its target in the world when converged; `None` for 1e-4 of the
+    /// chain's length.
     pub tolerance: Option<f32>,
-    /// λ of damped least squares, in chain lengths.
+    /// Damping λ of damped least squares, in chain lengths.
     pub damping: f32,
-    /// The step of the fixed Jacobian transpose, in parts of 1/Σr².
+    /// Step length of [`Method::TransposeFixed`], in units of 1/Σr².
     pub step: f32,
+    /// Whether roots move.
     pub root: Root,
 }
 
@@ -92,30 +96,33 @@ impl Default for SolverOptions {
     }
 }
 
-/// Whether roots may move.
+/// Mobility of roots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Root {
+    /// Roots keep their offsets.
     #[default]
     Fixed,
-    /// Roots move (their offsets change) as a snake's head does.
+    /// Solvers change the offsets of roots.
     Free,
 }
 
-/// How a solve stands.
+/// Progress of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
+    /// The method.
     pub method: Method,
+    /// Number of iterations so far.
     pub iterations: u32,
-    /// The largest distance between a tip and its target, in the world.
+    /// Largest distance from a tip to its target, in the world.
     pub error: f32,
-    /// Whether that is within the tolerance.
+    /// Whether the error is within the tolerance.
     pub converged: bool,
-    /// Whether further iterations would change nothing: the targets are out of reach, or a limit
-    /// is in the way.
+    /// Whether the solve has stalled: further iterations change nothing, because targets are out of
+    /// reach or limits prevent reaching them.
     pub resting: bool,
 }
 
-/// What cannot be solved.
+/// An invalid skeleton, target or option.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
     #[error("there is no joint {0} to bring to a target")]

@@ -2,24 +2,24 @@ use glam::{Affine3A, Vec3};
 
 use super::{Joint, JointId, Skeleton, SkeletonError};
 
-/// Where the joints of a skeleton have gone: for each, its new place in the list, if it has one.
+/// New indices of joints after an edit, by old index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointRemap(Vec<Option<JointId>>);
 
 impl JointRemap {
-    /// The new place of what was at `joint`.
+    /// The new index of `joint`; `None` if it was removed.
     pub fn get(&self, joint: JointId) -> Option<JointId> {
         self.0.get(joint.index()).copied().flatten()
     }
 }
 
-/// Building. Each leaves a skeleton that is one, or as it was.
+/// Editing. An edit that fails leaves the skeleton unchanged.
 impl Skeleton {
-    /// Adds a joint and returns its place. Places of other joints stay.
+    /// Adds a joint at the end and returns its index.
     ///
     /// # Errors
     ///
-    /// Refuses what no skeleton can have.
+    /// See [`SkeletonError`].
     pub fn add(&mut self, mut joint: Joint) -> Result<JointId, SkeletonError> {
         let added = JointId::new(self.joints.len());
         if added.index() >= Self::MOST_JOINTS {
@@ -32,8 +32,8 @@ impl Skeleton {
         Ok(added)
     }
 
-    /// A bone vector for a child of `parent`: like the parent's, or like a bone of length 1 up where
-    /// the parent is a point.
+    /// Default bone vector for a child of `parent`: that of the nearest ancestor with a bone, else
+    /// upwards with the length of the longest bone, or 1.
     pub fn next_axis(&self, parent: JointId) -> Vec3 {
         let like = self.ancestors(parent).find_map(|joint| {
             let axis = self.joint(joint)?.axis;
@@ -45,7 +45,7 @@ impl Skeleton {
         })
     }
 
-    /// A name that no joint has, made from `stem`.
+    /// An unused joint name that begins with `stem`.
     pub fn free_name(&self, stem: &str) -> String {
         let taken = |name: &str| self.find(name).is_some();
         if !stem.is_empty() && !taken(stem) {
@@ -56,7 +56,7 @@ impl Skeleton {
         numbered.find(|name| !taken(name)).unwrap_or_default()
     }
 
-    /// Removes joints with all that hangs from them.
+    /// Removes joints with all their descendants.
     ///
     /// # Errors
     ///
@@ -108,8 +108,12 @@ impl Skeleton {
         self.remove(joints)
     }
 
-    /// The offset and the angles, nearest to `near`, with which a joint would stand where it does now
-    /// as a child of `parent`.
+    /// Offset and angles with which a joint would keep its transform as a child of `parent`; the
+    /// angles are those nearest to `near`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint or parent.
     pub fn placed_under(
         &self,
         joint: JointId,
@@ -123,12 +127,13 @@ impl Skeleton {
         (local.translation.into(), like.angles_of(local.matrix3))
     }
 
-    /// Hangs a joint, with all that hangs from it, from another parent, or from none. It stays where
-    /// it is in the world, as far as its limits let it.
+    /// Moves a joint with its descendants to another parent; `None` makes it a root. It keeps its
+    /// transform in the world within its limits.
     ///
     /// # Errors
     ///
-    /// Refuses a parent that hangs from the joint, and one from which it would be beyond numbers.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::Cycle`] if the parent is a descendant of the
+    /// joint; [`SkeletonError::NotFinite`] if the new offset or rotation overflows.
     pub fn reparent(
         &mut self,
         joint: JointId,
@@ -149,9 +154,12 @@ impl Skeleton {
         Ok(self.sort())
     }
 
+    /// Renames a joint.
+    ///
     /// # Errors
     ///
-    /// Refuses a name that is empty or another joint's.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NoName`] for an empty name;
+    /// [`SkeletonError::Name`] for another joint's.
     pub fn rename(&mut self, joint: JointId, name: &str) -> Result<(), SkeletonError> {
         self.known(joint)?;
         self.check_name(name, joint)?;
@@ -159,20 +167,20 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Turns a joint, as far as its limits let it.
+    /// Sets a joint's Euler angles, clamped to its limits.
     ///
     /// # Errors
     ///
-    /// Refuses angles that are not finite.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NotFinite`].
     pub fn set_rotation(&mut self, joint: JointId, rotation: Vec3) -> Result<(), SkeletonError> {
         self.change(joint, |joint| joint.rotation = rotation)
     }
 
-    /// Changes a bone; children that sit on its tip stay there.
+    /// Sets a joint's bone vector; children at its tip move with the tip.
     ///
     /// # Errors
     ///
-    /// Refuses a vector that is not finite.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NotFinite`].
     pub fn set_axis(&mut self, joint: JointId, axis: Vec3) -> Result<(), SkeletonError> {
         let before = self.known(joint)?.axis;
         self.change(joint, |joint| joint.axis = axis)?;
@@ -184,11 +192,12 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Changes a joint in place: all but its name and parent.
+    /// Edits a joint; changes of its name and parent are ignored. Its rotation is clamped to its
+    /// limits.
     ///
     /// # Errors
     ///
-    /// Refuses what no joint can have, and leaves the joint as it was.
+    /// See [`SkeletonError`].
     pub fn change(
         &mut self,
         joint: JointId,
@@ -205,8 +214,8 @@ impl Skeleton {
         Ok(())
     }
 
-    /// What solvers write: angles within limits, and offsets. Where bones are so long that squares of
-    /// them are no numbers (from about 1e19), what is found is none either, and changes nothing.
+    /// Writes a solver's angles and offset; ignored if they are not finite, which happens to bones
+    /// from about 1e19 whose squares overflow.
     pub(crate) fn turn(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
         let Some(joint) = self.joints.get_mut(joint.index()) else { return };
         let (rotation, offset) = (joint.rotation, joint.offset);
@@ -228,7 +237,7 @@ impl Skeleton {
         }
     }
 
-    /// Brings parents before their children again, otherwise in the order that there is.
+    /// Restores parents-before-children order, otherwise stable.
     fn sort(&mut self) -> JointRemap {
         let mut order = Vec::with_capacity(self.joints.len());
         let mut moved: Vec<Option<JointId>> = vec![None; self.joints.len()];

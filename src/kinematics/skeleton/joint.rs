@@ -5,36 +5,38 @@ use super::{EulerAngles, JointId, SkeletonError, nearest_angles};
 /// A ball joint and its bone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// No two joints of a skeleton have the same.
+    /// Unique within the skeleton.
     pub name: String,
-    /// What it hangs from: a joint before it in the list.
+    /// The parent, which precedes the joint; `None` for a root.
     pub parent: Option<JointId>,
-    /// From the parent's base to this one's, in the parent's space; usually the parent's axis, so
-    /// that the joint sits on its tip. Of a root: from the skeleton's origin.
+    /// Vector from the parent's base to this joint's, in the parent's space; from the skeleton's
+    /// origin for a root. Equal to the parent's axis, it puts the joint on the parent's tip.
     pub offset: Vec3,
-    /// The bone: from base to tip, in the joint's own space. Zero for a point.
+    /// The bone's vector from base to tip, in the joint's own space. Zero for a joint without a bone.
     pub axis: Vec3,
-    /// Euler angles about the frame's x, y and z, radians; unbounded. x is applied first.
+    /// Euler angles about the frame's x, y and z in radians, unbounded; x is applied first.
     pub rotation: Vec3,
-    /// A, in which the angles are measured: columns are unit vectors at right angles, right-handed.
+    /// The frame A in which the angles are measured: a right-handed orthonormal basis as columns.
     pub frame: Mat3,
-    /// How far each angle can go.
+    /// Range of each angle.
     pub limits: [Option<Limit>; 3],
-    /// Solvers do not turn it.
+    /// Whether solvers leave the rotation unchanged.
     pub locked: bool,
-    /// How thick the bone is drawn.
+    /// The bone's radius when drawn.
     pub radius: f32,
 }
 
-/// From and to, in radians, both included.
+/// A closed range of an angle, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
+    /// Lower bound.
     pub min: f32,
+    /// Upper bound, not below `min`.
     pub max: f32,
 }
 
 impl Joint {
-    /// A free joint that sits on its parent's base, a tenth as thick as its bone is long.
+    /// An unlimited joint at its parent's base, with a radius of a tenth of its bone's length.
     pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
         Self {
             name: name.to_owned(),
@@ -49,7 +51,7 @@ impl Joint {
         }
     }
 
-    /// R, in the space of the joint's base.
+    /// The rotation R, in the space of the joint's base.
     pub fn local_rotation(&self) -> Mat3A {
         self.rotation_by(self.rotation)
     }
@@ -64,13 +66,13 @@ impl Joint {
         frame * turned * frame.transpose()
     }
 
-    /// What the angle x, y or z (0, 1, 2) turns about, as a unit vector in the space of the joint's
-    /// base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
+    /// Unit axis about which the angle x, y or z (0, 1, 2) rotates, in the space of the joint's base:
+    /// A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
     pub fn rotation_axis(&self, axis: usize) -> Vec3 {
         (Mat3A::from(self.frame) * EulerAngles(self.rotation).axes()).col(axis).into()
     }
 
-    /// T(offset) · R: from the joint's own space to its parent's.
+    /// Transform T(offset) · R from the joint's own space to its parent's.
     pub fn local(&self) -> Affine3A {
         Affine3A { matrix3: self.local_rotation(), translation: self.offset.into() }
     }
@@ -80,19 +82,19 @@ impl Joint {
         Affine3A::from_translation(self.offset)
     }
 
-    /// The angles that turn as `rotation` (in the space of the joint's base) does: of all that do,
-    /// those nearest to the present ones. They may be beyond the limits.
+    /// Angles of `rotation` (in the space of the joint's base) nearest to the present ones. They may
+    /// violate the limits.
     pub fn angles_of(&self, rotation: Mat3A) -> Vec3 {
         let frame = Mat3A::from(self.frame);
         nearest_angles(frame.transpose() * rotation * frame, self.rotation)
     }
 
-    /// Angles brought within the limits.
+    /// `rotation` clamped to the limits.
     pub fn clamped(&self, rotation: Vec3) -> Vec3 {
         within(&self.limits, rotation)
     }
 
-    /// Widens the limits that do not contain these angles until they do.
+    /// Widens the limits as far as needed to contain these angles.
     pub fn widen_limits(&mut self, angles: Vec3) {
         for (limit, angle) in self.limits.iter_mut().zip(angles.to_array()) {
             if let Some(Limit { min, max }) = limit {
@@ -101,6 +103,7 @@ impl Joint {
         }
     }
 
+    /// Whether any angle has a limit.
     pub fn is_limited(&self) -> bool {
         self.limits.iter().any(Option::is_some)
     }

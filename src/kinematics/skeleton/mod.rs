@@ -1,22 +1,23 @@
-//! Trees of joints, turned by Euler angles: forward kinematics.
+//! Joint trees with Euler angles, and their forward kinematics.
 //!
 //! A skeleton is a forest, parents before children in memory. A joint is a ball joint with one bone:
 //!
 //! ```text
 //!   parent's base        base                     tip
 //!        o──── offset ────o════════ axis ══════════o      all in the joint's own space, which is
-//!                                                         its parent's, moved by the offset and
-//!                                                         turned by the joint's rotation R
+//!                                                         its parent's, translated by the offset
+//!                                                         and rotated by R
 //! R          = A · R_z(r_z) · R_y(r_y) · R_x(r_x) · Aᵀ     x is applied first
 //! X(joint)   = X(parent) · T(offset) · R                   full transform
 //! base       = X · (0, 0, 0)          tip = X · axis
 //! ```
 //!
-//! A is a fixed orthonormal frame in which the angles are measured. The skeleton's own transform,
-//! which may mirror and scale, stands in front of all. The bind pose is the one without rotations.
+//! A is a fixed orthonormal frame in which the angles are measured. The skeleton's own transform maps
+//! skeleton space to the world and may mirror and scale. The bind pose is the skeleton as built,
+//! before any rotation.
 //!
-//! Angles are radians. Offsets, axes and radii share any one unit: the skeleton's; what is in the
-//! world says so.
+//! Angles are radians. Offsets, axes and radii are in skeleton units; positions in the world are
+//! called so.
 //!
 //! # Source
 //!
@@ -42,7 +43,7 @@ pub use pose::{SkeletonPose, is_within_numbers};
 pub(crate) use euler::{EulerAngles, angle_triples, nearest_angles};
 pub(crate) use joint::within;
 
-/// A forest of joints, and where it stands in the world.
+/// A forest of joints with its transform to the world.
 ///
 /// ```
 /// use glam::Vec3;
@@ -63,25 +64,28 @@ pub struct Skeleton {
 }
 
 impl Default for Skeleton {
-    /// Without joints.
+    /// A skeleton without joints.
     fn default() -> Self {
         Self { joints: Vec::new(), transform: Affine3A::IDENTITY }
     }
 }
 
 impl Skeleton {
+    /// Maximum number of joints.
     pub const MOST_JOINTS: usize = 10_000;
 
-    /// One locked joint that is a point: what the skeletons of this program begin with.
+    /// A skeleton of one locked joint without a bone.
     pub fn with_root(name: &str) -> Self {
         let root = Joint { locked: true, ..Joint::new(name, None, Vec3::ZERO) };
         Self { joints: vec![root], ..Self::default() }
     }
 
+    /// A skeleton of joints in which parents precede their children. Rotations are clamped to the
+    /// limits.
+    ///
     /// # Errors
     ///
-    /// Refuses what no skeleton can have: see [`SkeletonError`]. Parents must stand before their
-    /// children. Rotations beyond limits are brought within.
+    /// See [`SkeletonError`].
     pub fn from_joints(joints: Vec<Joint>) -> Result<Self, SkeletonError> {
         let mut skeleton = Self::default();
         if joints.len() > Self::MOST_JOINTS {
@@ -99,10 +103,12 @@ impl Skeleton {
         Ok(skeleton)
     }
 
+    /// All joints, parents before children.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
+    /// The joint of an index; `None` if there is none.
     pub fn joint(&self, joint: JointId) -> Option<&Joint> {
         self.joints.get(joint.index())
     }
@@ -135,20 +141,22 @@ impl Skeleton {
         std::iter::successors(first, |joint| self.joint(*joint)?.parent)
     }
 
-    /// Whether `joint` is `ancestor` or hangs from it.
+    /// Whether `joint` is `ancestor` or one of its descendants.
     pub fn hangs_from(&self, joint: JointId, ancestor: JointId) -> bool {
         self.ancestors(joint).any(|above| above == ancestor)
     }
 
-    /// What stands in front of all joints: from the skeleton's space to the world.
+    /// Transform from skeleton space to the world.
     pub fn transform(&self) -> Affine3A {
         self.transform
     }
 
+    /// Replaces the transform from skeleton space to the world. A singular one (a scale of 0) is
+    /// allowed here and refused by solvers.
+    ///
     /// # Errors
     ///
-    /// Refuses numbers that are not finite. What flattens (a scale of 0) is allowed here; solvers
-    /// refuse it.
+    /// [`SkeletonError::Transform`] if it is not finite.
     pub fn set_transform(&mut self, transform: Affine3A) -> Result<(), SkeletonError> {
         if !transform.is_finite() {
             return Err(SkeletonError::Transform);
@@ -169,42 +177,54 @@ impl Index<JointId> for Skeleton {
     }
 }
 
-/// Forward kinematics. For more than one joint, [`Skeleton::pose`] computes each once.
+/// Forward kinematics. For several joints use [`Skeleton::pose`], which visits each joint once.
 impl Skeleton {
-    /// Where a joint's rotation begins: its full transform without its own R, in the world.
+    /// Transform from the joint's base, before its rotation R, to the world.
     ///
     /// # Panics
     ///
-    /// As all of these, if there is no such joint.
+    /// If there is no such joint.
     pub fn transform_to_base(&self, joint: JointId) -> Affine3A {
         let Joint { parent, offset, .. } = &self[joint];
         let above = parent.map_or(self.transform, |parent| self.full_transform(parent));
         above * Affine3A::from_translation(*offset)
     }
 
-    /// X with the skeleton's transform in front: from the joint's own space to the world.
+    /// Transform from the joint's own space to the world: the skeleton's transform times X.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
     pub fn full_transform(&self, joint: JointId) -> Affine3A {
         let mut path: Vec<_> = self.ancestors(joint).collect();
         path.reverse();
         path.into_iter().fold(self.transform, |above, joint| above * self[joint].local())
     }
 
-    /// Where a joint's bone begins, in the world.
+    /// Position of the bone's base in the world.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
     pub fn base(&self, joint: JointId) -> Vec3 {
         self.full_transform(joint).translation.into()
     }
 
-    /// Where a joint's bone ends, in the world.
+    /// Position of the bone's tip in the world.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
     pub fn tip(&self, joint: JointId) -> Vec3 {
         self.full_transform(joint).transform_point3(self[joint].axis)
     }
 
-    /// Every joint as it is turned now, in the world.
+    /// Transforms of all joints in the world.
     pub fn pose(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local())
     }
 
-    /// [`Skeleton::pose`] in the memory that another pose has: for as many joints none is taken.
+    /// [`Skeleton::pose`] into an existing pose, which allocates only if it is too small.
     pub fn write_pose(&self, pose: &mut SkeletonPose) {
         self.write_pose_with(pose, |_, joint| joint.local());
     }
@@ -218,17 +238,17 @@ impl Skeleton {
         pose.refill(&self.joints, self.transform, local);
     }
 
-    /// Every joint as it is without rotations, in the world.
+    /// Transforms of all joints in the bind pose, in the world.
     pub fn bind_pose(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local_in_bind_pose())
     }
 
-    /// Every joint as it is turned now, in the skeleton's own space.
+    /// Transforms of all joints in skeleton space.
     pub fn pose_in_skeleton(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local())
     }
 
-    /// Every joint without rotations, in the skeleton's own space.
+    /// Transforms of all joints in the bind pose, in skeleton space.
     pub fn bind_pose_in_skeleton(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local_in_bind_pose())
     }

@@ -2,7 +2,7 @@ use glam::{Affine3A, Vec3};
 
 use super::{Joint, JointId};
 
-/// Where every joint of a skeleton is; what is beyond numbers is at their end.
+/// Transforms of all joints. Overflow is clamped to ±`f32::MAX`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkeletonPose {
     joints: Vec<Posed>,
@@ -25,7 +25,7 @@ impl SkeletonPose {
         pose
     }
 
-    /// Becomes what [`SkeletonPose::new`] would make, in the memory that it has.
+    /// [`SkeletonPose::new`] into existing memory.
     pub(super) fn refill(
         &mut self,
         joints: &[Joint],
@@ -47,10 +47,12 @@ impl SkeletonPose {
         }
     }
 
+    /// Number of joints.
     pub fn len(&self) -> usize {
         self.joints.len()
     }
 
+    /// Whether there are no joints.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
@@ -60,32 +62,40 @@ impl SkeletonPose {
         (0..self.len()).map(JointId::new)
     }
 
-    /// From the joint's own space.
+    /// Transform from the joint's own space to the pose's.
     ///
     /// # Panics
     ///
-    /// As all of these, if there is no such joint.
+    /// If there is no such joint.
     pub fn full(&self, joint: JointId) -> Affine3A {
         self.joints[joint.index()].full
     }
 
-    /// Where its bone begins.
+    /// Position of the bone's base.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
     pub fn base(&self, joint: JointId) -> Vec3 {
         self.full(joint).translation.into()
     }
 
-    /// Where its bone ends.
+    /// Position of the bone's tip.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
     pub fn tip(&self, joint: JointId) -> Vec3 {
         self.joints[joint.index()].tip
     }
 
-    /// Every base and tip.
+    /// All bases and tips.
     pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
         self.joints.iter().flat_map(|posed| [posed.full.translation.into(), posed.tip])
     }
 }
 
-/// Whether a point is where it should be, and not at the end of numbers because it is beyond them.
+/// Whether the point is finite and was not clamped.
 pub fn is_within_numbers(point: Vec3) -> bool {
     point.is_finite() && point.abs().max_element() < f32::MAX
 }

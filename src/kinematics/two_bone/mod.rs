@@ -1,4 +1,4 @@
-//! Two bones in closed form: where the elbow is when the hand is at the cursor.
+//! Closed-form inverse kinematics of two bones: position of the elbow for a position of the hand.
 //!
 //! ```text
 //!                 elbow
@@ -77,17 +77,17 @@ pub struct TwoBone {
     pub(super) lower: f32,
 }
 
-/// A bone length that no arm can have.
+/// An invalid bone length.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{bone} length is {value}; it must be a finite number above 0")]
 pub struct LengthError {
     /// Which bone: `"upper"` or `"lower"`.
     pub bone: &'static str,
-    /// The length that was given.
+    /// The refused length.
     pub value: f32,
 }
 
-/// Whether the hand is at the cursor, and if not, which limit holds it back.
+/// Position of the hand relative to the cursor, by the limit that prevents reaching it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// The hand is the cursor, bit for bit; where it is softened, within 1e-6·L.
@@ -98,8 +98,8 @@ pub enum Reach {
     TooClose,
 }
 
-/// Where the arm faces: what a caller keeps from one pose to the next, so that a cursor without a
-/// direction of its own (at the shoulder, or straight above or below it) leaves the arm as it was.
+/// Direction and yaw of the Pointer. A caller keeps it from one pose to the next to resolve a cursor
+/// without a direction (at the shoulder) or without a yaw (straight above or below it).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing {
     /// Unit vector from the shoulder to the hand: the Pointer, ŵ.
@@ -111,32 +111,34 @@ pub struct Facing {
 /// A solved arm, in Root space. The same D feeds every field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBonePose {
-    /// Where the two bones meet.
+    /// Position of the elbow.
     pub elbow: Vec3,
-    /// Where the lower bone ends: the cursor when it is [`Reach::Reached`], else on a limit sphere.
+    /// Position of the hand: the cursor when it is [`Reach::Reached`], else on a limit sphere.
     pub hand: Vec3,
     /// Whether the hand is at the cursor.
     pub reach: Reach,
     /// D, from shoulder to hand.
     pub distance: f32,
-    /// h_e, the elbow's Socket-space x: how far along the Pointer it is (negative when the lower
-    /// bone reaches back past the shoulder).
+    /// h_e, the elbow's x in Socket space, along the Pointer; negative when the lower bone reaches
+    /// back past the shoulder.
     pub along: f32,
-    /// o_e ≥ 0, the elbow's Socket-space y: how far out from the Pointer it is.
+    /// o_e ≥ 0, the elbow's y in Socket space: its distance from the Pointer.
     pub out: f32,
-    /// The angle about the Pointer from the Limb frame's +y to where the elbow stands out: the
-    /// Socket's rotation, radians.
+    /// Angle about the Pointer from the Limb frame's +y to the elbow, radians: the Socket's rotation
+    /// ψ_ref + ψ.
     pub spin: f32,
-    /// How many times as long as at rest the bones are: 1 unless they were stretched.
+    /// Factor by which the bones are lengthened; 1 without stretch.
     pub stretch: f32,
     /// The Pointer's direction and heading. Keep it for the next [`TwoBone::solve_from`].
     pub facing: Facing,
 }
 
 impl TwoBone {
+    /// Two bones of finite lengths above 0.
+    ///
     /// # Errors
     ///
-    /// Refuses a length that is not finite or not above 0, and says which bone it is.
+    /// [`LengthError`] for the first invalid length.
     pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
         for (bone, value) in [("upper", upper), ("lower", lower)] {
             if !(value.is_finite() && value > 0.0) {
@@ -146,29 +148,29 @@ impl TwoBone {
         Ok(Self { upper, lower })
     }
 
-    /// d₁, from shoulder to elbow.
+    /// Length d₁ from shoulder to elbow.
     pub fn upper(self) -> f32 {
         self.upper
     }
 
-    /// d₂, from elbow to hand.
+    /// Length d₂ from elbow to hand.
     pub fn lower(self) -> f32 {
         self.lower
     }
 
-    /// Bones so many times as long, as far as numbers go; as they are if that is no factor.
+    /// The bones scaled by `factor`, clamped to finite lengths; unchanged for an invalid factor.
     #[must_use]
     pub fn stretched(self, factor: f32) -> Self {
         let length = |length: f32| (length * factor).min(f32::MAX);
         Self::new(length(self.upper), length(self.lower)).unwrap_or(self)
     }
 
-    /// L = d₁ + d₂, the farthest that the hand can be (`f32::MAX` where the sum is beyond it).
+    /// L = d₁ + d₂, the hand's maximum distance (`f32::MAX` if the sum overflows).
     pub fn outer_limit(self) -> f32 {
         (self.upper + self.lower).min(f32::MAX)
     }
 
-    /// |δ| = |d₁ − d₂|, the nearest that the hand can be.
+    /// |δ| = |d₁ − d₂|, the hand's minimum distance.
     pub fn inner_limit(self) -> f32 {
         (self.upper - self.lower).abs()
     }
@@ -186,8 +188,8 @@ impl TwoBone {
         self.solve_from(cursor, twist, Facing::default())
     }
 
-    /// As [`Self::solve`], for callers that keep the arm's last [`Facing`]: it is used where the
-    /// cursor is at the shoulder (direction) or straight above or below it (yaw).
+    /// As [`Self::solve`], with the previous pose's [`Facing`] for a cursor at the shoulder (direction)
+    /// or straight above or below it (yaw).
     pub fn solve_from(self, cursor: Vec3, twist: f32, last: Facing) -> TwoBonePose {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
         debug_assert!(twist.is_finite(), "twist is {twist}");
@@ -196,8 +198,8 @@ impl TwoBone {
         TwoBonePose { hand: placed.hand_of(cursor), ..placed.pose(twist) }
     }
 
-    /// The pose with the hand at a distance from the shoulder, brought between the limits, in the
-    /// direction that the arm faces: [`Reach::Reached`] says no more than that.
+    /// The pose with the hand at `distance`, clamped to the limits, in the direction of `facing`. Its
+    /// reach is always [`Reach::Reached`].
     ///
     /// # Panics
     ///
@@ -224,15 +226,15 @@ impl TwoBonePose {
         y.atan2(x.hypot(z))
     }
 
-    /// Unit vector perpendicular to the Pointer towards the side that the elbow stands out on; of a
-    /// straight or folded arm that on which it would.
+    /// Unit vector perpendicular to the Pointer towards the elbow; defined for a straight or folded arm
+    /// too.
     pub fn outward(&self) -> Vec3 {
         let limb = self.facing.limb_frame();
         let (sin, cos) = self.spin.sin_cos();
         limb.y_axis * cos + limb.z_axis * sin
     }
 
-    /// How far another pose's elbow is turned about this one's Pointer, in (−π, π].
+    /// Angle about this pose's Pointer from its elbow to another pose's, in (−π, π].
     pub fn elbow_turn_to(&self, other: &Self) -> f32 {
         let (w, from, to) = (self.facing.direction, self.outward(), other.outward());
         w.dot(from.cross(to)).atan2(from.dot(to))
@@ -258,16 +260,14 @@ impl Default for Facing {
 }
 
 impl Facing {
-    /// Faces the cursor, as far as it says where that is.
-    ///
-    /// A cursor at the shoulder keeps the last direction, one straight above or below it the last
-    /// heading.
+    /// Direction and heading of the cursor. A cursor at the shoulder keeps the last direction, one
+    /// straight above or below it the last heading.
     pub fn towards(cursor: Vec3, last: Self) -> Self {
         Sight::new::<true>(cursor, last).facing
     }
 
-    /// The Limb's rotation, R_y(−θ_z)·R_z(θ_y): its +x is the Pointer, its +y the direction in
-    /// which the elbow stands out when it is not spun, its +z level.
+    /// The Limb's rotation, R_y(−θ_z)·R_z(θ_y): its +x is the Pointer, its +y the side of
+    /// the elbow at ψ = 0, its +z horizontal.
     #[inline(always)]
     pub fn limb_frame(self) -> Mat3 {
         let Vec2 { x: cos_yaw, y: sin_yaw } = self.heading;

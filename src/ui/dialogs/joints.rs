@@ -8,6 +8,7 @@ use super::first_button::first_button;
 use super::prompt::prompt;
 use crate::session::{Actions, Dialog, EditAction, FileAction, Session, ShellAction};
 use crate::ui::widgets;
+use crate::kinematics::skeleton::JointId;
 
 pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Actions) {
     ui.set_width(360.0);
@@ -64,7 +65,7 @@ pub(super) fn rename(
 pub(super) fn delete_joints(
     ui: &mut Ui,
     session: &Session,
-    joints: &[usize],
+    joints: &[JointId],
     actions: &mut Actions,
 ) {
     ui.set_width(360.0);

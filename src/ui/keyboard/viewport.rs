@@ -29,7 +29,7 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
     let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
     let selected = session.selected();
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
-        actions.push(SelectAction::Joints((0..session.skeleton_pose().len()).collect()));
+        actions.push(SelectAction::Joints(session.skeleton_pose().ids().collect()));
     }
     if pressed(Key::A) {
         actions.push(EditAction::AddJoint { tip: None });

@@ -19,6 +19,7 @@ use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, pose_summary};
 use navigation::{motion, show_cursor, wheel};
+use crate::kinematics::skeleton::JointId;
 
 pub(in crate::ui) fn ui(
     ui: &mut Ui,

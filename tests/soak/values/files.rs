@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use ik_arm::document::{Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
 use ik_arm::session::{Dialog, Export, FileAction, Job};
 
 use super::Values;
@@ -74,7 +74,7 @@ impl Values<'_> {
                     (Box::new(FileAction::SaveAs(self.path())), Box::new(self.dialog()));
                 Dialog::Replace { path: self.path(), then, back }
             }
-            _ => Dialog::Rename { joint: JointId::new(self.joint()), name: self.name() },
+            _ => Dialog::Rename { joint: self.joint(), name: self.name() },
         }
     }
 }

@@ -15,11 +15,11 @@ impl Values<'_> {
     pub fn joint(&mut self) -> usize {
         let joints = self.joints();
         if joints == 0 || self.chance(0.03) {
-            return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]);
+            return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]).into();
         }
         match self.session.selected() {
-            Some(joint) if self.chance(0.3) => joint.index(),
-            _ => self.random.below(joints),
+            Some(joint) if self.chance(0.3) => joint,
+            _ => self.random.below(joints).into(),
         }
     }
 
@@ -29,7 +29,7 @@ impl Values<'_> {
         if targets.is_empty() || self.chance(0.1) {
             return self.joint();
         }
-        targets[self.random.below(targets.len())].joint.index()
+        targets[self.random.below(targets.len())].joint
     }
 
     /// None, one or several, with repetitions.
@@ -93,7 +93,7 @@ impl Values<'_> {
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
         Target {
-            joint: JointId::new(joint),
+            joint: JointId::new(joint.index()),
             home,
             weight: self.above_0(2.0),
             enabled: self.chance(0.9),

@@ -40,10 +40,10 @@ impl Values<'_> {
         }
         let joint = self.joint();
         match self.random.below(20) {
-            0 => Channel::Rotation(JointId::new(joint)),
-            1 => Channel::Offset(JointId::new(joint)),
-            2 | 3 => Channel::Target(JointId::new(self.aimed())),
-            4 => Channel::Enabled(JointId::new(self.aimed())),
+            0 => Channel::Rotation(JointId::new(joint.index())),
+            1 => Channel::Offset(JointId::new(joint.index())),
+            2 | 3 => Channel::Target(self.aimed()),
+            4 => Channel::Enabled(self.aimed()),
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
             _ => self.one_of(&Channel::OF_ARM),

@@ -66,9 +66,9 @@ impl Values<'_> {
             2 => Grip::Pole(self.handle()),
             3 => Grip::Shoulder(self.axis()),
             4 => Grip::Bend,
-            5 => Grip::Target(JointId::new(self.aimed()), self.handle()),
-            6 => Grip::Tip(JointId::new(joint), self.handle()),
-            _ => Grip::Ring(JointId::new(joint), self.axis()),
+            5 => Grip::Target(self.aimed(), self.handle()),
+            6 => Grip::Tip(JointId::new(joint.index()), self.handle()),
+            _ => Grip::Ring(JointId::new(joint.index()), self.axis()),
         }
     }
 

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use egui::{ComboBox, Ui};
 use glam::Vec3;
 
-use crate::kinematics::skeleton::{Joint, Limit};
+use crate::kinematics::skeleton::{Joint, Limit, JointId};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
@@ -13,7 +13,7 @@ use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 const STIFF: &str = "The limits leave one angle only";
 const FOLLOWS_PATH: &str = "Switch off Follow path to rotate joints";
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &mut Actions) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
     if session.selection().len() > 1 {
         let count = session.selection().len();
@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: usize, actions: &
     }
 }
 
-fn rotation(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
+fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let shown = match session.skeleton_rig().follow_path {
         Some(_) => session.skeleton_rig().at(session.time())[index].rotation,
@@ -109,7 +109,7 @@ fn angle(
     );
 }
 
-fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
+fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let step = session.shown().cell() * 0.1;
     let tooltip = "Set the vector from base to tip, in joint space";
     widgets::pair(ui, "Bone", |ui| {
@@ -149,7 +149,7 @@ fn bone(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &m
     });
 }
 
-fn parent(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
+fn parent(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let skeleton = &session.skeleton();
     let name = |joint: Option<JointId>| match joint.and_then(|joint| skeleton.joint(joint)) {
         Some(joint) => joint.name.clone(),

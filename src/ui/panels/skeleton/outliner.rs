@@ -6,6 +6,7 @@ use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
 use crate::ui::{commands, style};
+use crate::kinematics::skeleton::JointId;
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
