@@ -55,6 +55,8 @@
 //! - Playback writes nothing. Keys of a transported twist are measured from the stereographic map, so
 //!   that playing does not depend on the past.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(feature = "app")]
 pub mod app;
 #[cfg(feature = "app")]

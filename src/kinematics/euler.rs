@@ -1,12 +1,12 @@
-//! Angles of a ball joint as the arm has them: R = R_y · R_z · R_x, so that y is the yaw, z the pitch
-//! and x the twist about the bone, which lies along +x. (Skeletons measure theirs otherwise: see
+//! Euler angles of the arm's ball joints: R = R_y · R_z · R_x, so that y is the yaw, z the pitch and x
+//! the roll about the bone, which lies along +x. (Skeletons use another order: see
 //! [`skeleton`](super::skeleton).)
 
 use core::f64::consts::PI;
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// The rotation of angles about x, y and z, radians.
+/// Rotation of angles about x, y and z, radians.
 pub fn rotation(angles: Vec3) -> DMat3 {
     let angles = angles.as_dvec3();
     DMat3::from_rotation_y(angles.y)
@@ -14,9 +14,9 @@ pub fn rotation(angles: Vec3) -> DMat3 {
         * DMat3::from_rotation_x(angles.x)
 }
 
-/// Angles of a rotation. Of all that there are those nearest to the last ones, so that they go on
-/// where they were, past half a turn too; straight up or down the last yaw is kept. Of many turns only
-/// one is kept: larger angles in single precision would not say the rotation as exactly.
+/// Angles of a rotation nearest to the last ones, so that they are continuous beyond ±180°. Straight up
+/// or down, the last yaw is kept. Whole turns beyond one and a half are dropped, which keeps single
+/// precision exact.
 pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
     let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));
@@ -34,13 +34,13 @@ pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     if far(other) < far(one) - 1e-6 { other.as_vec3() } else { one.as_vec3() }
 }
 
-/// The same angle, without its whole turns if it has gone farther than one and a half.
+/// The angle without whole turns, if it is beyond one and a half.
 pub(super) fn few_turns(angle: f64) -> f64 {
     if angle.abs() > 3.0 * PI { angle % (2.0 * PI) } else { angle }
 }
 
-/// The roll about +x of a rotation, τ = 2·atan2(q·x̂, q_w), radians, of all that there are the one
-/// nearest to the last; where the rotation turns +x around and so has no roll, the last.
+/// Roll of a rotation about +x, τ = 2·atan2(q·x̂, q_w), radians, nearest to the last one; the last one
+/// for a rotation that reverses +x and has no roll.
 pub fn roll(rotation: DMat3, last: f32) -> f32 {
     const NONE: f64 = 1e-9;
     let q = glam::DQuat::from_mat3(&rotation);

@@ -1,5 +1,5 @@
-//! Forward kinematics of the arm: the shoulder's three angles and the elbow's bend; how to get them
-//! from a pose, a pose from them, and something between two.
+//! Forward kinematics (FK) of the arm: conversion between a pose and joint angles, the shoulder's three
+//! and the elbow's bend, and blending of the two.
 //!
 //! ```text
 //! U     = R_y(−θ_z) R_z(θ_y) R_x(ψ_ref + ψ) R_z(θ_e)        the upper limb's rotation, by IK
@@ -7,14 +7,14 @@
 //! Lower = U · R_z(−β),   β = 180° − φ                        the bend: 0 straight, 180° folded
 //! ```
 //!
-//! A negative bend is the same pose as the positive one with the shoulder turned by 180° about the
+//! A negative bend gives the same pose as the positive one with the shoulder rotated by 180° about the
 //! limb. Root space, right-handed, radians.
 //!
-//! # How exact
+//! # Accuracy
 //!
-//! From a pose to angles and back the hand is within 1e-6·L and the elbow within 1e-5·L for
+//! From a pose to angles and back, the hand is within 1e-6·L and the elbow within 1e-5·L for
 //! 1° ≤ φ ≤ 179°; nearer to straight or folded within 5e-4·L, because there a hand in f32 does not
-//! say better where the elbow is.
+//! determine the elbow better.
 
 use core::f64::consts::{PI, TAU};
 
@@ -25,14 +25,14 @@ use super::ik::{length, reach};
 use super::twist::angle_from_limb;
 use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
 
-/// The angles of the arm's two joints.
+/// Joint angles of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fk {
-    /// Angles about x, y and z, unwrapped: see [`euler`].
+    /// Shoulder angles about x, y and z, unwrapped: see [`euler`].
     pub shoulder: Vec3,
-    /// β, unwrapped.
+    /// Elbow bend β, unwrapped.
     pub bend: f32,
-    /// How many times as long as at rest the limbs are.
+    /// Factor by which the limbs are lengthened.
     pub stretch: f32,
 }
 
@@ -44,7 +44,7 @@ impl Default for Fk {
 }
 
 impl Fk {
-    /// The angles of a pose, of all that there are the nearest to the last ones.
+    /// Angles of a pose, the equivalent ones nearest to `last`.
     #[must_use]
     pub fn matching(pose: &TwoBonePose, last: Self) -> Self {
         let turned = Turned::of_pose(pose);
@@ -64,24 +64,24 @@ impl Fk {
         }
     }
 
-    /// The pose of the angles; `last` is where the arm last faced. Its hand is where it is asked to
-    /// be: [`Reach::Reached`] says no more than that.
+    /// The pose of the angles; `last` resolves a yaw or direction that the angles leave open. Its reach
+    /// is always [`Reach::Reached`].
     pub fn pose(self, bones: TwoBone, last: Facing) -> TwoBonePose {
         Turned::of_fk(self).pose(bones, last)
     }
 }
 
-/// The rotations of the upper and the lower limb: their +x along the limb, their +z the hinge.
+/// Rotations of the upper and the lower limb, with +x along the limb and +z the hinge.
 pub fn limb_rotations(pose: &TwoBonePose) -> (DMat3, DMat3) {
     let Turned { upper, bend, .. } = Turned::of_pose(pose);
     let upper = DMat3::from_quat(upper);
     (upper, upper * DMat3::from_rotation_z(-bend))
 }
 
-/// A pose between the angles and a solved one: limbs and elbow turn, and keep their lengths; those of
-/// an arm that is stretched in one of the two go from one length to the other. The weight is 1 for the solved pose and 0 for the angles; what is not between is brought there.
+/// A blend of FK angles (`weight` 0) and a solved pose (`weight` 1, to which it is clamped). Rotation,
+/// bend and stretch are interpolated.
 ///
-/// The hand is [`Reach::Reached`] only when it is within 1e-6·L of the cursor.
+/// The reach is [`Reach::Reached`] only when the hand is within 1e-6·L of the cursor.
 pub fn blended(
     fk: Fk,
     solved: &TwoBonePose,

@@ -1,18 +1,17 @@
-//! Follow the leader: the joints of a chain on the path that its head has gone.
+//! Path following: joints of a chain on the path of its head.
 //!
-//! A snake that is led by its head has every joint where the head was before. With bones of fixed
-//! length a joint k+1 is the last point of the path, going back from joint k, that is one bone
-//! away: |P(s_{k+1}) − P(s_k)| = d_k, s_{k+1} < s_k.
+//! Every joint of a snake is where its head was before. With bones of fixed length, joint k+1 is the
+//! first point at a distance of one bone when the path is followed back from joint k:
+//! |P(s_{k+1}) − P(s_k)| = d_k, s_{k+1} < s_k.
 
 use glam::Vec3;
 
-/// Where the joints are when the head is at parameter `head` of `path`: one point more than there
-/// are `lengths`.
+/// Positions of the joints for the head at parameter `head` of `path`: one more than `lengths`.
 ///
-/// `path` must be continuous and defined before `head` as far as the chain reaches back; `stride` is
-/// a difference of parameters over which it is nearly straight and does not leave a joint's reach
-/// twice. On a path that never goes one bone away the joint stays some thousand strides back, and
-/// after a million strides of the whole chain what is left of it stays where it is.
+/// `path` must be continuous and defined before `head` as far as the chain reaches back. `stride` is
+/// a parameter step over which the path is nearly straight and leaves a bone's reach at most once. A
+/// joint is at most 10,000 strides behind the one before it, and the whole chain 1,000,000: on a path
+/// that never goes one bone away, joints stop there.
 pub fn along(
     path: impl Fn(f64) -> Vec3,
     head: f64,
@@ -23,7 +22,7 @@ pub fn along(
     core::iter::once(first).chain(behind(path, head, stride, lengths)).collect()
 }
 
-/// The same one after the other, without the head.
+/// [`along`] as an iterator, without the head.
 pub(crate) fn behind(
     path: impl Fn(f64) -> Vec3,
     head: f64,

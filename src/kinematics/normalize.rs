@@ -1,8 +1,8 @@
-//! Directions of vectors however short or long they are: squared, f32 ends at 1e-19 and at 1e19.
+//! Normalization of vectors whose squares underflow (below 1e-19) or overflow (above 1e19) in f32.
 
 use glam::Vec3A;
 
-/// The unit vector along another one, if it has a direction.
+/// Unit vector of the same direction; `None` for a vector without one.
 pub(crate) fn normalize(v: Vec3A) -> Option<Vec3A> {
     if is_usual(v) { v.try_normalize() } else { near_1(v)?.try_normalize() }
 }

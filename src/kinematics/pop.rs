@@ -1,31 +1,29 @@
-//! Pops: steps in which the elbow goes much faster than the cursor, and why.
+//! Pops: steps in which the elbow moves much faster than the cursor, with their causes.
 //!
-//! With ŵ the Pointer's direction, ê the side that the elbow stands out on, hₑ along and oₑ out, the
-//! elbow is at hₑ ŵ + oₑ ê. T is the least turn from the Pointer before a step (ŵ) to that after it
-//! (ŵ'). What the elbow did in the step has three parts, whose sum it is exactly:
+//! With ŵ the Pointer's direction, ê the side of the elbow, hₑ along and oₑ out, the elbow is at
+//! hₑ ŵ + oₑ ê. T is the least rotation from the Pointer before a step (ŵ) to that after it (ŵ'). The
+//! elbow's displacement is exactly the sum of three parts:
 //!
 //! ```text
-//! turn    T(hₑ ŵ + oₑ ê) − (hₑ ŵ + oₑ ê)                   the Pointer's own turn
+//! turn    T(hₑ ŵ + oₑ ê) − (hₑ ŵ + oₑ ê)                   the Pointer's rotation
 //! bend    (hₑ' − hₑ) ŵ' + (oₑ' − oₑ) · ½ (ê' + T ê)        in the plane of the arm
-//! swing   ½ (oₑ + oₑ') · (ê' − T ê)                        the reference's, about the Pointer
+//! swing   ½ (oₑ + oₑ') · (ê' − T ê)                        rotation about the Pointer, by the twist reference
 //! ```
 //!
-//! # What is a spike
+//! # Definition of a spike
 //!
-//! A step in which the elbow goes more than twice as far as it calmly would. Calm is an elbow that
-//! goes as far as the cursor, or as an arm that turns about the shoulder as one piece takes it, which
-//! is σd₁/D times as far:
+//! A step in which the elbow moves more than twice as far as expected. Expected is the cursor's own
+//! displacement, or σd₁/D times that, as of an arm that rotates rigidly about the shoulder:
 //!
 //! ```text
 //! |Δ elbow| / |Δ cursor|  >  2 · max(1, σd₁ / max(D, L/5))
 //! ```
 //!
-//! Twice, because that is what an arm without a pop can need: the sideways part of the bound in
+//! The factor 2 is what an arm without a pop can need: the sideways part of the bound in
 //! [`ik`](super::ik) is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer
 //! turns (gain g ≤ 1: 45° or more from the Limb's or a pole's line, all of the front of the map), and
-//! the bending of two equal bones stays below 2 up to D = 0.968·L. Nearer to the shoulder than a fifth
-//! of the outer limit the turn itself has a name: there a cursor that goes past turns the whole arm
-//! about.
+//! the bending of two equal bones stays below 2 up to D = 0.968·L. Within a fifth of the outer limit
+//! around the shoulder a passing cursor rotates the whole arm, which is a pop of its own kind.
 //!
 //! Everything is in Root space; lengths share any one unit, angles are radians.
 
@@ -38,7 +36,7 @@ use super::ik::Ik;
 use super::twist::{Stereographic, TransportedFrame, TwistReference};
 use super::two_bone::TwoBonePose;
 
-/// How the arm stood, and all that made it stand so.
+/// A solved arm with all inputs of its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     pub pose: TwoBonePose,
@@ -46,15 +44,15 @@ pub struct Moment {
     pub ik: Ik,
     /// ψ.
     pub spin: f32,
-    /// The shoulder in the world, if the cursor is pinned to the world: a cursor that goes with the
-    /// shoulder does not feel where that is.
+    /// Position of the shoulder in the world for a cursor pinned to the world; `None` for a cursor in
+    /// Root space, which moves with the shoulder.
     pub pinned_root: Option<Vec3>,
-    /// How far the hand leads (1) or the joints' own angles do (0).
+    /// Influence of IK: 1 for the solved pose, 0 for the FK angles.
     pub weight: f32,
     pub fk: Fk,
 }
 
-/// What else than the cursor changed in a step: such a step is none of a drag's.
+/// The input other than the cursor that changed in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
     Lengths,
@@ -67,28 +65,28 @@ pub enum Change {
     Root,
 }
 
-/// What the elbow did while the cursor took a step.
+/// The elbow's displacement in a step of the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// How many times as far as the cursor the elbow went.
+    /// The elbow's displacement divided by the cursor's.
     pub ratio: f32,
-    /// The ratio above which it is a spike.
+    /// Ratio above which the step is a spike.
     pub limit: f32,
     pub turn: Vec3,
     pub bend: Vec3,
     pub swing: Vec3,
-    /// Why it is a spike, if it is one.
+    /// Cause of the spike; `None` for other steps.
     pub pop: Option<Pop>,
 }
 
-/// Why the elbow popped.
+/// Cause of a pop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pop {
-    /// The Pointer passed where the reference says nothing, `nearest` to it in radians.
+    /// The Pointer passed a singular direction of the twist reference at the angle `nearest`, radians.
     Singular { nearest: f32 },
-    /// The arm became straight, or was and bent.
+    /// The arm became or ceased to be straight.
     Straight,
-    /// The arm folded up at its inner limit, or was and opened.
+    /// The arm became or ceased to be folded.
     Folded,
     /// The cursor passed the shoulder.
     Shoulder,
@@ -106,8 +104,8 @@ impl Change {
         Self::Root,
     ];
 
-    /// The first in the order above. What does not pose the arm then is no change: its angles while
-    /// the hand leads alone, the shoulder's place unless the cursor is pinned to the world.
+    /// The first change in the order above; `None` without one. Inputs without effect are ignored: the
+    /// FK angles at influence 1, and the shoulder's position unless the cursor is pinned to the world.
     pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
         Self::ALL.into_iter().find(|change| change.is_between(before, after))
     }
@@ -147,14 +145,14 @@ impl Change {
 }
 
 impl Step {
-    /// The shortest step of a cursor that is told apart from rounding, in parts of L: that is how well
-    /// f32 knows the elbow of an arm that is nearly straight or folded. Shorter ones can be added up.
+    /// Shortest step of the cursor, as a fraction of L, that is distinct from f32 rounding of the elbow
+    /// of a nearly straight or folded arm. Shorter steps can be accumulated.
     pub const LEAST: f32 = 1e-3;
-    /// How many times as far as calmly: see the module.
+    /// Factor over the expected displacement (see the module).
     const SPIKE: f64 = 2.0;
 
-    /// From one moment to another with no [`Change`] between; nothing where the cursor went less far
-    /// than [`Self::LEAST`].
+    /// The step between two poses without a [`Change`]; `None` for a cursor step shorter than
+    /// [`Self::LEAST`].
     pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
         let went = (after.cursor.as_dvec3() - before.cursor.as_dvec3()).length();
         let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
@@ -181,7 +179,7 @@ impl Step {
     }
 }
 
-/// Turn, bend and swing.
+/// The parts turn, bend and swing.
 fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     let outward = before.outward();
     let transported = TransportedFrame { direction: before.facing.direction, outward };
@@ -212,7 +210,7 @@ fn is_far_out(before: &Moment, after: &Moment, sum: f64) -> bool {
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
-/// How near the Pointer came to where the reference is singular.
+/// Least angle between the Pointer and a singular direction of the twist reference.
 fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.facing.direction.as_dvec3());
     let nearest = |direction: Vec3| {
@@ -227,7 +225,7 @@ fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
     }
 }
 
-/// How near the shorter way between two directions comes to another one, radians.
+/// Least angle between the shorter arc between two directions and a third direction, radians.
 fn nearest_on_way(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     let at_ends = from.angle_between(point).min(to.angle_between(point));
     let Some(normal) = from.cross(to).try_normalize() else {

@@ -2,8 +2,8 @@ use glam::{Quat, Vec3A};
 
 use super::normalize::{is_usual, near_1, normalize};
 
-/// The least turn that brings one direction to another, however long the vectors are. None where
-/// either has no direction; about any perpendicular where they are opposite.
+/// Least rotation from one direction to another, for vectors of any length. The identity if either has
+/// no direction; about any perpendicular axis if they are opposite.
 pub(crate) fn rotation_between(from: Vec3A, to: Vec3A) -> Quat {
     // Of the product of lengths: beyond, the sum below loses digits.
     const NEARLY_OPPOSITE: f32 = -0.9;

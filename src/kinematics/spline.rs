@@ -1,4 +1,4 @@
-//! Values that change smoothly in time: cubic splines through unevenly spaced knots.
+//! Cubic splines through unevenly spaced knots in time.
 //!
 //! Between two knots the curve is the cubic Hermite polynomial with Catmull–Rom tangents:
 //!
@@ -8,13 +8,13 @@
 //! ```
 //!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
-//! first knot and after the last, the curve stays at that knot's value. It is C¹ at interior knots.
+//! first knot and after the last, the curve is constant. It is C¹ at interior knots.
 //!
 //! # What breaks
 //!
-//! A spline overshoots: lengths 1000, 10, 10, 1000 give −114 between the two in the middle. Who
-//! samples a value that has a valid range brings it within. Angles are to be unwrapped: from 350° to
-//! 10° the curve goes back through 180°, from 350° to 370° forward through 360°.
+//! A spline overshoots: lengths 1000, 10, 10, 1000 give −114 between the two in the middle. The caller
+//! clamps values with a valid range. Angles must be unwrapped: from 350° to 10° the curve passes
+//! through 180°, from 350° to 370° through 360°.
 //!
 //! # Source
 //!
@@ -28,10 +28,11 @@ use core::ops::{Add, Mul, Sub};
 pub struct Knot<V> {
     /// In seconds; finite.
     pub time: f64,
+    /// The value.
     pub value: V,
 }
 
-/// Knots in the order of their times, no two at the same.
+/// Knots sorted by time, at most one at any time.
 ///
 /// ```
 /// use ik_arm::kinematics::spline::Spline;
@@ -55,8 +56,7 @@ impl<V> Default for Spline<V> {
     }
 }
 
-/// Later knots take the place of earlier ones at the same time; those at no finite time are left
-/// out.
+/// Later knots replace earlier ones at the same time; knots at non-finite times are skipped.
 impl<V: Copy> FromIterator<Knot<V>> for Spline<V> {
     fn from_iter<T: IntoIterator<Item = Knot<V>>>(knots: T) -> Self {
         let mut spline = Self::default();
@@ -68,16 +68,17 @@ impl<V: Copy> FromIterator<Knot<V>> for Spline<V> {
 }
 
 impl<V: Copy> Spline<V> {
+    /// All knots, sorted by time.
     pub fn knots(&self) -> &[Knot<V>] {
         &self.knots
     }
 
+    /// Whether there are no knots.
     pub fn is_empty(&self) -> bool {
         self.knots.is_empty()
     }
 
-    /// Puts a knot at a time, in the place of one that is there. A time that is not finite is
-    /// refused: nothing changes.
+    /// Inserts a knot, replacing one at the same time. Ignored if the time is not finite.
     pub fn insert(&mut self, time: f64, value: V) {
         if !time.is_finite() {
             return;
@@ -90,19 +91,19 @@ impl<V: Copy> Spline<V> {
         }
     }
 
-    /// Takes the knot at a time away, and gives its value.
+    /// Removes the knot at a time and returns its value.
     pub fn remove(&mut self, time: f64) -> Option<V> {
         let index = self.search(time).ok()?;
         Some(self.knots.remove(index).value)
     }
 
-    /// The value of the knot that stands at a time.
+    /// Value of the knot at exactly this time.
     pub fn get(&self, time: f64) -> Option<V> {
         Some(self.knots[self.search(time).ok()?].value)
     }
 
-    /// The value of the last knot until a time, for what does not blend; before the first knot that
-    /// one's. Nothing without knots.
+    /// Value of the last knot at or before a time, for values that do not blend; the first knot's before
+    /// that; `None` without knots.
     pub fn step(&self, time: f64) -> Option<V> {
         let until = self.knots.partition_point(|knot| knot.time <= time);
         Some(self.knots.get(until.saturating_sub(1))?.value)
@@ -121,7 +122,7 @@ impl<V> Spline<V>
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
 {
-    /// The value at a time: see the module. Nothing without knots.
+    /// Interpolated value at a time (see the module); `None` without knots.
     pub fn at(&self, time: f64) -> Option<V> {
         let (first, last) = (self.knots.first()?, self.knots.last()?);
         if time.is_nan() || time <= first.time {

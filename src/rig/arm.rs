@@ -3,18 +3,18 @@ use glam::{Affine3A, Mat3A, Vec3};
 use super::Cone;
 use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 
-/// What hangs in the hierarchy, parents before children.
+/// A part of the arm, parents before children.
 ///
 /// ```text
 /// Root                 translation = shoulder in the world
-///  ├ Limb              rotation = R_y(−θ_z)·R_z(θ_y): turns the Pointer, its +x, onto the hand
-///  │  ├ Socket         rotation = R_x(ψ_ref + ψ): spins the elbow about the Pointer
+///  ├ Limb              rotation = R_y(−θ_z)·R_z(θ_y): points +x, the Pointer, at the hand
+///  │  ├ Socket         rotation = R_x(ψ_ref + ψ): rotates the elbow about the Pointer
 ///  │  │  ├ UpperLimb   from the origin to (h_e, o_e, 0)
 ///  │  │  ├ LowerLimb   from (h_e, o_e, 0) to (D, 0, 0)
 ///  │  │  ├ Elbow       at (h_e, o_e, 0)
 ///  │  │  └ Hand        at (D, 0, 0)
 ///  │  └ Pointer        along +x, as long as the whole arm
-///  ├ Cursor            where the hand is asked to be
+///  ├ Cursor            the hand's target
 ///  ├ InnerLimit        sphere of radius |d₁ − d₂|
 ///  └ OuterLimit        sphere of radius d₁ + d₂
 /// ```
@@ -48,7 +48,7 @@ impl Part {
         Self::OuterLimit,
     ];
 
-    /// The part whose transform carries this one's.
+    /// The parent in the hierarchy; `None` for the Root.
     pub fn parent(self) -> Option<Self> {
         match self {
             Self::Root => None,
@@ -61,8 +61,7 @@ impl Part {
 
 /// A posed arm as a hierarchy of rigid transforms.
 ///
-/// World transforms are products down the hierarchy, never the solver's own points: that the two
-/// agree is a test.
+/// World transforms are products down the hierarchy, independent of the solver's own points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmRig {
     local: [Affine3A; Part::ALL.len()],
@@ -74,15 +73,15 @@ pub struct ArmRig {
 }
 
 impl ArmRig {
-    /// The seed's limbs are 30 units thick where they begin and 20 where they end, on an arm of
-    /// 500; other arms are as thick for their length, unless a short bone would drown in its joint.
+    /// Limbs have a radius of 30 at the base and 20 at the tip for an arm of length 500, as in
+    /// Palmieri's report. The radius scales with the arm's length, limited by the shorter bone.
     const BASE_RADIUS: f32 = 30.0;
     const TIP_RADIUS: f32 = 20.0;
     const POINTER_RADIUS: f32 = 4.0;
     const SEED_LENGTH: f32 = 500.0;
 
-    /// Hangs a pose (Root space) below a shoulder at `root` (world). The `cursor` is in Root space,
-    /// as it was given to the solver.
+    /// Hierarchy of a pose (Root space) with the shoulder at `root` (world). The `cursor` is in Root
+    /// space.
     pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &TwoBonePose) -> Self {
         let thickness = Self::thickness(arm);
         let (base_radius, tip_radius) =
@@ -118,7 +117,7 @@ impl ArmRig {
         }
     }
 
-    /// How thick an arm is, as a multiple of the seed's.
+    /// Radius of the limbs as a multiple of that of an arm of length 500.
     pub fn thickness(arm: TwoBone) -> f32 {
         let shorter = arm.upper().min(arm.lower());
         (arm.outer_limit() / Self::SEED_LENGTH).min(shorter / Self::BASE_RADIUS)
@@ -137,7 +136,7 @@ impl ArmRig {
         }
     }
 
-    /// Where the part's origin is in the world.
+    /// Position of the part's origin in the world.
     pub fn origin(&self, part: Part) -> Vec3 {
         self.world(part).translation.into()
     }

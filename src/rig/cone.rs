@@ -1,11 +1,12 @@
 use glam::{Affine3A, Mat3, Vec3};
 
-/// A cylinder that tapers, lying along its own +x from the origin: a limb, a bone, an axis.
+/// A tapered cylinder along +x from the origin.
 ///
-/// The seed places its cylinders by an axis and an angle from an arc cosine, which needs a special
-/// case near ±y; [`Cone::between`] builds a basis from the axis instead and is exact everywhere.
+/// [`Cone::between`] builds its rotation from a basis, without an arc cosine, and is exact in every
+/// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
+    /// Length along +x.
     pub length: f32,
     /// Radius at the origin.
     pub base_radius: f32,
@@ -14,8 +15,8 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// The cone from `base` to `tip`, and where it stands: a rotation whose +x points at the tip
-    /// (any of those there are), and a translation to the base. Where the ends meet, +x is kept.
+    /// The cone from `base` to `tip`, with the transform that places it: a rotation whose +x points at
+    /// the tip, with any roll, and a translation to the base. Coinciding ends keep +x.
     pub fn between(base: Vec3, tip: Vec3, base_radius: f32, tip_radius: f32) -> (Affine3A, Self) {
         let (x, length) = direction_and_length(tip - base);
         let (y, z) = x.any_orthonormal_pair();
@@ -23,8 +24,7 @@ impl Cone {
         (place, Self { length, base_radius, tip_radius })
     }
 
-    /// As [`Self::between`] for ends in the xy-plane; the +z axis is kept, so that the rotation is
-    /// the turn about z that a hinge in that plane makes.
+    /// As [`Self::between`] for ends in the xy-plane, with a rotation about z.
     pub fn in_xy_plane(
         base: Vec3,
         tip: Vec3,

@@ -1,4 +1,4 @@
-//! Many arms on a plane, each after a target of its own: what a batch is for.
+//! A crowd: many arms on a plane, each with a moving target, solved as a batch.
 
 use core::f32::consts::{PI, TAU};
 use core::time::Duration;
@@ -10,19 +10,20 @@ use multiversion::multiversion;
 use crate::kinematics::batch::{Arms, BatchError, Bones, Places, Points, PointsMut, Spin};
 use crate::kinematics::two_bone::TwoBone;
 
-/// What makes a crowd what it is at a time.
+/// Parameters of a crowd at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crowd {
-    /// How many arms there are, at most [`Crowd::MOST`].
+    /// Number of arms, at most [`Crowd::MOST`].
     pub arms: u32,
-    /// All have the same.
+    /// The bones of every arm.
     pub bones: TwoBone,
-    /// In seconds; after [`Crowd::PERIOD`] it begins again.
+    /// Time in seconds, periodic in [`Crowd::PERIOD`].
     pub time: f32,
+    /// The processor that solves it.
     pub solved_by: SolvedBy,
 }
 
-/// Where arms are solved.
+/// Processor that solves a crowd.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SolvedBy {
     /// By [`batch`](crate::kinematics::batch), on all cores.
@@ -33,56 +34,59 @@ pub enum SolvedBy {
 }
 
 impl Crowd {
+    /// Maximum number of arms.
     pub const MOST: u32 = 1_000_000;
 
-    /// Seconds after which all targets are where they were.
+    /// Period of the targets in seconds.
     pub const PERIOD: f32 = 16.0;
 
-    /// How far apart the shoulders are, in lengths of an arm: targets of neighbours hardly meet.
+    /// Distance between shoulders in arm lengths, at which the targets of neighbours hardly overlap.
     const SPACING: f32 = 1.15;
 
-    /// A sphere around all arms, in the world: middle and radius.
+    /// Bounding sphere of all arms in the world: centre and radius.
     pub fn bounds(&self) -> (Vec3, f32) {
         let reach = self.bones.outer_limit();
         (Vec3::ZERO, self.spread() * (self.arms as f32).sqrt() + reach)
     }
 
-    /// A shoulder's distance from the middle is this many times the root of its number, so that each
-    /// has as much of the plane for itself.
+    /// Factor of a shoulder's distance from the centre over the square root of its index, which gives
+    /// every arm the same area.
     fn spread(&self) -> f32 {
         Self::SPACING * self.bones.outer_limit() / PI.sqrt()
     }
 }
 
-/// How long a crowd took.
+/// Time taken to solve a crowd.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrowdTimes {
     pub arms: u32,
-    /// The solving alone, from cursors to elbows and hands.
+    /// Time of the solver alone, from cursors to elbows and hands.
     pub solve: Duration,
 }
 
-/// The arms of a crowd: what each is asked and what it answers, kind beside kind.
+/// Inputs and results of all arms of a crowd, as a structure of arrays.
 #[derive(Debug, Default)]
 pub struct CrowdArrays {
-    /// On the plane y = 0 of the world; the arms' Root spaces differ from it by no turn.
+    /// x and z of the shoulders on the plane y = 0 of the world. Root spaces are parallel to the world.
     pub shoulder: [Vec<f32>; 2],
-    /// In Root space.
+    /// Cursors in Root space.
     pub cursor: [Vec<f32>; 3],
+    /// Cosines of the twist.
     pub cos: Vec<f32>,
+    /// Sines of the twist.
     pub sin: Vec<f32>,
-    /// In Root space.
+    /// Elbows in Root space.
     pub elbow: [Vec<f32>; 3],
+    /// Hands in Root space.
     pub hand: [Vec<f32>; 3],
     spread: f32,
 }
 
 impl CrowdArrays {
-    /// Has as many arms as the crowd, with their shoulders where they belong. Says whether that is a
-    /// change.
+    /// Resizes to the crowd's number of arms and places the shoulders. Returns whether anything changed.
     ///
-    /// Shoulders are set like the seeds of a sunflower (H. Vogel, *A Better Way to Construct the
-    /// Sunflower Head*, 1979), so that more arms leave those that are there where they are.
+    /// Shoulders are arranged like the seeds of a sunflower (H. Vogel, *A Better Way to Construct the
+    /// Sunflower Head*, 1979), so that adding arms moves no other.
     pub fn resize(&mut self, crowd: &Crowd) -> bool {
         /// 2π(1 − 1/φ).
         const GOLDEN: f64 = 2.399_963_229_728_653;
@@ -107,10 +111,12 @@ impl CrowdArrays {
         true
     }
 
+    /// Number of arms.
     pub fn len(&self) -> usize {
         self.cos.len()
     }
 
+    /// Whether there are no arms.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -122,11 +128,11 @@ impl CrowdArrays {
         follow(time, crowd.bones.outer_limit(), [x, y, z], [cos, sin]);
     }
 
-    /// Answers all, and says how long that took.
+    /// Solves all arms and returns the time taken.
     ///
     /// # Errors
     ///
-    /// None, as long as all arrays are of one length, which they are.
+    /// [`BatchError::Len`] if the public arrays were resized to different lengths.
     pub fn solve(&mut self, bones: TwoBone) -> Result<Duration, BatchError> {
         let Self { cursor: [x, y, z], cos, sin, elbow, hand, .. } = self;
         let arms = Arms::new(Bones::Same(bones), Points { x, y, z }, Spin::Turn { cos, sin })?;
@@ -140,8 +146,8 @@ impl CrowdArrays {
     }
 }
 
-/// Where each target is in its round, at a time from 0 to 1: on a loop before and above its shoulder,
-/// some of it out of reach, the elbow going around by itself.
+/// Positions of the targets at a time from 0 to 1: on loops in front of and above their shoulders,
+/// partly out of reach, with rotating twists.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+avx512bw",
     "x86_64+avx2",
@@ -172,11 +178,11 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], spin: [&mut [f32]; 2])
     }
 }
 
-/// What one arm has for itself: shares of a round from 0 to 1, out of its number.
+/// One arm's parameters as fractions of a turn, hashed from its index.
 #[derive(Clone, Copy)]
 struct Own {
     phases: [f32; 4],
-    /// 1 or 2 rounds in a period, the one way or the other.
+    /// Rounds per period, 1 or 2 in either direction.
     rounds: f32,
 }
 
@@ -213,8 +219,7 @@ impl Own {
     }
 }
 
-/// sin 2πt, to 1e-7: in plain arithmetic, so that it is done for many arms at once and is the same on
-/// every machine.
+/// sin 2πt to 1e-7, in plain arithmetic, which vectorizes and is the same on every machine.
 #[inline(always)]
 fn sine(turns: f32) -> f32 {
     // To the nearest quarter before or after 0, where the sine has the same value.

@@ -1,4 +1,5 @@
-//! The arm as the seed has it: a hierarchy of transforms with limbs and guides hung in it.
+//! The arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and guides, and crowds of
+//! arms.
 
 mod arm;
 mod cone;

@@ -52,7 +52,7 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
 }
 
 /// Opens the dialog that renames a joint.
-pub(in crate::ui) fn rename(session: &Session, joint: usize) -> ShellAction {
+pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
     let name = session.skeleton().joint(joint).map(|joint| joint.name.clone());
     ShellAction::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
 }

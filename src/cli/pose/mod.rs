@@ -16,6 +16,7 @@ use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
 use crate::kinematics::chain_ik::{self, Method, Report, SolveError, SolverOptions};
 use pose_line::PoseLine;
+use crate::kinematics::skeleton::JointId;
 
 #[derive(clap::Args)]
 #[command(after_help = r#"The output is one line of JSON, in world space:
@@ -57,10 +58,7 @@ pub struct PoseArgs {
 
 fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
     let parser = PossibleValuesParser::new(Method::ALL.map(Method::name));
-    parser.map(|name| {
-        let is_named = |method: &Method| method.name() == name;
-        Method::ALL.into_iter().find(is_named).unwrap_or_default()
-    })
+    parser.try_map(|name| name.parse::<Method>())
 }
 
 fn tolerance(text: &str) -> Result<f32, String> {
@@ -137,7 +135,7 @@ fn solve(
 }
 
 /// Replaces joint indices by those of the file.
-fn with_file_indices(mut error: SolveError, order: &[usize]) -> SolveError {
+fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
     use SolveError::{Flat, NoJoint, Option, Point, TwoBone, TwoTargets, Weight};
     match &mut error {
         NoJoint(joint)

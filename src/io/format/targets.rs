@@ -169,10 +169,7 @@ impl SolverFields {
 }
 
 fn method(at: JsonPath, name: &str) -> Result<Method, FieldError> {
-    Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-        let names = Method::ALL.map(Method::name).join(", ");
-        FieldError::new(at, format!("must be one of {names}, got {name:?}"))
-    })
+    name.parse().map_err(|error: ParseMethodError| FieldError::new(at, error.to_string()))
 }
 
 impl FollowPathFields {

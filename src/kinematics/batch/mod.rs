@@ -122,6 +122,7 @@ pub struct Rotations<'a> {
 
 /// Arrays that are no batch.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum BatchError {
     #[error("{array} has {len} numbers; the cursors' x has {arms}, and there must be as many")]
     Len { array: &'static str, len: usize, arms: usize },

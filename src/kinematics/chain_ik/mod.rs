@@ -49,7 +49,7 @@ use configuration::Configuration;
 use damped_least_squares::DampedLeastSquares;
 use fabrik::Fabrik;
 pub use jacobian::jacobian;
-pub use options::{Method, Report, Root, SolveError, SolverOptions, TipTarget};
+pub use options::{Method, ParseMethodError, Report, Root, SolveError, SolverOptions, TipTarget};
 use problem::Problem;
 use stall::Stall;
 use transpose::Transpose;

@@ -1,3 +1,6 @@
+use core::fmt;
+use core::str::FromStr;
+
 use glam::Vec3;
 use thiserror::Error;
 
@@ -53,6 +56,28 @@ impl Method {
         }
     }
 }
+
+/// The [name](Method::name).
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Reads a [name](Method::name).
+impl FromStr for Method {
+    type Err = ParseMethodError;
+
+    fn from_str(name: &str) -> Result<Self, ParseMethodError> {
+        let found = Self::ALL.into_iter().find(|method| method.name() == name);
+        found.ok_or_else(|| ParseMethodError(name.to_owned()))
+    }
+}
+
+/// A text that is not the [name](Method::name) of a method.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("must be one of {names}, got {0:?}", names = Method::ALL.map(Method::name).join(", "))]
+pub struct ParseMethodError(String);
 
 /// A target for the tip of a joint's bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,6 +149,7 @@ pub struct Report {
 
 /// An invalid skeleton, target or option.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SolveError {
     #[error("there is no joint {0} to bring to a target")]
     NoJoint(JointId),

@@ -5,6 +5,7 @@ use super::{SoftReach, TwoBoneJob};
 
 /// A job that cannot be done.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum JobError {
     /// A matrix or a vector has a number that is infinite or not a number (in `end`, its place: its
     /// axes may be anything).

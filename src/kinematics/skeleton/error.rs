@@ -5,6 +5,7 @@ use super::{JointId, Skeleton};
 
 /// An invalid skeleton or edit.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SkeletonError {
     /// The index is not one of the skeleton.
     #[error("there is no joint {0}")]

@@ -1,4 +1,4 @@
-use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::skeleton::{JointId, SkeletonPose};
 
 /// Buffers for intermediate results.
 #[derive(Clone, Debug, Default)]
@@ -11,5 +11,5 @@ pub(super) struct Scratch {
     /// Whether each joint has no child.
     pub are_leaves: Vec<bool>,
     /// Joints with labels.
-    pub labelled: Vec<usize>,
+    pub labelled: Vec<JointId>,
 }

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::scratch::Scratch;
 use super::shadow::above_ground;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
-use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose, JointId};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
 
@@ -51,7 +51,7 @@ pub(super) fn add(
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
     let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
-    for joint in 0..joints.len() {
+    for joint in skeleton.ids() {
         let colour = drawn.colour(scene, joint, overlays);
         drawn.add_bone(scene, joint, colour);
         if display.shows(Overlay::Shadow) {
@@ -107,7 +107,7 @@ struct DrawnSkeleton<'a> {
 
 impl DrawnSkeleton<'_> {
     /// Radius of a bone at its base, as drawn.
-    fn radius(&self, joint: usize) -> f32 {
+    fn radius(&self, joint: JointId) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let (of_length, of_reach) = MAX_RADIUS;
         let limit = match length {
@@ -117,7 +117,7 @@ impl DrawnSkeleton<'_> {
                 of_reach.min(of_length * length)
             }
         };
-        (self.joints[joint].radius * self.scale).clamp(0.25 * limit, limit)
+        (self.joints[joint.index()].radius * self.scale).clamp(0.25 * limit, limit)
     }
 
     fn tip_radius(&self, joint: JointId) -> f32 {
@@ -127,7 +127,7 @@ impl DrawnSkeleton<'_> {
     }
 
     /// Colour of a bone: the limbs' colours alternate from parent to child, and the accent marks the selection.
-    fn colour(&self, scene: &Scene, joint: usize, overlays: &Overlays) -> Colour {
+    fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
         let plain = if self.depths[joint.index()].is_multiple_of(2) {
             palette.upper
@@ -200,16 +200,16 @@ impl DrawnSkeleton<'_> {
     }
 
     /// Adds the names of the selected joints and of the one under the mouse.
-    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<usize>) {
+    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
         labelled.clear();
         labelled.extend(overlays.selection.iter().copied().chain(overlays.pointed));
         labelled.sort_unstable();
         labelled.dedup();
-        for joint in labelled.iter().copied().filter(|joint| *joint < self.joints.len()) {
+        for joint in labelled.iter().copied().filter(|joint| joint.index() < self.joints.len()) {
             let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
             let label =
                 Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);
-            scene.add_label(label, format_args!("{}", self.joints[joint].name));
+            scene.add_label(label, format_args!("{}", self.joints[joint.index()].name));
         }
     }
 }

@@ -44,7 +44,7 @@ impl Gizmo {
     }
 
     /// The joint whose bone is at a screen position.
-    pub fn joint_at(&self, mouse: Pos2) -> Option<usize> {
+    pub fn joint_at(&self, mouse: Pos2) -> Option<JointId> {
         match self {
             Self::Arm(_) | Self::None => None,
             Self::Skeleton(figure) => figure.joint_at(mouse),

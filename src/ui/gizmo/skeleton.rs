@@ -55,7 +55,7 @@ impl SkeletonGizmo {
     /// The handle at a screen position: first the selection's handles, then targets, then tips.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_handles = self.handles.as_ref().and_then(|(joint, handles)| {
-            handles.at(mouse).map(|handle| Grip::Target(*joint, handle))
+            handles.at(mouse).map(|handle| Grip::Target(JointId::new(*joint), handle))
         });
         of_handles
             .or_else(|| self.target_at(mouse))
@@ -84,13 +84,13 @@ impl SkeletonGizmo {
     }
 
     /// The joint whose bone is at a screen position, nearest to the eye.
-    pub fn joint_at(&self, mouse: Pos2) -> Option<usize> {
+    pub fn joint_at(&self, mouse: Pos2) -> Option<JointId> {
         let hits = self
             .bones
             .iter()
             .enumerate()
             .filter(|(_, bone)| to_segment(mouse, bone.base, bone.tip) <= BONE_HIT);
-        hits.min_by(|(_, a), (_, b)| a.depth.total_cmp(&b.depth)).map(|(joint, _)| joint)
+        hits.min_by(|(_, a), (_, b)| a.depth.total_cmp(&b.depth)).map(|(joint, _)| joint.into())
     }
 
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
@@ -123,7 +123,7 @@ impl SkeletonGizmo {
         }
         if let Some((joint, handles)) = &self.handles {
             let of_target = |grip: Option<Grip>| match grip {
-                Some(Grip::Target(of, handle)) if of == *joint => Some(handle),
+                Some(Grip::Target(of, handle)) if of == JointId::new(*joint) => Some(handle),
                 _ => None,
             };
             let others_held = held.is_some() && of_target(held).is_none();
@@ -165,7 +165,7 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
 fn handles(screen: &ScreenProjection, session: &Session) -> Option<(usize, TranslateHandles)> {
     let joint = session.selected()?;
     let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
-    Some((joint, TranslateHandles::new(screen, target.at(session.time()), None)?))
+    Some((joint.index(), TranslateHandles::new(screen, target.at(session.time()), None)?))
 }
 
 /// The rings of the selected joint.

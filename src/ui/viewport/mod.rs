@@ -97,7 +97,7 @@ fn invite(ui: &mut Ui, rect: Rect) {
 }
 
 /// Reports the hovered joint.
-fn point(session: &Session, joint: Option<usize>, actions: &mut Actions) {
+fn point(session: &Session, joint: Option<JointId>, actions: &mut Actions) {
     if session.pointed() != joint {
         actions.push(SelectAction::Hover(joint));
     }

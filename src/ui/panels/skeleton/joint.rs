@@ -20,7 +20,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
         ui.weak(format!("{count} joints selected; this is the last one."));
     }
     rotation(ui, session, index, joint, actions);
-    limits(ui, session, index, joint, actions);
+    limits(ui, session, index.index(), joint, actions);
     bone(ui, session, index, joint, actions);
     parent(ui, session, index, joint, actions);
     let mut locked = joint.locked;
@@ -67,7 +67,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
 fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     for (axis, label) in AXES.into_iter().enumerate() {
         let limit = joint.limits[axis];
-        let set = |limit| EditAction::SetLimit { joint: index, axis, limit };
+        let set = |limit| EditAction::SetLimit { joint: JointId::new(index), axis, limit };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let mut limited = limit.is_some();
