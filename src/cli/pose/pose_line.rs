@@ -78,7 +78,7 @@ impl<'a> PoseLine<'a> {
             let tip = pose.tip(target.joint);
             let error = target.point.as_dvec3().distance(tip.as_dvec3());
             TargetLine {
-                joint: index_of[target.joint],
+                joint: index_of[target.joint.index()],
                 target: target.point,
                 tip,
                 error: (error as f32).min(f32::MAX),

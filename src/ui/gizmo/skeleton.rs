@@ -23,7 +23,7 @@ pub(in crate::ui) struct SkeletonGizmo {
     bones: Vec<ScreenBone>,
     targets: Vec<TargetMark>,
     /// Translation handles of the selected joint's target.
-    handles: Option<(usize, TranslateHandles)>,
+    handles: Option<(JointId, TranslateHandles)>,
     rings: Vec<RotateRing>,
 }
 
@@ -55,7 +55,7 @@ impl SkeletonGizmo {
     /// The handle at a screen position: first the selection's handles, then targets, then tips.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_handles = self.handles.as_ref().and_then(|(joint, handles)| {
-            handles.at(mouse).map(|handle| Grip::Target(JointId::new(*joint), handle))
+            handles.at(mouse).map(|handle| Grip::Target(*joint, handle))
         });
         of_handles
             .or_else(|| self.target_at(mouse))
@@ -123,7 +123,7 @@ impl SkeletonGizmo {
         }
         if let Some((joint, handles)) = &self.handles {
             let of_target = |grip: Option<Grip>| match grip {
-                Some(Grip::Target(of, handle)) if of == JointId::new(*joint) => Some(handle),
+                Some(Grip::Target(of, handle)) if of == *joint => Some(handle),
                 _ => None,
             };
             let others_held = held.is_some() && of_target(held).is_none();
@@ -162,10 +162,10 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
     session.skeleton_rig().targets.iter().filter_map(mark).collect()
 }
 
-fn handles(screen: &ScreenProjection, session: &Session) -> Option<(usize, TranslateHandles)> {
+fn handles(screen: &ScreenProjection, session: &Session) -> Option<(JointId, TranslateHandles)> {
     let joint = session.selected()?;
     let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
-    Some((joint.index(), TranslateHandles::new(screen, target.at(session.time()), None)?))
+    Some((joint, TranslateHandles::new(screen, target.at(session.time()), None)?))
 }
 
 /// The rings of the selected joint.
