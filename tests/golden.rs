@@ -6,6 +6,7 @@
 mod pictures;
 
 use glam::Vec3;
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::document::{
     Arm, AxisView, Camera, Cursor, Document, HandSpace, Overlay, Theme, TwistReferenceKind, Wrist,
 };

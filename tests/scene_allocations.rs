@@ -4,6 +4,7 @@
 
 use allocation_counter::measure;
 use glam::Vec3;
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::document::{
     Channel, Display, Document, Overlay, TargetPath, Theme, TwistReferenceKind,
 };

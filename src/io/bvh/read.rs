@@ -69,7 +69,7 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     let mut start = 0;
     for (index, node) in nodes.iter().enumerate() {
         let FirstFrame { offset, rotation } = key(&mut keys, index, node, motion, start);
-        let seed = Joint::new(&node.name, node.parent, Vec3::ZERO);
+        let seed = Joint::new(&node.name, node.parent.map(JointId::new), Vec3::ZERO);
         joints.push(Joint { offset, rotation, ..seed });
         start += node.channels.len();
     }

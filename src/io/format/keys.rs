@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::check;
+use crate::kinematics::skeleton::JointId;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;

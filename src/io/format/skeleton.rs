@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
-use crate::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton, SkeletonError};
 
 #[derive(Serialize, Deserialize)]
 pub struct SkeletonFields {
@@ -110,7 +110,7 @@ impl JointFields {
             joint.limits.map(|limit| limit.map(|Limit { min, max }| JsonNumbers([min, max])));
         Self {
             name: joint.name.clone(),
-            parent: joint.parent.and_then(|parent| u32::try_from(parent).ok()).map(Whole),
+            parent: joint.parent.and_then(|parent| u32::try_from(parent.index()).ok()).map(Whole),
             offset: Some(JsonPoint(joint.offset)),
             axis: Some(JsonPoint(joint.axis)),
             rotation: Some(JsonPoint(joint.rotation)),
@@ -126,7 +126,7 @@ impl JointFields {
         let parent = self.parent.map(|Whole(parent)| parent as usize);
         let axis = self.axis.map_or(Vec3::ZERO, |JsonPoint(axis)| axis);
         let parent_tip = parent.and_then(|parent| Some(before.get(parent)?.axis));
-        let default = Joint::new(&self.name, parent, axis);
+        let default = Joint::new(&self.name, parent.map(JointId::new), axis);
         let limits = self.limits.map(|JsonObject(limits)| limits).unwrap_or_default();
         Joint {
             offset: self.offset.map_or(parent_tip.unwrap_or_default(), |JsonPoint(offset)| offset),

@@ -9,7 +9,7 @@ use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath}
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
-use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+use crate::kinematics::chain_ik::{Method, ParseMethodError, Root, SolverOptions};
 use crate::kinematics::skeleton::JointId;
 
 #[derive(Serialize, Deserialize)]
@@ -82,7 +82,7 @@ impl TargetFields {
             period: Some(JsonNumber(period)),
         };
         Self {
-            joint: Whole(u32::try_from(target.joint).unwrap_or(u32::MAX)),
+            joint: Whole(u32::try_from(target.joint.index()).unwrap_or(u32::MAX)),
             home: JsonPoint(target.home),
             weight: Some(JsonNumber(target.weight)),
             enabled: Some(target.enabled),

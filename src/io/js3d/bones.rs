@@ -4,7 +4,7 @@ use super::file::{Js3dBone, Js3dSkeleton};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint};
-use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
 /// A skeleton, and the joint of every bone in the file's order.
 pub struct SkeletonWithOrder {
@@ -33,7 +33,7 @@ pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, Fie
     let skeleton = Skeleton::from_joints(joints).map_err(|error| match &error {
         SkeletonError::Radius { joint, value } => {
             let reason = format!("must be 0 or more, got {value}");
-            FieldError::new(at_bone(bones[*joint]).key("radius"), reason)
+            FieldError::new(at_bone(bones[joint.index()]).key("radius"), reason)
         }
         _ => FieldError::new(at.clone(), error.to_string()),
     })?;
@@ -82,7 +82,7 @@ pub fn counted(bones: usize) -> String {
     }
 }
 
-fn joint(file: &Js3dSkeleton, index: usize, root: Vec3, order: &[usize]) -> Joint {
+fn joint(file: &Js3dSkeleton, index: usize, root: Vec3, order: &[JointId]) -> Joint {
     let JsonObject(bone) = &file.bones[index];
     let JsonPoint(axis) = bone.extent;
     let parent = bone.parent();

@@ -59,11 +59,11 @@ use two_bone::TwoBones;
 ///
 /// ```
 /// use glam::Vec3;
-/// use ik_arm::kinematics::skeleton::{Joint, Skeleton};
+/// use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 /// use ik_arm::kinematics::chain_ik::{SolverOptions, ChainSolver, TipTarget};
 ///
 /// let mut skeleton = Skeleton::with_root("root");
-/// let upper = skeleton.add(Joint::new("upper", Some(0), Vec3::Y))?;
+/// let upper = skeleton.add(Joint::new("upper", Some(JointId::new(0)), Vec3::Y))?;
 /// let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y) };
 /// let lower = skeleton.add(lower)?;
 ///

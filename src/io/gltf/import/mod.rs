@@ -20,7 +20,7 @@ use crate::io::json_path::JsonPath;
 use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
-use crate::kinematics::skeleton::Joint;
+use crate::kinematics::skeleton::{Joint, JointId};
 use file::{GltfAnimation, GltfFile, GltfSkin};
 use motion::{JointMotion, JointPlacement, NodePoser};
 use nodes::NodeTree;
