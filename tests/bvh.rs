@@ -10,7 +10,7 @@ use common::{Random, skeletons};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 fn export(document: &Document) -> Exported {
     export_in(document, BvhUnit::default())
@@ -414,7 +414,10 @@ fn a_small_file_is_read_as_it_says() {
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25 });
     assert_eq!((document.rig, document.metres), (RigKind::Skeleton, Some(0.01)));
     assert_eq!(document.camera, document.skeleton_rig.first_view());
-    assert_eq!((warnings, order, skeletons), (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()]));
+    assert_eq!(
+        (warnings, order, skeletons),
+        (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()])
+    );
     assert!(io::parse("x", SMALL, Some("hip")).is_ok());
     let error = io::parse("x", SMALL, Some("knee")).expect_err("no skeleton").to_string();
     assert_eq!(error, "x has no skeleton called \"knee\"; it has \"hip\"");

@@ -8,7 +8,7 @@ use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, Report, Root, SolveError, SolverOptions, TipTarget, jacobian, solve,
 };
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 const CASES: usize = 1_000;
 
@@ -238,7 +238,9 @@ fn limits_let_targets_be_reached_that_are_within_them() {
             let mut skeleton = chain(&mut random, 5, 1.0);
             for joint in 1..=5 {
                 let limits = [(); 3].map(|()| Some(limit(&mut random)));
-                skeleton.change(JointId::new(joint), |joint| joint.limits = limits).expect("limits");
+                skeleton
+                    .change(JointId::new(joint), |joint| joint.limits = limits)
+                    .expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &[JointId::new(5)]);
             solve(&mut skeleton, &targets, &by(method)).expect("solve");

@@ -9,8 +9,8 @@ use ik_arm::kinematics::batch::{
     Arms, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
 };
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions};
-use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::two_bone::TwoBone;
 
 #[test]
 fn iterations_after_the_first_allocate_nothing() {
@@ -20,7 +20,9 @@ fn iterations_after_the_first_allocate_nothing() {
             let (mut skeleton, tips) = tree(&mut random, 3, 1.0);
             for joint in 1..skeleton.joints().len() {
                 let limits = [is_limited.then(|| limit(&mut random)), None, None];
-                skeleton.change(JointId::new(joint), |joint| joint.limits = limits).expect("limits");
+                skeleton
+                    .change(JointId::new(joint), |joint| joint.limits = limits)
+                    .expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &tips);
             let options =

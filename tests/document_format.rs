@@ -11,7 +11,7 @@ use glam::Vec3;
 use ik_arm::document::{Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
 use ik_arm::io::{self, Example, Group, Opened};
 use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
-use ik_arm::kinematics::skeleton::{JointId, Joint};
+use ik_arm::kinematics::skeleton::{Joint, JointId};
 
 fn open(text: &str) -> Opened {
     io::parse("test.json", text, None).unwrap_or_else(|error| panic!("{error}"))
@@ -45,7 +45,10 @@ fn every_document_is_read_again_bit_for_bit() {
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
     document.arm.goal = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
-    document.skeleton_mut().change(JointId::new(0), |root| root.rotation.y = -0.0).expect("possible");
+    document
+        .skeleton_mut()
+        .change(JointId::new(0), |root| root.rotation.y = -0.0)
+        .expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
     assert!(opened.arm.cursor().x.is_sign_negative() && opened.arm.cursor().z.is_sign_positive());
     assert!(opened.skeleton().joints()[0].rotation.y.is_sign_negative());

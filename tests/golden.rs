@@ -6,13 +6,13 @@
 mod pictures;
 
 use glam::Vec3;
-use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::document::{
     Arm, AxisView, Camera, Cursor, Document, HandSpace, Overlay, Theme, TwistReferenceKind, Wrist,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{self, Method};
 use ik_arm::kinematics::fk::Fk;
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Colour, Scene};
 use ik_arm::session::{Ghost, Overlays};

@@ -115,7 +115,9 @@ fn a_handle_is_a_target_that_the_instances_transform_brings_into_the_world() {
         "transforms":{"T":{"translation":[10,20,30],"scale":[-2,1,1]}},
         "instances":{"skinned_meshes":{"I":{"mesh":"X","transform":"T"}}}}}"#;
     let targets = open(text).document.skeleton_rig.targets;
-    let at = |target: usize| (targets[target].joint.index(), targets[target].home, targets[target].enabled);
+    let at = |target: usize| {
+        (targets[target].joint.index(), targets[target].home, targets[target].enabled)
+    };
     assert_eq!(targets.len(), 2);
     assert_eq!(at(0), (1, Vec3::new(8.0, 22.0, 33.0), false));
     assert_eq!(at(1), (0, Vec3::new(10.0, 20.0, 30.0), true));

@@ -78,7 +78,10 @@ fn lengths_stay_above_0_where_their_spline_does_not() {
 fn angles_stay_within_the_limits_of_their_joint() {
     let mut document = human();
     let limits = [Some(Limit { min: -0.5, max: 0.5 }), None, None];
-    document.skeleton_mut().change(JointId::new(1), |joint| joint.limits = limits).expect("possible");
+    document
+        .skeleton_mut()
+        .change(JointId::new(1), |joint| joint.limits = limits)
+        .expect("possible");
     document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::new(3.0, 30.0, -3.0));
     let joint = document.at(0.0).skeleton().joints()[1].clone();
     assert_eq!(joint.rotation, Vec3::new(0.5, 30.0, -3.0));

@@ -5,7 +5,7 @@ mod pictures;
 
 use glam::Vec3;
 use ik_arm::document::{Display, Document, Overlay, RigKind, Theme};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, PictureRenderer, Renderer};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;

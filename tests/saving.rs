@@ -14,7 +14,7 @@ use common::Random;
 use glam::Vec3;
 use ik_arm::document::{Document, RigKind};
 use ik_arm::io;
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{EditAction, FileAction, Session};
 
 /// Names the file that a child process saves to.

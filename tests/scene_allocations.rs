@@ -4,11 +4,11 @@
 
 use allocation_counter::measure;
 use glam::Vec3;
-use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::document::{
     Channel, Display, Document, Overlay, TargetPath, Theme, TwistReferenceKind,
 };
 use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::{Scene, SceneBuilder};
 use ik_arm::session::{
     Action, EditAction, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
@@ -102,7 +102,7 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
         document.key(Channel::Rotation(JointId::new(3)), time);
     }
     let mut bench = Bench::new(document);
-    bench.session.apply(SelectAction::Joints(vec![joints - 1]));
+    bench.session.apply(SelectAction::Joints(vec![JointId::new(joints - 1)]));
     assert!(bench.session.overlays().trail.len() > 10, "a motion path");
     bench.assert_takes_nothing(&[
         Action::from(PlaybackAction::SetTime(0.1)),

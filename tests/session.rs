@@ -426,7 +426,8 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
 fn selected_and_copied_keys_follow_their_joints() {
     let mut session = Session::default();
     session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
-    let channels: Vec<Channel> = (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
+    let channels: Vec<Channel> =
+        (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
     session.apply(EditAction::Key(channels));
     let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
     let foot = name(&session, JointId::new(15));

@@ -264,7 +264,10 @@ fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
         session.apply(EditAction::AddChild { parent: JointId::new(parent), tip });
     }
     session.apply(EditAction::AddRoot);
-    session.apply(EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::new(1.0, -3.0, 2.0) });
+    session.apply(EditAction::SetRotation {
+        joint: JointId::new(1),
+        rotation: Vec3::new(1.0, -3.0, 2.0),
+    });
     for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
         let parent = parent.map(JointId::new);
         session.apply(EditAction::ReparentJoint { joint: JointId::new(joint), parent });
@@ -282,7 +285,10 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
     for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
         session.apply(TransactionAction::Begin);
         for x in [1.0, x] {
-            session.apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::new(x, 0.0, 0.0) });
+            session.apply(EditAction::SetRotation {
+                joint: JointId::new(0),
+                rotation: Vec3::new(x, 0.0, 0.0),
+            });
         }
         session.apply(EditAction::SetHand(Vec3::X * hand));
         session.apply(TransactionAction::Commit);
@@ -332,7 +338,8 @@ fn the_same_revision_is_saved_as_the_same_text() {
 fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
-        session.apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
+        session
+            .apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
         let axis = session.ring(JointId::new(0), 0).expect("a ring").axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
         let (one, other) = axis.any_orthonormal_pair();

@@ -5,7 +5,7 @@
 use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{
     Action, EditAction, PlaybackAction, Preferences, Session, TransactionAction,
 };
@@ -19,7 +19,11 @@ const BYTES_PER_KEY: u64 = 512;
 fn chain() -> Skeleton {
     let joint = |index: usize| Joint {
         offset: if index == 0 { Vec3::ZERO } else { Vec3::Y * 0.1 },
-        ..Joint::new(&format!("joint_{index}"), index.checked_sub(1).map(JointId::new), Vec3::Y * 0.1)
+        ..Joint::new(
+            &format!("joint_{index}"),
+            index.checked_sub(1).map(JointId::new),
+            Vec3::Y * 0.1,
+        )
     };
     Skeleton::from_joints((0..JOINTS).map(joint).collect()).expect("a chain")
 }

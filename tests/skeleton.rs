@@ -7,7 +7,7 @@ use std::f32::consts::FRAC_PI_2;
 use common::Random;
 use common::skeletons::{forest, limit, transform};
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, SkeletonError, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton, SkeletonError};
 
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.

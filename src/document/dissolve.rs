@@ -90,7 +90,11 @@ mod tests {
         let posed = document.at(time);
         let pose = posed.skeleton_rig.at(time).pose();
         let joints = posed.skeleton().joints().iter().enumerate();
-        joints.map(|(at, joint)| (joint.name.clone(), pose.base(JointId::new(at)), pose.tip(JointId::new(at)))).collect()
+        joints
+            .map(|(at, joint)| {
+                (joint.name.clone(), pose.base(JointId::new(at)), pose.tip(JointId::new(at)))
+            })
+            .collect()
     }
 
     fn assert_children_stay(document: &Document, deleted: &[JointId], times: &[f64]) {

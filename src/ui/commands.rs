@@ -1,8 +1,8 @@
 //! Actions shared by menus, keys and buttons.
 
 use crate::document::{AxisView, Camera};
-use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
 use crate::kinematics::skeleton::JointId;
+use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
 
 pub(in crate::ui) fn open() -> FileAction {
     FileAction::AskPath(Dialog::open())

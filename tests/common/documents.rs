@@ -8,7 +8,7 @@ use ik_arm::document::{
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::skeleton::{Joint, Limit, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::TransportedFrame;
 use ik_arm::kinematics::two_bone::{Facing, TwoBone};
@@ -108,8 +108,9 @@ fn arm(random: &mut Random) -> Arm {
 
 fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let overlays = Overlay::all().map(Channel::Overlay);
-    let joints = (0..rig.skeleton.joints().len())
-        .flat_map(|joint| [Channel::Rotation(JointId::new(joint)), Channel::Offset(JointId::new(joint))]);
+    let joints = (0..rig.skeleton.joints().len()).flat_map(|joint| {
+        [Channel::Rotation(JointId::new(joint)), Channel::Offset(JointId::new(joint))]
+    });
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
     let all = Channel::OF_ARM.into_iter().chain(overlays).chain([Channel::Translation]);

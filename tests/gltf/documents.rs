@@ -108,7 +108,8 @@ fn flat(mut document: Document) -> Document {
 fn points() -> Document {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let joint = |name, parent| Joint::new(name, parent, Vec3::ZERO);
-    let joints = vec![joint("one", None), joint("two", Some(JointId::new(0))), joint("three", None)];
+    let joints =
+        vec![joint("one", None), joint("two", Some(JointId::new(0))), joint("three", None)];
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     document
 }
@@ -117,7 +118,11 @@ fn points() -> Document {
 fn names() -> Document {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let joint = |name, parent| Joint::new(name, parent, Vec3::Y);
-    let joints = vec![joint("Armature", None), joint("a", Some(JointId::new(0))), joint("a_tip", Some(JointId::new(0)))];
+    let joints = vec![
+        joint("Armature", None),
+        joint("a", Some(JointId::new(0))),
+        joint("a_tip", Some(JointId::new(0))),
+    ];
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     document
 }

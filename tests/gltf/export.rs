@@ -112,7 +112,8 @@ fn joints_have_the_documents_names_and_the_leaves_have_tips() {
     let glb = exported(&example("human"));
     let document = example("human");
     let joints = document.skeleton().joints();
-    let parents: HashSet<usize> = joints.iter().filter_map(|joint| joint.parent).map(JointId::index).collect();
+    let parents: HashSet<usize> =
+        joints.iter().filter_map(|joint| joint.parent).map(JointId::index).collect();
     for (index, joint) in joints.iter().enumerate() {
         assert_eq!(glb.name(index), joint.name);
         let is_bone_and_leaf = !parents.contains(&index) && joint.axis != Vec3::ZERO;

@@ -48,7 +48,10 @@ fn a_text_and_a_binary_file_give_the_same_joints() {
     let opened = open(&text);
     assert_eq!(opened.document.rig, RigKind::Skeleton);
     let joints = opened.document.skeleton().joints();
-    let told: Vec<_> = joints.iter().map(|joint| (joint.name.as_str(), joint.parent.map(JointId::index))).collect();
+    let told: Vec<_> = joints
+        .iter()
+        .map(|joint| (joint.name.as_str(), joint.parent.map(JointId::index)))
+        .collect();
     assert_eq!(told, [("a", None), ("b", Some(0)), ("c", Some(1))]);
     assert_eq!(
         joints.iter().map(|joint| joint.axis).collect::<Vec<_>>(),
@@ -136,7 +139,10 @@ fn a_leaf_called_the_tip_of_its_parent_ends_the_bone() {
     );
     let opened = open(&text);
     let joints = opened.document.skeleton().joints();
-    assert_eq!((joints.len(), joints[0].axis, joints[1].parent), (2, Vec3::Y * 3.0, Some(JointId::new(0))));
+    assert_eq!(
+        (joints.len(), joints[0].axis, joints[1].parent),
+        (2, Vec3::Y * 3.0, Some(JointId::new(0)))
+    );
     assert_eq!(opened.order, [0, 1].map(JointId::new));
 }
 

@@ -164,7 +164,9 @@ fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
     );
     let (was, is) = (document.at(0.125), opened.document.at(0.125));
     let (was, is) = (was.skeleton().pose(), is.skeleton().pose());
-    let gap = (0..was.len()).map(|joint| was.base(JointId::new(joint)).distance(is.base(JointId::new(joint))));
-    let far = (0..was.len()).map(|joint| was.base(JointId::new(joint)).length()).fold(0.0, f32::max);
+    let gap = (0..was.len())
+        .map(|joint| was.base(JointId::new(joint)).distance(is.base(JointId::new(joint))));
+    let far =
+        (0..was.len()).map(|joint| was.base(JointId::new(joint)).length()).fold(0.0, f32::max);
     assert!(gap.fold(0.0, f32::max) < 1e-5 * far);
 }

@@ -70,7 +70,10 @@ impl Actions {
             return Some(self.anew(session));
         }
         if joints > Self::MOST_JOINTS && joints <= Self::HUGE && self.random.chance(0.2) {
-            return Some(EditAction::DeleteJoints(vec![JointId::new(1 + self.random.below(joints - 1))]).into());
+            return Some(
+                EditAction::DeleteJoints(vec![JointId::new(1 + self.random.below(joints - 1))])
+                    .into(),
+            );
         }
         if keys.count() > Self::MOST_KEYS && self.random.chance(0.2) {
             let place = self.random.below(keys.tracks().count());

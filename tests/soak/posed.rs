@@ -89,7 +89,7 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
         let (bone, length) = (back * (tip - base), joint.axis.as_dvec3().length());
         let coarse = 8.0 * U * base.abs().max(tip.abs()).max_element() * 3.0 * size(back);
         // A product of rotations is a rotation up to one rounding each.
-        let depth = skeleton.ancestors(index).count() as f64;
+        let depth = skeleton.ancestors(JointId::new(index)).count() as f64;
         let skew = 4.0 * size(stand) * size(back) * (4.0 + depth) * U * length;
         let off = (bone.length() - length).abs();
         hold!(
@@ -104,8 +104,14 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
 /// Every reference to a joint, target or key exists.
 fn places(session: &Session) -> Result<(), Broken> {
     let joints = session.skeleton().joints().len();
-    hold!(session.selection().iter().all(|joint| *joint < JointId::new(joints)), "selected joints are there");
-    hold!(session.pointed().is_none_or(|joint| joint < JointId::new(joints)), "the joint pointed at is there");
+    hold!(
+        session.selection().iter().all(|joint| *joint < JointId::new(joints)),
+        "selected joints are there"
+    );
+    hold!(
+        session.pointed().is_none_or(|joint| joint < JointId::new(joints)),
+        "the joint pointed at is there"
+    );
     let document = session.document();
     for (channel, time) in session.selected_keys() {
         let key = document.keys.track(*channel).and_then(|track| track.get(*time));

@@ -97,7 +97,11 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench.key(Key::A);
     bench.settle();
-    assert_eq!(bench.session().skeleton().joints()[3].parent, Some(JointId::new(2)), "and so does A");
+    assert_eq!(
+        bench.session().skeleton().joints()[3].parent,
+        Some(JointId::new(2)),
+        "and so does A"
+    );
 }
 
 #[test]

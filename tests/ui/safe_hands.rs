@@ -224,9 +224,14 @@ fn after_a_limit_the_reading_says_what_was_turned() {
         (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
     let limit = limits[axis].expect("limited");
-    let ring = bench.session().ring(JointId::new(joint.index()), axis).expect("the free axis has a ring");
+    let ring =
+        bench.session().ring(JointId::new(joint.index()), axis).expect("the free axis has a ring");
     for fixed in (0..3).filter(|other| *other != axis) {
-        assert_eq!(bench.session().ring(JointId::new(joint.index()), fixed), None, "a fixed axis has none");
+        assert_eq!(
+            bench.session().ring(JointId::new(joint.index()), fixed),
+            None,
+            "a fixed axis has none"
+        );
     }
     let grip = Grip::Ring(joint, axis);
     let before = bench.session().skeleton().joints()[joint.index()].rotation[axis];

@@ -499,7 +499,9 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
     bench.choose(&["File", "New skeleton"]);
     let name = "a name of many letters ".repeat(4);
     bench.apply([EditAction::RenameJoint { joint: JointId::new(0), name }]);
-    bench.apply((0..200).map(|parent| EditAction::AddChild { parent: JointId::new(parent), tip: None }));
+    bench.apply(
+        (0..200).map(|parent| EditAction::AddChild { parent: JointId::new(parent), tip: None }),
+    );
     assert_eq!(names(&bench).len(), 201);
     assert_eq!(bench.session().selected(), Some(JointId::new(200)));
     bench.apply([

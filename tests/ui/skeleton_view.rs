@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{
     Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, SolverAction,
     TransactionAction, ViewAction,
@@ -55,7 +55,9 @@ fn tip_place(bench: &Bench, name: &str) -> Pos2 {
 fn bone_place(bench: &Bench, name: &str) -> Pos2 {
     let pose = bench.session().skeleton_pose();
     let joint = joint(bench, name);
-    bench.place(pose.base(JointId::new(joint.index())).midpoint(pose.tip(JointId::new(joint.index()))))
+    bench.place(
+        pose.base(JointId::new(joint.index())).midpoint(pose.tip(JointId::new(joint.index()))),
+    )
 }
 
 /// A point of a ring around the selected joint, so many radians along from where it starts.

@@ -486,7 +486,11 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     bench.apply([FileAction::OpenExample(Example::find("human").expect("an example"))]);
     let names = |joint: JointId| bench.session().skeleton()[joint].name.clone();
     let (turned, reached) = (names(JointId::new(1)), names(JointId::new(8)));
-    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Target(JointId::new(8)), Channel::Hand])]);
+    bench.apply([EditAction::Key(vec![
+        Channel::Rotation(JointId::new(1)),
+        Channel::Target(JointId::new(8)),
+        Channel::Hand,
+    ])]);
     for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
     {
         assert!(bench.shows(Role::Button, &format!("Channel {name}")), "{name}");

@@ -15,8 +15,8 @@ use super::report::fail;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
 use crate::kinematics::chain_ik::{self, Method, Report, SolveError, SolverOptions};
-use pose_line::PoseLine;
 use crate::kinematics::skeleton::JointId;
+use pose_line::PoseLine;
 
 #[derive(clap::Args)]
 #[command(after_help = r#"The output is one line of JSON, in world space:

@@ -89,7 +89,8 @@ impl BvhRig {
         skeleton: &Skeleton,
         transform: &SkeletonTransform,
     ) -> BvhPose {
-        let joint = |node: &Option<usize>| node.and_then(|joint| skeleton.joint(JointId::new(joint)));
+        let joint =
+            |node: &Option<usize>| node.and_then(|joint| skeleton.joint(JointId::new(joint)));
         let offset = |node| match joint(node) {
             None => transform.origin(),
             Some(joint) => transform.vector(joint.offset.as_dvec3()),

@@ -4,11 +4,11 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::check;
-use crate::kinematics::skeleton::JointId;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, KeyRow, Seconds, Whole};
+use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Spline;
 
 /// One channel and its keys.

@@ -25,8 +25,8 @@ use super::json_path::JsonPath;
 use super::opened::Opened;
 use super::source::Source;
 use super::value::JsonObject;
-use crate::kinematics::skeleton::JointId;
 use crate::document::{Document, RigKind, SkeletonRig, Target};
+use crate::kinematics::skeleton::JointId;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 

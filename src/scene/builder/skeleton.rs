@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::scratch::Scratch;
 use super::shadow::above_ground;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
-use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose, JointId};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
 

@@ -6,9 +6,9 @@ use egui::{Button, ScrollArea, Ui};
 
 use super::first_button::first_button;
 use super::prompt::prompt;
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, Dialog, EditAction, FileAction, Session, ShellAction};
 use crate::ui::widgets;
-use crate::kinematics::skeleton::JointId;
 
 pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Actions) {
     ui.set_width(360.0);

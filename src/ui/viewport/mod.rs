@@ -11,6 +11,7 @@ use egui::{
 };
 
 use crate::document::{Camera, RigKind};
+use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, Drag, DragInput, EditAction, Grip, Motion, PlaybackAction, SelectAction,
     Session, TransactionAction, ViewAction,
@@ -19,7 +20,6 @@ use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, pose_summary};
 use navigation::{motion, show_cursor, wheel};
-use crate::kinematics::skeleton::JointId;
 
 pub(in crate::ui) fn ui(
     ui: &mut Ui,

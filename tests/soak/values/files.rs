@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use ik_arm::document::{Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
-use ik_arm::kinematics::skeleton::{Joint, Skeleton, JointId};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{Dialog, Export, FileAction, Job};
 
 use super::Values;

@@ -12,7 +12,7 @@ impl Values<'_> {
     }
 
     /// Mostly an existing joint.
-    pub fn joint(&mut self) -> usize {
+    pub fn joint(&mut self) -> JointId {
         let joints = self.joints();
         if joints == 0 || self.chance(0.03) {
             return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]).into();
@@ -24,7 +24,7 @@ impl Values<'_> {
     }
 
     /// Mostly a joint with a target, if there is one.
-    pub fn aimed(&mut self) -> usize {
+    pub fn aimed(&mut self) -> JointId {
         let targets = &self.session.skeleton_rig().targets;
         if targets.is_empty() || self.chance(0.1) {
             return self.joint();
@@ -33,7 +33,7 @@ impl Values<'_> {
     }
 
     /// None, one or several, with repetitions.
-    pub fn some_joints(&mut self) -> Vec<usize> {
+    pub fn some_joints(&mut self) -> Vec<JointId> {
         (0..self.random.below(4)).map(|_| self.joint()).collect()
     }
 
@@ -92,13 +92,7 @@ impl Values<'_> {
         let motion =
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
-        Target {
-            joint: JointId::new(joint.index()),
-            home,
-            weight: self.above_0(2.0),
-            enabled: self.chance(0.9),
-            motion,
-        }
+        Target { joint: joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {

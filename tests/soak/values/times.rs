@@ -40,8 +40,8 @@ impl Values<'_> {
         }
         let joint = self.joint();
         match self.random.below(20) {
-            0 => Channel::Rotation(JointId::new(joint.index())),
-            1 => Channel::Offset(JointId::new(joint.index())),
+            0 => Channel::Rotation(joint),
+            1 => Channel::Offset(joint),
             2 | 3 => Channel::Target(self.aimed()),
             4 => Channel::Enabled(self.aimed()),
             5 => Channel::Overlay(self.layer()),

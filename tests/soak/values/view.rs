@@ -67,8 +67,8 @@ impl Values<'_> {
             3 => Grip::Shoulder(self.axis()),
             4 => Grip::Bend,
             5 => Grip::Target(self.aimed(), self.handle()),
-            6 => Grip::Tip(JointId::new(joint.index()), self.handle()),
-            _ => Grip::Ring(JointId::new(joint.index()), self.axis()),
+            6 => Grip::Tip(joint, self.handle()),
+            _ => Grip::Ring(joint, self.axis()),
         }
     }
 

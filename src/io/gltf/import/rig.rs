@@ -5,7 +5,7 @@ use super::motion::{JointMotion, JointPlacement};
 use super::skins::SkinJoints;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
-use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonError, JointId};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
 /// All joints in the bind pose, in world space, without rotations and without bones.
 pub fn joints(file: &GltfFile, joints: &SkinJoints, rest: &[JointPlacement]) -> Vec<Joint> {

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use egui::{ComboBox, Ui};
 use glam::Vec3;
 
-use crate::kinematics::skeleton::{Joint, Limit, JointId};
+use crate::kinematics::skeleton::{Joint, JointId, Limit};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};

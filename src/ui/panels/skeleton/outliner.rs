@@ -2,11 +2,11 @@
 
 use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
 use crate::ui::{commands, style};
-use crate::kinematics::skeleton::JointId;
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
