@@ -44,10 +44,10 @@ fn a_camera_that_looks_from_nowhere_is_not_taken() {
 #[test]
 fn a_view_that_is_dragged_to_nowhere_stays() {
     for (motion, to, aspect) in [
-        (Motion::Pan, Vec2::NAN, 1.0),
-        (Motion::Pan, Vec2::splat(f32::MAX), 2.0),
-        (Motion::Zoom, Vec2::NAN, 1.0),
-        (Motion::Orbit, Vec2::X, f32::INFINITY),
+        (CameraMotion::Pan, Vec2::NAN, 1.0),
+        (CameraMotion::Pan, Vec2::splat(f32::MAX), 2.0),
+        (CameraMotion::Zoom, Vec2::NAN, 1.0),
+        (CameraMotion::Orbit, Vec2::X, f32::INFINITY),
     ] {
         let mut session = session();
         session.apply(ViewAction::Grab(motion, Vec2::ZERO));

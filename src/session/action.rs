@@ -1,7 +1,11 @@
-use super::{
-    EditAction, FileAction, PlaybackAction, SelectAction, ShellAction, SolverAction,
-    TransactionAction, ViewAction,
-};
+use super::edit_action::EditAction;
+use super::file_action::FileAction;
+use super::playback_action::PlaybackAction;
+use super::select_action::SelectAction;
+use super::shell_action::ShellAction;
+use super::solver_action::SolverAction;
+use super::transaction_action::TransactionAction;
+use super::view_action::ViewAction;
 
 /// Everything that can happen to a [`Session`](super::Session), by what it touches. Values are
 /// absolute, so that applying an action twice is harmless.

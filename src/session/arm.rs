@@ -1,7 +1,11 @@
 use glam::{Mat3, Vec3};
 
 use super::drag::DragKind;
-use super::{Drag, Grip, Handle, PointDrag, PoseMode, Ring, Session, TurnDrag};
+use super::drag::{Drag, Grip};
+use super::point_drag::{Handle, PointDrag};
+use super::pose_mode::PoseMode;
+use super::session::Session;
+use super::turn_drag::{Ring, TurnDrag};
 use crate::document::{Arm, Channel, Document, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
 use crate::kinematics::twist::wrapped;
@@ -38,15 +42,15 @@ impl Session {
     pub(super) fn set_twist_reference(&mut self, twist_reference: TwistReferenceKind) {
         const SAME: f32 = 1e-4;
         let was_held = self.is_overridden(Channel::Twist);
-        self.message = None;
-        self.commit(self.shown.measured_from(twist_reference));
+        self.shell.clear_message();
+        self.commit(self.shown().measured_from(twist_reference));
         // At a key the keys, measured anew, say the same.
         let spin = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
-        let keyed = spin(&self.document.at(self.playback.time));
-        let apart = wrapped(keyed - spin(&self.shown) + SAME);
-        if !was_held && apart < 2.0 * SAME && self.document.keys.has(Channel::Twist) {
-            self.overrides.remove(&Channel::Twist);
-            self.message = None;
+        let keyed = spin(&self.document().at(self.time()));
+        let apart = wrapped(keyed - spin(self.shown()) + SAME);
+        if !was_held && apart < 2.0 * SAME && self.document().keys.has(Channel::Twist) {
+            self.editing.forget_override(Channel::Twist);
+            self.shell.clear_message();
             self.refresh();
         }
     }
@@ -80,13 +84,13 @@ impl Session {
     /// The pose stays, unless a soft limit keeps the hand from where it is.
     pub(super) fn switch_to(&mut self, lead: PoseMode) {
         const MOVED: f32 = 1e-3;
-        let before = self.pose;
+        let before = *self.pose();
         match lead {
             PoseMode::Hand => self.replace_arm(self.arm().led_by_hand()),
             PoseMode::Angles => self.replace_arm(self.arm().led_by_angles()),
         }
         let moved =
-            self.pose.elbow.distance(before.elbow).max(self.pose.hand.distance(before.hand));
+            self.pose().elbow.distance(before.elbow).max(self.pose().hand.distance(before.hand));
         if moved > MOVED * self.arm().bones.outer_limit() {
             self.say("The arm has moved: its soft limits do not let it be there");
         }
@@ -94,15 +98,15 @@ impl Session {
 
     /// Every change of the arm comes through here: what its next pose goes on from is kept.
     pub(super) fn replace_arm(&mut self, arm: Arm) {
-        self.message = None;
+        self.shell.clear_message();
         let arm = arm.going_on_from(self.arm()).settled();
-        self.commit(Document { arm, ..self.shown.clone() });
+        self.commit(Document { arm, ..self.shown().clone() });
     }
 
     /// The hand is taken where it is seen, or its cursor if that is out of reach and nearer to the
     /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
     pub(super) fn grab_hand(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
-        let (arm, hand) = (*self.arm(), self.pose.hand);
+        let (arm, hand) = (*self.arm(), self.pose().hand);
         if !arm.is_led_by_hand() {
             return;
         }
@@ -152,7 +156,7 @@ impl Session {
             Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
             _ => return None,
         };
-        let centre = if grip == Grip::Bend { arm.root + self.pose.elbow } else { arm.root };
+        let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
         Some(Ring { centre, axis })
     }
 }

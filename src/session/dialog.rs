@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
-use super::{Export, FileAction, Session};
+use super::export::Export;
+use super::file_action::FileAction;
 use crate::document::Document;
 use crate::kinematics::skeleton::JointId;
 
@@ -87,91 +88,5 @@ impl Dialog {
     /// Whether nothing behind it answers.
     pub fn is_modal(&self) -> bool {
         *self != Self::Statistics
-    }
-}
-
-impl Session {
-    pub fn dialog(&self) -> Option<&Dialog> {
-        self.dialog.as_ref()
-    }
-
-    /// Whether a dialog, ours or the system's, has the keyboard: nothing behind it answers.
-    pub fn is_asking(&self) -> bool {
-        self.choosing || self.dialog.as_ref().is_some_and(Dialog::is_modal)
-    }
-
-    /// Whether the system's file dialog has been asked for and has not answered.
-    pub fn is_choosing(&self) -> bool {
-        self.choosing
-    }
-
-    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
-        // What waits for the document to be saved waits for no other question.
-        let is_saving = match &dialog {
-            Dialog::SaveAs { .. } => true,
-            Dialog::Replace { back, .. } => matches!(**back, Dialog::SaveAs { .. }),
-            _ => false,
-        };
-        if !is_saving {
-            self.then = None;
-        }
-        self.choosing = false;
-        self.dialog = Some(dialog);
-    }
-
-    pub(super) fn close_dialog(&mut self) {
-        self.choosing = false;
-        match self.dialog.take() {
-            Some(Dialog::Replace { back, .. }) => self.dialog = Some(*back),
-            _ => self.then = None,
-        }
-    }
-
-    /// The system has no file dialog: ours asks, or says so where it is open already.
-    pub(super) fn ask_ourselves(&mut self, dialog: Dialog) {
-        if self.dialog.is_some() {
-            self.choosing = false;
-            self.fail("this system has no file dialog: type the path");
-        } else {
-            self.open_dialog(dialog);
-        }
-    }
-
-    /// The path that is typed into a dialog; a relative one is in the folder that was used last.
-    pub fn full_path(&self, dialog: &Dialog, typed: &Path) -> PathBuf {
-        let in_folder = |folder: &Path| folder.join(typed);
-        let full = match dialog {
-            Dialog::Export(_) | Dialog::SavePicture { .. } => {
-                self.export_folder.as_deref().or(self.document_folder()).map(in_folder)
-            }
-            Dialog::SaveAs { .. } => self.document_folder().map(in_folder),
-            // A path of the command line's folder is meant where there is such a file.
-            Dialog::Open { .. } if !typed.exists() => self.document_folder().map(in_folder),
-            _ => None,
-        };
-        full.unwrap_or_else(|| typed.to_owned())
-    }
-
-    /// Where the document is, or the last one that was opened or saved.
-    fn document_folder(&self) -> Option<&Path> {
-        let last = self.file.as_ref().or(self.recent.first())?;
-        last.parent().filter(|folder| folder.is_absolute())
-    }
-
-    /// The folder of the last export or picture.
-    pub fn export_folder(&self) -> Option<&Path> {
-        self.export_folder.as_deref()
-    }
-
-    /// Remembers the folder of an earlier session.
-    pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
-        self.export_folder = folder;
-    }
-
-    pub(super) fn remember_export_folder(&mut self, path: &Path) {
-        let full = std::path::absolute(path).ok();
-        if let Some(folder) = full.as_deref().and_then(Path::parent) {
-            self.export_folder = Some(folder.to_owned());
-        }
     }
 }

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
-use super::{Key, PoseMode};
+use super::key::Key;
+use super::pose_mode::PoseMode;
 use crate::document::{
     Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
 };

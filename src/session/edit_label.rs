@@ -1,4 +1,6 @@
-use super::{EditAction, Grip, PoseMode};
+use super::drag::Grip;
+use super::edit_action::EditAction;
+use super::pose_mode::PoseMode;
 use crate::document::{Channel, Overlay, RigKind};
 
 /// Name of the undo step of a solver run.

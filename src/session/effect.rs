@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
-use super::{Dialog, Export};
+use super::dialog::Dialog;
+use super::export::Export;
 
 /// A request of the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]

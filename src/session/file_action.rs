@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
-use super::{Dialog, Export, Job};
+use super::dialog::Dialog;
+use super::export::{Export, Job};
 use crate::document::Document;
 use crate::io::Example;
 

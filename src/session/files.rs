@@ -1,126 +1,117 @@
 use std::path::{Path, PathBuf};
 
-use super::{Dialog, Effect, FileAction, Session};
-use crate::document::Document;
+use super::export::Job;
+use super::file_action::FileAction;
 
-/// The document's way to the disk and from there.
-impl Session {
-    /// How many files are remembered.
+/// The document's file, recent files, the running export and the answers that are waited for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Files {
+    file: Option<PathBuf>,
+    recent: Vec<PathBuf>,
+    export_folder: Option<PathBuf>,
+    job: Option<Job>,
+    /// Whether an earlier run's unsaved document was opened or declined.
+    recovery_settled: bool,
+    /// The revision at which a file was asked for.
+    opening: Option<u64>,
+    /// The action to apply once the document is saved.
+    after_save: Option<Box<FileAction>>,
+}
+
+impl Files {
+    /// Number of recent files.
     const MOST_RECENT: usize = 10;
 
-    /// Where the document was opened from or saved to.
+    /// The same after another document was opened.
+    pub fn replaced(&mut self, file: Option<PathBuf>) -> Self {
+        Self {
+            file,
+            recent: std::mem::take(&mut self.recent),
+            export_folder: self.export_folder.take(),
+            job: self.job.take(),
+            recovery_settled: self.recovery_settled,
+            opening: None,
+            after_save: None,
+        }
+    }
+
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
-    /// The same number, the same document: what is saved, not how it is looked at.
-    pub fn revision(&self) -> u64 {
-        self.revision
-    }
-
-    /// Files that were opened or saved, the last one first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.recent
     }
 
-    /// Remembers files of an earlier session.
+    pub fn export_folder(&self) -> Option<&Path> {
+        self.export_folder.as_deref()
+    }
+
+    pub fn job(&self) -> Option<&Job> {
+        self.job.as_ref()
+    }
+
+    pub fn has_settled_recovery(&self) -> bool {
+        self.recovery_settled
+    }
+
+    /// The revision at which a file was asked for.
+    pub fn opening(&self) -> Option<u64> {
+        self.opening
+    }
+
+    pub fn set_file(&mut self, file: PathBuf) {
+        self.file = Some(file);
+    }
+
     pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
         self.recent = recent;
         self.recent.truncate(Self::MOST_RECENT);
     }
 
-    /// Opens what an earlier run of the program kept: it is not saved yet.
-    pub(super) fn recover(&mut self, document: Document, file: Option<PathBuf>) {
-        self.replace_document(document, file);
-        self.saved_content = self.content - 1;
-        self.recovery_settled = true;
-        self.say("The document that was kept is open; save it");
-    }
-
-    /// Whether a file that took its time to open would now take the place of changes that were made
-    /// meanwhile.
-    pub(super) fn came_late(&self, action: &FileAction) -> bool {
-        let is_other = self.opening.is_some_and(|revision| revision != self.revision);
-        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
-    }
-
-    /// Whether what an earlier run kept has been opened or declined.
-    pub fn has_settled_recovery(&self) -> bool {
-        self.recovery_settled
-    }
-
-    pub(super) fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
-        let playback = super::Playback {
-            looping: self.playback.looping,
-            speed: self.playback.speed,
-            time: document.timeline.start,
-            ..super::Playback::default()
-        };
-        let recent = std::mem::take(&mut self.recent);
-        let newest_revision = self.newest_revision + 1;
-        *self = Self {
-            file: file.clone(),
-            recent,
-            playback,
-            export_folder: self.export_folder.take(),
-            revision: newest_revision,
-            newest_revision,
-            content: newest_revision,
-            saved_content: newest_revision,
-            recovery_settled: self.recovery_settled,
-            job: self.job.take(),
-            ..Self::with_document(self.preferences, document)
-        };
-        self.refresh();
-        self.pops = super::Pops::new(&self.shown.arm, self.pose, self.playback.time);
-        self.forget_trail();
-        if let Some(file) = file {
-            self.remember_file(file);
-        }
-    }
-
-    /// Writes to where the document is from, or asks for a place if it is from nowhere.
-    pub(super) fn save(&mut self) -> Effect {
-        self.end_glide();
-        match &self.file {
-            Some(path) => Effect::Save(path.clone()),
-            None => Effect::ChoosePath(Dialog::save_as()),
-        }
-    }
-
-    /// Goes on with what waited for it.
-    pub(super) fn saved(&mut self, path: PathBuf) -> Option<Effect> {
-        self.say(format!("Saved {}", path.display()));
-        self.commit_edit();
-        self.end_run();
-        self.begin_run();
-        self.saved_content = self.content;
-        self.remember_file(path.clone());
-        self.file = Some(path);
-        self.then.take().and_then(|then: Box<FileAction>| self.apply_file(*then))
-    }
-
-    /// Asks for another place, and says why this one will not do.
-    pub(super) fn not_saved(&mut self, path: &Path, why: &str) {
-        self.fail(format!("not saved: {why}"));
-        let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
-        self.open_dialog(Dialog::SaveAs { path, problem });
-        self.then = None;
-    }
-
-    /// Keeps the dialog with the path that could not be opened.
-    pub(super) fn not_opened(&mut self, path: &Path, why: &str) {
-        self.fail(format!("not opened: {why}"));
-        if self.dialog.as_ref().is_none_or(|dialog| matches!(dialog, Dialog::Open { .. })) {
-            let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
-            self.open_dialog(Dialog::Open { path, problem });
-        }
-    }
-
-    fn remember_file(&mut self, path: PathBuf) {
+    /// Moves a file to the front of the recent ones.
+    pub fn remember(&mut self, path: PathBuf) {
         let path = std::path::absolute(&path).unwrap_or(path);
         self.recent.retain(|other| *other != path);
         self.recent.insert(0, path);
         self.recent.truncate(Self::MOST_RECENT);
+    }
+
+    pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
+        self.export_folder = folder;
+    }
+
+    /// Remembers the folder of a file as that of the next export.
+    pub fn remember_export_folder(&mut self, path: &Path) {
+        let full = std::path::absolute(path).ok();
+        if let Some(folder) = full.as_deref().and_then(Path::parent) {
+            self.export_folder = Some(folder.to_owned());
+        }
+    }
+
+    /// Folder of the document, else of the last file that was opened or saved.
+    pub fn document_folder(&self) -> Option<&Path> {
+        let last = self.file.as_ref().or(self.recent.first())?;
+        last.parent().filter(|folder| folder.is_absolute())
+    }
+
+    pub fn set_job(&mut self, job: Option<Job>) {
+        self.job = job;
+    }
+
+    pub fn settle_recovery(&mut self) {
+        self.recovery_settled = true;
+    }
+
+    pub fn set_opening(&mut self, revision: u64) {
+        self.opening = Some(revision);
+    }
+
+    pub fn set_after_save(&mut self, action: Box<FileAction>) {
+        self.after_save = Some(action);
+    }
+
+    pub fn take_after_save(&mut self) -> Option<Box<FileAction>> {
+        self.after_save.take()
     }
 }

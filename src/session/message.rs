@@ -1,34 +1,28 @@
-use super::Session;
-
-/// The line at the bottom of the window.
+/// The text in the status bar.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Message {
     text: String,
-    /// Whether it says why something was not done.
     is_error: bool,
 }
 
-impl Session {
-    /// What just happened or failed; `None` once the next edit follows.
-    pub fn message(&self) -> Option<&str> {
-        self.message.as_ref().map(|message| message.text.as_str())
+impl Message {
+    pub fn new(text: impl Into<String>) -> Self {
+        Self { text: text.into(), is_error: false }
     }
 
-    /// Whether [`Session::message`] says why something was not done.
-    pub fn has_failed(&self) -> bool {
-        self.message.as_ref().is_some_and(|message| message.is_error)
-    }
-
-    pub(super) fn say(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), is_error: false });
-    }
-
-    /// Says why something was not done, as a sentence.
-    pub(super) fn fail(&mut self, why: impl Into<String>) {
-        let why = why.into();
+    /// An error; its first letter becomes a capital.
+    pub fn error(why: &str) -> Self {
         let mut letters = why.chars();
         let first = letters.next().map(|letter| letter.to_uppercase().to_string());
         let text = format!("{}{}", first.unwrap_or_default(), letters.as_str());
-        self.message = Some(Message { text, is_error: true });
+        Self { text, is_error: true }
+    }
+
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub fn is_error(&self) -> bool {
+        self.is_error
     }
 }

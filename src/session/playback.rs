@@ -1,92 +1,112 @@
-use super::Session;
+use crate::document::Timeline;
 
-/// The time that keys, targets and snakes move by, and how it goes on.
+/// The playhead and the settings of the transport bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Playback {
     /// In seconds.
-    pub time: f64,
-    pub playing: bool,
-    /// Whether it begins again where it ends.
-    pub looping: bool,
-    /// Seconds of the document in one of the window.
-    pub speed: f64,
-    /// When the last picture was made, in seconds of the window; nothing before the first.
-    pub last: Option<f64>,
+    time: f64,
+    playing: bool,
+    looping: bool,
+    /// 1 for real time.
+    speed: f64,
+    auto_key: bool,
+    /// Window time of the last frame in seconds; `None` before the first.
+    last_frame: Option<f64>,
 }
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { time: 0.0, playing: false, looping: true, speed: 1.0, last: None }
+        Self {
+            time: 0.0,
+            playing: false,
+            looping: true,
+            speed: 1.0,
+            auto_key: false,
+            last_frame: None,
+        }
     }
 }
 
-impl Session {
-    /// How fast the time can go.
+impl Playback {
+    /// Slowest and fastest speed.
     pub const SPEEDS: (f64, f64) = (0.1, 4.0);
 
-    /// In seconds.
+    /// Paused at the start of another document's timeline, with the same speed and looping.
+    pub fn restarted(&self, timeline: &Timeline) -> Self {
+        Self { time: timeline.start, looping: self.looping, speed: self.speed, ..Self::default() }
+    }
+
     pub fn time(&self) -> f64 {
-        self.playback.time
+        self.time
     }
 
-    /// Whether the time goes on.
     pub fn is_playing(&self) -> bool {
-        self.playback.playing
+        self.playing
     }
 
-    /// Whether the time begins again where the timeline ends.
     pub fn is_looping(&self) -> bool {
-        self.playback.looping
+        self.looping
     }
 
-    /// Seconds of the document in one of the window.
+    pub fn is_auto_key(&self) -> bool {
+        self.auto_key
+    }
+
     pub fn speed(&self) -> f64 {
-        self.playback.speed
+        self.speed
     }
 
-    /// Whether anything changes in time.
-    pub fn has_motion(&self) -> bool {
-        !self.document.keys.is_empty() || self.skeleton_rig().is_moving()
+    /// Whether a frame at this window time was made already.
+    pub fn has_frame_at(&self, seconds: f64) -> bool {
+        self.last_frame == Some(seconds)
     }
 
-    /// What has ended begins again at its start; what is stopped stands on a frame.
-    pub(super) fn play(&mut self, playing: bool) {
-        let timeline = self.document.timeline;
-        if playing && !self.playback.playing && self.playback.time >= timeline.end {
-            self.set_time(timeline.start);
-        } else if !playing && self.playback.playing {
-            self.set_time(timeline.snapped(self.playback.time));
-        }
-        self.playback.playing = playing;
-        self.playback.last = None;
-    }
-
-    pub(super) fn set_time(&mut self, time: f64) {
+    /// Moves the playhead; returns whether it has moved.
+    pub fn set_time(&mut self, time: f64) -> bool {
         let time = if time.is_finite() { time } else { 0.0 };
-        if time != self.playback.time {
-            self.playback.time = time;
-            self.overrides.clear();
-            self.refresh();
+        std::mem::replace(&mut self.time, time) != time
+    }
+
+    pub fn set_playing(&mut self, playing: bool) {
+        self.playing = playing;
+    }
+
+    pub fn set_looping(&mut self, looping: bool) {
+        self.looping = looping;
+    }
+
+    pub fn set_auto_key(&mut self, auto_key: bool) {
+        self.auto_key = auto_key;
+    }
+
+    pub fn set_speed(&mut self, speed: f64) {
+        let (slowest, fastest) = Self::SPEEDS;
+        if speed.is_finite() {
+            self.speed = speed.clamp(slowest, fastest);
         }
     }
 
-    /// Goes on by as much as the window did, however long a picture took.
-    pub(super) fn advance_clock(&mut self, seconds: f64) {
-        let passed = self.playback.last.map_or(0.0, |last| (seconds - last).max(0.0));
-        self.playback.last = Some(seconds);
-        self.advance_crowd(passed);
-        if !self.playback.playing || passed == 0.0 {
-            return;
-        }
-        let timeline = self.document.timeline;
-        let time = self.playback.time + passed * self.playback.speed;
+    /// Lets the next frame begin a new interval, so that a pause does not count as time.
+    pub fn forget_last_frame(&mut self) {
+        self.last_frame = None;
+    }
+
+    /// Seconds of the window since the last frame.
+    pub fn advance_frame(&mut self, seconds: f64) -> f64 {
+        let passed = self.last_frame.map_or(0.0, |last| (seconds - last).max(0.0));
+        self.last_frame = Some(seconds);
+        passed
+    }
+
+    /// The playhead after `passed` seconds, and whether it goes on playing.
+    pub fn played(&self, passed: f64, timeline: &Timeline) -> (f64, bool) {
+        let time = self.time + passed * self.speed;
         if time < timeline.end {
-            self.set_time(time);
-        } else if self.playback.looping {
-            self.set_time(timeline.start + (time - timeline.start).rem_euclid(timeline.duration()));
+            (time, true)
+        } else if self.looping {
+            (timeline.start + (time - timeline.start).rem_euclid(timeline.duration()), true)
         } else {
-            self.set_time(timeline.end);
-            self.playback.playing = false;
+            (timeline.end, false)
         }
     }
 }

@@ -1,4 +1,5 @@
-use super::{EditAction, Spike};
+use super::edit_action::EditAction;
+use super::pops::Spike;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::Pop;
 use crate::kinematics::soft_reach::SoftReach;

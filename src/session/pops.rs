@@ -1,6 +1,5 @@
 use std::collections::VecDeque;
 
-use super::Session;
 use crate::document::Arm;
 use crate::kinematics::ik::Ik;
 use crate::kinematics::pop::{Change, Moment, Pop, Step};
@@ -47,7 +46,7 @@ pub struct Spike {
 
 /// How the cursor comes to move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+pub(super) enum CursorMove {
     /// By a drag, in the viewport or of a slider, that began at a revision.
     Dragged(u64),
     Played,
@@ -58,7 +57,7 @@ enum Way {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Last {
     moment: Moment,
-    way: Way,
+    cause: CursorMove,
     time: f64,
 }
 
@@ -67,7 +66,7 @@ impl Pops {
 
     /// None yet of an arm that stands so.
     pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
-        let last = Last { moment: moment(arm, pose), way: Way::Set, time };
+        let last = Last { moment: moment(arm, pose), cause: CursorMove::Set, time };
         Self { samples: VecDeque::new(), last, run: 0 }
     }
 
@@ -101,21 +100,27 @@ impl Pops {
         spikes.into_iter().map(|(spike, _)| spike).collect()
     }
 
-    fn go_on(&mut self, moment: Moment, way: Way, time: f64) {
+    /// Compares the arm with the last one.
+    pub(super) fn watch(&mut self, arm: &Arm, pose: TwoBonePose, cause: CursorMove, time: f64) {
+        self.go_on(moment(arm, pose), cause, time);
+    }
+
+    fn go_on(&mut self, moment: Moment, cause: CursorMove, time: f64) {
         let last = &mut self.last;
         // What is played begins again.
-        let way = if way == Way::Played && time < last.time { Way::Set } else { way };
-        let is_elsewhen = way == Way::Set && time != last.time;
-        if way != last.way || way == Way::Set {
+        let cause =
+            if cause == CursorMove::Played && time < last.time { CursorMove::Set } else { cause };
+        let is_elsewhen = cause == CursorMove::Set && time != last.time;
+        if cause != last.cause || cause == CursorMove::Set {
             self.run = self.run.wrapping_add(1);
         }
         let before = last.moment;
-        (last.way, last.time) = (way, time);
+        (last.cause, last.time) = (cause, time);
         match Change::between(&before, &moment) {
             _ if is_elsewhen => {}
             Some(_) if before.pose == moment.pose => {}
             Some(change) => self.push(moment.ik, What::Change(change)),
-            None if way == Way::Set => {}
+            None if cause == CursorMove::Set => {}
             None => match Step::between(&before, &moment) {
                 Some(step) => self.push(moment.ik, What::Step(step)),
                 // Short ones add up.
@@ -158,29 +163,12 @@ impl Spike {
         Self { pop, ..higher }
     }
 
-    /// Whether the same way of the cursor would pop again: nothing has been done about it.
+    /// Whether the same cause of the cursor would pop again: nothing has been done about it.
     pub fn stands(self, arm: &Arm) -> bool {
         match self.pop {
             Pop::Singular { .. } => self.ik.reference == arm.reference(),
             _ => self.ik.soft_reach == arm.soft_reach && self.ik.bones == arm.bones,
         }
-    }
-}
-
-impl Session {
-    /// How fast the arm's elbow has been beside its cursor.
-    pub fn pops(&self) -> &Pops {
-        &self.pops
-    }
-
-    /// The arm has a pose: what made it.
-    pub(super) fn watch_elbow(&mut self) {
-        let way = match &self.edit {
-            Some(edit) => Way::Dragged(edit.before.revision),
-            None if self.playback.playing => Way::Played,
-            None => Way::Set,
-        };
-        self.pops.go_on(moment(&self.shown.arm, self.pose), way, self.playback.time);
     }
 }
 

@@ -1,4 +1,4 @@
-use super::Key;
+use super::key::Key;
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 

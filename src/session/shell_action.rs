@@ -1,4 +1,5 @@
-use super::{Dialog, Navigation};
+use super::dialog::Dialog;
+use super::preferences::Navigation;
 use crate::document::Theme;
 
 /// Dialogs, messages and preferences.

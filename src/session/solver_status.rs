@@ -1,4 +1,5 @@
-use super::{Session, SolverRun};
+use super::session::Session;
+use super::solver_run::SolverRun;
 use crate::kinematics::chain_ik::{Report, SolveError};
 
 /// How the pose that is shown stands to its targets.
@@ -40,14 +41,13 @@ impl Session {
     /// State and residual of the pose that is shown; `None` without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         let rig = self.skeleton_rig();
-        if rig.follow_path.is_some() || rig.goals(self.playback.time).is_empty() {
+        if rig.follow_path.is_some() || rig.goals(self.time()).is_empty() {
             return None;
         }
-        let run = self.solver_run.as_ref();
-        let current = run.filter(|run| run.led_to(rig, self.playback.time));
-        let fresh = || -> Result<Report, SolveError> {
-            Ok(SolverRun::new(rig, self.playback.time)?.report())
-        };
+        let run = self.solver_run();
+        let current = run.filter(|run| run.led_to(rig, self.time()));
+        let fresh =
+            || -> Result<Report, SolveError> { Ok(SolverRun::new(rig, self.time())?.report()) };
         let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
         let state = match current {
             _ if self.is_running() => SolverState::Running,

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
-use super::{Constraint, DragInput, Grip};
+use super::drag::Grip;
+use super::point_drag::{Constraint, DragInput};
 use crate::document::Ray;
 
 /// Groups edits into one undo step, and moves through the steps.

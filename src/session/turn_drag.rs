@@ -2,7 +2,7 @@ use core::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::DragInput;
+use super::point_drag::DragInput;
 use crate::document::Ray;
 
 /// A ring that is held: it turns about its axis by the angle that the pointer goes around it,

@@ -1,6 +1,6 @@
 use glam::Vec2;
 
-use super::Motion;
+use super::view_drag::CameraMotion;
 use crate::document::Camera;
 use crate::rig::SolvedBy;
 
@@ -12,7 +12,7 @@ pub enum ViewAction {
     /// Moves the camera smoothly.
     GlideTo(Camera),
     /// Begins to drag the camera, from a point of the picture (−1 to 1).
-    Grab(Motion, Vec2),
+    Grab(CameraMotion, Vec2),
     /// Drags the camera.
     Drag {
         /// The mouse in the picture, −1 to 1.

@@ -4,7 +4,7 @@ use crate::document::Camera;
 
 /// What a drag does to the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
+pub enum CameraMotion {
     Orbit,
     Pan,
     Zoom,
@@ -13,7 +13,7 @@ pub enum Motion {
 /// A view that is held. Places are in the picture's coordinates, −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDrag {
-    pub motion: Motion,
+    pub motion: CameraMotion,
     pub(super) before: Camera,
     pressed: Vec2,
 }
@@ -33,7 +33,7 @@ impl ViewDrag {
     /// How much nearer the eye comes across half the height.
     const ZOOM: f32 = 4.0;
 
-    pub(super) fn new(motion: Motion, before: Camera, pressed: Vec2) -> Self {
+    pub(super) fn new(motion: CameraMotion, before: Camera, pressed: Vec2) -> Self {
         Self { motion, before, pressed }
     }
 
@@ -44,11 +44,13 @@ impl ViewDrag {
             return self.before;
         }
         match self.motion {
-            Motion::Orbit => {
+            CameraMotion::Orbit => {
                 self.before.orbited(-moved.x * aspect * Self::TURN, -moved.y * Self::TURN)
             }
-            Motion::Pan => self.before.panned(self.pressed, now, aspect),
-            Motion::Zoom => self.before.zoomed(Self::ZOOM.powf(-moved.y), self.pressed, aspect),
+            CameraMotion::Pan => self.before.panned(self.pressed, now, aspect),
+            CameraMotion::Zoom => {
+                self.before.zoomed(Self::ZOOM.powf(-moved.y), self.pressed, aspect)
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
-use ik_arm::session::{Motion, Navigation, ShellAction, ViewAction};
+use ik_arm::session::{CameraMotion, Navigation, ShellAction, ViewAction};
 
 use crate::bench::Bench;
 
@@ -18,7 +18,7 @@ const ALT: Modifiers = Modifiers::ALT;
 const NONE: Modifiers = Modifiers::NONE;
 
 /// What dragging with a button does to the view.
-fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Option<Motion> {
+fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Option<CameraMotion> {
     let before = *bench.session().camera();
     let arm = *bench.session().arm();
     let at = bench.empty_place();
@@ -27,15 +27,15 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
     let motion = bench.session().view_drag().map(|drag| drag.motion);
     let after = *bench.session().camera();
     match motion {
-        Some(Motion::Orbit) => {
+        Some(CameraMotion::Orbit) => {
             assert!(after.yaw != before.yaw && after.pitch != before.pitch);
             assert_eq!((after.target, after.distance), (before.target, before.distance));
         }
-        Some(Motion::Pan) => {
+        Some(CameraMotion::Pan) => {
             assert_ne!(after.target, before.target);
             assert_eq!(Camera { target: before.target, ..after }, before);
         }
-        Some(Motion::Zoom) => {
+        Some(CameraMotion::Zoom) => {
             assert_ne!(after.distance, before.distance);
             assert_eq!((after.yaw, after.pitch), (before.yaw, before.pitch));
         }
@@ -51,9 +51,9 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
 
 #[test]
 fn each_navigation_preset_turns_moves_and_zooms_with_its_own_buttons() {
-    use Motion::{Orbit, Pan, Zoom};
+    use CameraMotion::{Orbit, Pan, Zoom};
     use Navigation::{Blender, Default, Maya, Trackpad};
-    let table: [(Navigation, [Option<Motion>; 5]); 4] = [
+    let table: [(Navigation, [Option<CameraMotion>; 5]); 4] = [
         (Default, [Some(Orbit), Some(Pan), Some(Orbit), Some(Pan), Some(Zoom)]),
         (Blender, [None, None, Some(Orbit), Some(Pan), Some(Zoom)]),
         (Maya, [None, None, None, None, None]),

@@ -13,7 +13,7 @@ use egui::{
 use crate::document::{Camera, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Actions, Drag, DragInput, EditAction, Grip, Motion, PlaybackAction, SelectAction,
+    Action, Actions, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction, SelectAction,
     Session, TransactionAction, ViewAction,
 };
 use crate::ui::gizmo::{Gizmo, view_axes};
@@ -208,7 +208,7 @@ fn press(
         let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);
         let grip = gizmo.at(pos).filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
-            None if on_view_axes && button == PointerButton::Primary => Some(Motion::Orbit),
+            None if on_view_axes && button == PointerButton::Primary => Some(CameraMotion::Orbit),
             motion => motion,
         };
         if let Some(grip) = grip {

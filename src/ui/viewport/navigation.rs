@@ -4,7 +4,7 @@ use egui::{CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Ui, Vec2};
 
 use super::projection::ScreenProjection;
 use crate::document::Camera;
-use crate::session::{Actions, Grip, Motion, Navigation, Session, ViewAction};
+use crate::session::{Actions, CameraMotion, Grip, Navigation, Session, ViewAction};
 
 /// Zoom factor of a wheel step.
 const WHEEL: f32 = 1.15;
@@ -15,24 +15,24 @@ pub(super) fn motion(
     navigation: Navigation,
     button: PointerButton,
     modifiers: egui::Modifiers,
-) -> Option<Motion> {
+) -> Option<CameraMotion> {
     use PointerButton::{Middle, Primary, Secondary};
     if modifiers.alt {
         // Alt drags act over handles too.
         return match button {
-            Primary => Some(Motion::Orbit),
-            Middle => Some(Motion::Pan),
-            Secondary => Some(Motion::Zoom),
+            Primary => Some(CameraMotion::Orbit),
+            Middle => Some(CameraMotion::Pan),
+            Secondary => Some(CameraMotion::Zoom),
             _ => None,
         };
     }
     match (navigation, button) {
         (Navigation::Maya, _) => None,
-        (_, Middle) if modifiers.shift => Some(Motion::Pan),
-        (_, Middle) if modifiers.command => Some(Motion::Zoom),
-        (_, Middle) => Some(Motion::Orbit),
-        (Navigation::Default | Navigation::Trackpad, Primary) => Some(Motion::Orbit),
-        (Navigation::Default | Navigation::Trackpad, Secondary) => Some(Motion::Pan),
+        (_, Middle) if modifiers.shift => Some(CameraMotion::Pan),
+        (_, Middle) if modifiers.command => Some(CameraMotion::Zoom),
+        (_, Middle) => Some(CameraMotion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Primary) => Some(CameraMotion::Orbit),
+        (Navigation::Default | Navigation::Trackpad, Secondary) => Some(CameraMotion::Pan),
         _ => None,
     }
 }
@@ -88,9 +88,9 @@ pub(super) fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
     let icon = match (session.drag(), session.view_drag(), grip) {
         (Some(_), _, _) => CursorIcon::Grabbing,
         (_, Some(drag), _) => match drag.motion {
-            Motion::Orbit => CursorIcon::Grabbing,
-            Motion::Pan => CursorIcon::Move,
-            Motion::Zoom => CursorIcon::ZoomIn,
+            CameraMotion::Orbit => CursorIcon::Grabbing,
+            CameraMotion::Pan => CursorIcon::Move,
+            CameraMotion::Zoom => CursorIcon::ZoomIn,
         },
         (_, _, Some(_)) => CursorIcon::Grab,
         _ => return,

@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Overlay, Ray};
-use ik_arm::session::{Constraint, DragInput, Grip, Handle, Motion, PointDrag};
+use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, Handle, PointDrag};
 
 use super::Values;
 use ik_arm::kinematics::skeleton::JointId;
@@ -49,7 +49,7 @@ impl Values<'_> {
     }
 
     pub fn turn(&mut self) -> Motion {
-        self.one_of(&[Motion::Orbit, Motion::Pan, Motion::Zoom])
+        self.one_of(&[CameraMotion::Orbit, CameraMotion::Pan, CameraMotion::Zoom])
     }
 
     pub fn layer(&mut self) -> Overlay {

@@ -2,66 +2,50 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::{Effect, Session};
+use super::effect::Effect;
+use super::key::Key;
+use super::selection::Clipboard;
+use super::session::Session;
 use crate::document::{Channel, Document, Keys, RigKind, Timeline};
 use crate::kinematics::skeleton::JointRemap;
 
-/// A key: its channel and its time, in seconds.
-pub type Key = (Channel, f64);
-
-/// Channels that are selected.
-pub(super) type Channels = BTreeSet<Channel>;
-
-/// Keys that were copied: their times from the first one's.
-pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
-
-/// What actions do to the keys.
+/// Keys of the timeline.
 impl Session {
     /// Channels that are selected in the timeline.
     pub fn selected_channels(&self) -> &BTreeSet<Channel> {
-        &self.selected_channels
+        self.selection.channels()
     }
 
     /// Keys that are selected in the timeline.
     pub fn selected_keys(&self) -> &[Key] {
-        &self.selected_keys
+        self.selection.keys()
     }
 
     /// Whether there are copied keys to paste.
     pub fn can_paste(&self) -> bool {
-        !self.clipboard.is_empty()
-    }
-
-    /// Whether an edit makes keys.
-    pub fn is_auto_key(&self) -> bool {
-        self.auto_key
-    }
-
-    /// Whether a channel is not shown as its keys have it, but as it was changed since.
-    pub fn is_overridden(&self, channel: Channel) -> bool {
-        self.overrides.contains_key(&channel)
+        !self.selection.clipboard().is_empty()
     }
 
     /// What K keys: the selected channels, else those of the selected joints, else all that shapes
     /// the rig; of the arm without a selection what leads it, and what is shown against its keys.
     pub fn channels_to_key(&self) -> Vec<Channel> {
-        let is_there = |channel: &Channel| channel.value(&self.shown).is_some();
-        if !self.selected_channels.is_empty() {
-            return self.selected_channels.iter().copied().filter(is_there).collect();
+        let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
+        if !self.selection.channels().is_empty() {
+            return self.selection.channels().iter().copied().filter(is_there).collect();
         }
         match self.rig() {
             RigKind::Arm => {
                 // What was said to be shown only until the time changes, too.
-                let held = self.overrides.keys().copied().filter(is_there);
+                let held = self.editing.overrides().keys().copied().filter(is_there);
                 let all: BTreeSet<_> = self.leading_channels().into_iter().chain(held).collect();
                 all.into_iter().collect()
             }
-            RigKind::Skeleton if self.selection.is_empty() => self.all_channels(),
+            RigKind::Skeleton if self.selection.joints().is_empty() => self.all_channels(),
             RigKind::Skeleton => {
                 let is_selected = |channel: &Channel| {
-                    channel.joint().is_some_and(|joint| self.selection.contains(&joint))
+                    channel.joint().is_some_and(|joint| self.selection.joints().contains(&joint))
                 };
-                Channel::of_rig(&self.shown).into_iter().filter(is_selected).collect()
+                Channel::of_rig(self.shown()).into_iter().filter(is_selected).collect()
             }
         }
     }
@@ -76,22 +60,23 @@ impl Session {
 
     /// All that shapes the rig, and what has keys besides.
     pub fn all_channels(&self) -> Vec<Channel> {
-        let keyed = self.shown.keys.tracks().map(|(channel, _)| channel);
+        let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
         let all: BTreeSet<Channel> =
-            Channel::of_rig(&self.shown).into_iter().chain(keyed).collect();
+            Channel::of_rig(self.shown()).into_iter().chain(keyed).collect();
         all.into_iter().collect()
     }
 
     /// Keys channels as they are shown.
     pub(super) fn key(&mut self, channels: &[Channel]) {
-        let time = self.playback.time;
-        let overrides = self.overrides.len();
+        let time = self.time();
+        let overrides = self.editing.overrides().len();
         for channel in channels {
-            self.overrides.remove(channel);
+            self.editing.forget_override(*channel);
         }
-        let (are_keyed, keys) = (self.overrides.len() < overrides, self.document.keys.clone());
+        let (are_keyed, keys) =
+            (self.editing.overrides().len() < overrides, self.document().keys.clone());
         self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
-        if are_keyed && keys == self.document.keys {
+        if are_keyed && keys == self.document().keys {
             // No edit has done it: the keys were there already.
             self.refresh();
         }
@@ -105,32 +90,19 @@ impl Session {
         self.edit_keys(|document| document.keys.remove_all(keys));
     }
 
-    pub(super) fn selected_in_timeline(&self) -> (Vec<Key>, Channels) {
-        (self.selected_keys.clone(), self.selected_channels.clone())
-    }
-
-    /// What is selected and copied follows its joints to new places.
-    pub(super) fn follow_keys(
+    /// Renumbers selected and copied keys after joints were removed or moved; `keys` and `channels`
+    /// were selected before.
+    pub(super) fn remap_keys(
         &mut self,
         moved: &JointRemap,
-        (keys, channels): (Vec<Key>, Channels),
+        (keys, channels): (Vec<Key>, BTreeSet<Channel>),
     ) {
-        let keys = keys.into_iter();
-        self.selected_keys =
-            keys.filter_map(|(channel, time)| Some((channel.moved(moved)?, time))).collect();
-        self.selected_channels =
-            channels.into_iter().filter_map(|channel| channel.moved(moved)).collect();
-        let copies = std::mem::take(&mut self.clipboard).into_iter();
-        let copies =
-            copies.filter_map(|(channel, time, value)| Some((channel.moved(moved)?, time, value)));
-        self.clipboard = copies.collect();
+        self.selection.remap(moved, keys, channels);
         self.retain_keys();
     }
 
-    pub(super) fn forget_selected_keys(&mut self) {
-        self.selected_keys.clear();
-        self.selected_channels.clear();
-        self.clipboard.retain(|(channel, ..)| channel.joint().is_none());
+    pub(super) fn selected_in_timeline(&self) -> (Vec<Key>, BTreeSet<Channel>) {
+        (self.selection.keys().to_vec(), self.selection.channels().clone())
     }
 
     pub(super) fn clear_channels(&mut self, channels: &[Channel]) {
@@ -146,7 +118,7 @@ impl Session {
     pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
         let farthest = Timeline::FARTHEST;
         let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
-        let before = self.edit.as_ref().map_or(&self.shown, |edit| &edit.shown).keys.clone();
+        let before = self.editing.shown_before().keys.clone();
         let to = |time: f64| self.moved_to(time, by);
         let moved: Vec<_> = keys
             .iter()
@@ -155,20 +127,18 @@ impl Session {
                 Some((*channel, to(*time), value))
             })
             .collect();
-        self.selected_keys = moved.iter().map(|(channel, time, _)| (*channel, *time)).collect();
+        self.selection.set_keys(moved.iter().map(|(channel, time, _)| (*channel, *time)).collect());
         let mut after = before.clone();
         after.remove_all(keys);
         insert(&mut after, &moved);
         self.edit_keys(|document| document.keys = after);
-        if let Some(edit) = &mut self.edit {
-            // The next move begins there, too.
-            edit.shown.keys = before;
-        }
+        // The next move begins there, too.
+        self.editing.restart_keys_from(before);
     }
 
     /// Where a key goes that is moved: a time that has been on a frame stays on one, bit for bit.
     fn moved_to(&self, time: f64, by: f64) -> f64 {
-        let timeline = self.document.timeline;
+        let timeline = self.document().timeline;
         let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
         let is_on_frame = |time: f64, frame: f64| (time - frame).abs() < 1e-9;
         if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
@@ -177,9 +147,9 @@ impl Session {
     /// They go as text to the clipboard too: without any there, no paste would be heard of.
     pub(super) fn copy_keys(&mut self) -> Option<Effect> {
         let copied = |(channel, time): &Key| {
-            Some((*channel, *time, self.document.keys.track(*channel)?.get(*time)?))
+            Some((*channel, *time, self.document().keys.track(*channel)?.get(*time)?))
         };
-        let mut copies: Clipboard = self.selected_keys.iter().filter_map(copied).collect();
+        let mut copies: Clipboard = self.selection.keys().iter().filter_map(copied).collect();
         let first = copies.iter().map(|(_, time, _)| *time).fold(f64::INFINITY, f64::min);
         copies.iter_mut().for_each(|(_, time, _)| *time -= first);
         self.say(match copies.len() {
@@ -194,21 +164,21 @@ impl Session {
             format!("{channel:?} {time} {} {} {}\n", value.x, value.y, value.z)
         };
         let text = copies.iter().map(line).collect();
-        self.clipboard = copies;
+        self.selection.set_clipboard(copies);
         Some(Effect::CopyText(text))
     }
 
     /// Puts the copied keys to where the time is; those whose joints are gone are left out.
     pub(super) fn paste_keys(&mut self) {
         let pasted: Vec<_> = self
-            .clipboard
+            .selection
+            .clipboard()
             .iter()
-            .filter(|(channel, ..)| channel.value(&self.shown).is_some())
-            .map(|(channel, time, value)| {
-                (*channel, self.moved_to(self.playback.time, *time), *value)
-            })
+            .filter(|(channel, ..)| channel.value(self.shown()).is_some())
+            .map(|(channel, time, value)| (*channel, self.moved_to(self.time(), *time), *value))
             .collect();
-        self.selected_keys = pasted.iter().map(|(channel, time, _)| (*channel, *time)).collect();
+        self.selection
+            .set_keys(pasted.iter().map(|(channel, time, _)| (*channel, *time)).collect());
         self.edit_keys(|document| insert(&mut document.keys, &pasted));
     }
 
@@ -238,15 +208,6 @@ impl Session {
             Ok(())
         };
         self.edit_document(never);
-    }
-
-    /// Lets go of keys and channels that are no longer there.
-    pub(super) fn retain_keys(&mut self) {
-        let keys = &self.document.keys;
-        self.selected_keys.retain(|(channel, time)| {
-            keys.track(*channel).is_some_and(|track| track.get(*time).is_some())
-        });
-        self.selected_channels.retain(|channel| channel.value(&self.document).is_some());
     }
 }
 

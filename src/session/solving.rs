@@ -1,21 +1,49 @@
-use super::{Comparison, Session, SolverRun, edit_label};
+use super::comparison::Comparison;
+use super::session::Session;
+use super::solver_action::SolverAction;
+use super::solver_run::SolverRun;
 
-/// Solvers at work.
+/// Solver runs.
 impl Session {
+    /// The solver run since the last reset.
+    pub fn solver_run(&self) -> Option<&SolverRun> {
+        self.solvers.run()
+    }
+
+    /// Whether a solver runs.
+    pub fn is_running(&self) -> bool {
+        self.solvers.is_running()
+    }
+
+    /// The comparison of all solvers.
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.solvers.comparison()
+    }
+
+    pub(super) fn apply_solver(&mut self, action: SolverAction) {
+        match action {
+            SolverAction::Run(running) => self.run(running),
+            SolverAction::Cancel => self.cancel_run(),
+            SolverAction::Compare(true) => self.start_comparison(),
+            SolverAction::Compare(false) => self.solvers.end_comparison(),
+            SolverAction::SetFollow(follow) => self.preferences.follow = follow,
+        }
+    }
+
     /// The solver that is under way, or a new one at its start.
     fn solving_or_new(&mut self) -> Option<SolverRun> {
         if self.skeleton_rig().follow_path.is_some() {
             self.fail("This skeleton follows its head; it has nothing to solve");
             return None;
         }
-        if self.skeleton_rig().goals(self.playback.time).is_empty() {
+        if self.skeleton_rig().goals(self.time()).is_empty() {
             self.say("There is no target to solve for; add one to a joint");
             return None;
         }
-        if let Some(solver_run) = self.solver_run.take() {
+        if let Some(solver_run) = self.solvers.take_run() {
             return Some(solver_run);
         }
-        match SolverRun::new(self.skeleton_rig(), self.playback.time) {
+        match SolverRun::new(self.skeleton_rig(), self.time()) {
             Ok(solver_run) => Some(solver_run),
             Err(error) => {
                 self.fail(error.to_string());
@@ -25,69 +53,43 @@ impl Session {
     }
 
     pub(super) fn run(&mut self, running: bool) {
-        self.comparison = None;
+        self.solvers.end_comparison();
         if !running {
             return self.stop_run();
         }
         if let Some(mut solver_run) = self.solving_or_new() {
             solver_run.running = true;
-            self.solver_run = Some(solver_run);
+            self.solvers.set_run(solver_run);
             self.begin_run();
         }
     }
 
-    /// A running solver is one change, until it stops or something else is changed meanwhile.
-    pub(super) fn begin_run(&mut self) {
-        if self.is_running() && self.run_before.is_none() && self.edit.is_none() {
-            self.run_before = Some(self.state());
-        }
-    }
-
-    /// Makes a step of what a running solver has done by now.
-    pub(super) fn end_run(&mut self) {
-        if let Some(before) = self.run_before.take() {
-            self.remember(edit_label::SOLVE, before);
-        }
-    }
-
     pub(super) fn stop_run(&mut self) {
-        if let Some(solver_run) = &mut self.solver_run {
-            solver_run.running = false;
-        }
+        self.solvers.pause();
         self.end_run();
-    }
-
-    /// Stops, and takes back what has been done since the solver was started.
-    pub(super) fn cancel_run(&mut self) {
-        self.comparison = None;
-        self.solver_run = None;
-        if let Some(before) = self.run_before.take() {
-            self.restore(&before);
-        }
-        self.say("Cancelled");
     }
 
     /// One iteration, after which the solver waits.
     pub(super) fn step(&mut self) {
-        self.comparison = None;
+        self.solvers.end_comparison();
         self.stop_run();
         if let Some(solver_run) = self.solving_or_new() {
-            self.solver_run = Some(solver_run);
+            self.solvers.set_run(solver_run);
             self.iterate(1);
         }
     }
 
     /// Back to where the skeleton was before the first iteration.
     pub(super) fn reset_solver(&mut self) {
-        self.comparison = None;
+        self.solvers.end_comparison();
         self.stop_run();
-        let Some(solver_run) = self.solver_run.take() else { return };
-        let start = solver_run.start();
+        let Some(solver_run) = self.solvers.take_run() else { return };
+        let start = solver_run.start().joints();
         self.edit_skeleton(|rig| {
-            if start.joints().len() != rig.skeleton.joints().len() {
+            if start.len() != rig.skeleton.joints().len() {
                 return Ok(());
             }
-            start.iter().try_for_each(|(joint, before)| {
+            start.iter().enumerate().try_for_each(|(joint, before)| {
                 rig.skeleton_mut().change(joint, |joint| {
                     (joint.rotation, joint.offset) = (before.rotation, before.offset);
                 })
@@ -99,8 +101,8 @@ impl Session {
     pub(super) fn start_comparison(&mut self) {
         self.stop_run();
         if let Some(solver_run) = self.solving_or_new() {
-            self.solver_run = Some(solver_run);
-            self.comparison = Some(Comparison::new(self.skeleton_rig(), self.playback.time));
+            self.solvers.set_run(solver_run);
+            self.solvers.compare(Comparison::new(self.skeleton_rig(), self.time()));
         }
     }
 
@@ -110,17 +112,15 @@ impl Session {
             self.iterate(self.skeleton_rig().iterations_per_frame);
             self.rest();
         }
-        if let Some(comparison) = &mut self.comparison {
-            comparison.advance();
-        }
+        self.solvers.advance_comparison();
     }
 
     fn iterate(&mut self, iterations: u32) {
-        let Some(mut solver_run) = self.solver_run.take() else { return };
-        let mut after = self.shown.clone();
-        match solver_run.advance(&mut after.skeleton_rig, self.playback.time, iterations) {
+        let Some(mut solver_run) = self.solvers.take_run() else { return };
+        let mut after = self.shown().clone();
+        match solver_run.advance(&mut after.skeleton_rig, self.time(), iterations) {
             Ok(()) => {
-                self.solver_run = Some(solver_run);
+                self.solvers.set_run(solver_run);
                 self.commit(after);
             }
             Err(error) => {
@@ -132,9 +132,9 @@ impl Session {
 
     /// A solver that is done waits, unless its targets move by themselves.
     fn rest(&mut self) {
-        let goes_on = self.playback.playing && self.has_motion();
+        let goes_on = self.is_playing() && self.has_motion();
         let is_held = self.drag().is_some();
-        let is_done = self.solver_run.as_ref().is_some_and(SolverRun::is_done);
+        let is_done = self.solver_run().is_some_and(SolverRun::is_done);
         if is_done && !goes_on && !is_held {
             self.stop_run();
         }

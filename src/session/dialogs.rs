@@ -1,0 +1,123 @@
+use std::path::{Path, PathBuf};
+
+use super::dialog::Dialog;
+use super::effect::Effect;
+use super::message::Message;
+use super::pose_line;
+use super::preferences::Preferences;
+use super::session::Session;
+use super::shell_action::ShellAction;
+
+/// Dialogs, messages and preferences.
+impl Session {
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.shell.dialog()
+    }
+
+    /// Whether a dialog, ours or the system's, has the keyboard: nothing behind it answers.
+    pub fn is_asking(&self) -> bool {
+        self.shell.is_choosing() || self.shell.dialog().is_some_and(Dialog::is_modal)
+    }
+
+    /// Whether the system's file dialog has been asked for and has not answered.
+    pub fn is_choosing(&self) -> bool {
+        self.shell.is_choosing()
+    }
+
+    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
+        // What waits for the document to be saved waits for no other question.
+        let is_saving = match &dialog {
+            Dialog::SaveAs { .. } => true,
+            Dialog::Replace { back, .. } => matches!(**back, Dialog::SaveAs { .. }),
+            _ => false,
+        };
+        if !is_saving {
+            self.files.take_after_save();
+        }
+        self.shell.set_choosing(false);
+        self.shell.open_dialog(dialog);
+    }
+
+    pub(super) fn close_dialog(&mut self) {
+        self.shell.set_choosing(false);
+        match self.shell.take_dialog() {
+            Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(*back),
+            _ => drop(self.files.take_after_save()),
+        }
+    }
+
+    /// The system has no file dialog: ours asks, or says so where it is open already.
+    pub(super) fn ask_ourselves(&mut self, dialog: Dialog) {
+        if self.shell.dialog().is_some() {
+            self.shell.set_choosing(false);
+            self.fail("this system has no file dialog: type the path");
+        } else {
+            self.open_dialog(dialog);
+        }
+    }
+
+    /// The path that is typed into a dialog; a relative one is in the folder that was used last.
+    pub fn full_path(&self, dialog: &Dialog, typed: &Path) -> PathBuf {
+        let in_folder = |folder: &Path| folder.join(typed);
+        let full = match dialog {
+            Dialog::Export(_) | Dialog::SavePicture { .. } => {
+                self.files.export_folder().or(self.files.document_folder()).map(in_folder)
+            }
+            Dialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
+            // A path of the command line's folder is meant where there is such a file.
+            Dialog::Open { .. } if !typed.exists() => self.files.document_folder().map(in_folder),
+            _ => None,
+        };
+        full.unwrap_or_else(|| typed.to_owned())
+    }
+
+    /// The folder of the last export or picture.
+    pub fn export_folder(&self) -> Option<&Path> {
+        self.files.export_folder()
+    }
+
+    /// Remembers the folder of an earlier session.
+    pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
+        self.files.set_export_folder(folder);
+    }
+
+    /// Theme, navigation and open panels.
+    pub fn preferences(&self) -> &Preferences {
+        &self.preferences
+    }
+
+    /// What just happened or failed; `None` after the next edit.
+    pub fn message(&self) -> Option<&str> {
+        self.shell.message().map(Message::text)
+    }
+
+    /// Whether [`Session::message`] is an error.
+    pub fn has_failed(&self) -> bool {
+        self.shell.message().is_some_and(Message::is_error)
+    }
+
+    pub(super) fn say(&mut self, text: impl Into<String>) {
+        self.shell.set_message(Message::new(text));
+    }
+
+    /// Reports an error as a sentence.
+    pub(super) fn fail(&mut self, why: impl AsRef<str>) {
+        self.shell.set_message(Message::error(why.as_ref()));
+    }
+
+    pub(super) fn apply_shell(&mut self, action: ShellAction) -> Option<Effect> {
+        match action {
+            ShellAction::OpenDialog(dialog) => self.open_dialog(dialog),
+            ShellAction::CloseDialog => self.close_dialog(),
+            ShellAction::Report(message) => self.say(message),
+            ShellAction::Fail(why) => self.fail(why),
+            ShellAction::CopyPose => {
+                self.say("Pose copied as a line for ik-arm solve");
+                return Some(Effect::CopyText(pose_line::of(self.arm())));
+            }
+            ShellAction::SetTheme(theme) => self.preferences.theme = theme,
+            ShellAction::SetNavigation(navigation) => self.preferences.navigation = navigation,
+        }
+        None
+    }
+}

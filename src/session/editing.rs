@@ -1,0 +1,398 @@
+use std::collections::BTreeSet;
+
+use super::drag::Drag;
+use super::edit_label::{CHANGE, SOLVE};
+use super::history::{History, Overrides, State};
+use super::playback::Playback;
+use super::transaction::Transaction;
+use crate::document::{Arm, Camera, Channel, Document, TwistReferenceKind};
+use crate::kinematics::skeleton::Skeleton;
+
+/// The document, its values at the playhead, the open transaction and the history.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Editing {
+    document: Document,
+    /// The document evaluated at the playhead, with unkeyed edits.
+    shown: Document,
+    /// Unkeyed edits, discarded when the time changes.
+    overrides: Overrides,
+    transaction: Option<Transaction>,
+    /// The state before the solver run that is open.
+    before_run: Option<State>,
+    history: History,
+    /// Equal for equal documents.
+    revision: u64,
+    newest_revision: u64,
+    /// Equal for documents that differ only in what is shown of them.
+    content: u64,
+    saved_content: u64,
+}
+
+/// Consequences of a change of the document.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    /// Joints were removed, renumbered or attached to other parents.
+    pub is_rebuilt: bool,
+    /// Keyed channels differ from their keys until the time changes.
+    pub has_overridden: bool,
+}
+
+impl Editing {
+    pub fn new(document: Document) -> Self {
+        Self {
+            shown: document.clone(),
+            document,
+            overrides: Overrides::default(),
+            transaction: None,
+            before_run: None,
+            history: History::default(),
+            revision: 0,
+            newest_revision: 0,
+            content: 0,
+            saved_content: 0,
+        }
+    }
+
+    /// Another document with an empty history, under a new revision.
+    pub fn replaced(&self, document: Document) -> Self {
+        let revision = self.newest_revision + 1;
+        Self {
+            revision,
+            newest_revision: revision,
+            content: revision,
+            saved_content: revision,
+            ..Self::new(document)
+        }
+    }
+
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    pub fn shown(&self) -> &Document {
+        &self.shown
+    }
+
+    pub fn overrides(&self) -> &Overrides {
+        &self.overrides
+    }
+
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether a transaction is open.
+    pub fn is_open(&self) -> bool {
+        self.transaction.is_some()
+    }
+
+    /// Whether a solver run is open.
+    pub fn has_run(&self) -> bool {
+        self.before_run.is_some()
+    }
+
+    /// The revision before the open transaction.
+    pub fn revision_before(&self) -> Option<u64> {
+        Some(self.transaction.as_ref()?.before.revision)
+    }
+
+    /// The document as shown before the open transaction, else now.
+    pub fn shown_before(&self) -> &Document {
+        self.transaction.as_ref().map_or(&self.shown, |transaction| &transaction.shown)
+    }
+
+    pub fn drag(&self) -> Option<&Drag> {
+        self.transaction.as_ref()?.drag.as_ref()
+    }
+
+    /// The drag, with the document as shown before it; labels the transaction.
+    pub fn drag_mut(&mut self) -> Option<(&mut Drag, &Document)> {
+        let Transaction { shown, drag: Some(drag), label, .. } = self.transaction.as_mut()? else {
+            return None;
+        };
+        *label = Some(drag.grip.label());
+        Some((drag, shown))
+    }
+
+    pub fn undo_label(&self) -> Option<&'static str> {
+        match (&self.transaction, &self.before_run) {
+            (Some(transaction), _) => Some(transaction.label.unwrap_or(CHANGE)),
+            (None, Some(_)) => Some(SOLVE),
+            (None, None) => self.history.undo_name(),
+        }
+    }
+
+    pub fn redo_label(&self) -> Option<&'static str> {
+        self.history.redo_name()
+    }
+
+    /// Whether the document differs from the saved one in more than what is shown of it.
+    pub fn is_unsaved(&self) -> bool {
+        let transaction = self.transaction.as_ref().map(|transaction| &transaction.before);
+        let before = transaction.or(self.before_run.as_ref());
+        self.content != self.saved_content
+            || before.is_some_and(|before| before.differs_in_content_from(&self.document))
+    }
+
+    pub fn mark_saved(&mut self) {
+        self.saved_content = self.content;
+    }
+
+    pub fn mark_unsaved(&mut self) {
+        self.saved_content = self.content - 1;
+    }
+
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.document.camera = camera;
+        self.shown.camera = camera;
+    }
+
+    /// Removes a channel's unkeyed edit.
+    pub fn forget_override(&mut self, channel: Channel) {
+        self.overrides.remove(&channel);
+    }
+
+    pub fn clear_overrides(&mut self) {
+        self.overrides.clear();
+    }
+
+    /// Evaluates the document at a time, with unkeyed edits.
+    pub fn evaluate(&mut self, time: f64) {
+        self.shown.clone_from(&self.document);
+        self.shown.keys_to(time);
+        for (channel, value) in &self.overrides {
+            channel.set(&mut self.shown, *value);
+        }
+    }
+
+    /// Replaces the shown document. Changed channels with keys get a key or are overridden until
+    /// the time changes. `None` where nothing differs.
+    pub fn write(&mut self, mut after: Document, playback: &Playback) -> Option<Change> {
+        if after == self.shown {
+            return None;
+        }
+        let [joints_before, joints] = [&self.shown, &after].map(|it| it.skeleton().joints().len());
+        let is_rebuilt = is_rebuilt(self.shown.skeleton(), after.skeleton());
+        let has_other_joints = is_rebuilt || joints != joints_before;
+        let mut has_overridden = false;
+        if is_rebuilt {
+            self.overrides.clear();
+        } else {
+            has_overridden = self.key_or_override(&mut after, playback);
+            self.keep_unkeyed_values(&mut after);
+        }
+        self.overrides.retain(|channel, _| {
+            let goes_along = *channel == Channel::Twist && is_transported(&after);
+            goes_along || after.keys.has(*channel)
+        });
+        self.document = after;
+        self.evaluate(playback.time());
+        self.update_transaction(has_other_joints);
+        Some(Change { is_rebuilt, has_overridden })
+    }
+
+    /// Drags restart from the document before the transaction, but keep keys that were changed since,
+    /// and end where joints were added or removed.
+    fn update_transaction(&mut self, has_other_joints: bool) {
+        let Some(transaction) = &mut self.transaction else { return };
+        if has_other_joints {
+            transaction.drag = None;
+            transaction.shown.clone_from(&self.shown);
+        } else if transaction.shown.keys != self.document.keys {
+            transaction.shown.keys.clone_from(&self.document.keys);
+        }
+    }
+
+    /// Lets the next [`EditAction::MoveKeys`](super::EditAction::MoveKeys) start from these keys.
+    pub fn restart_keys_from(&mut self, keys: crate::document::Keys) {
+        if let Some(transaction) = &mut self.transaction {
+            transaction.shown.keys = keys;
+        }
+    }
+
+    /// Keys changed channels, or overrides their keys until the time changes; returns whether any is
+    /// overridden.
+    fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> bool {
+        let changed = |channel: &Channel| {
+            let value = channel.value(after);
+            value.is_some() && value != channel.value(&self.shown)
+        };
+        let channels: Vec<Channel> = if playback.is_auto_key() {
+            // What is shown or not gets keys only where it has some.
+            let switches =
+                after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
+            // A switch between hand and angles is a pose of both.
+            let switched = changed(&Channel::Influence);
+            let leads = |channel: &Channel| {
+                let is_leading =
+                    Channel::OF_HAND.contains(channel) || Channel::OF_JOINTS.contains(channel);
+                switched && is_leading
+            };
+            // What has begun to shape the rig, and what no longer does.
+            let all: BTreeSet<Channel> = [&*after, &self.shown]
+                .into_iter()
+                .flat_map(Channel::of_rig)
+                .chain(switches)
+                .filter(|channel| changed(channel) || leads(channel))
+                .collect();
+            all.into_iter().collect()
+        } else {
+            after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
+        };
+        if !playback.is_auto_key() && is_transported(after) {
+            if after.arm.cursor() != self.shown.arm.cursor() {
+                // The elbow has gone along, and comes back with the hand.
+                let spin = Channel::Twist.value(after).unwrap_or_default();
+                self.overrides.insert(Channel::Twist, spin);
+            } else if changed(&Channel::Twist) {
+                self.overrides.remove(&Channel::Twist);
+            }
+        }
+        let mut has_overridden = false;
+        for channel in channels {
+            if playback.is_auto_key() {
+                after.key(channel, playback.time());
+                self.overrides.remove(&channel);
+            } else if let Some(value) = channel.value(after) {
+                self.overrides.insert(channel, value);
+                has_overridden = true;
+            }
+        }
+        has_overridden
+    }
+
+    /// Keeps the document's own values of keyed channels: their values at this time are not saved.
+    fn keep_unkeyed_values(&self, after: &mut Document) {
+        let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
+        let skeleton = &mut after.skeleton_rig.skeleton;
+        let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
+        if skeleton.is_same(&self.shown.skeleton_rig.skeleton)
+            && keyed_before.all(|channel| after.keys.has(channel))
+        {
+            *skeleton = self.document.skeleton_rig.skeleton.clone();
+        }
+        let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
+        for channel in keyed.collect::<Vec<_>>() {
+            if let Some(value) = channel.value(&self.document) {
+                channel.set(after, value);
+            }
+            if matches!(channel, Channel::Hand | Channel::Pin) {
+                after.arm.facing = self.document.arm.facing;
+            }
+        }
+        let goes_along = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
+        if goes_along || is_keyed(&Channel::Twist) {
+            let rest = self.document.arm.measured_from(after.arm.twist_reference);
+            after.arm.twist = rest.twist;
+            after.arm.transported = rest.transported;
+        }
+        if is_keyed(&Channel::Wrist) {
+            let Arm { wrist, .. } = self.document.arm;
+            let space = after.arm.wrist.space;
+            after.arm.wrist.angles = wrist.measured_in(space, &self.document.arm.pose()).angles;
+        }
+    }
+
+    /// The state to restore at a time.
+    pub fn state(&self, time: f64) -> State {
+        State::new(&self.document, &self.overrides, time, self.revision, self.content)
+    }
+
+    /// Adds an undo step if the document or the unkeyed edits have changed since `before`.
+    pub fn remember(&mut self, label: &'static str, before: State, time: f64) {
+        if before.differs_from(&self.document) {
+            self.newest_revision += 1;
+            self.revision = self.newest_revision;
+            if before.differs_in_content_from(&self.document) {
+                self.content = self.newest_revision;
+            }
+        } else {
+            // Signs of zeros may have changed: equal revisions are equal to the last bit.
+            self.document = before.document(&self.document);
+            if before.overrides_at(time) == self.overrides {
+                return;
+            }
+        }
+        self.history.push(label, before);
+    }
+
+    /// Restores a state; returns whether joints were removed, renumbered or reattached.
+    pub fn restore(&mut self, state: &State, time: f64) -> bool {
+        let document = state.document(&self.document);
+        let is_rebuilt = is_rebuilt(self.document.skeleton(), document.skeleton());
+        self.document = document;
+        self.overrides = state.overrides_at(time);
+        self.revision = state.revision;
+        self.content = state.content;
+        is_rebuilt
+    }
+
+    /// Labels the open transaction; returns whether one is open.
+    pub fn label_transaction(&mut self, label: &'static str) -> bool {
+        let Some(transaction) = &mut self.transaction else { return false };
+        transaction.label = Some(label);
+        true
+    }
+
+    pub fn begin(&mut self, drag: Option<Drag>, time: f64) {
+        let (before, shown) = (self.state(time), self.shown.clone());
+        self.transaction = Some(Transaction { before, shown, label: None, drag });
+    }
+
+    /// Closes the transaction with an undo step; returns whether one was open.
+    pub fn commit(&mut self, time: f64) -> bool {
+        let Some(transaction) = self.transaction.take() else { return false };
+        self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
+        true
+    }
+
+    /// Closes the transaction and returns the state before it.
+    pub fn take_transaction(&mut self) -> Option<State> {
+        Some(self.transaction.take()?.before)
+    }
+
+    /// Opens a solver run, unless one or a transaction is open.
+    pub fn begin_run(&mut self, time: f64) {
+        if self.before_run.is_none() && self.transaction.is_none() {
+            self.before_run = Some(self.state(time));
+        }
+    }
+
+    /// Closes the solver run with an undo step.
+    pub fn end_run(&mut self, time: f64) {
+        if let Some(before) = self.before_run.take() {
+            self.remember(SOLVE, before, time);
+        }
+    }
+
+    /// Closes the solver run and returns the state before it.
+    pub fn take_run(&mut self) -> Option<State> {
+        self.before_run.take()
+    }
+
+    /// The label of the last step and the state before it.
+    pub fn undo(&mut self, time: f64) -> Option<(&'static str, State)> {
+        self.history.undo(self.state(time))
+    }
+
+    /// The label of the next step and the state after it.
+    pub fn redo(&mut self, time: f64) -> Option<(&'static str, State)> {
+        self.history.redo(self.state(time))
+    }
+}
+
+/// Whether the elbow is transported along a keyed hand and has no keys of its own.
+fn is_transported(document: &Document) -> bool {
+    let Document { arm, keys, .. } = document;
+    let leads = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };
+    arm.twist_reference == TwistReferenceKind::Transport
+        && keys.has(leads)
+        && !keys.has(Channel::Twist)
+}
+
+/// Whether joints were removed, renumbered or attached to other parents.
+fn is_rebuilt(before: &Skeleton, after: &Skeleton) -> bool {
+    let [before, after] = [before, after].map(Skeleton::joints);
+    let keep_their_parents = before.iter().zip(after).all(|(a, b)| a.parent == b.parent);
+    !keep_their_parents || after.len() < before.len()
+}

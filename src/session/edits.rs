@@ -1,0 +1,269 @@
+use core::fmt::Display;
+
+use super::drag::{Drag, DragKind, Grip};
+use super::edit_action::EditAction;
+use super::history::State;
+use super::point_drag::{Constraint, PointDrag};
+use super::session::Session;
+use super::transaction_action::TransactionAction;
+use crate::document::{Arm, Channel, Document, Ray};
+use glam::Vec3;
+
+/// Transactions and undo steps.
+impl Session {
+    /// Whether a transaction is open.
+    pub fn is_editing(&self) -> bool {
+        self.editing.is_open()
+    }
+
+    /// Whether a transaction or a solver run is open.
+    pub fn is_changing(&self) -> bool {
+        self.editing.is_open() || self.editing.has_run()
+    }
+
+    /// Whether the document differs from the saved one in more than what is shown of it.
+    pub fn is_unsaved(&self) -> bool {
+        self.editing.is_unsaved()
+    }
+
+    /// Equal for equal documents, cameras aside.
+    pub fn revision(&self) -> u64 {
+        self.editing.revision()
+    }
+
+    /// Label of the step that Undo undoes.
+    pub fn undo_name(&self) -> Option<&'static str> {
+        self.editing.undo_label()
+    }
+
+    /// Label of the step that Redo redoes.
+    pub fn redo_name(&self) -> Option<&'static str> {
+        self.editing.redo_label()
+    }
+
+    /// Whether a keyed channel has an unkeyed edit.
+    pub fn is_overridden(&self, channel: Channel) -> bool {
+        self.editing.overrides().contains_key(&channel)
+    }
+
+    /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
+    pub fn arm_unit(&self) -> f32 {
+        self.editing.shown_before().arm.cell() * 0.01
+    }
+
+    /// The drag in the viewport.
+    pub fn drag(&self) -> Option<&Drag> {
+        self.editing.drag()
+    }
+
+    /// The drag of a point in the viewport.
+    pub fn point_drag(&self) -> Option<&PointDrag> {
+        self.drag()?.point()
+    }
+
+    pub(super) fn apply_edit(&mut self, action: EditAction) {
+        let label = action.label();
+        if self.editing.label_transaction(label) {
+            return self.edit_by(action);
+        }
+        self.end_run();
+        let before = self.editing.state(self.time());
+        self.edit_by(action);
+        if !self.is_editing() {
+            self.editing.remember(label, before, self.time());
+            self.begin_run();
+        }
+    }
+
+    pub(super) fn apply_transaction(&mut self, action: TransactionAction) {
+        match action {
+            TransactionAction::Begin => self.begin_edit(None),
+            TransactionAction::Commit => self.commit_edit(),
+            TransactionAction::Cancel => self.cancel_edit(),
+            TransactionAction::Undo => self.undo(),
+            TransactionAction::Redo => self.redo(),
+            TransactionAction::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
+            TransactionAction::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
+            TransactionAction::Constrain(constraint) => {
+                if constraint.is_none_or(Constraint::is_possible) {
+                    self.drag_by(|drag| drag.set_constraint(constraint));
+                }
+            }
+            TransactionAction::TypeOffset(typed) => self.drag_by(|drag| drag.set_typed(typed)),
+        }
+    }
+
+    /// Changes a copy of the shown document and commits it, or reports the error.
+    pub(super) fn edit_document<T, E: Display>(
+        &mut self,
+        change: impl FnOnce(&mut Document) -> Result<T, E>,
+    ) -> Option<T> {
+        let mut after = self.shown().clone();
+        match change(&mut after) {
+            Ok(value) => {
+                self.shell.clear_message();
+                self.commit(after);
+                Some(value)
+            }
+            Err(error) => {
+                self.fail(error.to_string());
+                None
+            }
+        }
+    }
+
+    /// Replaces the shown document, with all that follows from it.
+    pub(super) fn commit(&mut self, after: Document) {
+        let Some(change) = self.editing.write(after, &self.playback) else { return };
+        if change.is_rebuilt {
+            self.solvers.forget_run();
+        }
+        if change.has_overridden {
+            self.say("Unkeyed change: press K or it is lost when the time changes");
+        }
+        self.follow_document();
+        self.forget_trail();
+    }
+
+    pub(super) fn discard_unkeyed_edits(&mut self) {
+        self.editing.clear_overrides();
+    }
+
+    fn restore(&mut self, state: &State) {
+        if self.editing.restore(state, self.time()) {
+            self.selection.forget_joints();
+            self.solvers.forget_run();
+        }
+        self.refresh();
+        self.forget_trail();
+    }
+
+    pub(super) fn begin_edit(&mut self, drag: Option<Drag>) {
+        if !self.is_editing() {
+            self.end_run();
+            self.editing.begin(drag, self.time());
+        }
+    }
+
+    pub(super) fn commit_edit(&mut self) {
+        if self.editing.commit(self.time()) {
+            self.begin_run();
+        }
+    }
+
+    fn cancel_edit(&mut self) {
+        if let Some(before) = self.editing.take_transaction() {
+            self.restore(&before);
+            self.begin_run();
+            self.say("Cancelled");
+        }
+    }
+
+    /// Stops the solver and restores the pose from before the run.
+    pub(super) fn cancel_run(&mut self) {
+        self.solvers.forget();
+        if let Some(before) = self.editing.take_run() {
+            self.restore(&before);
+        }
+        self.say("Cancelled");
+    }
+
+    /// A running solver is one step, until it stops or something else is edited.
+    pub(super) fn begin_run(&mut self) {
+        if self.is_running() {
+            self.editing.begin_run(self.time());
+        }
+    }
+
+    /// Makes an undo step of the run so far.
+    pub(super) fn end_run(&mut self) {
+        self.editing.end_run(self.time());
+    }
+
+    /// Undoes a step; an open transaction or run is cancelled instead.
+    fn undo(&mut self) {
+        if self.is_editing() {
+            return self.cancel_edit();
+        }
+        if self.editing.has_run() {
+            return self.cancel_run();
+        }
+        match self.editing.undo(self.time()) {
+            Some((label, state)) => {
+                self.restore(&state);
+                self.say(format!("Undid {label}"));
+            }
+            None => self.say("There is nothing to undo"),
+        }
+    }
+
+    fn redo(&mut self) {
+        self.commit_edit();
+        self.stop_run();
+        match self.editing.redo(self.time()) {
+            Some((label, state)) => {
+                self.restore(&state);
+                self.say(format!("Redid {label}"));
+            }
+            None => self.say("There is nothing to redo"),
+        }
+    }
+
+    fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {
+        if !grip.is_possible() {
+            return;
+        }
+        self.view.stop_glide();
+        match grip {
+            Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
+            Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
+            Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
+            Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
+            Grip::Pole(handle) => self.grab_pole(handle, ray, forward),
+            Grip::Shoulder(_) | Grip::Bend => self.grab_arm_ring(grip, ray),
+        }
+    }
+
+    fn drag_by(&mut self, change: impl FnOnce(&mut Drag)) {
+        let Some((drag, shown)) = self.editing.drag_mut() else { return };
+        change(drag);
+        let grip = drag.grip;
+        let Arm { goal, pole, fk, .. } = shown.arm;
+        let mut angles = fk.shoulder;
+        match (grip, &mut drag.way) {
+            (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
+                let angle = turn.angle();
+                self.turn_joint(joint, axis, angle);
+            }
+            (Grip::Hand(_), DragKind::Point(point)) => {
+                let held = point.point();
+                if point.has_moved() {
+                    self.set_point("hand", held, Arm::set_cursor);
+                } else {
+                    self.replace_arm(Arm { goal, ..*self.arm() });
+                }
+            }
+            (Grip::Shoulder(axis), DragKind::Turn(turn)) => {
+                angles[axis] = turn.angle();
+                self.set_shoulder(angles);
+            }
+            (Grip::Bend, DragKind::Turn(turn)) => {
+                let bend = turn.angle();
+                self.set_bend(bend);
+            }
+            (Grip::Pole(_), DragKind::Point(point)) => {
+                let held = point.point();
+                let pole = if point.has_moved() { held } else { pole };
+                self.set_pole(pole);
+            }
+            (_, DragKind::Point(point)) => {
+                let to = point.point();
+                let moved = point.moved();
+                if point.has_moved() {
+                    self.drag_skeleton(grip, to, moved);
+                }
+            }
+            (_, DragKind::Turn(_)) => {}
+        }
+    }
+}

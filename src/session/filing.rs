@@ -1,0 +1,265 @@
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+use super::dialog::Dialog;
+use super::effect::Effect;
+use super::export::{Export, Job};
+use super::file_action::FileAction;
+use super::session::{ASPECT, Session};
+use crate::document::{Document, RigKind};
+use crate::io::Example;
+
+/// Files.
+impl Session {
+    /// Where the document was opened from or saved to.
+    pub fn file(&self) -> Option<&Path> {
+        self.files.file()
+    }
+
+    /// Files that were opened or saved, the last one first.
+    pub fn recent(&self) -> &[PathBuf] {
+        self.files.recent()
+    }
+
+    /// Remembers files of an earlier session.
+    pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
+        self.files.set_recent(recent);
+    }
+
+    /// Opens what an earlier run of the program kept: it is not saved yet.
+    pub(super) fn recover(&mut self, document: Document, file: Option<PathBuf>) {
+        self.replace_document(document, file);
+        self.editing.mark_unsaved();
+        self.files.settle_recovery();
+        self.say("The document that was kept is open; save it");
+    }
+
+    /// Whether a file that took its time to open would now take the place of changes that were made
+    /// meanwhile.
+    pub(super) fn came_late(&self, action: &FileAction) -> bool {
+        let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
+        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
+    }
+
+    /// Whether what an earlier run kept has been opened or declined.
+    pub fn has_settled_recovery(&self) -> bool {
+        self.files.has_settled_recovery()
+    }
+
+    pub(super) fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
+        let playback = self.playback.restarted(&document.timeline);
+        *self = Self {
+            files: self.files.replaced(file.clone()),
+            editing: self.editing.replaced(document.clone()),
+            playback,
+            ..Self::with_document(self.preferences, document)
+        };
+        self.refresh();
+        self.evaluated.reset_pops(&self.editing.shown().arm, self.playback.time());
+        self.forget_trail();
+        if let Some(file) = file {
+            self.files.remember(file);
+        }
+    }
+
+    /// Writes to where the document is from, or asks for a place if it is from nowhere.
+    pub(super) fn save(&mut self) -> Effect {
+        self.end_glide();
+        match self.files.file() {
+            Some(path) => Effect::Save(path.to_owned()),
+            None => Effect::ChoosePath(Dialog::save_as()),
+        }
+    }
+
+    /// Goes on with what waited for it.
+    pub(super) fn saved(&mut self, path: PathBuf) -> Option<Effect> {
+        self.say(format!("Saved {}", path.display()));
+        self.commit_edit();
+        self.end_run();
+        self.begin_run();
+        self.editing.mark_saved();
+        self.files.remember(path.clone());
+        self.files.set_file(path);
+        self.files.take_after_save().and_then(|then: Box<FileAction>| self.apply_file(*then))
+    }
+
+    /// Asks for another place, and says why this one will not do.
+    pub(super) fn not_saved(&mut self, path: &Path, why: &str) {
+        self.fail(format!("not saved: {why}"));
+        let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
+        self.open_dialog(Dialog::SaveAs { path, problem });
+        self.files.take_after_save();
+    }
+
+    /// Keeps the dialog with the path that could not be opened.
+    pub(super) fn not_opened(&mut self, path: &Path, why: &str) {
+        self.fail(format!("not opened: {why}"));
+        if self.shell.dialog().is_none_or(|dialog| matches!(dialog, Dialog::Open { .. })) {
+            let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
+            self.open_dialog(Dialog::Open { path, problem });
+        }
+    }
+
+    /// Asks first if the action would lose unsaved changes or end an export.
+    pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
+        if action == FileAction::Quit && self.is_exporting() {
+            self.shell.open_dialog(Dialog::Exporting);
+            return None;
+        }
+        if self.is_unsaved() && (action.leaves_document() || self.came_late(&action)) {
+            self.shell.open_dialog(Dialog::Unsaved { then: Box::new(action) });
+            return None;
+        }
+        self.apply_file_unasked(action)
+    }
+
+    fn apply_file_unasked(&mut self, action: FileAction) -> Option<Effect> {
+        let effect = self.file_effect(action);
+        if matches!(effect, Some(Effect::ChoosePath(_))) {
+            self.shell.set_choosing(true);
+        }
+        effect
+    }
+
+    fn file_effect(&mut self, action: FileAction) -> Option<Effect> {
+        match action {
+            FileAction::SavePicture(path) => {
+                self.shell.take_dialog();
+                self.shell.set_choosing(false);
+                self.files.remember_export_folder(path.as_ref());
+                self.say(format!("Saving {path} …"));
+                return Some(Effect::SavePicture(path));
+            }
+            FileAction::Export(export) => return self.export(export),
+            FileAction::ExportStarted(job) => self.files.set_job(Some(job)),
+            FileAction::CancelExport => self.cancel_export(),
+            FileAction::StopExportAndQuit => return self.stop_export_and_quit(),
+            FileAction::ExportEnded(how) => {
+                self.files.set_job(None);
+                if self.shell.dialog() == Some(&Dialog::Exporting) {
+                    self.shell.take_dialog();
+                }
+                match how {
+                    Ok(done) => self.say(done),
+                    Err(why) => self.fail(why),
+                }
+            }
+            FileAction::AskPath(dialog) => {
+                self.files.take_after_save();
+                return Some(Effect::ChoosePath(dialog));
+            }
+            FileAction::ChoosePath => return self.shell.dialog().cloned().map(Effect::ChoosePath),
+            FileAction::ChoseNothing => {
+                self.files.take_after_save();
+                self.shell.set_choosing(false);
+                self.say("No file was chosen");
+            }
+            FileAction::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
+            FileAction::Open { path, skeleton } => {
+                self.shell.set_choosing(false);
+                if !matches!(self.shell.dialog(), Some(Dialog::Open { .. })) {
+                    self.shell.take_dialog();
+                }
+                self.files.set_opening(self.revision());
+                return Some(Effect::Open { path, skeleton });
+            }
+            FileAction::Opened { document, file } => self.replace_document(*document, file),
+            FileAction::NotOpened { path, why } => self.not_opened(&path, &why),
+            FileAction::Save => {
+                self.files.take_after_save();
+                return Some(self.save());
+            }
+            FileAction::SaveAs(path) => {
+                self.shell.take_dialog();
+                self.shell.set_choosing(false);
+                self.end_glide();
+                return Some(Effect::Save(path));
+            }
+            FileAction::Saved(path) => return self.saved(path),
+            FileAction::NotSaved { path, why } => self.not_saved(&path, &why),
+            FileAction::SaveAnd(then) => {
+                self.shell.take_dialog();
+                self.files.set_after_save(then);
+                return Some(self.save());
+            }
+            FileAction::Discard(then) => {
+                self.shell.take_dialog();
+                return self.apply_file_unasked(*then);
+            }
+            FileAction::Recover { document, file } => self.recover(*document, file),
+            FileAction::DeclineRecovery => {
+                self.shell.take_dialog();
+                self.files.settle_recovery();
+            }
+            FileAction::OpenExample(example) => self.open_example(example),
+            FileAction::NewSkeleton => self.new_skeleton(),
+            FileAction::Quit => return Some(Effect::Quit),
+        }
+        None
+    }
+
+    fn open_example(&mut self, example: Example) {
+        match example.open() {
+            Ok(opened) => {
+                self.replace_document(opened.document, None);
+                self.say(example.sentence);
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    fn new_skeleton(&mut self) {
+        let document = Document { rig: RigKind::Skeleton, ..Document::default() };
+        self.replace_document(document, None);
+        self.select(vec![0]);
+        // As far away as a rig of a unit or two needs.
+        self.set_camera(self.settled_camera().framing(Vec3::Y * 0.5, 1.0, ASPECT));
+    }
+
+    /// What is being exported.
+    pub fn job(&self) -> Option<&Job> {
+        self.files.job()
+    }
+
+    /// Asks how to export the document.
+    pub fn export_dialog(&self) -> Dialog {
+        const SIZE: (u32, u32) = (1280, 800);
+        let stem = self.files.file().and_then(|file| file.file_stem());
+        let stem = stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy());
+        Dialog::Export(Export {
+            path: format!("{stem}.glb").into(),
+            frame_rate: self.document().timeline.frame_rate,
+            size: SIZE,
+        })
+    }
+
+    pub(super) fn export(&mut self, export: Export) -> Option<Effect> {
+        if self.files.job().is_some() {
+            self.say("Another export is under way; cancel it or wait");
+            return None;
+        }
+        self.shell.take_dialog();
+        self.files.remember_export_folder(&export.path);
+        Some(Effect::Export(export))
+    }
+
+    /// Whether an export runs that is not told to stop.
+    pub(super) fn is_exporting(&self) -> bool {
+        self.files.job().is_some_and(|job| !job.progress.is_cancelled())
+    }
+
+    /// Quits as soon as the export has stopped and left no file.
+    pub(super) fn stop_export_and_quit(&mut self) -> Option<Effect> {
+        self.shell.take_dialog();
+        self.cancel_export();
+        self.apply_file(FileAction::Quit)
+    }
+
+    pub(super) fn cancel_export(&mut self) {
+        if let Some(job) = self.files.job() {
+            job.progress.cancel();
+            self.say("Cancelling the export …");
+        }
+    }
+}

@@ -1,0 +1,94 @@
+use super::playback::Playback;
+use super::playback_action::PlaybackAction;
+use super::session::Session;
+
+/// Playback.
+impl Session {
+    /// Slowest and fastest speed.
+    pub const SPEEDS: (f64, f64) = Playback::SPEEDS;
+
+    /// The playhead, in seconds.
+    pub fn time(&self) -> f64 {
+        self.playback.time()
+    }
+
+    /// Whether the timeline plays.
+    pub fn is_playing(&self) -> bool {
+        self.playback.is_playing()
+    }
+
+    /// Whether playback starts again at the end of the timeline.
+    pub fn is_looping(&self) -> bool {
+        self.playback.is_looping()
+    }
+
+    /// The speed, 1 for real time.
+    pub fn speed(&self) -> f64 {
+        self.playback.speed()
+    }
+
+    /// Whether every edit sets keys.
+    pub fn is_auto_key(&self) -> bool {
+        self.playback.is_auto_key()
+    }
+
+    /// Whether the document changes over time.
+    pub fn has_motion(&self) -> bool {
+        !self.document().keys.is_empty() || self.skeleton_rig().is_moving()
+    }
+
+    pub(super) fn apply_playback(&mut self, action: PlaybackAction) {
+        match action {
+            PlaybackAction::Play(playing) => self.play(playing),
+            PlaybackAction::SetTime(time) => self.set_time(time),
+            PlaybackAction::SetLooping(looping) => self.playback.set_looping(looping),
+            PlaybackAction::SetSpeed(speed) => self.playback.set_speed(speed),
+            PlaybackAction::SetAutoKey(auto_key) => self.playback.set_auto_key(auto_key),
+            PlaybackAction::Advance(seconds) => self.advance(seconds),
+        }
+    }
+
+    /// Plays from the start if the playhead is at the end; pauses on a frame.
+    fn play(&mut self, playing: bool) {
+        let timeline = self.document().timeline;
+        let (time, was_playing) = (self.time(), self.is_playing());
+        if playing && !was_playing && time >= timeline.end {
+            self.set_time(timeline.start);
+        } else if !playing && was_playing {
+            self.set_time(timeline.snapped(time));
+        }
+        self.playback.set_playing(playing);
+        self.playback.forget_last_frame();
+    }
+
+    fn set_time(&mut self, time: f64) {
+        if self.playback.set_time(time) {
+            self.discard_unkeyed_edits();
+            self.refresh();
+        }
+    }
+
+    fn advance(&mut self, seconds: f64) {
+        if !seconds.is_finite() {
+            return;
+        }
+        if let Some(camera) = self.view.advance_glide(seconds) {
+            self.set_camera(camera);
+        }
+        if !self.playback.has_frame_at(seconds) {
+            let passed = self.playback.advance_frame(seconds);
+            self.view.advance_crowd(passed);
+            self.advance_playhead(passed);
+            self.advance_solvers();
+        }
+    }
+
+    fn advance_playhead(&mut self, passed: f64) {
+        if !self.is_playing() || passed == 0.0 {
+            return;
+        }
+        let (time, goes_on) = self.playback.played(passed, &self.document().timeline);
+        self.set_time(time);
+        self.playback.set_playing(goes_on);
+    }
+}

@@ -1,0 +1,53 @@
+use super::effect::Effect;
+use super::select_action::SelectAction;
+use super::session::Session;
+
+/// Selection of joints, keys and channels.
+impl Session {
+    /// Selected joints; the last one is the active one.
+    pub fn selection(&self) -> &[usize] {
+        self.selection.joints()
+    }
+
+    /// The active joint: the last one selected.
+    pub fn selected(&self) -> Option<usize> {
+        self.selection().last().copied()
+    }
+
+    /// The joint under the mouse, in the viewport or in the outliner.
+    pub fn pointed(&self) -> Option<usize> {
+        self.selection.hovered()
+    }
+
+    pub(super) fn apply_selection(&mut self, action: SelectAction) -> Option<Effect> {
+        match action {
+            SelectAction::Joints(joints) => self.select(joints),
+            SelectAction::Hover(joint) => self.hover(joint),
+            SelectAction::Keys(keys) => {
+                self.selection.set_keys(keys);
+                self.retain_keys();
+            }
+            SelectAction::Channels(channels) => {
+                self.selection.set_channels(channels);
+                self.retain_keys();
+            }
+            SelectAction::CopyKeys => return self.copy_keys(),
+        }
+        None
+    }
+
+    pub(super) fn select(&mut self, joints: Vec<usize>) {
+        self.selection.set_joints(joints);
+        self.selection.retain_joints(self.skeleton_pose().len());
+        self.forget_trail();
+    }
+
+    pub(super) fn hover(&mut self, joint: Option<usize>) {
+        self.selection.set_hovered(joint);
+        self.selection.retain_joints(self.skeleton_pose().len());
+    }
+
+    pub(super) fn retain_keys(&mut self) {
+        self.selection.retain_keys(self.editing.document());
+    }
+}

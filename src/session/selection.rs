@@ -1,0 +1,98 @@
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use super::key::Key;
+use crate::document::{Channel, Document};
+use crate::kinematics::skeleton::JointRemap;
+
+/// Copied keys: channel, time after the first one, value.
+pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
+
+/// Selected joints, keys and channels, and the copied keys.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Selection {
+    /// The last one is the active joint.
+    joints: Vec<usize>,
+    hovered: Option<usize>,
+    keys: Vec<Key>,
+    channels: BTreeSet<Channel>,
+    clipboard: Clipboard,
+}
+
+impl Selection {
+    pub fn joints(&self) -> &[usize] {
+        &self.joints
+    }
+
+    pub fn hovered(&self) -> Option<usize> {
+        self.hovered
+    }
+
+    pub fn keys(&self) -> &[Key] {
+        &self.keys
+    }
+
+    pub fn channels(&self) -> &BTreeSet<Channel> {
+        &self.channels
+    }
+
+    pub fn clipboard(&self) -> &Clipboard {
+        &self.clipboard
+    }
+
+    pub fn set_joints(&mut self, joints: Vec<usize>) {
+        self.joints = joints;
+    }
+
+    pub fn set_hovered(&mut self, joint: Option<usize>) {
+        self.hovered = joint;
+    }
+
+    pub fn set_keys(&mut self, keys: Vec<Key>) {
+        self.keys = keys;
+    }
+
+    pub fn set_channels(&mut self, channels: impl IntoIterator<Item = Channel>) {
+        self.channels = channels.into_iter().collect();
+    }
+
+    pub fn set_clipboard(&mut self, clipboard: Clipboard) {
+        self.clipboard = clipboard;
+    }
+
+    /// Removes joints that are not among the first `count`.
+    pub fn retain_joints(&mut self, count: usize) {
+        self.joints.retain(|joint| *joint < count);
+        self.hovered = self.hovered.filter(|joint| *joint < count);
+    }
+
+    /// Removes keys and channels that the document does not have.
+    pub fn retain_keys(&mut self, document: &Document) {
+        self.keys.retain(|(channel, time)| {
+            document.keys.track(*channel).is_some_and(|track| track.get(*time).is_some())
+        });
+        self.channels.retain(|channel| channel.value(document).is_some());
+    }
+
+    /// Renumbers keys, channels and copied keys after joints were removed or moved. `keys` and
+    /// `channels` are those from before.
+    pub fn remap(&mut self, moved: &JointRemap, keys: Vec<Key>, channels: BTreeSet<Channel>) {
+        let keys = keys.into_iter();
+        self.keys =
+            keys.filter_map(|(channel, time)| Some((channel.moved(moved)?, time))).collect();
+        self.set_channels(channels.into_iter().filter_map(|channel| channel.moved(moved)));
+        let copies = std::mem::take(&mut self.clipboard).into_iter();
+        let copies =
+            copies.filter_map(|(channel, time, value)| Some((channel.moved(moved)?, time, value)));
+        self.clipboard = copies.collect();
+    }
+
+    /// Clears all that refers to joints by index.
+    pub fn forget_joints(&mut self) {
+        self.joints.clear();
+        self.keys.clear();
+        self.channels.clear();
+        self.clipboard.retain(|(channel, ..)| channel.joint().is_none());
+    }
+}

@@ -1,0 +1,154 @@
+use super::editing::Editing;
+use super::evaluated::Evaluated;
+use super::files::Files;
+use super::playback::Playback;
+use super::pops::{CursorMove, Pops};
+use super::preferences::Preferences;
+use super::selection::Selection;
+use super::shell::Shell;
+use super::solvers::Solvers;
+use super::transport::TransportPath;
+use super::view::View;
+use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
+use crate::io;
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+use crate::kinematics::two_bone::TwoBonePose;
+
+/// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
+/// rest.
+pub(super) const ASPECT: f32 = 1.0;
+
+/// An open document with its history, and all that is neither saved nor undone. Each part owns its
+/// state; a session passes actions to the parts and what follows from one to the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    pub(super) editing: Editing,
+    pub(super) evaluated: Evaluated,
+    pub(super) selection: Selection,
+    pub(super) playback: Playback,
+    pub(super) solvers: Solvers,
+    pub(super) view: View,
+    pub(super) files: Files,
+    pub(super) shell: Shell,
+    pub(super) preferences: Preferences,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new(Preferences::default())
+    }
+}
+
+impl Session {
+    /// A session with a new document: the arm, with the Human as its skeleton.
+    pub fn new(preferences: Preferences) -> Self {
+        Self::with_document(preferences, io::new_document())
+    }
+
+    /// A session with a document.
+    pub fn with_document(preferences: Preferences, document: Document) -> Self {
+        Self {
+            evaluated: Evaluated::new(&document),
+            editing: Editing::new(document),
+            selection: Selection::default(),
+            playback: Playback::default(),
+            solvers: Solvers::default(),
+            view: View::default(),
+            files: Files::default(),
+            shell: Shell::default(),
+            preferences,
+        }
+    }
+
+    /// The document that is saved.
+    pub fn document(&self) -> &Document {
+        self.editing.document()
+    }
+
+    /// The document evaluated at the playhead, with unkeyed edits.
+    pub fn shown(&self) -> &Document {
+        self.editing.shown()
+    }
+
+    /// The rig that is shown.
+    pub fn rig(&self) -> RigKind {
+        self.document().rig
+    }
+
+    /// The arm at the playhead.
+    pub fn arm(&self) -> &Arm {
+        &self.shown().arm
+    }
+
+    /// The skeleton with its targets at the playhead.
+    pub fn skeleton_rig(&self) -> &SkeletonRig {
+        &self.shown().skeleton_rig
+    }
+
+    /// The joints of the skeleton at the playhead.
+    pub fn skeleton(&self) -> &Skeleton {
+        self.shown().skeleton()
+    }
+
+    /// The pose of the arm at the playhead.
+    pub fn pose(&self) -> &TwoBonePose {
+        self.evaluated.pose()
+    }
+
+    /// The pose of the skeleton at the playhead, in world space.
+    pub fn skeleton_pose(&self) -> &SkeletonPose {
+        self.evaluated.skeleton_pose()
+    }
+
+    /// The frame transported along the Pointer's path.
+    pub fn transport_path(&self) -> &TransportPath {
+        self.evaluated.transport_path()
+    }
+
+    /// How fast the elbow has moved in comparison with the Cursor.
+    pub fn pops(&self) -> &Pops {
+        self.evaluated.pops()
+    }
+
+    /// Whether the next frame differs without further input.
+    pub fn is_moving(&self) -> bool {
+        self.view.is_gliding()
+            || self.playback.is_playing()
+            || self.view.is_crowd_moving()
+            || self.solvers.is_busy()
+    }
+
+    /// Evaluates the document at the playhead, with all that follows from it.
+    pub(super) fn refresh(&mut self) {
+        self.editing.evaluate(self.playback.time());
+        self.follow_document();
+    }
+
+    /// Updates all that depends on the evaluated document.
+    pub(super) fn follow_document(&mut self) {
+        let cause = match self.editing.revision_before() {
+            Some(revision) => CursorMove::Dragged(revision),
+            None if self.playback.is_playing() => CursorMove::Played,
+            None => CursorMove::Set,
+        };
+        self.evaluated.update(self.editing.shown(), self.playback.time(), cause);
+        self.selection.retain_joints(self.evaluated.skeleton_pose().len());
+        self.solvers.keep_comparison_of(self.editing.shown().skeleton());
+        self.selection.retain_keys(self.editing.document());
+    }
+
+    /// Moves the camera; an invalid one is ignored.
+    pub(super) fn set_camera(&mut self, camera: Camera) {
+        if camera.is_valid() {
+            self.editing.set_camera(camera);
+        }
+    }
+
+    pub(super) fn reset_transport(&mut self) {
+        self.evaluated.reset_transport(&self.editing.shown().arm);
+    }
+
+    pub(super) fn forget_trail(&mut self) {
+        self.evaluated.forget_trail();
+    }
+}

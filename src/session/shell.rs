@@ -1,0 +1,46 @@
+use super::dialog::Dialog;
+use super::message::Message;
+
+/// The open dialog and the message in the status bar.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Shell {
+    dialog: Option<Dialog>,
+    /// Whether the system's file dialog is open.
+    choosing: bool,
+    message: Option<Message>,
+}
+
+impl Shell {
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.dialog.as_ref()
+    }
+
+    pub fn is_choosing(&self) -> bool {
+        self.choosing
+    }
+
+    pub fn message(&self) -> Option<&Message> {
+        self.message.as_ref()
+    }
+
+    pub fn open_dialog(&mut self, dialog: Dialog) {
+        self.dialog = Some(dialog);
+    }
+
+    /// Closes the dialog and returns it.
+    pub fn take_dialog(&mut self) -> Option<Dialog> {
+        self.dialog.take()
+    }
+
+    pub fn set_choosing(&mut self, choosing: bool) {
+        self.choosing = choosing;
+    }
+
+    pub fn set_message(&mut self, message: Message) {
+        self.message = Some(message);
+    }
+
+    pub fn clear_message(&mut self) {
+        self.message = None;
+    }
+}

@@ -1,0 +1,123 @@
+use glam::Vec2;
+
+use super::view_drag::{CameraMotion, Glide, ViewDrag};
+use crate::document::Camera;
+use crate::kinematics::two_bone::TwoBone;
+use crate::rig::{Crowd, SolvedBy};
+
+/// The drag and the glide of the camera, and the crowd that is shown instead of the rig.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct View {
+    drag: Option<ViewDrag>,
+    glide: Option<Glide>,
+    crowd_shown: bool,
+    crowd_size: u32,
+    crowd_solver: SolvedBy,
+    crowd_animated: bool,
+    /// In seconds.
+    crowd_time: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            drag: None,
+            glide: None,
+            crowd_shown: false,
+            crowd_size: 1_000,
+            crowd_solver: SolvedBy::Cpu,
+            crowd_animated: true,
+            crowd_time: 0.0,
+        }
+    }
+}
+
+impl View {
+    pub fn drag(&self) -> Option<&ViewDrag> {
+        self.drag.as_ref()
+    }
+
+    pub fn is_gliding(&self) -> bool {
+        self.glide.is_some()
+    }
+
+    /// The end of the glide; `None` without one.
+    pub fn glide_target(&self) -> Option<Camera> {
+        Some(self.glide?.target())
+    }
+
+    pub fn glide(&mut self, from: Camera, to: Camera) {
+        self.glide = Some(Glide::new(from, to));
+    }
+
+    pub fn stop_glide(&mut self) {
+        self.glide = None;
+    }
+
+    /// Ends the glide and returns its target.
+    pub fn take_glide_target(&mut self) -> Option<Camera> {
+        Some(self.glide.take()?.target())
+    }
+
+    /// The camera of the glide at a time of the window.
+    pub fn advance_glide(&mut self, seconds: f64) -> Option<Camera> {
+        let (camera, arrived) = self.glide.as_mut()?.at(seconds);
+        if arrived {
+            self.glide = None;
+        }
+        Some(camera)
+    }
+
+    pub fn grab(&mut self, motion: CameraMotion, camera: Camera, at: Vec2) {
+        self.glide = None;
+        self.drag = Some(ViewDrag::new(motion, camera, at));
+    }
+
+    /// Ends the drag and returns the camera from before it.
+    pub fn drop(&mut self) -> Option<Camera> {
+        Some(self.drag.take()?.before)
+    }
+
+    pub fn crowd(&self, bones: TwoBone) -> Option<Crowd> {
+        let Self { crowd_size: arms, crowd_solver: solved_by, crowd_time, .. } = *self;
+        self.crowd_shown.then_some(Crowd { arms, bones, time: crowd_time as f32, solved_by })
+    }
+
+    pub fn is_crowd_animated(&self) -> bool {
+        self.crowd_animated
+    }
+
+    /// Whether the crowd is shown and animated.
+    pub fn is_crowd_moving(&self) -> bool {
+        self.crowd_shown && self.crowd_animated
+    }
+
+    /// Shows or hides the crowd; returns whether that is a change.
+    pub fn show_crowd(&mut self, shown: bool) -> bool {
+        std::mem::replace(&mut self.crowd_shown, shown) != shown
+    }
+
+    pub fn set_crowd_size(&mut self, arms: u32) {
+        self.crowd_size = arms.clamp(1, Crowd::MOST);
+    }
+
+    pub fn set_crowd_solver(&mut self, solved_by: SolvedBy) {
+        self.crowd_solver = solved_by;
+    }
+
+    pub fn animate_crowd(&mut self, animated: bool) {
+        self.crowd_animated = animated;
+    }
+
+    pub fn advance_crowd(&mut self, passed: f64) {
+        if self.is_crowd_moving() {
+            let period = f64::from(Crowd::PERIOD);
+            self.crowd_time = (self.crowd_time + passed).rem_euclid(period);
+        }
+    }
+
+    /// Resets the crowd and hides it.
+    pub fn reset_crowd(&mut self) {
+        *self = Self { drag: self.drag, glide: self.glide, ..Self::default() };
+    }
+}

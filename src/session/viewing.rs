@@ -1,0 +1,129 @@
+use super::session::{ASPECT, Session};
+use super::view_action::ViewAction;
+use super::view_drag::ViewDrag;
+use crate::document::{Camera, RigKind};
+use crate::rig::Crowd;
+
+/// The view.
+impl Session {
+    /// The camera now.
+    pub fn camera(&self) -> &Camera {
+        &self.document().camera
+    }
+
+    /// The camera at the end of its glide.
+    pub fn settled_camera(&self) -> Camera {
+        self.view.glide_target().unwrap_or(*self.camera())
+    }
+
+    /// The drag of the camera.
+    pub fn view_drag(&self) -> Option<&ViewDrag> {
+        self.view.drag()
+    }
+
+    /// Whether the camera glides.
+    pub fn is_gliding(&self) -> bool {
+        self.view.is_gliding()
+    }
+
+    /// The crowd shown instead of the rig, of arms like the document's.
+    pub fn crowd(&self) -> Option<Crowd> {
+        self.view.crowd(self.arm().bones)
+    }
+
+    /// Whether the crowd follows its targets.
+    pub fn is_crowd_moving(&self) -> bool {
+        self.view.is_crowd_animated()
+    }
+
+    /// The camera that frames the selected joints, else the rig.
+    pub fn framing_selection(&self) -> Camera {
+        if self.crowd().is_some() {
+            return self.framing_all();
+        }
+        let (centre, radius) = match self.rig() {
+            RigKind::Arm => self.arm().bounds(self.pose()),
+            RigKind::Skeleton => self
+                .skeleton_rig()
+                .bounds_of(self.skeleton_pose(), self.selection())
+                .unwrap_or_else(|| self.skeleton_rig().bounds(self.skeleton_pose(), self.time())),
+        };
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// The camera that frames all points in reach of the arm, the skeleton with its targets, or the
+    /// crowd.
+    pub fn framing_all(&self) -> Camera {
+        if let Some(crowd) = self.crowd() {
+            let (centre, radius) = crowd.bounds();
+            return self.settled_camera().framing(centre, radius, ASPECT);
+        }
+        let (centre, radius) = match self.rig() {
+            RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
+            RigKind::Skeleton => self.skeleton_rig().bounds(self.skeleton_pose(), self.time()),
+        };
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    pub(super) fn apply_view(&mut self, action: ViewAction) {
+        match action {
+            ViewAction::SetCamera(camera) => {
+                self.view.stop_glide();
+                self.set_camera(camera);
+            }
+            ViewAction::GlideTo(camera) => {
+                if camera.is_valid() {
+                    self.glide_to(camera);
+                }
+            }
+            ViewAction::Grab(motion, at) => self.view.grab(motion, *self.camera(), at),
+            ViewAction::Drag { to, aspect } => {
+                if let Some(drag) = self.view.drag() {
+                    self.set_camera(drag.camera(to, aspect));
+                }
+            }
+            ViewAction::Drop => {
+                self.view.drop();
+            }
+            ViewAction::Cancel => {
+                if let Some(before) = self.view.drop() {
+                    self.set_camera(before);
+                }
+            }
+            ViewAction::ShowCrowd(shown) => {
+                if self.view.show_crowd(shown) {
+                    self.forget_pause();
+                    self.glide_to(self.framing_all());
+                }
+            }
+            ViewAction::SetCrowdSize(arms) => self.view.set_crowd_size(arms),
+            ViewAction::SetCrowdSolver(solved_by) => self.view.set_crowd_solver(solved_by),
+            ViewAction::AnimateCrowd(animated) => {
+                self.view.animate_crowd(animated);
+                self.forget_pause();
+            }
+            ViewAction::ResetTransport => self.reset_transport(),
+            ViewAction::ShowExplain(shown) => self.preferences.explain = shown,
+            ViewAction::ShowTimeline(shown) => self.preferences.timeline = shown,
+            ViewAction::ShowGraphEditor(shown) => self.preferences.curves = shown,
+        }
+    }
+
+    pub(super) fn glide_to(&mut self, camera: Camera) {
+        self.view.glide(*self.camera(), camera);
+    }
+
+    /// Moves the camera to the end of its glide.
+    pub(super) fn end_glide(&mut self) {
+        if let Some(camera) = self.view.take_glide_target() {
+            self.set_camera(camera);
+        }
+    }
+
+    /// A pause is no time of the crowd.
+    fn forget_pause(&mut self) {
+        if !self.is_playing() {
+            self.playback.forget_last_frame();
+        }
+    }
+}
