@@ -7,7 +7,7 @@ use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Constraint, Drag, DragInput, EditAction, FileAction, Grip, Handle, Motion,
+    Action, CameraMotion, Constraint, Drag, DragInput, EditAction, FileAction, Grip, Handle,
     PlaybackAction, PointDrag, PoseMode, Preferences, SelectAction, Session, ShellAction,
     SolverAction, TransactionAction, TurnDrag, ViewAction,
 };

@@ -48,7 +48,7 @@ impl Values<'_> {
         }
     }
 
-    pub fn turn(&mut self) -> Motion {
+    pub fn turn(&mut self) -> CameraMotion {
         self.one_of(&[CameraMotion::Orbit, CameraMotion::Pan, CameraMotion::Zoom])
     }
 
