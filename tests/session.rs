@@ -365,7 +365,10 @@ fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
     session.apply(FileAction::Saved("x.json".into()));
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     assert!(session.is_overridden(Channel::Hand));
-    assert_eq!(session.message(), Some("Shown until the time changes: press K to keep it"));
+    assert_eq!(
+        session.message(),
+        Some("Unkeyed change: press K or it is lost when the time changes")
+    );
     assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
     assert_eq!(session.document().keys, document.keys);
     for time in [0.6, 0.5] {
