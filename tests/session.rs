@@ -223,7 +223,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     let joints = rig.skeleton.joints();
     prop_assert_eq!(session.skeleton_pose().len(), joints.len());
     prop_assert!(session.selection().iter().all(|joint| *joint < JointId::new(joints.len())));
-    prop_assert!(session.pointed().is_none_or(|joint| joint < JointId::new(joints.len())));
+    prop_assert!(session.hovered().is_none_or(|joint| joint < JointId::new(joints.len())));
     let mut names = std::collections::HashSet::new();
     for (index, joint) in joints.iter().enumerate() {
         prop_assert!(joint.parent.is_none_or(|parent| parent < JointId::new(index)));

@@ -111,7 +111,7 @@ fn a_pointer_is_on_no_joint_that_is_not_there() {
     for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
         let joint = JointId::new(joint);
         session.apply(SelectAction::Hover(Some(joint)));
-        assert_eq!(session.pointed(), is_there.then_some(joint));
+        assert_eq!(session.hovered(), is_there.then_some(joint));
     }
 }
 

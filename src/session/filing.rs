@@ -9,6 +9,7 @@ use super::file_action::FileAction;
 use super::session::{ASPECT, Session};
 use crate::document::{Document, RigKind};
 use crate::io::Example;
+use crate::kinematics::skeleton::JointId;
 
 /// Files.
 impl Session {
@@ -212,7 +213,7 @@ impl Session {
     fn new_skeleton(&mut self) {
         let document = Document { rig: RigKind::Skeleton, ..Document::default() };
         self.replace_document(document, None);
-        self.select(vec![0]);
+        self.select(vec![JointId::new(0)]);
         // As far away as a rig of a unit or two needs.
         self.set_camera(self.settled_camera().framing(Vec3::Y * 0.5, 1.0, ASPECT));
     }

@@ -1,21 +1,22 @@
 use super::effect::Effect;
 use super::select_action::SelectAction;
 use super::session::Session;
+use crate::kinematics::skeleton::JointId;
 
 /// Selection of joints, keys and channels.
 impl Session {
     /// Selected joints; the last one is the active one.
-    pub fn selection(&self) -> &[usize] {
+    pub fn selection(&self) -> &[JointId] {
         self.selection.joints()
     }
 
     /// The active joint: the last one selected.
-    pub fn selected(&self) -> Option<usize> {
+    pub fn selected(&self) -> Option<JointId> {
         self.selection().last().copied()
     }
 
     /// The joint under the mouse, in the viewport or in the outliner.
-    pub fn pointed(&self) -> Option<usize> {
+    pub fn hovered(&self) -> Option<JointId> {
         self.selection.hovered()
     }
 
@@ -36,13 +37,13 @@ impl Session {
         None
     }
 
-    pub(super) fn select(&mut self, joints: Vec<usize>) {
+    pub(super) fn select(&mut self, joints: Vec<JointId>) {
         self.selection.set_joints(joints);
         self.selection.retain_joints(self.skeleton_pose().len());
         self.forget_trail();
     }
 
-    pub(super) fn hover(&mut self, joint: Option<usize>) {
+    pub(super) fn hover(&mut self, joint: Option<JointId>) {
         self.selection.set_hovered(joint);
         self.selection.retain_joints(self.skeleton_pose().len());
     }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::key::Key;
 use crate::document::{Channel, Document};
-use crate::kinematics::skeleton::JointRemap;
+use crate::kinematics::skeleton::{JointId, JointRemap};
 
 /// Copied keys: channel, time after the first one, value.
 pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
@@ -13,19 +13,19 @@ pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Selection {
     /// The last one is the active joint.
-    joints: Vec<usize>,
-    hovered: Option<usize>,
+    joints: Vec<JointId>,
+    hovered: Option<JointId>,
     keys: Vec<Key>,
     channels: BTreeSet<Channel>,
     clipboard: Clipboard,
 }
 
 impl Selection {
-    pub fn joints(&self) -> &[usize] {
+    pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
-    pub fn hovered(&self) -> Option<usize> {
+    pub fn hovered(&self) -> Option<JointId> {
         self.hovered
     }
 
@@ -41,11 +41,11 @@ impl Selection {
         &self.clipboard
     }
 
-    pub fn set_joints(&mut self, joints: Vec<usize>) {
+    pub fn set_joints(&mut self, joints: Vec<JointId>) {
         self.joints = joints;
     }
 
-    pub fn set_hovered(&mut self, joint: Option<usize>) {
+    pub fn set_hovered(&mut self, joint: Option<JointId>) {
         self.hovered = joint;
     }
 
@@ -63,8 +63,8 @@ impl Selection {
 
     /// Removes joints that are not among the first `count`.
     pub fn retain_joints(&mut self, count: usize) {
-        self.joints.retain(|joint| *joint < count);
-        self.hovered = self.hovered.filter(|joint| *joint < count);
+        self.joints.retain(|joint| joint.index() < count);
+        self.hovered = self.hovered.filter(|joint| joint.index() < count);
     }
 
     /// Removes keys and channels that the document does not have.

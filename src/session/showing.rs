@@ -46,7 +46,7 @@ impl Session {
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
-        overlays.pointed = self.pointed();
+        overlays.pointed = self.hovered();
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::session::{ASPECT, Session};
 use crate::document::{Channel, Document, FollowPath, RigKind, SkeletonRig, Target};
 use crate::kinematics::chain_ik::SolverOptions;
-use crate::kinematics::skeleton::{Joint, JointRemap, Limit, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Limit, Skeleton, SkeletonError};
 
 /// What actions do to the skeleton.
 impl Session {
@@ -15,13 +15,13 @@ impl Session {
         self.edit_document(|document| change(&mut document.skeleton_rig))
     }
 
-    pub(super) fn change_joint(&mut self, joint: usize, change: impl FnOnce(&mut Joint)) {
+    pub(super) fn change_joint(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
         self.edit_skeleton(|rig| rig.skeleton_mut().change(joint, change));
     }
 
     /// A joint on the tip of `parent`, with its bone ending at `tip` (world) or going on like the
     /// parent's; on nothing, a new root that is a point.
-    pub(super) fn add_joint(&mut self, parent: Option<usize>, tip: Option<Vec3>) {
+    pub(super) fn add_joint(&mut self, parent: Option<JointId>, tip: Option<Vec3>) {
         let added = self.edit_skeleton(|rig| {
             let skeleton = rig.skeleton_mut();
             let Some(parent) = parent else {
@@ -57,8 +57,8 @@ impl Session {
         }
     }
 
-    fn next_parent(&self) -> Option<usize> {
-        self.selected().or(self.skeleton_pose().len().checked_sub(1))
+    fn next_parent(&self) -> Option<JointId> {
+        self.selected().or(self.skeleton_pose().ids().next_back())
     }
 
     /// Where the bone of the next joint begins, in the world.
@@ -84,12 +84,12 @@ impl Session {
     /// Deletes joints and selects the parent that is left of the last one.
     pub(super) fn delete_joints(
         &mut self,
-        joints: &[usize],
-        delete: fn(&mut Document, &[usize]) -> Result<JointRemap, SkeletonError>,
+        joints: &[JointId],
+        delete: fn(&mut Document, &[JointId]) -> Result<JointRemap, SkeletonError>,
     ) {
         let skeleton = &self.skeleton();
         let parents = joints.iter().filter_map(|joint| skeleton.joint(*joint)?.parent);
-        let parents: Vec<usize> = parents.collect();
+        let parents: Vec<JointId> = parents.collect();
         let selected = self.selected_in_timeline();
         let moved = self.edit_document(|document| delete(document, joints));
         let Some(moved) = moved else { return };
@@ -98,7 +98,7 @@ impl Session {
         self.select(left.into_iter().collect());
     }
 
-    pub(super) fn reparent(&mut self, joint: usize, parent: Option<usize>) {
+    pub(super) fn reparent(&mut self, joint: JointId, parent: Option<JointId>) {
         let selected = self.selected_in_timeline();
         let before = self.selection().to_vec();
         let moved = self.edit_document(|document| {
@@ -108,12 +108,12 @@ impl Session {
         });
         if let Some(moved) = moved {
             self.remap_keys(&moved, selected);
-            self.selection.set_hovered(self.pointed().and_then(|joint| moved.get(joint)));
+            self.selection.set_hovered(self.hovered().and_then(|joint| moved.get(joint)));
             self.select(before.iter().filter_map(|joint| moved.get(*joint)).collect());
         }
     }
 
-    pub(super) fn set_limit(&mut self, joint: usize, axis: usize, limit: Option<Limit>) {
+    pub(super) fn set_limit(&mut self, joint: JointId, axis: usize, limit: Option<Limit>) {
         if axis < 3 {
             self.change_joint(joint, |joint| joint.limits[axis] = limit);
         } else {
@@ -123,8 +123,8 @@ impl Session {
 
     pub(super) fn bind_pose(&mut self) {
         self.edit_skeleton(|rig| {
-            (0..rig.skeleton.joints().len())
-                .try_for_each(|joint| rig.skeleton_mut().set_rotation(joint, Vec3::ZERO))
+            let mut joints = rig.skeleton.ids();
+            joints.try_for_each(|joint| rig.skeleton_mut().set_rotation(joint, Vec3::ZERO))
         });
     }
 
@@ -137,8 +137,10 @@ impl Session {
     }
 
     /// Puts a target where the joint's tip is.
-    pub(super) fn add_target(&mut self, joint: usize) {
-        if joint >= self.skeleton_pose().len() || self.skeleton_rig().target(joint).is_some() {
+    pub(super) fn add_target(&mut self, joint: JointId) {
+        if joint.index() >= self.skeleton_pose().len()
+            || self.skeleton_rig().target(joint).is_some()
+        {
             return;
         }
         let home = self.skeleton_pose().tip(joint);
@@ -200,7 +202,7 @@ impl Session {
     }
 
     /// Takes a target away, with its keys.
-    pub(super) fn remove_target(&mut self, joint: usize) {
+    pub(super) fn remove_target(&mut self, joint: JointId) {
         self.edit_document(|document| {
             document.skeleton_rig.targets.retain(|target| target.joint != joint);
             document.keys.clear(Channel::Target(joint));
@@ -226,7 +228,7 @@ impl Session {
 
 /// A radius for a child of `parent`: a little less than that of the thickest bone above it, so that one
 /// skeleton's bones look alike, but at most a quarter of its length; `own` is a tenth of that.
-fn radius_of_next(skeleton: &Skeleton, parent: usize, own: f32) -> f32 {
+fn radius_of_next(skeleton: &Skeleton, parent: JointId, own: f32) -> f32 {
     const TAPER: f32 = 0.9;
     const THICKEST: f32 = 2.5;
     let above = skeleton.ancestors(parent).filter_map(|joint| skeleton.joint(joint));

@@ -7,22 +7,22 @@ use super::session::Session;
 use super::turn_drag::{Ring, TurnDrag};
 use crate::document::Ray;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions};
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Iterations while something is dragged, in every frame: enough for a short way.
 const ITERATIONS_OF_A_DRAG: u32 = 64;
 
 /// What is dragged of a skeleton.
 impl Session {
-    pub(super) fn grab_target(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
+    pub(super) fn grab_target(&mut self, joint: JointId, handle: Handle, ray: Ray, forward: Vec3) {
         if let Some(target) = self.skeleton_rig().target(joint) {
             let at = self.skeleton_rig().targets[target].at(self.time());
             self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
         }
     }
 
-    pub(super) fn grab_tip(&mut self, joint: usize, handle: Handle, ray: Ray, forward: Vec3) {
-        if joint < self.skeleton_pose().len() && self.skeleton_rig().follow_path.is_none() {
+    pub(super) fn grab_tip(&mut self, joint: JointId, handle: Handle, ray: Ray, forward: Vec3) {
+        if joint.index() < self.skeleton_pose().len() && self.skeleton_rig().follow_path.is_none() {
             let tip = self.skeleton_pose().tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
@@ -33,23 +33,23 @@ impl Session {
         self.begin_edit(Some(Drag { grip, way: DragKind::Point(drag) }));
     }
 
-    pub(super) fn grab_ring(&mut self, joint: usize, axis: usize, ray: Ray) {
+    pub(super) fn grab_ring(&mut self, joint: JointId, axis: usize, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
-        let start = self.skeleton().joints()[joint].rotation[axis];
+        let start = self.skeleton()[joint].rotation[axis];
         let drag = TurnDrag::new(ring, start, ray);
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: DragKind::Turn(drag) }));
     }
 
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
     /// limit leaves no room.
-    pub fn ring(&self, joint: usize, axis: usize) -> Option<Ring> {
+    pub fn ring(&self, joint: JointId, axis: usize) -> Option<Ring> {
         let skeleton = &self.skeleton();
         let limit = skeleton.joint(joint)?.limits.get(axis)?;
         if limit.is_some_and(|limit| limit.min == limit.max) {
             return None;
         }
         let world = skeleton.transform_to_base(joint);
-        let local = skeleton.joints()[joint].rotation_axis(axis);
+        let local = skeleton[joint].rotation_axis(axis);
         // A mirror turns every rotation around.
         let sign = world.matrix3.determinant().signum();
         let axis = (Vec3::from(world.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
@@ -69,7 +69,7 @@ impl Session {
         }
     }
 
-    fn drag_target(&mut self, joint: usize, to: Vec3) {
+    fn drag_target(&mut self, joint: JointId, to: Vec3) {
         let Some(index) = self.skeleton_rig().target(joint) else { return };
         let mut target = self.skeleton_rig().targets[index];
         target.home = to - target.motion.offset(self.time());
@@ -85,7 +85,7 @@ impl Session {
     }
 
     /// The tip follows the pointer from the pose at the press; a root that is a point moves.
-    fn drag_tip(&mut self, joint: usize, to: Vec3, moved: Vec3) {
+    fn drag_tip(&mut self, joint: JointId, to: Vec3, moved: Vec3) {
         if !self.is_editing() {
             return;
         }
@@ -122,7 +122,7 @@ impl Session {
         });
     }
 
-    pub(super) fn turn_joint(&mut self, joint: usize, axis: usize, angle: f32) {
+    pub(super) fn turn_joint(&mut self, joint: JointId, axis: usize, angle: f32) {
         self.change_joint(joint, |joint| joint.rotation[axis] = angle);
     }
 }

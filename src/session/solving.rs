@@ -84,12 +84,12 @@ impl Session {
         self.solvers.end_comparison();
         self.stop_run();
         let Some(solver_run) = self.solvers.take_run() else { return };
-        let start = solver_run.start().joints();
+        let start = solver_run.start();
         self.edit_skeleton(|rig| {
-            if start.len() != rig.skeleton.joints().len() {
+            if start.joints().len() != rig.skeleton.joints().len() {
                 return Ok(());
             }
-            start.iter().enumerate().try_for_each(|(joint, before)| {
+            start.iter().try_for_each(|(joint, before)| {
                 rig.skeleton_mut().change(joint, |joint| {
                     (joint.rotation, joint.offset) = (before.rotation, before.offset);
                 })

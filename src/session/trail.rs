@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use crate::document::{Document, Overlay, RigKind};
+use crate::kinematics::skeleton::JointId;
 
 /// Whether a document has a trail to show.
 pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
@@ -8,7 +9,7 @@ pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
 }
 
 /// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.
-pub(super) fn walk(document: &Document, joint: Option<usize>) -> Vec<Vec3> {
+pub(super) fn walk(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Joints times points: what a large skeleton may cost.
     const MOST_POSES: usize = 100_000;

@@ -8,7 +8,6 @@ use ik_arm::session::{
 };
 
 use crate::values::Values;
-use ik_arm::kinematics::skeleton::JointId;
 
 /// Sorts of actions; they come in bursts of one sort.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

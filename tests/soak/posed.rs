@@ -109,7 +109,7 @@ fn places(session: &Session) -> Result<(), Broken> {
         "selected joints are there"
     );
     hold!(
-        session.pointed().is_none_or(|joint| joint < JointId::new(joints)),
+        session.hovered().is_none_or(|joint| joint < JointId::new(joints)),
         "the joint pointed at is there"
     );
     let document = session.document();

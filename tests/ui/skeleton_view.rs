@@ -113,10 +113,10 @@ fn the_bone_under_the_mouse_is_pointed_out() {
     let mut bench = bench();
     let at = bone_place(&bench, "c");
     bench.move_to(at);
-    assert_eq!(bench.session().pointed(), Some(joint(&bench, "c")));
+    assert_eq!(bench.session().hovered(), Some(joint(&bench, "c")));
     let empty = bench.empty_place();
     bench.move_to(empty);
-    assert_eq!(bench.session().pointed(), None);
+    assert_eq!(bench.session().hovered(), None);
 }
 
 #[test]

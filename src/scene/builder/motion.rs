@@ -1,7 +1,6 @@
 use glam::Vec3;
 
 use crate::document::{Document, RigKind};
-use crate::kinematics::skeleton::JointId;
 use crate::rig::Part;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};

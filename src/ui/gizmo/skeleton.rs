@@ -136,7 +136,6 @@ impl SkeletonGizmo {
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
-    let joints = rig.skeleton.joints();
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
         let is_root_point =

@@ -98,7 +98,7 @@ fn invite(ui: &mut Ui, rect: Rect) {
 
 /// Reports the hovered joint.
 fn point(session: &Session, joint: Option<JointId>, actions: &mut Actions) {
-    if session.pointed() != joint {
+    if session.hovered() != joint {
         actions.push(SelectAction::Hover(joint));
     }
 }

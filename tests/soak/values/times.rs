@@ -4,7 +4,6 @@ use ik_arm::document::{Channel, Timeline};
 use ik_arm::session::Key;
 
 use super::Values;
-use ik_arm::kinematics::skeleton::JointId;
 
 impl Values<'_> {
     pub fn time(&mut self) -> f64 {

@@ -7,7 +7,6 @@ use ik_arm::document::{AxisView, Camera, Overlay, Ray};
 use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, Handle, PointDrag};
 
 use super::Values;
-use ik_arm::kinematics::skeleton::JointId;
 
 impl Values<'_> {
     pub fn place(&mut self) -> Vec2 {

@@ -51,7 +51,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
     let said = ui.make_persistent_id("pointed in the tree");
     let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
-    if pointed.is_some() && pointed != session.pointed() || was && pointed.is_none() {
+    if pointed.is_some() && pointed != session.hovered() || was && pointed.is_none() {
         actions.push(SelectAction::Hover(pointed));
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
@@ -104,7 +104,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     let painter = ui.painter();
     if selected {
         painter.rect_filled(rect, 4.0, visuals.selection.bg_fill);
-    } else if response.hovered() || session.pointed() == Some(row.joint) {
+    } else if response.hovered() || session.hovered() == Some(row.joint) {
         painter.rect_filled(rect, 4.0, visuals.widgets.hovered.weak_bg_fill);
     }
     if response.has_focus() {
