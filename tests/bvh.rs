@@ -39,8 +39,8 @@ fn shown(skeleton: Skeleton) -> Document {
 
 /// Where the bases are at a time, and the tips of what nothing hangs from.
 fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
-    let document = document.at(time);
-    let skeleton = document.skeleton_rig.at(time);
+    let document = document.evaluate(time);
+    let skeleton = document.skeleton_rig.skeleton_at(time);
     let pose = skeleton.pose();
     let mut points = HashMap::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {
@@ -149,7 +149,7 @@ fn the_arm_comes_back_where_it_was() {
     let read = open(text(&exported)).document;
     for frame in 0..31 {
         let time = f64::from(frame) / 30.0;
-        let arm = document.at(time).arm;
+        let arm = document.evaluate(time).arm;
         let pose = arm.pose();
         let found = points(&read, time);
         for (name, point) in
@@ -239,7 +239,7 @@ fn units_are_chosen() {
         read.skeleton().joints()[1].axis.length()
     };
     let own = document.skeleton().joints()[1].axis.length();
-    let inches = Document { metres: Some(0.0254), ..document };
+    let inches = Document { metres_per_unit: Some(0.0254), ..document };
     for (unit, per_unit) in
         [(BvhUnit::Centimetres, 2.54), (BvhUnit::Metres, 0.0254), (BvhUnit::Scene, 1.0)]
     {
@@ -412,8 +412,8 @@ fn a_small_file_is_read_as_it_says() {
     let keyed: Vec<_> = document.keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(keyed, [Channel::Rotation(JointId::new(0))]);
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25 });
-    assert_eq!((document.rig, document.metres), (RigKind::Skeleton, Some(0.01)));
-    assert_eq!(document.camera, document.skeleton_rig.first_view());
+    assert_eq!((document.rig, document.metres_per_unit), (RigKind::Skeleton, Some(0.01)));
+    assert_eq!(document.camera, document.skeleton_rig.default_camera());
     assert_eq!(
         (warnings, order, skeletons),
         (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()])
@@ -493,7 +493,7 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
         let document = open(&text).document;
         // A file of no channels has no frames to tell apart.
         for frame in 0..2 {
-            let pose = document.at(frame as f64 * 0.5).skeleton().pose();
+            let pose = document.evaluate(frame as f64 * 0.5).skeleton().pose();
             let size = 400.0 * joints as f64;
             for joint in 0..joints {
                 let expected = expected[frame][joint + 1];

@@ -337,7 +337,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
     let document = keyed_chain();
     let scene = Scene::new(&io::to_json(&document).expect("written"));
     for time in ["-2", "-0.25", "0", "1.3", "2", "1e9"] {
-        let posed = document.at(time.parse().expect("a number"));
+        let posed = document.evaluate(time.parse().expect("a number"));
         let pose = posed.skeleton().pose();
         let answer = scene.pose(&["--time", time]);
         for (index, joint) in answer.joints.iter().enumerate() {
@@ -356,7 +356,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 fn a_time_moves_what_moves_by_itself_and_the_targets() {
     let snake = Scene::example("snake");
     let document = Example::find("snake").expect("there").open().expect("opens").document;
-    let pose = document.skeleton_rig.at(2.5).pose();
+    let pose = document.skeleton_rig.skeleton_at(2.5).pose();
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 
     let mut document = keyed_chain();

@@ -299,7 +299,7 @@ fn a_time_moves_what_is_keyed() {
     let json = |document: &Document| ik_arm::io::to_json(document).expect("written");
     let moving = file(&folder, "moving.json", &json(&document));
     for time in [-0.5, 0.0, 1.0] {
-        let mut posed = document.at(time);
+        let mut posed = document.evaluate(time);
         posed.keys = Default::default();
         let still = file(&folder, "still.json", &json(&posed));
         assert_eq!(picture(&[&moving, "--time", &time.to_string()]), picture(&[&still]), "{time}");

@@ -52,7 +52,7 @@ fn the_arm_is_shoulder_elbow_and_hand() {
     for (frame, row) in rows.deserialize::<[f64; 11]>().enumerate() {
         let row = row.expect("numbers");
         let time = frame as f64 / 4.0;
-        let arm = document.at(time).arm;
+        let arm = document.evaluate(time).arm;
         let pose = arm.pose();
         assert_eq!((row[0], row[1]), (frame as f64, time));
         let points = [Vec3::ZERO, pose.elbow, pose.hand].map(|point| (arm.root + point).to_array());
@@ -70,8 +70,11 @@ fn what_moves_by_itself_moves_in_the_table() {
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     for (frame, row) in rows.records().enumerate().step_by(60) {
         let row = row.expect("a row");
-        let head =
-            document.skeleton_rig.at(document.timeline.time(frame)).pose().base(JointId::new(0));
+        let head = document
+            .skeleton_rig
+            .skeleton_at(document.timeline.time(frame))
+            .pose()
+            .base(JointId::new(0));
         let found = [2, 3, 4].map(|column| row[column].parse::<f32>().expect("a number"));
         assert_eq!(Vec3::from_array(found), head);
     }

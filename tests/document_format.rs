@@ -44,13 +44,16 @@ fn every_document_is_read_again_bit_for_bit() {
 #[test]
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
-    document.arm.goal = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
+    document.arm.cursor = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
     document
         .skeleton_mut()
         .change(JointId::new(0), |root| root.rotation.y = -0.0)
         .expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
-    assert!(opened.arm.cursor().x.is_sign_negative() && opened.arm.cursor().z.is_sign_positive());
+    assert!(
+        opened.arm.cursor_in_root().x.is_sign_negative()
+            && opened.arm.cursor_in_root().z.is_sign_positive()
+    );
     assert!(opened.skeleton().joints()[0].rotation.y.is_sign_negative());
 }
 
@@ -544,7 +547,7 @@ fn the_human_stands_on_the_ground_within_its_limits() {
 #[test]
 fn the_snake_lies_in_an_s() {
     let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton_rig;
-    let posed = snake.at(0.0).pose();
+    let posed = snake.skeleton_at(0.0).pose();
     let turn = |index: usize| {
         let (joint, next) = (JointId::new(index), JointId::new(index + 1));
         let (before, after) =
@@ -582,7 +585,7 @@ fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
     assert_eq!(value(Channel::Overlay(Overlay::Cursor), 0.0), [1.0, 0.0, 0.0]);
     assert!(!keys.has(Channel::Root));
     assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24 });
-    assert_eq!((document.metres, document.metres_per_unit()), (Some(0.01), 0.01));
+    assert_eq!((document.metres_per_unit, document.metres_per_unit()), (Some(0.01), 0.01));
 }
 
 #[test]

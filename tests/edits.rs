@@ -55,14 +55,14 @@ examples! {
     SwitchPoseMode: [EditAction::SwitchPoseMode(PoseMode::Angles)];
     SetShoulder: [EditAction::SetShoulder(Vec3::new(0.1, 0.2, 0.3))];
     SetBend: [EditAction::SetBend(1.25)];
-    SetWrist: [EditAction::SetWrist(Vec3::new(0.3, 0.2, 0.1))];
-    SetWristSpace: [EditAction::SetWristSpace(HandSpace::World)];
+    SetHandOrientation: [EditAction::SetHandOrientation(Vec3::new(0.3, 0.2, 0.1))];
+    SetHandSpace: [EditAction::SetHandSpace(HandSpace::World)];
     SetUpper: [EditAction::SetUpper(180.0)];
     SetLower: [EditAction::SetLower(310.0)];
     ResetPose: [EditAction::ResetPose];
     ResetAll: [EditAction::ResetAll];
     ShowOverlay: [
-        EditAction::ShowOverlay(Overlay::Globe, true),
+        EditAction::ShowOverlay(Overlay::SingularityGlobe, true),
         EditAction::ShowOverlay(Overlay::Labels, false),
     ];
     ShowRig: [EditAction::ShowRig(RigKind::Skeleton)];
@@ -126,7 +126,7 @@ fn session() -> Session {
         EditAction::ShowRig(RigKind::Skeleton),
         EditAction::ShowRig(RigKind::Arm),
         EditAction::SetTwist(1.0),
-        EditAction::SetWrist(Vec3::new(0.1, -0.4, 0.2)),
+        EditAction::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)),
         EditAction::ShowOverlay(Overlay::Axes, true),
         EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0)),
         EditAction::StepSolver,

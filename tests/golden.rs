@@ -7,7 +7,8 @@ mod pictures;
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, AxisView, Camera, Cursor, Document, HandSpace, Overlay, Theme, TwistReferenceKind, Wrist,
+    Arm, AxisView, Camera, Cursor, Document, HandOrientation, HandSpace, Overlay, Theme,
+    TwistReferenceKind,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{self, Method};
@@ -27,7 +28,7 @@ fn check(name: &str, document: &Document, theme: Theme) {
 }
 
 fn posed(cursor: Vec3) -> Document {
-    Document { arm: Arm { goal: Cursor::Root(cursor), ..Arm::default() }, ..Document::default() }
+    Document { arm: Arm { cursor: Cursor::Root(cursor), ..Arm::default() }, ..Document::default() }
 }
 
 fn showing(mut document: Document, layers: &[Overlay]) -> Document {
@@ -133,7 +134,7 @@ fn a_guide_that_is_missing_is_noticed() {
 fn example(name: &str) -> Document {
     let example = Example::find(name).expect("an example");
     let mut document = example.open().expect("it opens").document;
-    let goals = document.skeleton_rig.goals(0.0);
+    let goals = document.skeleton_rig.targets_at(0.0);
     let options = document.skeleton_rig.solver;
     chain_ik::solve(document.skeleton_mut(), &goals, &options).expect("it can be solved");
     document.camera.distance *= 0.9;
@@ -209,24 +210,25 @@ fn a_large_picture_is_the_same_picture() {
 }
 
 fn with(arm: Arm, layers: &[Overlay]) -> Document {
-    showing(Document { arm: arm.settled(), ..Document::default() }, layers)
+    showing(Document { arm: arm.with_solve_state(), ..Document::default() }, layers)
 }
 
 #[test]
 fn the_arm_with_all_overlays_of_an_animator() {
     let pole = Arm { twist_reference: TwistReferenceKind::Pole, ..Arm::default() };
-    let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().pinned(true) };
+    let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().with_pinned(true) };
     let spun = Arm { twist: 1.0, ..pole };
-    let wrist = Wrist { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
-    let turned = Arm { wrist, ..Arm::default() };
+    let hand_orientation =
+        HandOrientation { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
+    let turned = Arm { hand_orientation, ..Arm::default() };
     let angles = Fk { shoulder: Vec3::new(0.3, 0.6, 0.9), bend: 1.3, stretch: 1.0 };
     let led = Arm { fk: angles, influence: 0.0, ..Arm::default() };
     let cases: [(&str, Arm, &[Overlay]); 5] = [
         ("pole", pole, &[]),
         ("pin", pinned, &[]),
-        ("references", spun, &[Overlay::References]),
+        ("references", spun, &[Overlay::TwistReferences]),
         ("turned", turned, &[]),
-        ("led", led, &[Overlay::Globe]),
+        ("led", led, &[Overlay::SingularityGlobe]),
     ];
     for (name, arm, layers) in cases {
         check(name, &with(arm, layers), Theme::Dark);

@@ -69,7 +69,7 @@ fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
         let mut document =
             Document { display: all_layers_but_onion_skins(), ..Document::default() };
         document.arm.twist_reference = twist_reference;
-        document.arm = document.arm.pinned(true).settled();
+        document.arm = document.arm.with_pinned(true).with_solve_state();
         for (time, hand) in [(0.0, Vec3::X), (1.0, Vec3::Y)] {
             document.arm.set_cursor(hand * 300.0);
             document.key(Channel::Pin, time);

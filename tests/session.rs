@@ -136,8 +136,8 @@ fn arming() -> impl Strategy<Value = Action> {
         2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(EditAction::SwitchPoseMode).prop_map(Action::from),
         1 => points().prop_map(EditAction::SetShoulder).prop_map(Action::from),
         1 => numbers().prop_map(EditAction::SetBend).prop_map(Action::from),
-        1 => points().prop_map(EditAction::SetWrist).prop_map(Action::from),
-        1 => prop_oneof![Just(HandSpace::Lower), Just(HandSpace::World)].prop_map(EditAction::SetWristSpace).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetHandOrientation).prop_map(Action::from),
+        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(EditAction::SetHandSpace).prop_map(Action::from),
         1 => Just(Action::from(ViewAction::ResetTransport)),
         1 => any::<bool>().prop_map(|arm| {
             Action::from(EditAction::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
@@ -148,7 +148,7 @@ fn arming() -> impl Strategy<Value = Action> {
 fn channels() -> impl Strategy<Value = Channel> + Clone {
     prop_oneof![
         prop_oneof![
-            (0..Channel::OF_ARM.len()).prop_map(|channel| Channel::OF_ARM[channel]),
+            (0..Channel::ARM.len()).prop_map(|channel| Channel::ARM[channel]),
             Just(Channel::Translation),
             Just(Channel::Overlay(Overlay::Cursor)),
         ],
@@ -255,7 +255,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
 /// Where numbers are of a size, elbow and hand are as far from each other as the limbs are long.
 fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
     prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
-    prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor().is_finite());
+    prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor_in_root().is_finite());
     prop_assert!(arm.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3));
     let bones =
         [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
@@ -268,7 +268,7 @@ fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
 
 /// A document without its cameras, which undo leaves alone.
 fn without_views(document: &Document) -> Document {
-    Document { camera: Camera::default(), other_camera: None, ..document.clone() }
+    Document { camera: Camera::default(), other_rig_camera: None, ..document.clone() }
 }
 
 /// A document without all that only says how it is looked at.
@@ -354,7 +354,7 @@ fn halfway() -> Session {
         session.apply(EditAction::Key(vec![Channel::Hand]));
     }
     session.apply(PlaybackAction::SetTime(0.5));
-    assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
     session
 }
 
@@ -369,12 +369,12 @@ fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
         session.message(),
         Some("Unkeyed change: press K or it is lost when the time changes")
     );
-    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
     assert_eq!(session.document().keys, document.keys);
     for time in [0.6, 0.5] {
         session.apply(PlaybackAction::SetTime(time));
         let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
-        assert!(session.arm().cursor().distance(expected) < 1e-3);
+        assert!(session.arm().cursor_in_root().distance(expected) < 1e-3);
         assert!(!session.is_overridden(Channel::Hand));
     }
 }
@@ -384,13 +384,13 @@ fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
     let mut session = halfway();
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Undo);
-    assert_eq!(session.arm().cursor(), Vec3::new(100.0, 100.0, 0.0));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
     session.apply(TransactionAction::Redo);
-    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
     session.apply(EditAction::Key(vec![Channel::Hand]));
     session.apply(PlaybackAction::SetTime(0.0));
     session.apply(PlaybackAction::SetTime(0.5));
-    assert_eq!(session.arm().cursor(), Vec3::Z * 50.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
 }
 
 #[test]
@@ -413,7 +413,7 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetAutoKey(true));
     session.apply(EditAction::SetHand(Vec3::Z * 60.0));
-    assert_eq!(session.arm().cursor(), Vec3::Z * 60.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 60.0);
     assert!(!session.is_overridden(Channel::Hand));
 
     let mut session = halfway();
@@ -421,8 +421,8 @@ fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
     session.apply(EditAction::ClearChannels(vec![Channel::Hand]));
     session.apply(EditAction::SetHand(Vec3::Z * 70.0));
     session.apply(EditAction::SetTwist(1.0));
-    assert_eq!(session.arm().cursor(), Vec3::Z * 70.0);
-    assert_eq!(session.document().arm.cursor(), Vec3::Z * 70.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 70.0);
+    assert_eq!(session.document().arm.cursor_in_root(), Vec3::Z * 70.0);
 }
 
 #[test]
@@ -499,7 +499,7 @@ fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
     session.apply(TransactionAction::Begin);
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(TransactionAction::Cancel);
-    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0);
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn snake() -> Skeleton {
 /// How far a point is from the way that the head goes, by looking everywhere.
 fn from_way(point: Vec3) -> f32 {
     const STEPS: usize = 40_000;
-    let at = |step: usize| WAY.path(step as f64 / STEPS as f64);
+    let at = |step: usize| WAY.point(step as f64 / STEPS as f64);
     let flat = Vec3 { y: 0.0, ..point };
     (0..STEPS).map(|step| at(step).distance(flat)).fold(f32::INFINITY, f32::min)
 }
@@ -52,7 +52,7 @@ fn the_head_leads_and_bones_keep_their_lengths() {
     let snake = snake();
     for time in [0.0, 0.4, 3.0, 8.99] {
         let pose = WAY.pose(&snake, time).pose();
-        let head = WAY.path(WAY.head(time)) + Vec3::Y * 0.07;
+        let head = WAY.point(WAY.turns_at(time)) + Vec3::Y * 0.07;
         assert!(pose.base(JointId::new(0)).distance(head) < 1e-6);
         for (joint, before) in snake.joints().iter().enumerate() {
             let length = pose.base(JointId::new(joint)).distance(pose.tip(JointId::new(joint)));
@@ -65,7 +65,7 @@ fn the_head_leads_and_bones_keep_their_lengths() {
 fn the_body_trails_behind_the_head_and_never_overtakes_it() {
     let lengths: Vec<f32> = snake().joints().iter().map(|joint| joint.axis.length()).collect();
     let along = |time: f64| {
-        follow::along(|s| WAY.path(s), WAY.head(time), 1.0 / 256.0, lengths.iter().copied())
+        follow::along(|s| WAY.point(s), WAY.turns_at(time), 1.0 / 256.0, lengths.iter().copied())
     };
     let turn = |point: Vec3| f64::from(-point.z).atan2(f64::from(point.x));
     let points = along(4.0);

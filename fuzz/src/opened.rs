@@ -61,10 +61,10 @@ fn check_poses(document: &Document) {
     let timeline = document.timeline;
     assert!(timeline.is_valid(), "{timeline:?}");
     for time in [-1.0, 0.0, 0.3, 1e9, timeline.start, timeline.end] {
-        let at = document.at(time);
+        let at = document.evaluate(time);
         let pose = at.arm.pose();
         assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
-        let skeleton = at.skeleton_rig.at(time);
+        let skeleton = at.skeleton_rig.skeleton_at(time);
         let of_skeleton = at.skeleton_rig.bounds(&skeleton.pose(), time);
         for (centre, radius) in [at.arm.bounds(&pose), of_skeleton] {
             assert!(centre.is_finite() && radius.is_finite(), "{centre} ± {radius} at {time}");

@@ -2,77 +2,60 @@ use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-/// Where the scene is looked at from: a point looked at, and an orbit around it whose horizon is
-/// always level.
+use super::projection::Projection;
+
+/// An orbit camera with a level horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The point in the middle of the picture, in the world.
+    /// Point in the middle of the picture, in the world.
     pub target: Vec3,
     /// Radians about +y; 0 looks along −z from the front, π/2 along −x from the right.
     pub yaw: f32,
     /// Radians above the horizon, within ±π/2.
     pub pitch: f32,
-    /// From eye to target. Orthographic pictures show what a perspective one shows at the target.
+    /// Distance from eye to target. An orthographic picture is as wide as a perspective one at the target.
     pub distance: f32,
+    /// Whether the projection is orthographic rather than perspective.
     pub orthographic: bool,
 }
 
 /// The six views along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisView {
+    /// Along −z.
     Front,
+    /// Along +z.
     Back,
+    /// Along −x.
     Right,
+    /// Along +x.
     Left,
+    /// Along −y.
     Top,
+    /// Along +y.
     Bottom,
 }
 
-/// A camera with the shape of its picture: takes points of the world into the picture and back.
-///
-/// Picture coordinates are normalised: x from −1 (left) to 1 (right), y from −1 (bottom) to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projection {
-    pub clip_from_world: Mat4,
-    /// The eye (perspective), or the point in its place on the central ray (orthographic).
-    pub eye: Vec3,
-    /// Unit vector into the picture.
-    pub forward: Vec3,
-    /// From the middle of the picture to its right edge, at distance 1 in perspective.
-    pub right: Vec3,
-    /// From the middle of the picture to its upper edge, at distance 1 in perspective.
-    pub up: Vec3,
-    pub orthographic: bool,
-}
-
-/// A half line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    pub origin: Vec3,
-    /// Not normalised.
-    pub direction: Vec3,
-}
-
 impl Camera {
-    /// The vertical angle of a perspective picture.
+    /// Vertical field of view of a perspective picture, in radians.
     pub const FIELD_OF_VIEW: f32 = 40.0 * PI / 180.0;
-    /// What a point must be beyond to be seen, as a part of the distance to the target.
+    /// Near plane of a perspective picture, as a fraction of the distance to the target.
     const NEAR: f32 = 0.01;
-    /// How near and far the eye can go, from the smallest rig to the largest.
+    /// Minimum and maximum distance from eye to target.
     const DISTANCES: (f32, f32) = (1e-4, 1e8);
-    /// How much depth an orthographic picture has, before and behind the target, in distances.
+    /// Depth of an orthographic picture before and behind the target, as a multiple of the distance.
     const ORTHOGRAPHIC_DEPTH: f32 = 200.0;
-    /// Room around what is framed.
+    /// Margin of a framed sphere, as a factor of its radius.
     const MARGIN: f32 = 1.2;
 
-    /// Whether it looks from somewhere at something: finite numbers, a pitch within ±π/2, a distance
-    /// above 0.
+    /// Whether all numbers are finite, the pitch is within ±π/2 and the distance is above 0.
     pub fn is_valid(&self) -> bool {
         let looks = self.target.is_finite() && self.yaw.is_finite();
         let is_upright = (-FRAC_PI_2..=FRAC_PI_2).contains(&self.pitch);
         looks && is_upright && self.distance.is_finite() && self.distance > 0.0
     }
 
+    /// Projection for a picture with this aspect, width / height.
     pub fn projection(&self, aspect: f32) -> Projection {
         let (back, right, up) = self.basis();
         let half_height = (Self::FIELD_OF_VIEW / 2.0).tan();
@@ -102,7 +85,7 @@ impl Camera {
         }
     }
 
-    /// Unit vectors towards the eye, the right and the top of the picture.
+    /// Unit vectors from the target to the eye, the right and the top of the picture.
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
@@ -111,7 +94,7 @@ impl Camera {
         (back, right, back.cross(right))
     }
 
-    /// Turned around the target by angles; an orbit is always in perspective.
+    /// Orbits around the target by angles in radians; the result is a perspective camera.
     #[must_use]
     pub fn orbited(self, yaw: f32, pitch: f32) -> Self {
         Self {
@@ -122,7 +105,7 @@ impl Camera {
         }
     }
 
-    /// JointRemap sideways so that what was at `from` in the picture, at the target's depth, is at `to`.
+    /// Pans so that a point at the target's depth moves from `from` to `to` in the picture.
     #[must_use]
     pub fn panned(self, from: Vec2, to: Vec2, aspect: f32) -> Self {
         let (across, upwards) = self.half_extent(aspect);
@@ -130,17 +113,17 @@ impl Camera {
         Self { target: self.target + across * moved.x + upwards * moved.y, ..self }
     }
 
-    /// `factor` times as far away, with what is at `at` in the picture staying there.
+    /// Zooms to `factor` times the distance; the point at `at` in the picture stays there.
     #[must_use]
     pub fn zoomed(self, factor: f32, at: Vec2, aspect: f32) -> Self {
         let (nearest, farthest) = Self::DISTANCES;
         let distance = (self.distance * factor).clamp(nearest, farthest);
         let (across, upwards) = self.half_extent(aspect);
-        let towards = 1.0 - distance / self.distance;
-        Self { target: self.target + (across * at.x + upwards * at.y) * towards, distance, ..self }
+        let approach = 1.0 - distance / self.distance;
+        Self { target: self.target + (across * at.x + upwards * at.y) * approach, distance, ..self }
     }
 
-    /// Looks at a sphere from where it looks now, near enough that the sphere fills the picture.
+    /// Frames a sphere from the same direction.
     #[must_use]
     pub fn framing(self, centre: Vec3, radius: f32, aspect: f32) -> Self {
         let half_angle = (Self::FIELD_OF_VIEW / 2.0).tan() * aspect.min(1.0);
@@ -149,6 +132,7 @@ impl Camera {
         Self { target: centre, distance, ..self }
     }
 
+    /// The orthographic camera of an axis view, with the same target and distance.
     #[must_use]
     pub fn along(self, view: AxisView) -> Self {
         let (yaw, pitch) = match view {
@@ -162,23 +146,23 @@ impl Camera {
         Self { yaw, pitch, orthographic: true, ..self }
     }
 
-    /// Part of the way to another camera, turning the shorter way around.
+    /// Interpolates to another camera by a fraction, on the shorter arc.
     #[must_use]
-    pub fn towards(self, end: Self, part: f32) -> Self {
-        if part >= 1.0 {
+    pub fn interpolated(self, end: Self, fraction: f32) -> Self {
+        if fraction >= 1.0 {
             return end;
         }
         let turn = (end.yaw - self.yaw + PI).rem_euclid(TAU) - PI;
         Self {
-            target: self.target.lerp(end.target, part),
-            yaw: self.yaw + turn * part,
-            pitch: self.pitch + (end.pitch - self.pitch) * part,
-            distance: self.distance * (end.distance / self.distance).powf(part),
+            target: self.target.lerp(end.target, fraction),
+            yaw: self.yaw + turn * fraction,
+            pitch: self.pitch + (end.pitch - self.pitch) * fraction,
+            distance: self.distance * (end.distance / self.distance).powf(fraction),
             orthographic: self.orthographic && end.orthographic,
         }
     }
 
-    /// From the target to the right and the upper edge of the picture.
+    /// Vectors from the target to the right and the upper edge of the picture.
     fn half_extent(&self, aspect: f32) -> (Vec3, Vec3) {
         let (_, right, up) = self.basis();
         let half_height = (Self::FIELD_OF_VIEW / 2.0).tan() * self.distance;
@@ -187,7 +171,7 @@ impl Camera {
 }
 
 impl Default for Camera {
-    /// Three quarters from the front right.
+    /// A three-quarter view from the front right.
     fn default() -> Self {
         Self {
             target: Vec3::new(115.0, 75.0, 20.0),
@@ -196,50 +180,6 @@ impl Default for Camera {
             distance: 1050.0,
             orthographic: false,
         }
-    }
-}
-
-impl Projection {
-    /// Where a point of the world is in the picture; nothing if it is behind the eye.
-    pub fn project(&self, point: Vec3) -> Option<Vec2> {
-        let clip = self.clip_from_world * point.extend(1.0);
-        (clip.w > 0.0 && clip.z <= clip.w).then(|| clip.truncate().truncate() / clip.w)
-    }
-
-    /// The half line that a point of the picture stands for.
-    pub fn ray(&self, at: Vec2) -> Ray {
-        let aside = self.right * at.x + self.up * at.y;
-        if self.orthographic {
-            Ray { origin: self.eye + aside, direction: self.forward }
-        } else {
-            Ray { origin: self.eye, direction: self.forward + aside }
-        }
-    }
-
-    /// Half the picture's height in units of the world, at a point's depth.
-    pub fn half_height_at(&self, point: Vec3) -> f32 {
-        let span = self.up.length();
-        if self.orthographic { span } else { span * (point - self.eye).dot(self.forward) }
-    }
-}
-
-impl Ray {
-    /// Where it meets the plane through `point`, if it does so ahead of its origin and before numbers
-    /// end.
-    pub fn meets_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
-        let along = (point - self.origin).dot(normal) / self.direction.dot(normal);
-        let met = self.origin + self.direction * along;
-        (along >= 0.0 && met.is_finite()).then_some(met)
-    }
-
-    /// How far along the line through `point` in unit direction `axis` the ray comes nearest to
-    /// it, if it does so ahead of its origin and before numbers end.
-    pub fn nearest_on_line(&self, point: Vec3, axis: Vec3) -> Option<f32> {
-        let normal = axis.cross(self.direction).cross(axis);
-        let along_ray = (point - self.origin).dot(normal) / self.direction.dot(normal);
-        let met = self.origin + self.direction * along_ray;
-        let along = (met - point).dot(axis);
-        (along_ray >= 0.0 && along.is_finite()).then_some(along)
     }
 }
 
@@ -264,12 +204,12 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_passes_through_the_point_that_projects_to_its_place() {
+    fn a_ray_passes_through_the_point_that_is_projected() {
         for camera in cameras() {
             let projection = camera.projection(ASPECT);
             for point in [Vec3::ZERO, Vec3::new(100.0, 60.0, -80.0), Vec3::new(-90.0, 10.0, 120.0)]
             {
-                let at = projection.project(point).expect("before the eye");
+                let at = projection.project(point).expect("in front of the eye");
                 let ray = projection.ray(at);
                 let off = (point - ray.origin).cross(ray.direction.normalize()).length();
                 assert!(off < 1e-2, "{camera:?} misses {point} by {off}");
@@ -278,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_falls_with_distance_and_stays_between_one_and_nothing() {
+    fn depth_falls_with_distance_and_stays_between_one_and_zero() {
         for camera in cameras() {
             let projection = camera.projection(ASPECT);
             let depth = |along: f32| {
@@ -293,25 +233,25 @@ mod tests {
     }
 
     #[test]
-    fn panning_keeps_the_grabbed_point_under_the_pointer() {
+    fn panning_keeps_the_grabbed_point_under_the_mouse() {
         for camera in cameras() {
             let (from, to) = (Vec2::new(-0.3, 0.2), Vec2::new(0.5, -0.6));
             let (across, up) = camera.half_extent(ASPECT);
             let grabbed = camera.target + across * from.x + up * from.y;
             let seen = camera.panned(from, to, ASPECT).projection(ASPECT).project(grabbed);
-            assert!(seen.expect("seen").distance(to) < 1e-4);
+            assert!(seen.expect("visible").distance(to) < 1e-4);
         }
     }
 
     #[test]
-    fn zooming_keeps_the_point_under_the_pointer() {
+    fn zooming_keeps_the_point_under_the_mouse() {
         for camera in cameras() {
             let at = Vec2::new(0.4, -0.7);
             let (across, up) = camera.half_extent(ASPECT);
             let under = camera.target + across * at.x + up * at.y;
             for factor in [0.3, 0.9, 4.0] {
                 let seen = camera.zoomed(factor, at, ASPECT).projection(ASPECT).project(under);
-                assert!(seen.expect("seen").distance(at) < 1e-4);
+                assert!(seen.expect("visible").distance(at) < 1e-4);
             }
         }
     }
@@ -324,7 +264,7 @@ mod tests {
                 let projection = camera.framing(centre, radius, aspect).projection(aspect);
                 let (_, right, up) = camera.basis();
                 for side in [right, -right, up, -up] {
-                    let seen = projection.project(centre + side * radius).expect("seen");
+                    let seen = projection.project(centre + side * radius).expect("visible");
                     assert!(seen.abs().max_element() < 1.0, "{seen} of {aspect}");
                 }
             }

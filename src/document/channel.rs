@@ -1,71 +1,74 @@
-use glam::Vec3;
-
-use super::{Arm, Cursor, Document, Overlay, RigKind, SkeletonRig, TwistReferenceKind, Wrist};
+use super::arm::Arm;
+use super::display::Overlay;
+use super::hand_orientation::HandOrientation;
+use super::rig_kind::RigKind;
+use super::twist_reference::TwistReferenceKind;
 use crate::kinematics::skeleton::{JointId, JointRemap};
 
-/// One thing of a document that keys can change in time.
+/// A value of a document that keys animate.
 ///
-/// All values are vectors, so that they can be handled alike: a number is in x, with y and z 0, and a
+/// All values are vectors, so that they are handled alike: a number is in x, with y and z 0, and a
 /// switch is 0 or 1 in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
-    /// The arm's cursor, in Root space, while it is not pinned.
+    /// The Cursor in Root space, while it is not pinned.
     Hand,
-    /// ψ in radians, unwrapped; with transport it is measured from the map.
+    /// Socket twist in radians, unwrapped; with Transport it is measured from the stereographic
+    /// direction.
     Twist,
-    /// The arm's shoulder, in the world.
+    /// Position of the shoulder in the world.
     Root,
-    /// The upper limb's length.
+    /// Length of the upper limb.
     Upper,
-    /// The lower limb's length.
+    /// Length of the lower limb.
     Lower,
-    /// The arm's cursor, in the world, while it is pinned.
+    /// The Cursor in the world, while it is pinned.
     Pin,
-    /// What the elbow points at, in Root space.
+    /// The point in Root space that the elbow turns to.
     Pole,
-    /// How far the arm's hand leads rather than its joints' angles, from 0 to 1.
+    /// Influence of IK over FK, from 0 to 1.
     Influence,
-    /// The shoulder's own angles in radians, unwrapped.
+    /// Angles of the shoulder by FK in radians, unwrapped.
     Shoulder,
-    /// The elbow's own bend in radians, unwrapped.
+    /// Bend of the elbow by FK in radians, unwrapped.
     Bend,
-    /// How many times as long as at rest the limbs are while their angles lead.
+    /// Length of the limbs by FK, as a multiple of their length at rest.
     Stretch,
-    /// The hand's angles in radians, unwrapped.
-    Wrist,
-    /// Where the skeleton's own origin is, in the world.
+    /// Angles of the hand in radians, unwrapped.
+    HandOrientation,
+    /// Position of the skeleton's origin in the world.
     Translation,
-    /// A joint's Euler angles in radians, unwrapped.
+    /// Euler angles of a joint in radians, unwrapped.
     Rotation(JointId),
-    /// A joint's offset from its parent's base.
+    /// Offset of a joint from its parent's base.
     Offset(JointId),
-    /// Where the target of a joint is, in the world: its home.
+    /// Position of a joint's target at time 0, in the world.
     Target(JointId),
-    /// Whether the target of a joint counts.
+    /// Whether a joint's target is enabled.
     Enabled(JointId),
-    /// Whether a layer is shown.
+    /// Whether an overlay is shown.
     Overlay(Overlay),
 }
 
-/// What the values of a channel are.
+/// The kind of a channel's values: how many numbers they have, their unit and their range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// In units of the scene.
+    /// A point or vector, in units of the rig.
     Point,
-    /// In units of the scene, above 0.
+    /// A length above 0, in units of the rig.
     Length,
-    /// From 0 to 1.
+    /// A number from 0 to 1.
     Fraction,
-    /// In radians.
+    /// An angle in radians.
     Angle,
-    /// Three of them, in radians.
+    /// Three angles in radians.
     Angles,
-    /// 0 or 1; it steps.
+    /// 0 or 1, not interpolated.
     Switch,
 }
 
 impl Quantity {
-    /// How many numbers a value has.
+    /// Number of components in use: 1 or 3.
     pub fn width(self) -> usize {
         match self {
             Self::Point | Self::Angles => 3,
@@ -75,6 +78,29 @@ impl Quantity {
 }
 
 impl Channel {
+    /// All channels of the arm.
+    pub const ARM: [Self; 12] = [
+        Self::Hand,
+        Self::Pin,
+        Self::Twist,
+        Self::Pole,
+        Self::Root,
+        Self::Upper,
+        Self::Lower,
+        Self::Influence,
+        Self::Shoulder,
+        Self::Bend,
+        Self::Stretch,
+        Self::HandOrientation,
+    ];
+
+    /// The channels that pose the arm by IK.
+    pub const IK: [Self; 3] = [Self::Hand, Self::Pin, Self::Twist];
+
+    /// The channels that pose the arm by FK, and the influence of IK.
+    pub const FK: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
+
+    /// The kind of its values.
     pub fn quantity(self) -> Quantity {
         match self {
             Self::Hand
@@ -87,38 +113,17 @@ impl Channel {
             Self::Upper | Self::Lower | Self::Stretch => Quantity::Length,
             Self::Influence => Quantity::Fraction,
             Self::Twist | Self::Bend => Quantity::Angle,
-            Self::Shoulder | Self::Wrist | Self::Rotation(_) => Quantity::Angles,
+            Self::Shoulder | Self::HandOrientation | Self::Rotation(_) => Quantity::Angles,
             Self::Enabled(_) | Self::Overlay(_) => Quantity::Switch,
         }
     }
 
+    /// Whether its values are 0 or 1.
     pub fn is_switch(self) -> bool {
         self.quantity() == Quantity::Switch
     }
 
-    /// All that can shape a document's arm.
-    pub const OF_ARM: [Self; 12] = [
-        Self::Hand,
-        Self::Pin,
-        Self::Twist,
-        Self::Pole,
-        Self::Root,
-        Self::Upper,
-        Self::Lower,
-        Self::Influence,
-        Self::Shoulder,
-        Self::Bend,
-        Self::Stretch,
-        Self::Wrist,
-    ];
-
-    /// What the arm's hand leads by.
-    pub const OF_HAND: [Self; 3] = [Self::Hand, Self::Pin, Self::Twist];
-
-    /// What the arm's joints lead by, and which of the two does.
-    pub const OF_JOINTS: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
-
-    /// Whether it shapes an arm as that is set.
+    /// Whether it changes the pose of an arm with these settings.
     pub fn shapes(self, arm: &Arm) -> bool {
         match self {
             Self::Hand => !arm.is_pinned(),
@@ -126,29 +131,12 @@ impl Channel {
             Self::Pole => arm.twist_reference == TwistReferenceKind::Pole,
             Self::Influence | Self::Shoulder | Self::Bend => arm.influence < 1.0,
             Self::Stretch => arm.influence < 1.0 && arm.is_stretching(),
-            Self::Wrist => arm.wrist != Wrist::default(),
+            Self::HandOrientation => arm.hand_orientation != HandOrientation::default(),
             other => other.rig() == Some(RigKind::Arm),
         }
     }
 
-    /// All that shapes the rig that is shown. Of a skeleton where it is, where its roots are, how its
-    /// joints are turned, and where its targets are.
-    pub fn of_rig(document: &Document) -> Vec<Self> {
-        if document.rig == RigKind::Arm {
-            let shapes = |channel: &Self| channel.shapes(&document.arm);
-            return Self::OF_ARM.into_iter().filter(shapes).collect();
-        }
-        let SkeletonRig { skeleton, targets, .. } = &document.skeleton_rig;
-        let joints = skeleton.iter();
-        let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
-        let mut channels = vec![Self::Translation];
-        channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
-        channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
-        channels.extend(targets.iter().map(|target| Self::Target(target.joint)));
-        channels
-    }
-
-    /// The rig that it belongs to, if to one.
+    /// The rig that it belongs to; `None` for overlays.
     pub fn rig(self) -> Option<RigKind> {
         match self {
             Self::Hand
@@ -162,7 +150,7 @@ impl Channel {
             | Self::Shoulder
             | Self::Bend
             | Self::Stretch
-            | Self::Wrist => Some(RigKind::Arm),
+            | Self::HandOrientation => Some(RigKind::Arm),
             Self::Translation
             | Self::Rotation(_)
             | Self::Offset(_)
@@ -172,7 +160,7 @@ impl Channel {
         }
     }
 
-    /// Whether it changes the pose of a rig; targets pose nothing before a solver runs.
+    /// Whether it changes the pose of a rig; targets do so through a solver only.
     pub fn poses(self, rig: RigKind) -> bool {
         self.rig() == Some(rig) && !matches!(self, Self::Target(_) | Self::Enabled(_))
     }
@@ -188,124 +176,15 @@ impl Channel {
         }
     }
 
-    /// The same where the joints have new places; nothing if its joint is gone.
+    /// The same channel after joints are renumbered; `None` if its joint is removed.
     #[must_use]
-    pub fn moved(self, moved: &JointRemap) -> Option<Self> {
+    pub fn remapped(self, remap: &JointRemap) -> Option<Self> {
         Some(match self {
-            Self::Rotation(joint) => Self::Rotation(moved.get(joint)?),
-            Self::Offset(joint) => Self::Offset(moved.get(joint)?),
-            Self::Target(joint) => Self::Target(moved.get(joint)?),
-            Self::Enabled(joint) => Self::Enabled(moved.get(joint)?),
+            Self::Rotation(joint) => Self::Rotation(remap.get(joint)?),
+            Self::Offset(joint) => Self::Offset(remap.get(joint)?),
+            Self::Target(joint) => Self::Target(remap.get(joint)?),
+            Self::Enabled(joint) => Self::Enabled(remap.get(joint)?),
             other => other,
         })
     }
-
-    /// The value that a document has; nothing if it has no such joint or target,
-    /// or its hand is pinned or not.
-    pub fn value(self, document: &Document) -> Option<Vec3> {
-        let Document { arm, skeleton_rig: rig, display, .. } = document;
-        let number = |value| Vec3::new(value, 0.0, 0.0);
-        let switch = |on: bool| number(f32::from(u8::from(on)));
-        let target = |joint| Some(rig.targets[rig.target(joint)?]);
-        Some(match self {
-            Self::Hand => match arm.goal {
-                Cursor::Root(cursor) => cursor,
-                Cursor::World(_) => return None,
-            },
-            Self::Pin => match arm.goal {
-                Cursor::World(cursor) => cursor,
-                Cursor::Root(_) => return None,
-            },
-            Self::Twist => number(arm.keyed_spin()),
-            Self::Pole => arm.pole,
-            Self::Influence => number(arm.influence),
-            Self::Shoulder => arm.fk.shoulder,
-            Self::Bend => number(arm.fk.bend),
-            Self::Stretch => number(arm.fk.stretch),
-            Self::Wrist => arm.wrist.angles,
-            Self::Root => arm.root,
-            Self::Upper => number(arm.bones.upper()),
-            Self::Lower => number(arm.bones.lower()),
-            Self::Translation => rig.skeleton.transform().translation.into(),
-            Self::Rotation(joint) => rig.skeleton.joint(joint)?.rotation,
-            Self::Offset(joint) => rig.skeleton.joint(joint)?.offset,
-            Self::Target(joint) => target(joint)?.home,
-            Self::Enabled(joint) => switch(target(joint)?.enabled),
-            Self::Overlay(layer) => switch(display.shows(layer)),
-        })
-    }
-
-    /// Gives a document the value, brought within what is valid; nothing happens where it has no
-    /// such joint or target.
-    pub fn set(self, document: &mut Document, value: Vec3) {
-        let Document { arm, skeleton_rig: rig, display, .. } = document;
-        let value = value.clamp(Vec3::MIN, Vec3::MAX);
-        if value.is_nan() {
-            return;
-        }
-        let on = value.x >= 0.5;
-        match self {
-            Self::Hand => {
-                if let Cursor::Root(cursor) = &mut arm.goal {
-                    *cursor = value;
-                }
-            }
-            Self::Pin => {
-                if let Cursor::World(cursor) = &mut arm.goal {
-                    *cursor = value;
-                }
-            }
-            Self::Twist => arm.set_keyed_spin(value.x),
-            Self::Pole => arm.pole = value,
-            Self::Influence => arm.influence = value.x.clamp(0.0, 1.0),
-            Self::Shoulder => arm.fk.shoulder = value,
-            Self::Bend => arm.fk.bend = value.x,
-            Self::Stretch => arm.fk.stretch = value.x.max(f32::MIN_POSITIVE),
-            Self::Wrist => arm.wrist.angles = value,
-            Self::Root => arm.root = value,
-            Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),
-            Self::Lower => arm.set_lengths(arm.bones.upper(), value.x),
-            Self::Translation => translate(rig, value),
-            Self::Rotation(joint) => {
-                if let Some(before) = rig.skeleton.joint(joint) {
-                    let rotation = before.clamped(value);
-                    if !is_identical(before.rotation, rotation) {
-                        rig.skeleton_mut().turn(joint, |joint| joint.rotation = rotation);
-                    }
-                }
-            }
-            Self::Offset(joint) => {
-                if let Some(before) = rig.skeleton.joint(joint)
-                    && !is_identical(before.offset, value)
-                {
-                    rig.skeleton_mut().turn(joint, |joint| joint.offset = value);
-                }
-            }
-            Self::Target(joint) => {
-                if let Some(target) = rig.target(joint) {
-                    rig.targets[target].home = value;
-                }
-            }
-            Self::Enabled(joint) => {
-                if let Some(target) = rig.target(joint) {
-                    rig.targets[target].enabled = on;
-                }
-            }
-            Self::Overlay(layer) => *display = display.with(layer, on),
-        }
-    }
-}
-
-fn translate(rig: &mut SkeletonRig, translation: Vec3) {
-    let mut transform = rig.skeleton.transform();
-    if !is_identical(transform.translation.into(), translation) {
-        transform.translation = translation.into();
-        // Refused only where it is not finite, which it is.
-        let _ = rig.skeleton_mut().set_transform(transform);
-    }
-}
-
-/// Whether two values have the same bits: a value that stays copies nothing that documents share.
-fn is_identical(a: Vec3, b: Vec3) -> bool {
-    a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
 }

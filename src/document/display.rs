@@ -1,60 +1,71 @@
 use serde::{Deserialize, Serialize};
 
-/// Whether the picture is bright or dark.
+/// The colours of the window and the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Theme {
+    /// Light on dark.
     #[default]
     Dark,
+    /// Dark on light.
     Light,
 }
 
-/// One thing in the picture that can be switched on and off.
+/// A part of the scene that is shown or hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Overlay {
+    /// The Cursor of the arm, or the targets of the skeleton.
     Cursor,
+    /// The Pointer, the axis from the shoulder through the Cursor, or the path that the skeleton follows.
     Pointer,
+    /// The sphere that the hand cannot enter.
     InnerLimit,
+    /// The sphere that the hand cannot leave.
     OuterLimit,
+    /// The grid on the plane z = 0.
     GridXy,
+    /// The grid on the plane y = 0.
     GridXz,
+    /// The grid on the plane x = 0.
     GridYz,
+    /// The ground.
     Ground,
+    /// The axes of the world.
     Axes,
+    /// The names of the parts.
     Labels,
+    /// The shadow on the ground.
     Shadow,
-    /// The way of the hand or of the selected joint through the keys.
+    /// The path of the hand or of the selected joint in time.
     Trail,
-    /// The rig as it stands somewhat before and after.
+    /// The rig at some frames before and after.
     OnionSkins,
-    /// The Outer Limit coloured by how fast the elbow turns there.
-    #[serde(rename = "singularity_globe")]
-    Globe,
-    /// The arm as every swivel reference would have it.
-    #[serde(rename = "twist_references")]
-    References,
-    /// The arm's hand, and stripes along its forearm.
+    /// The Outer Limit, coloured by the speed of the elbow there.
+    SingularityGlobe,
+    /// The elbow by every kind of twist reference.
+    TwistReferences,
+    /// The hand of the arm, and stripes along its forearm.
     Hand,
 }
 
 impl Overlay {
-    /// Everything, in the order in which it is offered.
+    /// All overlays, in the order in which panels list them.
     pub fn all() -> impl Iterator<Item = Self> {
-        let of_arm = Self::GUIDES.into_iter().chain(Self::OF_ARM);
+        let of_arm = Self::GUIDES.into_iter().chain(Self::ARM);
         of_arm.chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
-    /// The four guides of the paper.
+    /// The guides of the arm.
     pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
 
-    /// What else shows how the arm is posed.
-    pub const OF_ARM: [Self; 3] = [Self::Hand, Self::Globe, Self::References];
+    /// The other overlays of the arm.
+    pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];
 
-    /// What shows how the rig moves.
+    /// Overlays of motion in time.
     pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
 
-    /// What surrounds the arm.
+    /// Overlays around the rig.
     pub const SURROUNDINGS: [Self; 7] = [
         Self::GridXy,
         Self::GridXz,
@@ -66,48 +77,50 @@ impl Overlay {
     ];
 }
 
-/// Which layers are shown.
+/// The set of overlays that are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Display {
     shown: u32,
 }
 
 impl Display {
-    pub fn shows(self, layer: Overlay) -> bool {
-        self.shown & bit(layer) != 0
+    /// Whether an overlay is shown.
+    pub fn shows(self, overlay: Overlay) -> bool {
+        self.shown & bit(overlay) != 0
     }
 
+    /// Shows or hides an overlay.
     #[must_use]
-    pub fn with(mut self, layer: Overlay, shown: bool) -> Self {
+    pub fn with(mut self, overlay: Overlay, shown: bool) -> Self {
         if shown {
-            self.shown |= bit(layer);
+            self.shown |= bit(overlay);
         } else {
-            self.shown &= !bit(layer);
+            self.shown &= !bit(overlay);
         }
         self
     }
 
-    /// What is shown.
-    pub fn layers(self) -> impl Iterator<Item = Overlay> {
-        Overlay::all().filter(move |layer| self.shows(*layer))
+    /// The overlays that are shown.
+    pub fn overlays(self) -> impl Iterator<Item = Overlay> {
+        Overlay::all().filter(move |overlay| self.shows(*overlay))
     }
 }
 
-/// Shows these and nothing else.
+/// Shows these overlays alone.
 impl FromIterator<Overlay> for Display {
-    fn from_iter<T: IntoIterator<Item = Overlay>>(layers: T) -> Self {
-        layers.into_iter().fold(Self { shown: 0 }, |display, layer| display.with(layer, true))
+    fn from_iter<T: IntoIterator<Item = Overlay>>(overlays: T) -> Self {
+        overlays.into_iter().fold(Self { shown: 0 }, |display, overlay| display.with(overlay, true))
     }
 }
 
 impl Default for Display {
-    /// The whole scene, with Cursor, Pointer, hand and trail; the limits would veil the arm.
+    /// The surroundings, Cursor, Pointer, hand and trail; the limits would hide the arm.
     fn default() -> Self {
         let guides = [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Trail];
         Overlay::SURROUNDINGS.into_iter().chain(guides).collect()
     }
 }
 
-fn bit(layer: Overlay) -> u32 {
-    1 << layer as u16
+fn bit(overlay: Overlay) -> u32 {
+    1 << overlay as u16
 }

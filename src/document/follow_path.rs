@@ -5,30 +5,33 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::{follow, rotation_between};
 
-/// The way of a snake: its head goes around in waves, and its body follows.
+/// A closed path that the chain of a skeleton's first root follows in time, as a snake does.
 ///
-/// In the skeleton's own space, on the plane y = the head's own height: the path is a ring of
-/// `radius` around the skeleton's origin, on which `waves` waves of height `amplitude` stand.
+/// The path is in the skeleton's own space, at the height of the root: a circle around the origin with
+/// waves on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowPath {
+    /// Radius of the circle.
     pub radius: f32,
+    /// Amplitude of the waves.
     pub amplitude: f32,
+    /// Number of waves on the circle.
     pub waves: u32,
-    /// How long the head takes once around, in seconds.
+    /// Duration of one revolution in seconds.
     pub period: f32,
 }
 
 impl FollowPath {
-    /// The head's way, by turns around the ring.
-    pub fn path(&self, turns: f64) -> Vec3 {
+    /// Point of the path, at height 0, after some turns around the circle.
+    pub fn point(&self, turns: f64) -> Vec3 {
         let turn = turns.rem_euclid(1.0) * TAU;
         let wave = f64::from(self.amplitude) * (turn * f64::from(self.waves)).sin();
         let radius = f64::from(self.radius) + wave;
         Vec3::new((radius * turn.cos()) as f32, 0.0, (-radius * turn.sin()) as f32)
     }
 
-    /// How far around the head is, in turns.
-    pub fn head(&self, time: f64) -> f64 {
+    /// Turns around the circle at a time in seconds.
+    pub fn turns_at(&self, time: f64) -> f64 {
         time / f64::from(self.period)
     }
 
@@ -61,10 +64,10 @@ impl FollowPath {
         let joints = skeleton.joints();
         let lengths = chain(skeleton).map(|joint| joints[joint.index()].axis.length());
         let stride = 1.0 / (STRIDES_PER_WAVE * f64::from(self.waves.max(1)));
-        let head = self.head(time);
-        let tips = follow::behind(|s| self.path(s), head, stride, lengths);
+        let head = self.turns_at(time);
+        let tips = follow::behind(|s| self.point(s), head, stride, lengths);
 
-        let mut base = self.path(head);
+        let mut base = self.point(head);
         let mut above = Mat3A::IDENTITY;
         chain(skeleton).zip(tips).map(move |(index, tip)| {
             let joint = &joints[index.index()];
@@ -83,14 +86,14 @@ impl FollowPath {
         })
     }
 
-    /// Points of the world that are around all of the path.
+    /// Points in the world whose bounding box contains the path.
     pub fn corners(&self, skeleton: &Skeleton) -> [Vec3; 4] {
         let far = self.radius.abs() + self.amplitude.abs();
         [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z]
             .map(|side| skeleton.transform().transform_point3(side * far))
     }
 
-    /// Where the path is, in the world, from `from` to `to` turns.
+    /// Points of the path at a height, in the world, from `from` to `to` turns.
     pub fn trail(
         &self,
         transform: Affine3A,
@@ -99,9 +102,9 @@ impl FollowPath {
         to: f64,
     ) -> impl Iterator<Item = Vec3> {
         const POINTS: usize = 256;
-        let at = move |part: f64| from + (to - from) * part;
+        let at = move |fraction: f64| from + (to - from) * fraction;
         (0..=POINTS)
-            .map(move |index| self.path(at(index as f64 / POINTS as f64)) + Vec3::Y * height)
+            .map(move |index| self.point(at(index as f64 / POINTS as f64)) + Vec3::Y * height)
             .map(move |point| transform.transform_point3(point))
     }
 }

@@ -1,58 +1,60 @@
-/// What is played: from when to when, and how finely time is counted.
+/// The time that is played, and its frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timeline {
-    /// In seconds.
+    /// Start in seconds.
     pub start: f64,
-    /// In seconds, after the start.
+    /// End in seconds, after the start.
     pub end: f64,
-    /// In a second.
+    /// Frames per second.
     pub frame_rate: u32,
 }
 
 impl Timeline {
-    /// Those that are offered; imported motions may bring others.
+    /// Frame rates that the timeline offers; imported motions may have others.
     pub const FRAME_RATES: [u32; 3] = [24, 30, 60];
-    pub const HIGHEST_FRAME_RATE: u32 = 1000;
-    /// In seconds, before and after 0: about a day.
-    pub const FARTHEST: f64 = 86_400.0;
+    /// Maximum of frames per second.
+    pub const MAX_FRAME_RATE: u32 = 1000;
+    /// Maximum distance from time 0 in seconds: a day.
+    pub const MAX_TIME: f64 = 86_400.0;
 
-    /// Whether it starts before it ends, within a day of 0, and counts 1 to 1000 frames in a second.
+    /// Whether it starts before it ends, within a day of 0, and has 1 to 1000 frames per second.
     pub fn is_valid(&self) -> bool {
         let times =
-            -Self::FARTHEST <= self.start && self.start < self.end && self.end <= Self::FARTHEST;
-        times && (1..=Self::HIGHEST_FRAME_RATE).contains(&self.frame_rate)
+            -Self::MAX_TIME <= self.start && self.start < self.end && self.end <= Self::MAX_TIME;
+        times && (1..=Self::MAX_FRAME_RATE).contains(&self.frame_rate)
     }
 
+    /// Duration in seconds.
     pub fn duration(&self) -> f64 {
         self.end - self.start
     }
 
-    /// How many frames there are from start to end, both included.
+    /// Number of frames from start to end, both included.
     pub fn frames(&self) -> usize {
-        /// A last frame that is so little past the end is still there, in frames.
+        /// A last frame that rounding puts past the end by up to this many frames counts.
         const ROUNDING: f64 = 1e-6;
         (self.duration() * f64::from(self.frame_rate) + ROUNDING).floor() as usize + 1
     }
 
-    /// When a frame is, counted from the start.
+    /// Time of a frame in seconds; frame 0 is at the start.
     pub fn time(&self, frame: usize) -> f64 {
         self.start + frame as f64 / f64::from(self.frame_rate)
     }
 
-    /// The nearest time at which there is a frame; frames are counted from 0 s.
+    /// The nearest time of a frame, where frame 0 is at 0 s.
     pub fn snapped(&self, time: f64) -> f64 {
         let rate = f64::from(self.frame_rate);
         (time * rate).round() / rate
     }
 
-    /// A time brought from start to end.
-    pub fn within(&self, time: f64) -> f64 {
+    /// A time clamped to start and end.
+    pub fn clamp(&self, time: f64) -> f64 {
         time.clamp(self.start, self.end)
     }
 }
 
 impl Default for Timeline {
-    /// 8 seconds, in which targets that move as at first go around twice.
+    /// 8 seconds, two revolutions of a target with the default period.
     fn default() -> Self {
         Self { start: 0.0, end: 8.0, frame_rate: 30 }
     }

@@ -60,7 +60,7 @@ pub fn animation(
     const LOOP_FOR_EVER: u32 = 0;
     let frames = ExportFrames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
-    // Timeline::HIGHEST_FRAME_RATE is below.
+    // Timeline::MAX_FRAME_RATE is below.
     let rate = u16::try_from(frames.rate()).unwrap_or(u16::MAX);
     let gpu = Gpu::headless()?;
     let mut renderer = FrameRenderer::new(document, options, &gpu)?;

@@ -92,7 +92,7 @@ impl Columns {
                 vec![arm.root, arm.root + pose.elbow, arm.root + pose.hand]
             }
             RigKind::Skeleton => {
-                let pose = document.skeleton_rig.at(time).pose();
+                let pose = document.skeleton_rig.skeleton_at(time).pose();
                 let bases = pose.ids().map(|joint| pose.base(joint));
                 bases.chain(self.ends.iter().map(|joint| pose.tip(JointId::new(*joint)))).collect()
             }

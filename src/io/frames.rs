@@ -17,7 +17,7 @@ impl ExportFrames {
     ///
     /// Fails if the frame rate is not one that a timeline can have.
     pub fn of_pose(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
-        Self::new(document, fps, document.is_posed_by_time())
+        Self::new(document, fps, document.is_animated())
     }
 
     /// Like [`ExportFrames::of_pose`], but one frame only if nothing in a picture changes.
@@ -33,7 +33,7 @@ impl ExportFrames {
     fn new(document: &Document, fps: Option<u32>, moves: bool) -> Result<Self, MotionError> {
         let frame_rate = fps.unwrap_or(document.timeline.frame_rate);
         let timeline = Timeline { frame_rate, ..document.timeline };
-        if !(1..=Timeline::HIGHEST_FRAME_RATE).contains(&frame_rate) {
+        if !(1..=Timeline::MAX_FRAME_RATE).contains(&frame_rate) {
             return Err(MotionError::FrameRate(frame_rate));
         }
         Ok(Self { timeline, count: if moves { timeline.frames() } else { 1 } })
@@ -73,7 +73,7 @@ impl FrameEvaluator {
 
     /// The document at a time, like [`Document::at`].
     pub fn at(&mut self, time: f64) -> &Document {
-        self.document.keys_to(time);
+        self.document.apply_keys(time);
         &self.document
     }
 }

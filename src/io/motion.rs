@@ -17,7 +17,7 @@ pub struct Exported {
 pub enum MotionError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("frames a second must be from 1 to {max}, got {0}", max = Timeline::HIGHEST_FRAME_RATE)]
+    #[error("frames a second must be from 1 to {max}, got {0}", max = Timeline::MAX_FRAME_RATE)]
     FrameRate(u32),
     #[error("the skeleton has no joint; the file needs at least one")]
     NoJoints,

@@ -43,10 +43,10 @@ impl Session {
         const SAME: f32 = 1e-4;
         let was_held = self.is_overridden(Channel::Twist);
         self.shell.clear_message();
-        self.commit(self.shown().measured_from(twist_reference));
+        self.commit(self.shown().with_twist_reference(twist_reference));
         // At a key the keys, measured anew, say the same.
         let spin = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
-        let keyed = spin(&self.document().at(self.time()));
+        let keyed = spin(&self.document().evaluate(self.time()));
         let apart = wrapped(keyed - spin(self.shown()) + SAME);
         if !was_held && apart < 2.0 * SAME && self.document().keys.has(Channel::Twist) {
             self.editing.forget_override(Channel::Twist);
@@ -86,8 +86,8 @@ impl Session {
         const MOVED: f32 = 1e-3;
         let before = *self.pose();
         match lead {
-            PoseMode::Hand => self.replace_arm(self.arm().led_by_hand()),
-            PoseMode::Angles => self.replace_arm(self.arm().led_by_angles()),
+            PoseMode::Hand => self.replace_arm(self.arm().switched_to_ik()),
+            PoseMode::Angles => self.replace_arm(self.arm().switched_to_fk()),
         }
         let moved =
             self.pose().elbow.distance(before.elbow).max(self.pose().hand.distance(before.hand));
@@ -99,7 +99,7 @@ impl Session {
     /// Every change of the arm comes through here: what its next pose goes on from is kept.
     pub(super) fn replace_arm(&mut self, arm: Arm) {
         self.shell.clear_message();
-        let arm = arm.going_on_from(self.arm()).settled();
+        let arm = arm.transported_from(self.arm()).with_solve_state();
         self.commit(Document { arm, ..self.shown().clone() });
     }
 
@@ -107,13 +107,13 @@ impl Session {
     /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
     pub(super) fn grab_hand(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
         let (arm, hand) = (*self.arm(), self.pose().hand);
-        if !arm.is_led_by_hand() {
+        if !arm.uses_ik() {
             return;
         }
         let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
         let is_led = handle == Handle::Free && arm.influence == 1.0;
-        let is_at_hand = is_led && aside(hand) < aside(arm.cursor());
-        let start = if is_at_hand { hand } else { arm.cursor() };
+        let is_at_hand = is_led && aside(hand) < aside(arm.cursor_in_root());
+        let start = if is_at_hand { hand } else { arm.cursor_in_root() };
         let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
         self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: DragKind::Point(drag) }));
     }
@@ -143,7 +143,7 @@ impl Session {
     /// about x, y or z, or the elbow's bend.
     pub fn arm_ring(&self, grip: Grip) -> Option<Ring> {
         let arm = self.arm();
-        if arm.is_led_by_hand() {
+        if arm.uses_ik() {
             return None;
         }
         let angles = arm.fk.shoulder;

@@ -25,7 +25,7 @@ pub struct Runner {
 
 impl Comparison {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Self {
-        let goals = rig.goals(time);
+        let goals = rig.targets_at(time);
         let runners = Method::ALL.into_iter().map(|method| {
             let options = SolverOptions { method, iterations: None, ..rig.solver };
             let solve = ChainSolver::new(&rig.skeleton, &goals, &options);

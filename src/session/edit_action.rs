@@ -37,9 +37,9 @@ pub enum EditAction {
     /// Sets the FK bend of the elbow in radians.
     SetBend(f32),
     /// Sets the angles of the hand about x, y and z in radians.
-    SetWrist(Vec3),
+    SetHandOrientation(Vec3),
     /// Changes the space of the hand's angles; the hand does not turn.
-    SetWristSpace(HandSpace),
+    SetHandSpace(HandSpace),
     /// Sets the length of the upper limb.
     SetUpper(f32),
     /// Sets the length of the lower limb.

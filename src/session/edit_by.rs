@@ -12,9 +12,9 @@ impl Session {
             }
             EditAction::SetTwist(twist) => self.set_twist(twist),
             EditAction::SetPin(pin) => {
-                self.set_point("hand", pin, |arm, pin| arm.goal = Cursor::World(pin));
+                self.set_point("hand", pin, |arm, pin| arm.cursor = Cursor::World(pin));
             }
-            EditAction::PinHand(pinned) => self.replace_arm(self.arm().pinned(pinned)),
+            EditAction::PinHand(pinned) => self.replace_arm(self.arm().with_pinned(pinned)),
             EditAction::SetTwistReference(reference) => self.set_twist_reference(reference),
             EditAction::SetPole(pole) => self.set_pole(pole),
             EditAction::SetSoftReach(soft_reach) => {
@@ -24,12 +24,14 @@ impl Session {
             EditAction::SwitchPoseMode(mode) => self.switch_to(mode),
             EditAction::SetShoulder(angles) => self.set_shoulder(angles),
             EditAction::SetBend(bend) => self.set_bend(bend),
-            EditAction::SetWrist(angles) => {
-                self.set_point("hand angles", angles, |arm, angles| arm.wrist.angles = angles);
+            EditAction::SetHandOrientation(angles) => {
+                self.set_point("hand angles", angles, |arm, angles| {
+                    arm.hand_orientation.angles = angles
+                });
             }
-            EditAction::SetWristSpace(space) => {
+            EditAction::SetHandSpace(space) => {
                 self.shell.clear_message();
-                self.commit(self.shown().with_wrist_in(space));
+                self.commit(self.shown().with_hand_space(space));
             }
             EditAction::SetUpper(upper) => self.set_lengths(upper, self.arm().bones.lower()),
             EditAction::SetLower(lower) => self.set_lengths(self.arm().bones.upper(), lower),
@@ -80,7 +82,7 @@ impl Session {
             EditAction::SetIterationsPerFrame(iterations) => {
                 self.edit_skeleton(|rig| {
                     rig.iterations_per_frame =
-                        iterations.clamp(1, SkeletonRig::MOST_ITERATIONS_PER_FRAME);
+                        iterations.clamp(1, SkeletonRig::MAX_ITERATIONS_PER_FRAME);
                     Ok(())
                 });
             }

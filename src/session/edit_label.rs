@@ -26,7 +26,7 @@ impl EditAction {
             Self::SwitchPoseMode(PoseMode::Angles) => "Switch to FK",
             Self::SetShoulder(_) => "Turn shoulder",
             Self::SetBend(_) => "Bend elbow",
-            Self::SetWrist(_) | Self::SetWristSpace(_) => "Turn hand",
+            Self::SetHandOrientation(_) | Self::SetHandSpace(_) => "Turn hand",
             Self::SetUpper(_) | Self::SetLower(_) => "Change length",
             Self::ResetPose => "Reset pose",
             Self::ResetAll => "Reset all",
@@ -98,8 +98,8 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Shadow => "Toggle shadow",
         Overlay::Trail => "Toggle motion trail",
         Overlay::OnionSkins => "Toggle onion skins",
-        Overlay::Globe => "Toggle singularity globe",
-        Overlay::References => "Toggle references",
+        Overlay::SingularityGlobe => "Toggle singularity globe",
+        Overlay::TwistReferences => "Toggle references",
         Overlay::Hand => "Toggle hand",
     }
 }

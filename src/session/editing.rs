@@ -159,7 +159,7 @@ impl Editing {
     /// Evaluates the document at a time, with unkeyed edits.
     pub fn evaluate(&mut self, time: f64) {
         self.shown.clone_from(&self.document);
-        self.shown.keys_to(time);
+        self.shown.apply_keys(time);
         for (channel, value) in &self.overrides {
             channel.set(&mut self.shown, *value);
         }
@@ -224,8 +224,7 @@ impl Editing {
             // A switch between hand and angles is a pose of both.
             let switched = changed(&Channel::Influence);
             let leads = |channel: &Channel| {
-                let is_leading =
-                    Channel::OF_HAND.contains(channel) || Channel::OF_JOINTS.contains(channel);
+                let is_leading = Channel::IK.contains(channel) || Channel::FK.contains(channel);
                 switched && is_leading
             };
             // What has begun to shape the rig, and what no longer does.
@@ -240,7 +239,7 @@ impl Editing {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
         if !playback.is_auto_key() && is_transported(after) {
-            if after.arm.cursor() != self.shown.arm.cursor() {
+            if after.arm.cursor_in_root() != self.shown.arm.cursor_in_root() {
                 // The elbow has gone along, and comes back with the hand.
                 let spin = Channel::Twist.value(after).unwrap_or_default();
                 self.overrides.insert(Channel::Twist, spin);
@@ -282,14 +281,15 @@ impl Editing {
         }
         let goes_along = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
         if goes_along || is_keyed(&Channel::Twist) {
-            let rest = self.document.arm.measured_from(after.arm.twist_reference);
+            let rest = self.document.arm.with_twist_reference(after.arm.twist_reference);
             after.arm.twist = rest.twist;
             after.arm.transported = rest.transported;
         }
-        if is_keyed(&Channel::Wrist) {
-            let Arm { wrist, .. } = self.document.arm;
-            let space = after.arm.wrist.space;
-            after.arm.wrist.angles = wrist.measured_in(space, &self.document.arm.pose()).angles;
+        if is_keyed(&Channel::HandOrientation) {
+            let Arm { hand_orientation, .. } = self.document.arm;
+            let space = after.arm.hand_orientation.space;
+            after.arm.hand_orientation.angles =
+                hand_orientation.in_space(space, &self.document.arm.pose()).angles;
         }
     }
 

@@ -48,7 +48,7 @@ impl Session {
 
     /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
     pub fn arm_unit(&self) -> f32 {
-        self.editing.shown_before().arm.cell() * 0.01
+        self.editing.shown_before().arm.grid_cell() * 0.01
     }
 
     /// The drag in the viewport.
@@ -228,7 +228,7 @@ impl Session {
         let Some((drag, shown)) = self.editing.drag_mut() else { return };
         change(drag);
         let grip = drag.grip;
-        let Arm { goal, pole, fk, .. } = shown.arm;
+        let Arm { cursor, pole, fk, .. } = shown.arm;
         let mut angles = fk.shoulder;
         match (grip, &mut drag.way) {
             (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
@@ -240,7 +240,7 @@ impl Session {
                 if point.has_moved() {
                     self.set_point("hand", held, Arm::set_cursor);
                 } else {
-                    self.replace_arm(Arm { goal, ..*self.arm() });
+                    self.replace_arm(Arm { cursor, ..*self.arm() });
                 }
             }
             (Grip::Shoulder(axis), DragKind::Turn(turn)) => {

@@ -24,7 +24,7 @@ impl Evaluated {
         let pose = document.arm.pose();
         Self {
             pose,
-            skeleton_pose: document.skeleton_rig.at(0.0).pose(),
+            skeleton_pose: document.skeleton_rig.skeleton_at(0.0).pose(),
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
             trail: OnceCell::new(),

@@ -38,7 +38,7 @@ impl State {
         let mut document = Document {
             rig: open.rig,
             camera: open.camera,
-            other_camera: open.other_camera,
+            other_rig_camera: open.other_rig_camera,
             ..self.document.clone()
         };
         document.show(self.document.rig);
@@ -54,12 +54,12 @@ impl State {
 
     /// Whether its document is another one in more than how it is looked at.
     pub fn differs_in_content_from(&self, other: &Document) -> bool {
-        let Document { arm, skeleton_rig, keys, timeline, metres, .. } = &self.document;
+        let Document { arm, skeleton_rig, keys, timeline, metres_per_unit, .. } = &self.document;
         *arm != other.arm
             || *skeleton_rig != other.skeleton_rig
             || *keys != other.keys
             || *timeline != other.timeline
-            || *metres != other.metres
+            || *metres_per_unit != other.metres_per_unit
     }
 
     /// The overrides that are left at a time: at another one than theirs none.

@@ -53,8 +53,8 @@ impl Session {
     /// What leads the arm: hand and elbow spin, or the joints' own angles.
     fn leading_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
-        let hand = Channel::OF_HAND.into_iter().filter(|_| arm.is_led_by_hand());
-        let leading = hand.chain(Channel::OF_JOINTS);
+        let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
+        let leading = hand.chain(Channel::FK);
         leading.filter(|channel| channel.shapes(arm)).collect()
     }
 
@@ -116,7 +116,7 @@ impl Session {
     /// Moves keys, as they were before the change under way, by a time. Others that are in the way
     /// are replaced.
     pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
-        let farthest = Timeline::FARTHEST;
+        let farthest = Timeline::MAX_TIME;
         let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
         let before = self.editing.shown_before().keys.clone();
         let to = |time: f64| self.moved_to(time, by);
@@ -187,7 +187,7 @@ impl Session {
             self.fail(format!(
                 "A timeline starts before it ends, within a day of 0, and has 1 to {} frames in a \
                  second",
-                Timeline::HIGHEST_FRAME_RATE
+                Timeline::MAX_FRAME_RATE
             ));
             return;
         }
@@ -199,7 +199,7 @@ impl Session {
             self.fail("A unit must be longer than 0 m");
             return;
         }
-        self.edit_keys(|document| document.metres = metres);
+        self.edit_keys(|document| document.metres_per_unit = metres);
     }
 
     fn edit_keys(&mut self, change: impl FnOnce(&mut Document)) {

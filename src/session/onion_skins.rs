@@ -10,7 +10,7 @@ pub(super) fn write_onion_skins(
 ) {
     /// How many there are before and after, and how many frames lie between two.
     const SKINS: (isize, f64) = (3, 5.0);
-    if !shown.display.shows(Overlay::OnionSkins) || !document.is_posed_by_time() {
+    if !shown.display.shows(Overlay::OnionSkins) || !document.is_animated() {
         return skins.clear();
     }
     let (count, frames) = SKINS;
@@ -19,10 +19,10 @@ pub(super) fn write_onion_skins(
     let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
     let all = (-count..=count).filter(|place| *place != 0);
     let times = all.map(|place| (place, time + place as f64 * step));
-    let mut posed = document.at(time);
+    let mut posed = document.evaluate(time);
     let mut made = 0;
     for (place, time) in times.filter(|(_, time)| is_played(*time)) {
-        posed.keys_to(time);
+        posed.apply_keys(time);
         if made == skins.len() {
             skins.push(OnionSkin::default());
         }

@@ -175,7 +175,7 @@ impl Spike {
 fn moment(arm: &Arm, pose: TwoBonePose) -> Moment {
     Moment {
         pose,
-        cursor: arm.cursor(),
+        cursor: arm.cursor_in_root(),
         ik: arm.ik(),
         spin: arm.twist,
         pinned_root: arm.is_pinned().then_some(arm.root),

@@ -8,15 +8,17 @@ use crate::kinematics::two_bone::Facing;
 /// A line that `ik-arm solve` reads, and that gives the arm as its hand would lead it to where it is.
 /// A hand at the shoulder itself has no direction in a line.
 pub(super) fn of(arm: &Arm) -> String {
-    let arm = if arm.influence < 1.0 { arm.led_by_hand() } else { *arm };
+    let arm = if arm.influence < 1.0 { arm.switched_to_ik() } else { *arm };
     // A line of its own has no past to be carried along from.
     let arm = match arm.twist_reference {
-        TwistReferenceKind::Transport => arm.measured_from(TwistReferenceKind::Stereographic),
+        TwistReferenceKind::Transport => {
+            arm.with_twist_reference(TwistReferenceKind::Stereographic)
+        }
         _ => arm,
     };
     let mut line = Map::new();
     let mut say = |field: &str, value: Value| line.insert(field.to_owned(), value);
-    say("hand", json!(arm.cursor().to_array()));
+    say("hand", json!(arm.cursor_in_root().to_array()));
     say("upper", json!(arm.bones.upper()));
     say("lower", json!(arm.bones.lower()));
     say("root", json!(arm.root.to_array()));
@@ -46,7 +48,7 @@ pub(super) fn of(arm: &Arm) -> String {
 /// The spin that leaves the elbow where it is for who does not know where the arm last faced.
 fn spin_alone(arm: &Arm) -> f32 {
     const SAME: f32 = 1e-6;
-    let (cursor, outward) = (arm.cursor(), arm.solve().pose.outward());
+    let (cursor, outward) = (arm.cursor_in_root(), arm.solve().pose.outward());
     let spin = wrapped(arm.twist);
     let alone = arm.ik().solve(cursor, spin, Facing::default(), None).pose;
     if alone.outward().distance(outward) < SAME {

@@ -80,11 +80,11 @@ impl Selection {
     pub fn remap(&mut self, moved: &JointRemap, keys: Vec<Key>, channels: BTreeSet<Channel>) {
         let keys = keys.into_iter();
         self.keys =
-            keys.filter_map(|(channel, time)| Some((channel.moved(moved)?, time))).collect();
-        self.set_channels(channels.into_iter().filter_map(|channel| channel.moved(moved)));
+            keys.filter_map(|(channel, time)| Some((channel.remapped(moved)?, time))).collect();
+        self.set_channels(channels.into_iter().filter_map(|channel| channel.remapped(moved)));
         let copies = std::mem::take(&mut self.clipboard).into_iter();
-        let copies =
-            copies.filter_map(|(channel, time, value)| Some((channel.moved(moved)?, time, value)));
+        let copies = copies
+            .filter_map(|(channel, time, value)| Some((channel.remapped(moved)?, time, value)));
         self.clipboard = copies.collect();
     }
 

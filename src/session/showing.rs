@@ -11,7 +11,7 @@ impl Overlays {
     /// What a picture of a document at a time shows beside it, as the document's display has it:
     /// nothing is selected.
     pub fn new(document: &Document, time: f64) -> Self {
-        let shown = document.at(time);
+        let shown = document.evaluate(time);
         let has_trail = has_trail(document, &shown);
         let mut overlays = Self {
             time,

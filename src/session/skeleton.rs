@@ -103,7 +103,7 @@ impl Session {
         let before = self.selection().to_vec();
         let moved = self.edit_document(|document| {
             let moved = document.skeleton_mut().reparent(joint, parent)?;
-            document.follow(&moved);
+            document.remap_joints(&moved);
             Ok::<_, SkeletonError>(moved)
         });
         if let Some(moved) = moved {
@@ -144,7 +144,7 @@ impl Session {
             return;
         }
         let home = self.skeleton_pose().tip(joint);
-        let radius = self.skeleton_rig().circle();
+        let radius = self.skeleton_rig().default_path_radius();
         self.edit_skeleton(|rig| {
             rig.targets.push(Target::new(joint, home, radius));
             Ok(())

@@ -58,7 +58,7 @@ impl Session {
 
     /// A tenth of the grid.
     pub(super) fn snap(&self) -> f32 {
-        self.shown().cell() * 0.1
+        self.shown().grid_cell() * 0.1
     }
 
     pub(super) fn drag_skeleton(&mut self, grip: Grip, to: Vec3, moved: Vec3) {
@@ -78,7 +78,7 @@ impl Session {
             && !self.is_running()
             && self.skeleton_rig().follow_path.is_none()
         {
-            let goals = self.skeleton_rig().goals(self.time());
+            let goals = self.skeleton_rig().targets_at(self.time());
             let skeleton = self.skeleton().clone();
             self.solve_drag(skeleton, &goals, self.skeleton_rig().solver);
         }
@@ -97,7 +97,7 @@ impl Session {
             self.change_joint(joint, |joint| joint.offset = offset + moved);
             return;
         }
-        let mut goals = self.skeleton_rig().goals(self.time());
+        let mut goals = self.skeleton_rig().targets_at(self.time());
         goals.retain(|goal| goal.joint != joint);
         goals.push(chain_ik::TipTarget { joint, point: to, weight: 1.0 });
         let mut solver = self.skeleton_rig().solver;

@@ -47,7 +47,7 @@ impl History {
 
 impl SolverRun {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Result<Self, SolveError> {
-        let goals = rig.goals(time);
+        let goals = rig.targets_at(time);
         let solve = ChainSolver::new(&rig.skeleton, &goals, &rig.solver)?;
         let mut history = History::default();
         history.push(solve.report().error);
@@ -114,12 +114,14 @@ impl SolverRun {
 
     /// Whether its last iteration led to this pose, with the targets and options that it has now.
     pub(super) fn led_to(&self, rig: &SkeletonRig, time: f64) -> bool {
-        rig.skeleton == self.written && rig.solver == self.options && rig.goals(time) == self.goals
+        rig.skeleton == self.written
+            && rig.solver == self.options
+            && rig.targets_at(time) == self.goals
     }
 
     /// Follows what has changed since the last iteration.
     fn keep_up(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
-        let goals = rig.goals(time);
+        let goals = rig.targets_at(time);
         let is_same = rig.solver == self.options && rig.skeleton == self.written;
         if !is_same || !only_points_differ(&goals, &self.goals) {
             let before = self.report().iterations;

@@ -41,7 +41,7 @@ impl Session {
     /// State and residual of the pose that is shown; `None` without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         let rig = self.skeleton_rig();
-        if rig.follow_path.is_some() || rig.goals(self.time()).is_empty() {
+        if rig.follow_path.is_some() || rig.targets_at(self.time()).is_empty() {
             return None;
         }
         let run = self.solver_run();

@@ -36,7 +36,7 @@ impl Session {
             self.fail("This skeleton follows its head; it has nothing to solve");
             return None;
         }
-        if self.skeleton_rig().goals(self.time()).is_empty() {
+        if self.skeleton_rig().targets_at(self.time()).is_empty() {
             self.say("There is no target to solve for; add one to a joint");
             return None;
         }

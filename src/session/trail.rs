@@ -5,7 +5,7 @@ use crate::kinematics::skeleton::JointId;
 
 /// Whether a document has a trail to show.
 pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
-    document.is_posed_by_time() && shown.display.shows(Overlay::Trail)
+    document.is_animated() && shown.display.shows(Overlay::Trail)
 }
 
 /// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.
@@ -24,10 +24,10 @@ pub(super) fn walk(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
     let mut posed = document.clone();
     let point = |frame| {
         let time = timeline.time(frame);
-        posed.keys_to(time);
+        posed.apply_keys(time);
         match document.rig {
             RigKind::Arm => Some(posed.arm.root + posed.arm.pose().hand),
-            RigKind::Skeleton => Some(posed.skeleton_rig.at(time).tip(joint?)),
+            RigKind::Skeleton => Some(posed.skeleton_rig.skeleton_at(time).tip(joint?)),
         }
     };
     (0..frames).step_by(stride).filter_map(point).collect()

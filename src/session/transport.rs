@@ -17,7 +17,7 @@ impl TransportPath {
     }
 
     pub(super) fn go_on(&mut self, arm: &Arm) {
-        let direction = Facing::towards(arm.cursor(), arm.facing).direction;
+        let direction = Facing::towards(arm.cursor_in_root(), arm.facing).direction;
         if direction != self.now.direction {
             self.now = self.now.to(direction);
         }

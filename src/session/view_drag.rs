@@ -71,6 +71,6 @@ impl Glide {
         let started = *self.started.get_or_insert(seconds);
         let part = ((seconds - started) / Self::SECONDS).clamp(0.0, 1.0) as f32;
         let eased = part * part * (3.0 - 2.0 * part);
-        (self.from.towards(self.to, eased), part >= 1.0)
+        (self.from.interpolated(self.to, eased), part >= 1.0)
     }
 }

@@ -20,7 +20,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Shoulder => "Shoulder angles".to_owned(),
         Channel::Bend => "Elbow bend".to_owned(),
         Channel::Stretch => "FK stretch".to_owned(),
-        Channel::Wrist => "Hand orientation".to_owned(),
+        Channel::HandOrientation => "Hand orientation".to_owned(),
         Channel::Root => "Root".to_owned(),
         Channel::Upper => "Upper length".to_owned(),
         Channel::Lower => "Lower length".to_owned(),
@@ -65,10 +65,10 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         (_, Overlay::InnerLimit) => ("Inner limit", "Show the sphere that the hand cannot enter"),
         (_, Overlay::OuterLimit) => ("Outer limit", "Show the sphere that the hand cannot leave"),
         (_, Overlay::Hand) => ("Hand", "Show the hand, and stripes for the forearm roll"),
-        (_, Overlay::Globe) => {
+        (_, Overlay::SingularityGlobe) => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")
         }
-        (_, Overlay::References) => {
+        (_, Overlay::TwistReferences) => {
             ("Twist references", "Show the arm with each of the four twist references")
         }
         (_, Overlay::GridXy) => ("XY grid", "Show the grid at z = 0"),

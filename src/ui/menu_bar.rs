@@ -115,7 +115,7 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     };
     match session.rig() {
-        RigKind::Arm => Channel::OF_ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
+        RigKind::Arm => Channel::ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
         RigKind::Skeleton => {
             one(ui, Channel::Translation, actions);
             for joint in session.selection() {
@@ -177,8 +177,8 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.separator();
     let mut overlays = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
     if session.rig() == RigKind::Arm {
-        overlays.push((Overlay::Globe, "Singularity globe"));
-        overlays.push((Overlay::References, "Twist references"));
+        overlays.push((Overlay::SingularityGlobe, "Singularity globe"));
+        overlays.push((Overlay::TwistReferences, "Twist references"));
     }
     for (overlay, name) in overlays {
         let mut shown = session.shown().display.shows(overlay);

@@ -9,8 +9,8 @@ use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
 /// One sentence about the reach of the arm.
 pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
-    let gap = arm.length_in_words(pose.hand.distance(arm.cursor()));
-    if !arm.is_led_by_hand() {
+    let gap = arm.format_length(pose.hand.distance(arm.cursor_in_root()));
+    if !arm.uses_ik() {
         return "FK (joint angles → hand): the angles place the hand.".to_owned();
     }
     if arm.influence < 1.0 {
@@ -94,7 +94,7 @@ fn describe_skeleton(session: &Session) -> String {
 fn describe_pose(session: &Session) -> String {
     let (arm, pose) = (session.arm(), session.pose());
     let reach = match pose.reach {
-        _ if !arm.is_led_by_hand() => "FK",
+        _ if !arm.uses_ik() => "FK",
         _ if arm.influence < 1.0 => "Between FK and IK",
         Reach::Reached => "Reached",
         Reach::TooFar => "Too far",
@@ -102,9 +102,9 @@ fn describe_pose(session: &Session) -> String {
     };
     let hand = pose.hand;
     let (least, most) = arm.reach();
-    let [x, y, z] = hand.to_array().map(|coordinate| arm.length_in_words(coordinate));
-    let distance = arm.length_in_words(pose.distance);
-    let digits = decimals_of_cell(arm.cell());
+    let [x, y, z] = hand.to_array().map(|coordinate| arm.format_length(coordinate));
+    let distance = arm.format_length(pose.distance);
+    let digits = decimals_of_cell(arm.grid_cell());
     format!(
         "{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {least:.digits$}–{most:.digits$}"
     )

@@ -67,8 +67,8 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         _ => "Move",
     };
     let digits = match session.rig() {
-        RigKind::Arm => format::decimals_of_cell(session.shown().cell() * 0.1),
-        RigKind::Skeleton => format::decimals_of_cell(session.shown().cell()),
+        RigKind::Arm => format::decimals_of_cell(session.shown().grid_cell() * 0.1),
+        RigKind::Skeleton => format::decimals_of_cell(session.shown().grid_cell()),
     };
     format!(
         "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",

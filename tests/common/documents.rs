@@ -2,9 +2,9 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandSpace, Keys, Overlay,
-    Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
-    Wrist,
+    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandOrientation, HandSpace, Keys,
+    Overlay, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
+    TwistReferenceKind,
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
@@ -59,7 +59,7 @@ pub fn document(random: &mut Random) -> Document {
         skeleton_rig: rig,
         keys,
         timeline,
-        metres: random.coin().then(|| random.positive()),
+        metres_per_unit: random.coin().then(|| random.positive()),
         camera: Camera {
             target: random.finite_vector(),
             yaw: random.finite(),
@@ -67,7 +67,7 @@ pub fn document(random: &mut Random) -> Document {
             distance: random.positive(),
             orthographic: random.coin(),
         },
-        other_camera: random.coin().then(Camera::default),
+        other_rig_camera: random.coin().then(Camera::default),
         display: Overlay::all().filter(|_| random.coin()).collect::<Display>(),
     }
 }
@@ -80,7 +80,7 @@ fn arm(random: &mut Random) -> Arm {
         random.within(0.0..3.1),
     );
     Arm {
-        goal: match random.coin() {
+        cursor: match random.coin() {
             true => Cursor::Root(random.finite_vector()),
             false => Cursor::World(random.finite_vector()),
         },
@@ -98,8 +98,8 @@ fn arm(random: &mut Random) -> Arm {
             bend: random.finite(),
             stretch: random.positive(),
         },
-        wrist: Wrist {
-            space: random.one_of(&[HandSpace::Lower, HandSpace::World]),
+        hand_orientation: HandOrientation {
+            space: random.one_of(&[HandSpace::LowerLimb, HandSpace::World]),
             angles: random.finite_vector(),
             roll: random.finite(),
         },
@@ -113,7 +113,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     });
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
-    let all = Channel::OF_ARM.into_iter().chain(overlays).chain([Channel::Translation]);
+    let all = Channel::ARM.into_iter().chain(overlays).chain([Channel::Translation]);
     let mut keys = Keys::default();
     for channel in all.chain(joints).chain(targets) {
         if random.below(3) > 0 {

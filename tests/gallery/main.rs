@@ -39,7 +39,7 @@ fn times(document: &Document) -> impl Iterator<Item = f64> {
 
 /// The arm at every frame.
 fn arms(document: &Document) -> Vec<Arm> {
-    times(document).map(|time| document.at(time).arm).collect()
+    times(document).map(|time| document.evaluate(time).arm).collect()
 }
 
 /// The arm at every frame, checked against the f64 arm.
@@ -51,7 +51,7 @@ fn checked(document: &Document) -> Vec<Arm> {
 
 fn is_at_its_cursor(arm: &Arm) -> bool {
     let pose = arm.pose();
-    pose.reach == Reach::Reached && pose.hand == arm.cursor()
+    pose.reach == Reach::Reached && pose.hand == arm.cursor_in_root()
 }
 
 // What moves from frame to frame
@@ -64,7 +64,7 @@ fn steps(arms: &[Arm], of: impl Fn(&Arm) -> Vec3) -> Vec<f64> {
 /// Ratio of elbow to Cursor movement for each pair of frames.
 fn elbow_gains(arms: &[Arm]) -> Vec<f64> {
     let elbow = steps(arms, |arm| arm.pose().elbow);
-    let cursor = steps(arms, Arm::cursor);
+    let cursor = steps(arms, Arm::cursor_in_root);
     elbow.into_iter().zip(cursor).map(|(elbow, cursor)| elbow / cursor).collect()
 }
 
@@ -83,10 +83,10 @@ fn jumps(arms: &[Arm], gain: f64) -> usize {
 fn through_the_root_the_hand_jumps_unless_the_limbs_are_equal() {
     let document = opened("through-the-root");
     let arms = checked(&document);
-    assert!(arms.iter().any(|arm| arm.cursor() == Vec3::ZERO), "through it at a frame");
+    assert!(arms.iter().any(|arm| arm.cursor_in_root() == Vec3::ZERO), "through it at a frame");
     for arm in &arms {
         let pose = arm.pose();
-        let asked = arm.cursor().as_dvec3().length();
+        let asked = arm.cursor_in_root().as_dvec3().length();
         let reach = if asked < 100.0 { Reach::TooClose } else { Reach::Reached };
         assert_eq!(pose.reach, reach);
         assert!(pose.hand.as_dvec3().length() > 100.0 * (1.0 - EXACT), "{}", pose.hand);
@@ -94,7 +94,7 @@ fn through_the_root_the_hand_jumps_unless_the_limbs_are_equal() {
     let mut hand = steps(&arms, |arm| arm.pose().hand);
     hand.sort_by(f64::total_cmp);
     within("the jump", (hand.pop().expect("steps") - 200.0).abs(), 1e-3);
-    let cursor = largest(&steps(&arms, Arm::cursor));
+    let cursor = largest(&steps(&arms, Arm::cursor_in_root));
     assert!(largest(&hand) < 1.001 * cursor, "{}", largest(&hand));
 
     let bones = TwoBone::new(250.0, 250.0).expect("lengths");
@@ -108,8 +108,9 @@ fn through_the_root_the_hand_jumps_unless_the_limbs_are_equal() {
 fn straight_up_and_down_the_limbs_elbow_jumps_and_the_stereographic_one_does_not() {
     let document = opened("straight-up-and-down");
     let arms = checked(&document);
-    let is_upright = |arm: &&Arm| arm.cursor().x == 0.0 && arm.cursor().z == 0.0;
-    let upright: Vec<f32> = arms.iter().filter(is_upright).map(|arm| arm.cursor().y).collect();
+    let is_upright = |arm: &&Arm| arm.cursor_in_root().x == 0.0 && arm.cursor_in_root().z == 0.0;
+    let upright: Vec<f32> =
+        arms.iter().filter(is_upright).map(|arm| arm.cursor_in_root().y).collect();
     assert_eq!(upright, [350.0, -350.0]);
     assert!(arms.iter().all(is_at_its_cursor));
     assert_eq!((document.arm.twist_reference, jumps(&arms, 20.0)), (TwistReferenceKind::Limb, 2));
@@ -117,7 +118,7 @@ fn straight_up_and_down_the_limbs_elbow_jumps_and_the_stereographic_one_does_not
     let out = f64::from(arms[0].pose().out);
     assert!(across > 1.9 * out, "{across}, out {out}");
 
-    let smooth = document.measured_from(TwistReferenceKind::Stereographic);
+    let smooth = document.with_twist_reference(TwistReferenceKind::Stereographic);
     let arms = checked(&smooth);
     assert!(arms.iter().all(is_at_its_cursor));
     // By the formula (d₁ + o_e·g)/d = (200 + 171·1)/350.
@@ -128,7 +129,7 @@ fn straight_up_and_down_the_limbs_elbow_jumps_and_the_stereographic_one_does_not
 fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
     let document = opened("along-the-pole");
     let arms = checked(&document);
-    let is_along = |arm: &&Arm| arm.cursor().cross(arm.pole) == Vec3::ZERO;
+    let is_along = |arm: &&Arm| arm.cursor_in_root().cross(arm.pole) == Vec3::ZERO;
     assert_eq!(
         (document.arm.twist_reference, arms.iter().filter(is_along).count()),
         (TwistReferenceKind::Pole, 1)
@@ -139,7 +140,7 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
     let [before, after] = [middle - 1, middle + 1].map(|frame| arms[frame].pose().outward());
     assert!(before.dot(after) < -0.99, "{before} {after}");
 
-    let smooth = document.measured_from(TwistReferenceKind::Stereographic);
+    let smooth = document.with_twist_reference(TwistReferenceKind::Stereographic);
     let arms = checked(&smooth);
     assert!(arms.iter().all(is_at_its_cursor));
     assert!(largest(&elbow_gains(&arms)) < 1.5, "{}", largest(&elbow_gains(&arms)));
@@ -155,8 +156,8 @@ fn exactly_straight_the_target_is_reached_and_the_twist_leaves_the_elbow() {
     assert!(spins.len() > 100 && spins[spins.len() - 1] > 6.0, "it plays once around");
     for arm in &arms {
         assert!(is_at_its_cursor(arm));
-        assert_eq!(arm.cursor().as_dvec3().length(), f64::from(arm.bones.outer_limit()));
-        let (pose, straight) = (arm.pose(), arm.cursor().as_dvec3() * 0.4);
+        assert_eq!(arm.cursor_in_root().as_dvec3().length(), f64::from(arm.bones.outer_limit()));
+        let (pose, straight) = (arm.pose(), arm.cursor_in_root().as_dvec3() * 0.4);
         within("the elbow", pose.elbow.as_dvec3().distance(straight), EXACT * 500.0);
         within("its angle", (f64::from(pose.elbow_angle()) - PI).abs(), 1e-6);
     }
@@ -167,7 +168,7 @@ fn just_past_straight_the_elbow_snaps_unless_it_is_softened() {
     let document = opened("just-past-straight");
     let arms = checked(&document);
     for arm in &arms {
-        let asked = arm.cursor().as_dvec3().length();
+        let asked = arm.cursor_in_root().as_dvec3().length();
         let reach = if asked > 500.0 { Reach::TooFar } else { Reach::Reached };
         assert_eq!(arm.pose().reach, reach, "{asked}");
     }
@@ -188,7 +189,7 @@ fn equal_bones_fold_up_completely_and_nothing_jumps() {
     let document = opened("equal-bones-folded");
     let arms = checked(&document);
     assert!(arms.iter().all(is_at_its_cursor));
-    let folded: Vec<&Arm> = arms.iter().filter(|arm| arm.cursor() == Vec3::ZERO).collect();
+    let folded: Vec<&Arm> = arms.iter().filter(|arm| arm.cursor_in_root() == Vec3::ZERO).collect();
     assert_eq!(folded.len(), 1);
     let pose = folded[0].pose();
     within("the elbow", pose.elbow.as_dvec3().distance(DVec3::Y * 250.0), EXACT * 500.0);
@@ -204,7 +205,7 @@ fn one_bone_a_thousand_times_the_other_brings_the_hand_to_its_target() {
     within("the ratio", (f64::from(bones.upper() / bones.lower()) - 1e3).abs(), 1e-3);
     assert!(arms.iter().all(is_at_its_cursor));
     let angle = |arm: &Arm| {
-        let around = arm.cursor() - Vec3::X * 300.0;
+        let around = arm.cursor_in_root() - Vec3::X * 300.0;
         around.y.atan2(around.x)
     };
     for quarter in [0.0, 1.5, 3.0, -1.5] {
@@ -245,8 +246,8 @@ fn moves_as_the_default_arm(name: &str, length: f32) {
     let scale = f64::from(length) / 500.0;
     for arm in arms {
         assert!(is_at_its_cursor(&arm));
-        let cursor = (arm.cursor().as_dvec3() / scale).as_vec3();
-        let seed = Arm { goal: Cursor::Root(cursor), ..Arm::default() }.pose();
+        let cursor = (arm.cursor_in_root().as_dvec3() / scale).as_vec3();
+        let seed = Arm { cursor: Cursor::Root(cursor), ..Arm::default() }.pose();
         let elbow = arm.pose().elbow.as_dvec3() / scale;
         within("the elbow", elbow.distance(seed.elbow.as_dvec3()), 1e-5 * 500.0);
     }
@@ -262,7 +263,7 @@ fn two_bones_in_a_mirror_follow_their_target() {
     within("the hand as it is opened", hand.distance(target.home.as_dvec3()), 1e-4 * length);
     let mut before: Option<[DVec3; 3]> = None;
     for time in times(&document) {
-        let goals = document.skeleton_rig.goals(time);
+        let goals = document.skeleton_rig.targets_at(time);
         let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton_rig.solver);
         assert!(report.expect("it can be solved").converged, "at {time}");
         let at = points(&skeleton);

@@ -14,7 +14,7 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
         for time in times(&document) {
-            let shown = document.at(time);
+            let shown = document.evaluate(time);
             let overlays = Overlays::new(&document, time);
             let scene = Scene::new(&shown, &overlays, Theme::Dark);
             let at = format!("{} at {time}", example.name);
@@ -34,7 +34,7 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
 
 #[test]
 fn grid_cells_scale_with_the_rig() {
-    assert_eq!(Document::default().cell(), 100.0);
+    assert_eq!(Document::default().grid_cell(), 100.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
         let planes = Scene::new(&document, &Overlays::default(), Theme::Dark).planes;

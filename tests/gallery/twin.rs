@@ -17,7 +17,7 @@ struct Twin {
 fn twin(arm: &Arm) -> Twin {
     let (upper, lower) = (f64::from(arm.bones.upper()), f64::from(arm.bones.lower()));
     let (least, length) = ((upper - lower).abs(), upper + lower);
-    let cursor = arm.cursor().as_dvec3();
+    let cursor = arm.cursor_in_root().as_dvec3();
     let distance = soften(cursor.length(), least, length, f64::from(arm.soft_reach.softness()));
     let forward = cursor.try_normalize().unwrap_or(arm.facing.direction.as_dvec3());
     let along = match distance {

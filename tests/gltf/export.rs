@@ -304,7 +304,7 @@ fn a_joint_that_is_too_far_away_is_named() {
     let joints = vec![Joint::new("root", None, Vec3::Y), far];
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
     glb(&document);
-    document.metres = Some(10.0);
+    document.metres_per_unit = Some(10.0);
     assert_eq!(
         refusal(&document),
         "joint \"far\" is farther than 3.4028235e38 m from the origin in the bind pose; bring it \

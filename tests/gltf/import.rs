@@ -25,7 +25,7 @@ fn refusal(text: &str) -> String {
 
 /// Where a joint begins at a time, by its name.
 fn base(opened: &Opened, time: f64, name: &str) -> Vec3 {
-    let document = opened.document.at(time);
+    let document = opened.document.evaluate(time);
     let skeleton = document.skeleton();
     skeleton.base(skeleton.find(name).expect("a joint"))
 }

@@ -16,10 +16,10 @@ fn reopened(document: &Document) -> Opened {
 
 /// Where the bones begin, and where the arm's hand is, in metres.
 fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
-    let document = document.at(time);
+    let document = document.evaluate(time);
     let named = match document.rig {
         RigKind::Skeleton => {
-            let skeleton = document.skeleton_rig.at(time);
+            let skeleton = document.skeleton_rig.skeleton_at(time);
             let pose = skeleton.pose();
             let joints = skeleton.joints().iter().enumerate();
             joints
@@ -38,7 +38,7 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
 
 /// The same of an imported document, whose hand is a joint where its bone's length has keys.
 fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
-    let document = document.at(time);
+    let document = document.evaluate(time);
     let skeleton = document.skeleton();
     let pose = skeleton.pose();
     let joint = |name| skeleton.find(name).map(|joint| pose.base(joint));
@@ -85,7 +85,7 @@ fn every_joint_is_where_it_was_in_every_frame() {
         assert_eq!(read.rig, RigKind::Skeleton);
         assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
         assert_eq!(order.len(), read.skeleton().joints().len());
-        let moves = document.is_posed_by_time();
+        let moves = document.is_animated();
         assert_eq!(moves, !read.keys.is_empty(), "{name}");
         check(&name, &document, &opened);
     }
@@ -162,7 +162,7 @@ fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
     assert!(
         opened.document.keys.tracks().all(|(channel, _)| matches!(channel, Channel::Rotation(_)))
     );
-    let (was, is) = (document.at(0.125), opened.document.at(0.125));
+    let (was, is) = (document.evaluate(0.125), opened.document.evaluate(0.125));
     let (was, is) = (was.skeleton().pose(), is.skeleton().pose());
     let gap = (0..was.len())
         .map(|joint| was.base(JointId::new(joint)).distance(is.base(JointId::new(joint))));

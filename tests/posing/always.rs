@@ -20,13 +20,13 @@ proptest! {
         let mut session = session([
             EditAction::SetTwistReference(twist_reference), EditAction::SetHand(hand), EditAction::SetRoot(roots[0]),
         ]);
-        let before = session.arm().cursor_world();
+        let before = session.arm().cursor_in_world();
         session.apply(EditAction::PinHand(true));
-        prop_assert_eq!(bits(session.arm().cursor_world()), bits(before));
+        prop_assert_eq!(bits(session.arm().cursor_in_world()), bits(before));
         for root in roots {
             session.apply(EditAction::SetRoot(root));
             let (arm, pose) = (session.arm(), session.pose());
-            prop_assert_eq!(bits(arm.cursor_world()), bits(before));
+            prop_assert_eq!(bits(arm.cursor_in_world()), bits(before));
             let asked = before.as_dvec3() - root.as_dvec3();
             if (100.1..499.9).contains(&asked.length()) {
                 let missed = asked.distance(pose.hand.as_dvec3());
@@ -34,9 +34,9 @@ proptest! {
                 prop_assert!(missed <= 3e-7 * 500.0 + ulps, "off by {}", missed);
             }
         }
-        let (world, pose) = (session.arm().cursor_world(), *session.pose());
+        let (world, pose) = (session.arm().cursor_in_world(), *session.pose());
         session.apply(EditAction::PinHand(false));
-        prop_assert!(world.distance(session.arm().cursor_world()) < 1e-3);
+        prop_assert!(world.distance(session.arm().cursor_in_world()) < 1e-3);
         prop_assert!(apart(&pose, session.pose()) < 1e-3);
     }
 
@@ -66,11 +66,11 @@ proptest! {
             session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
         }
         let poses: Vec<_> =
-            (0..hands.len()).map(|time| session.document().at(time as f64).arm.pose()).collect();
+            (0..hands.len()).map(|time| session.document().evaluate(time as f64).arm.pose()).collect();
         for twist_reference in to {
             session.apply(EditAction::SetTwistReference(twist_reference));
             for (time, pose) in poses.iter().enumerate() {
-                let now = session.document().at(time as f64).arm.pose();
+                let now = session.document().evaluate(time as f64).arm.pose();
                 prop_assert!(apart(pose, &now) < 2e-5, "{} at {} with {:?}", apart(pose, &now), time, twist_reference);
             }
         }
@@ -108,13 +108,13 @@ proptest! {
             session.apply(EditAction::Key(vec![Channel::Hand]));
         }
         let last = *times.last().expect("one");
-        let alone = session.document().at(last).arm.pose();
+        let alone = session.document().evaluate(last).arm.pose();
         for time in times {
             session.apply(PlaybackAction::SetTime(time));
         }
         prop_assert_eq!(*session.pose(), alone);
         let again = ik_arm::io::parse("a", &ik_arm::io::to_json(session.document()).expect("json"), None);
-        prop_assert_eq!(again.expect("opened").document.at(last).arm.pose(), alone);
+        prop_assert_eq!(again.expect("opened").document.evaluate(last).arm.pose(), alone);
     }
 
     #[test]
@@ -126,7 +126,7 @@ proptest! {
             session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
         }
         session.apply(PlaybackAction::SetTime(1.0));
-        let from = session.arm().cursor();
+        let from = session.arm().cursor_in_root();
         for step in 0..=200 {
             let was = *session.pose();
             session.apply(EditAction::SetHand(from.lerp(to, step as f32 / 200.0)));
@@ -177,24 +177,24 @@ proptest! {
         session.apply(EditAction::Key(vec![Channel::Influence]));
         let bones = session.arm().bones;
         for frame in 0..=60 {
-            let posed = session.document().at(f64::from(frame) / 30.0).arm;
+            let posed = session.document().evaluate(f64::from(frame) / 30.0).arm;
             let pose = posed.pose();
             prop_assert!((0.0..=1.0).contains(&posed.influence));
             let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
             prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 1.5e-4);
             prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 2e-4);
         }
-        prop_assert_eq!(session.document().at(0.0).arm.influence, 1.0);
-        prop_assert_eq!(session.document().at(2.0).arm.influence, 0.0);
+        prop_assert_eq!(session.document().evaluate(0.0).arm.influence, 1.0);
+        prop_assert_eq!(session.document().evaluate(2.0).arm.influence, 0.0);
     }
 
     #[test]
     fn a_hand_in_world_orientation_keeps_it_at_every_position(
         angles in points(3.0), hands in vec(points(400.0), 1..8)
     ) {
-        let mut session = session([EditAction::SetWrist(angles)]);
+        let mut session = session([EditAction::SetHandOrientation(angles)]);
         let before = session.arm().hand_rotation(session.pose());
-        session.apply(EditAction::SetWristSpace(HandSpace::World));
+        session.apply(EditAction::SetHandSpace(HandSpace::World));
         let same = |a: glam::DMat3, b: glam::DMat3| (a.x_axis.distance(b.x_axis)).max(a.y_axis.distance(b.y_axis)) < 1e-5;
         prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         for hand in hands {
@@ -202,7 +202,7 @@ proptest! {
             prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         }
         let turned = session.arm().hand_rotation(session.pose());
-        session.apply(EditAction::SetWristSpace(HandSpace::Lower));
+        session.apply(EditAction::SetHandSpace(HandSpace::LowerLimb));
         prop_assert!(same(session.arm().hand_rotation(session.pose()), turned));
     }
 }

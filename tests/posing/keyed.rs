@@ -19,11 +19,11 @@ fn hand_keys_have_no_effect_while_the_hand_is_pinned() {
     }
     session.apply(EditAction::PinHand(true));
     session.apply(PlaybackAction::SetTime(0.5));
-    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0);
     session.apply(EditAction::PinHand(false));
-    assert_eq!(session.arm().cursor(), Vec3::Y * 200.0, "it stays until the time changes");
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0, "it stays until the time changes");
     session.apply(PlaybackAction::SetTime(0.0));
-    assert_eq!(session.arm().cursor(), Vec3::X * 200.0);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::X * 200.0);
 }
 
 #[test]
@@ -65,15 +65,15 @@ fn a_keyed_hand_keeps_its_orientation_at_every_key_in_another_space() {
     ] {
         session.apply(PlaybackAction::SetTime(time));
         session.apply(EditAction::SetHand(hand));
-        session.apply(EditAction::SetWrist(angles));
-        session.apply(EditAction::Key(vec![Channel::Hand, Channel::Wrist]));
+        session.apply(EditAction::SetHandOrientation(angles));
+        session.apply(EditAction::Key(vec![Channel::Hand, Channel::HandOrientation]));
     }
     let turned = |session: &Session, time: f64| {
-        let arm = session.document().at(time).arm;
+        let arm = session.document().evaluate(time).arm;
         arm.hand_rotation(&arm.pose())
     };
     let before = [0.0, 2.0].map(|time| turned(&session, time));
-    session.apply(EditAction::SetWristSpace(HandSpace::World));
+    session.apply(EditAction::SetHandSpace(HandSpace::World));
     for (before, time) in before.into_iter().zip([0.0, 2.0]) {
         let now = turned(&session, time);
         assert!(
@@ -141,11 +141,11 @@ fn another_edit_leaves_a_keyed_transported_twist_at_its_keys() {
 fn the_unkeyed_twist_is_converted_to_the_new_reference_too() {
     let mut session = session([EditAction::SetTwist(1.0)]);
     let pose = *session.pose();
-    session.apply(EditAction::Key(vec![Channel::Twist, Channel::Wrist]));
+    session.apply(EditAction::Key(vec![Channel::Twist, Channel::HandOrientation]));
     session.apply(EditAction::SetTwistReference(TwistReferenceKind::Stereographic));
-    session.apply(EditAction::SetWristSpace(HandSpace::World));
+    session.apply(EditAction::SetHandSpace(HandSpace::World));
     let hand = session.arm().hand_rotation(session.pose());
-    session.apply(EditAction::ClearChannels(vec![Channel::Twist, Channel::Wrist]));
+    session.apply(EditAction::ClearChannels(vec![Channel::Twist, Channel::HandOrientation]));
     assert!(apart(&pose, session.pose()) < 1e-5);
     let now = session.arm().hand_rotation(session.pose());
     assert!(now.x_axis.distance(hand.x_axis) < 1e-5 && now.y_axis.distance(hand.y_axis) < 1e-5);
@@ -167,11 +167,11 @@ fn a_forearm_keyed_to_roll_around_does_not_snap_between_keys() {
     let mut session = Session::default();
     for (time, roll) in [(0.0, 0.0), (2.0, 2.0 * PI as f32)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(EditAction::SetWrist(Vec3::X * roll));
-        session.apply(EditAction::Key(vec![Channel::Wrist]));
+        session.apply(EditAction::SetHandOrientation(Vec3::X * roll));
+        session.apply(EditAction::Key(vec![Channel::HandOrientation]));
     }
     let roll = |frame: i32| {
-        let arm = session.document().at(f64::from(frame) / 50.0).arm;
+        let arm = session.document().evaluate(f64::from(frame) / 50.0).arm;
         arm.roll(&arm.pose())
     };
     for frame in 0..100 {

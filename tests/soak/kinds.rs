@@ -87,8 +87,8 @@ kinds! {
         SwitchPoseMode: Arm 4, |v| EditAction::SwitchPoseMode(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
         SetShoulder: Arm 3, |v| EditAction::SetShoulder(v.angles());
         SetBend: Arm 3, |v| EditAction::SetBend(v.angle());
-        SetWrist: Arm 3, |v| EditAction::SetWrist(v.angles());
-        SetWristSpace: Arm 3, |v| EditAction::SetWristSpace(v.one_of(&[HandSpace::Lower, HandSpace::World]));
+        SetHandOrientation: Arm 3, |v| EditAction::SetHandOrientation(v.angles());
+        SetHandSpace: Arm 3, |v| EditAction::SetHandSpace(v.one_of(&[HandSpace::LowerLimb, HandSpace::World]));
         SetUpper: Arm 2, |v| EditAction::SetUpper(v.length());
         SetLower: Arm 2, |v| EditAction::SetLower(v.length());
         ResetPose: Arm 1, |_| EditAction::ResetPose;

@@ -20,21 +20,21 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         keys,
         timeline,
         camera: _,
-        other_camera: _,
+        other_rig_camera: _,
         display: _,
-        metres,
+        metres_per_unit,
     } = a;
     *arm == b.arm
         && *skeleton_rig == b.skeleton_rig
         && *keys == b.keys
         && *timeline == b.timeline
-        && *metres == b.metres
+        && *metres_per_unit == b.metres_per_unit
 }
 
 /// The document as JSON, with a default camera.
 pub fn saved(document: &Document) -> Result<String, Broken> {
     let camera = Document::default().camera;
-    let document = Document { camera, other_camera: None, ..document.clone() };
+    let document = Document { camera, other_rig_camera: None, ..document.clone() };
     io::to_json(&document).map_err(|error| Broken(format!("a document can be saved: {error}")))
 }
 

@@ -13,7 +13,7 @@ const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
     arm(session.arm(), session.pose())?;
-    let skeleton = session.skeleton_rig().at(session.time());
+    let skeleton = session.skeleton_rig().skeleton_at(session.time());
     joints(&skeleton, session.skeleton_pose())?;
     places(session)
 }
@@ -51,7 +51,7 @@ fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
 fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
     let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
-    let cursor = arm.cursor().as_dvec3();
+    let cursor = arm.cursor_in_root().as_dvec3();
     let missed = pose.hand.as_dvec3().distance(cursor);
     let is_reached = pose.reach == Reach::Reached;
     let rounding = 4.0 * U * cursor.length();
@@ -60,7 +60,7 @@ fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
         "reached is there: {missed:e} {arm:?} {pose:?}"
     );
     let is_exact = arm.influence == 1.0 && arm.soft_reach.is_hard();
-    let is_there = !is_reached || pose.hand == arm.cursor();
+    let is_there = !is_reached || pose.hand == arm.cursor_in_root();
     hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {arm:?} {pose:?}");
     let (inner, outer) = ((upper - lower).abs(), upper + lower);
     let asked = cursor.length();

@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Document, FollowPath, Quantity, SkeletonRig, Target, Wrist,
+    Arm, Camera, Channel, Document, FollowPath, HandOrientation, Quantity, SkeletonRig, Target,
 };
 use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
@@ -15,13 +15,17 @@ use crate::{Broken, hold};
 
 /// Checks that all numbers are finite and in range.
 pub fn document(document: &Document) -> Result<(), Broken> {
-    let Document { arm, skeleton_rig, timeline, camera, other_camera, metres, .. } = document;
+    let Document { arm, skeleton_rig, timeline, camera, other_rig_camera, metres_per_unit, .. } =
+        document;
     self::arm(arm)?;
     skeleton(skeleton_rig)?;
     self::camera(camera)?;
-    other_camera.as_ref().map_or(Ok(()), self::camera)?;
+    other_rig_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
-    hold!(metres.is_none_or(is_above_0), "a unit is longer than nothing: {metres:?}");
+    hold!(
+        metres_per_unit.is_none_or(is_above_0),
+        "a unit is longer than nothing: {metres_per_unit:?}"
+    );
     keys(document)
 }
 
@@ -52,10 +56,13 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
         soft_reach: _,
         influence,
         fk,
-        wrist,
+        hand_orientation,
         ..
     } = arm;
-    hold!(arm.cursor().is_finite() && arm.cursor_world().is_finite(), "the cursor is finite");
+    hold!(
+        arm.cursor_in_root().is_finite() && arm.cursor_in_world().is_finite(),
+        "the cursor is finite"
+    );
     hold!(twist.is_finite(), "the twist is finite: {twist}");
     hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
     hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
@@ -73,8 +80,11 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
     hold!((0.0..=1.0).contains(influence), "the influence is from 0 to 1: {influence}");
     hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
     hold!(is_above_0(fk.stretch), "limbs are stretched by a factor: {fk:?}");
-    let Wrist { angles, roll, .. } = wrist;
-    hold!(angles.is_finite() && roll.is_finite(), "the wrist's angles are finite: {wrist:?}");
+    let HandOrientation { angles, roll, .. } = hand_orientation;
+    hold!(
+        angles.is_finite() && roll.is_finite(),
+        "the angles of the hand are finite: {hand_orientation:?}"
+    );
     Ok(())
 }
 
@@ -96,7 +106,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
     hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");
     hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
-    let per_frame = 1..=SkeletonRig::MOST_ITERATIONS_PER_FRAME;
+    let per_frame = 1..=SkeletonRig::MAX_ITERATIONS_PER_FRAME;
     hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
     if let Some(FollowPath { radius, amplitude, period, .. }) = follow_path {
         let is_way = radius.is_finite() && amplitude.is_finite() && is_above_0(*period);

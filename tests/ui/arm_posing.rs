@@ -149,15 +149,15 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
 #[test]
 fn a_pinned_hand_stays_when_the_root_moves() {
     let mut bench = Bench::new();
-    let before = bench.session().arm().cursor_world();
+    let before = bench.session().arm().cursor_in_world();
     bench.click(Role::CheckBox, "Pinned to world");
     bench.enter("Root x", "80");
     bench.enter("Root y", "-30.5");
-    assert_eq!(bits(bench.session().arm().cursor_world()), bits(before));
+    assert_eq!(bits(bench.session().arm().cursor_in_world()), bits(before));
     let (arm, pose) = (bench.session().arm(), bench.session().pose());
     assert!((arm.root + pose.hand).distance(before) < 2e-4);
     bench.enter("Hand z", "10");
-    assert_eq!(bench.session().arm().cursor_world().z, 10.0, "it is set in the world");
+    assert_eq!(bench.session().arm().cursor_in_world().z, 10.0, "it is set in the world");
     let pose = *bench.session().pose();
     bench.click(Role::CheckBox, "Pinned to world");
     assert!(apart(&pose, bench.session().pose()) < 1e-3);
@@ -215,7 +215,9 @@ fn the_four_references_stand_beside_each_other() {
         assert!(bench.says(name), "{name}");
     }
     assert!(bench.says("300.00"), "the gain of the limb's, straight above");
-    for (name, layer) in [("Ghosts", Overlay::References), ("Singularity globe", Overlay::Globe)] {
+    for (name, layer) in
+        [("Ghosts", Overlay::TwistReferences), ("Singularity globe", Overlay::SingularityGlobe)]
+    {
         reveal(&mut bench, Role::CheckBox, name);
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
@@ -253,7 +255,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
     }
     assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
     bench.click(Role::RadioButton, "Keep in world");
-    assert_eq!(bench.session().arm().wrist.space, HandSpace::World);
+    assert_eq!(bench.session().arm().hand_orientation.space, HandSpace::World);
 }
 
 #[test]

@@ -116,7 +116,7 @@ impl Bench {
     }
 
     pub fn hand(&self) -> Vec3 {
-        self.session().arm().cursor()
+        self.session().arm().cursor_in_root()
     }
 
     /// One frame of the window: its input, one key press or mouse button after the other.
@@ -221,7 +221,7 @@ impl Bench {
     }
 
     pub fn cursor_place(&self) -> Pos2 {
-        self.place(self.session().arm().cursor_world())
+        self.place(self.session().arm().cursor_in_world())
     }
 
     /// A point of the viewport with nothing to take hold of.

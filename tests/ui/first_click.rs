@@ -70,7 +70,7 @@ fn each_rig_keeps_its_view_in_a_file() {
     ik_arm::io::save(document, &path).expect("saved");
     let opened = ik_arm::io::open(&path, None).expect("opened");
     assert_eq!(&opened.document, document);
-    assert!(opened.document.other_camera.is_some());
+    assert!(opened.document.other_rig_camera.is_some());
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn a_click_on_the_hand_changes_no_bit() {
     let before = *bench.session().arm();
     let place = bench.cursor_place();
     bench.click_at(place);
-    assert_eq!(bits(bench.hand()), bits(before.cursor()));
+    assert_eq!(bits(bench.hand()), bits(before.cursor_in_root()));
     assert!(!bench.session().is_editing());
 }
 

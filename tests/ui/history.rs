@@ -252,7 +252,7 @@ fn files_that_were_open_are_offered_again() {
 #[test]
 fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
     let mut document = Document::default();
-    document.arm.goal = Cursor::Root(Vec3::Y * 123.0);
+    document.arm.cursor = Cursor::Root(Vec3::Y * 123.0);
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);

@@ -111,7 +111,7 @@ fn the_socket_twist_wraps() {
     assert!((value(bench.session().arm(), "Socket twist") - 359.0).abs() < 1e-3);
     bench.key(Key::PageUp);
     assert!((value(bench.session().arm(), "Socket twist") - 9.0).abs() < 1e-3);
-    assert_eq!(bits(bench.hand()), bits(Arm::default().cursor()));
+    assert_eq!(bits(bench.hand()), bits(Arm::default().cursor_in_root()));
 }
 
 #[test]

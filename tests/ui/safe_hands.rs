@@ -182,7 +182,7 @@ fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
 fn what_is_only_looked_at_is_no_unsaved_change() {
     for look in [
         Action::from(ShellAction::SetTheme(Theme::Light)),
-        EditAction::ShowOverlay(Overlay::Globe, true).into(),
+        EditAction::ShowOverlay(Overlay::SingularityGlobe, true).into(),
         EditAction::ShowOverlay(Overlay::Labels, false).into(),
         ViewAction::ShowCrowd(true).into(),
         EditAction::ShowRig(RigKind::Skeleton).into(),
@@ -199,8 +199,11 @@ fn what_is_only_looked_at_is_no_unsaved_change() {
 
 #[test]
 fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
-    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::Globe, true)]);
-    bench.apply([EditAction::SetTwist(0.5), EditAction::ShowOverlay(Overlay::Globe, false)]);
+    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::SingularityGlobe, true)]);
+    bench.apply([
+        EditAction::SetTwist(0.5),
+        EditAction::ShowOverlay(Overlay::SingularityGlobe, false),
+    ]);
     assert!(bench.session().is_unsaved());
     bench.apply([TransactionAction::Undo]);
     assert!(bench.session().is_unsaved(), "only the globe is back");
@@ -209,7 +212,7 @@ fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
     bench.apply([TransactionAction::Redo, TransactionAction::Redo]);
     assert!(bench.session().is_unsaved());
     assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
-    bench.apply([EditAction::ShowOverlay(Overlay::Globe, true)]);
+    bench.apply([EditAction::ShowOverlay(Overlay::SingularityGlobe, true)]);
     assert!(!bench.session().is_unsaved());
     assert_eq!(bench.tell(FileAction::Quit), Some(Effect::Quit));
 }

@@ -269,7 +269,7 @@ fn a_target_that_is_switched_off_is_not_minded() {
     let mut bench = example("two-targets");
     bench.click(Role::CheckBox, "Target of left_3");
     assert!(!bench.session().skeleton_rig().targets[0].enabled);
-    assert_eq!(bench.session().skeleton_rig().goals(0.0).len(), 1);
+    assert_eq!(bench.session().skeleton_rig().targets_at(0.0).len(), 1);
     bench.click(Role::CheckBox, "Target of right_3");
     assert!(!is_enabled(&bench, Role::Button, "Run"));
 }

@@ -19,9 +19,9 @@ fn on_rail(bench: &Bench, name: &str, part: f32) -> Pos2 {
 
 pub fn value(arm: &Arm, slider: &str) -> f32 {
     match slider {
-        "Hand x" => arm.cursor().x,
-        "Hand y" => arm.cursor().y,
-        "Hand z" => arm.cursor().z,
+        "Hand x" => arm.cursor_in_root().x,
+        "Hand y" => arm.cursor_in_root().y,
+        "Hand z" => arm.cursor_in_root().z,
         "Socket twist" => arm.twist.to_degrees(),
         "Root x" => arm.root.x,
         "Root y" => arm.root.y,

@@ -69,7 +69,7 @@ fn the_key_button_keys_hand_and_twist_of_an_arm() {
     assert!(bench.shows(Role::Button, "Key of Hand at 1.50 s"));
     assert!(bench.shows(Role::Button, "Channel Socket twist"));
     bench.click(Role::Button, "Key all");
-    for channel in Channel::OF_ARM {
+    for channel in Channel::ARM {
         let expected = if channel.shapes(bench.session().arm()) { &[1.5][..] } else { &[] };
         assert_eq!(times(&bench, channel), expected, "{channel:?}");
     }

@@ -24,7 +24,7 @@ fn k_keys_what_is_worked_on_and_shift_k_all() {
     assert!(!is_keyed(&bench, Channel::Root));
     bench.key_with(Modifiers::SHIFT, Key::K);
     let arm = *bench.session().arm();
-    for channel in Channel::OF_ARM {
+    for channel in Channel::ARM {
         assert_eq!(is_keyed(&bench, channel), channel.shapes(&arm), "{channel:?}");
     }
     let mut hidden = Bench::new();

@@ -59,7 +59,8 @@ impl Places {
         let pose = human.skeleton_pose();
         let head = place_in(&human, pose.base(head).midpoint(pose.tip(head)));
         let track = rail.x_range().shrink(8.5);
-        let part = (session.arm().cursor().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
+        let part =
+            (session.arm().cursor_in_root().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
         Self {
             thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
             rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),

@@ -37,7 +37,7 @@ fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_ne
     program.terminate();
     assert_eq!(program.end(), Some(130));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
-    let hand = document_of(first).arm.cursor();
+    let hand = document_of(first).arm.cursor_in_root();
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
     let program = Program::open(folder.path());
@@ -51,5 +51,5 @@ fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_ne
         _ => None,
     });
     program.kill();
-    assert_eq!(document_of(&second).arm.cursor(), hand);
+    assert_eq!(document_of(&second).arm.cursor_in_root(), hand);
 }

@@ -43,7 +43,7 @@ pub struct ExportArgs {
     #[arg(
         long,
         value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::HIGHEST_FRAME_RATE))
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::MAX_FRAME_RATE))
     )]
     fps: Option<u32>,
     /// Picture width and height in pixels, each 1 to 8192 [default: 1280x800]

@@ -101,9 +101,9 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     }
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;
-    let mut rig = document.at(time).skeleton_rig;
+    let mut rig = document.evaluate(time).skeleton_rig;
     // Follow path moves the whole skeleton.
-    rig.skeleton = rig.at(time);
+    rig.skeleton = rig.skeleton_at(time);
     let report = match args.solver {
         Some(method) => Some(solve(&mut rig, args, method, &order, &file)?),
         None => None,
@@ -127,7 +127,7 @@ fn solve(
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
-    let targets = rig.goals(args.time.0);
+    let targets = rig.targets_at(args.time.0);
     chain_ik::solve(rig.skeleton_mut(), &targets, &options).map_err(|error| {
         let file = file.to_owned();
         PoseCommandError::Solve { file, error: with_file_indices(error, order) }

@@ -74,7 +74,7 @@ impl<'a> PoseLine<'a> {
             })
         });
         let joints = joints.collect::<Result<_, _>>()?;
-        let targets = rig.goals(time).into_iter().map(|target| {
+        let targets = rig.targets_at(time).into_iter().map(|target| {
             let tip = pose.tip(target.joint);
             let error = target.point.as_dvec3().distance(tip.as_dvec3());
             TargetLine {

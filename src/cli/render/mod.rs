@@ -64,7 +64,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     let mut document = match &args.file {
         Some(file) => {
             let opened = open::open(file, args.skeleton.as_deref())?;
-            opened.document.at(time)
+            opened.document.evaluate(time)
         }
         None => Document { arm: arm(args)?, ..Document::default() },
     };
@@ -83,7 +83,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
 fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {
     let mut arm = Arm::default();
     arm.bones = TwoBone::new(args.upper.0, args.lower.0)?;
-    arm.goal = Cursor::Root(args.hand.map_or(arm.cursor(), |hand| hand.0));
+    arm.cursor = Cursor::Root(args.hand.map_or(arm.cursor_in_root(), |hand| hand.0));
     arm.twist = (args.twist.0 % 360.0).to_radians();
     arm.root = args.root.0;
     Ok(arm)
@@ -95,7 +95,7 @@ fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
         RigKind::Arm => arm_bounds(&document.arm, document.display),
         RigKind::Skeleton => {
             let rig = &document.skeleton_rig;
-            rig.bounds(&rig.at(time).pose(), time)
+            rig.bounds(&rig.skeleton_at(time).pose(), time)
         }
     }
 }
@@ -106,7 +106,7 @@ fn arm_bounds(arm: &Arm, display: Display) -> (Vec3, f32) {
     if display.shows(Overlay::OuterLimit) {
         (arm.root, arm.bones.outer_limit().max(arm.root.distance(centre) + radius))
     } else if display.shows(Overlay::Cursor) {
-        let cursor = arm.cursor_world();
+        let cursor = arm.cursor_in_world();
         let excess = (centre.distance(cursor) - radius).max(0.0);
         let centre = centre.move_towards(cursor, excess / 2.0);
         (centre, radius + excess / 2.0)

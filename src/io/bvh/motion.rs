@@ -115,8 +115,8 @@ impl FrameTimes {
         }
         let timing = Self::new(step);
         let end = timing.time(frames.saturating_sub(1));
-        if end > Timeline::FARTHEST {
-            let farthest = Timeline::FARTHEST;
+        if end > Timeline::MAX_TIME {
+            let farthest = Timeline::MAX_TIME;
             let reason = format!("must last at most {farthest} s, got {frames} frames of {step} s");
             return Err(TextError::new(word.at, "", reason));
         }
@@ -127,7 +127,7 @@ impl FrameTimes {
         /// Tolerance for one over a whole number, because files round the frame time.
         const ROUNDING: f64 = 1e-3;
         let rate = step.recip().round();
-        let highest = f64::from(Timeline::HIGHEST_FRAME_RATE);
+        let highest = f64::from(Timeline::MAX_FRAME_RATE);
         let is_whole = (1.0..=highest).contains(&rate) && (step * rate - 1.0).abs() < ROUNDING;
         let frame_rate = rate.clamp(1.0, highest) as u32;
         Self { frame_rate, step: (!is_whole).then_some(step) }

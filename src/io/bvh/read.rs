@@ -84,11 +84,11 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     let rig = SkeletonRig::new(skeleton);
     Ok(Document {
         rig: RigKind::Skeleton,
-        camera: rig.first_view(),
+        camera: rig.default_camera(),
         skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
-        metres: Some(METRES),
+        metres_per_unit: Some(METRES),
         ..Document::default()
     })
 }

@@ -78,7 +78,7 @@ impl BvhRig {
         match &self.kind {
             BvhRigKind::Arm => arm(&document.arm),
             BvhRigKind::Skeleton(nodes) => {
-                self.skeleton(nodes, &document.skeleton_rig.at(time), transform)
+                self.skeleton(nodes, &document.skeleton_rig.skeleton_at(time), transform)
             }
         }
     }

@@ -6,7 +6,7 @@ use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use super::check::{UNIT_TOLERANCE, above_0, fraction, number, unit_vector};
-use crate::document::{Arm, Cursor, HandSpace, TwistReferenceKind, Wrist};
+use crate::document::{Arm, Cursor, HandOrientation, HandSpace, TwistReferenceKind};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
@@ -76,7 +76,7 @@ struct HandOrientationFields {
 
 impl ArmFields {
     pub fn new(arm: &Arm) -> Self {
-        let (cursor, pin) = match arm.goal {
+        let (cursor, pin) = match arm.cursor {
             Cursor::Root(cursor) => (Some(JsonPoint(cursor)), None),
             Cursor::World(pin) => (None, Some(JsonPoint(pin))),
         };
@@ -97,19 +97,19 @@ impl ArmFields {
             soft_reach: Some(JsonObject(SoftReachFields::new(arm.soft_reach))),
             influence: Some(JsonNumber(arm.influence)),
             fk: Some(JsonObject(FkFields::new(arm.fk))),
-            hand_orientation: Some(JsonObject(HandOrientationFields::new(arm.wrist))),
+            hand_orientation: Some(JsonObject(HandOrientationFields::new(arm.hand_orientation))),
         }
     }
 
     pub fn arm(&self, at: &JsonPath) -> Result<Arm, FieldError> {
         let default = Arm::default();
-        let goal = match (self.pin, self.cursor) {
+        let cursor = match (self.pin, self.cursor) {
             (Some(JsonPoint(pin)), _) => Cursor::World(pin),
             (None, Some(JsonPoint(cursor))) => Cursor::Root(cursor),
-            (None, None) => default.goal,
+            (None, None) => default.cursor,
         };
         let arm = Arm {
-            goal,
+            cursor,
             twist: number(self.twist, default.twist),
             root: self.root.map_or(default.root, |JsonPoint(root)| root),
             bones: self.bones(at, default.bones)?,
@@ -119,7 +119,7 @@ impl ArmFields {
             )?,
             ..default
         };
-        let facing = Facing::towards(arm.cursor(), Facing::default());
+        let facing = Facing::towards(arm.cursor_in_root(), Facing::default());
         let mut arm = Arm { facing, ..arm };
         if let Some(JsonObject(fields)) = &self.twist_reference {
             fields.set(&mut arm, &at.clone().key("twist_reference"))?;
@@ -131,7 +131,7 @@ impl ArmFields {
             arm.fk = fields.fk(&at.clone().key("fk"))?;
         }
         if let Some(JsonObject(fields)) = &self.hand_orientation {
-            arm.wrist = fields.hand_orientation();
+            arm.hand_orientation = fields.hand_orientation();
         }
         if let Some(JsonObject(fields)) = &self.facing {
             arm.facing = fields.facing(&at.clone().key("facing"))?;
@@ -249,7 +249,7 @@ impl FkFields {
 }
 
 impl HandOrientationFields {
-    fn new(orientation: Wrist) -> Self {
+    fn new(orientation: HandOrientation) -> Self {
         Self {
             space: Some(orientation.space),
             angles: Some(JsonPoint(orientation.angles)),
@@ -257,9 +257,9 @@ impl HandOrientationFields {
         }
     }
 
-    fn hand_orientation(&self) -> Wrist {
-        let default = Wrist::default();
-        Wrist {
+    fn hand_orientation(&self) -> HandOrientation {
+        let default = HandOrientation::default();
+        HandOrientation {
             space: self.space.unwrap_or(default.space),
             angles: self.angles.map_or(default.angles, |JsonPoint(angles)| angles),
             roll: number(self.roll, default.roll),

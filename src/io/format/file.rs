@@ -50,10 +50,10 @@ impl DocumentFields {
             follow_path: follow_path.as_ref().map(FollowPathFields::new).map(JsonObject),
             channels,
             timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
-            metres_per_unit: document.metres.map(JsonNumber),
+            metres_per_unit: document.metres_per_unit.map(JsonNumber),
             camera: Some(JsonObject(CameraFields::new(&document.camera))),
-            other_camera: document.other_camera.as_ref().map(CameraFields::new).map(JsonObject),
-            overlays: Some(document.display.layers().collect()),
+            other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
+            overlays: Some(document.display.overlays().collect()),
         }
     }
 
@@ -88,9 +88,9 @@ impl DocumentFields {
             keys: Keys::default(),
             timeline: timeline.transpose()?.unwrap_or_default(),
             camera,
-            other_camera: other_camera.transpose()?,
+            other_rig_camera: other_camera.transpose()?,
             display: overlays.unwrap_or_default(),
-            metres: metres.transpose()?,
+            metres_per_unit: metres.transpose()?,
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document)?;
         Ok(document)
@@ -102,6 +102,6 @@ impl DocumentFields {
 fn default_camera(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     match rig {
         RigKind::Arm => Camera::default(),
-        RigKind::Skeleton => skeleton.first_view(),
+        RigKind::Skeleton => skeleton.default_camera(),
     }
 }

@@ -71,7 +71,7 @@ impl ChannelFields {
             Channel::Shoulder => (ChannelName::Shoulder, None),
             Channel::Bend => (ChannelName::Bend, None),
             Channel::Stretch => (ChannelName::Stretch, None),
-            Channel::Wrist => (ChannelName::HandOrientation, None),
+            Channel::HandOrientation => (ChannelName::HandOrientation, None),
             Channel::Translation => (ChannelName::Translation, None),
             Channel::Rotation(_) => (ChannelName::Rotation, None),
             Channel::Offset(_) => (ChannelName::Offset, None),
@@ -123,7 +123,7 @@ impl ChannelFields {
             ChannelName::Shoulder => Channel::Shoulder,
             ChannelName::Bend => Channel::Bend,
             ChannelName::Stretch => Channel::Stretch,
-            ChannelName::HandOrientation => Channel::Wrist,
+            ChannelName::HandOrientation => Channel::HandOrientation,
             ChannelName::Translation => Channel::Translation,
             ChannelName::Rotation => Channel::Rotation(JointId::new(joint()?)),
             ChannelName::Offset => Channel::Offset(JointId::new(joint()?)),
@@ -202,8 +202,8 @@ impl TimelineFields {
         let reason = format!(
             "must start before it ends, within ±{} s, at 1 to {} frames a second, got {start} s to \
              {end} s at {frame_rate}",
-            Timeline::FARTHEST,
-            Timeline::HIGHEST_FRAME_RATE,
+            Timeline::MAX_TIME,
+            Timeline::MAX_FRAME_RATE,
         );
         Err(FieldError::new(at, reason))
     }

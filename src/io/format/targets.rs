@@ -59,7 +59,7 @@ pub fn add_targets(
     rig: &mut SkeletonRig,
     targets: Vec<JsonObject<TargetFields>>,
 ) -> Result<(), FieldError> {
-    let radius = rig.circle();
+    let radius = rig.default_path_radius();
     let mut targeted = HashSet::new();
     for (index, JsonObject(fields)) in targets.into_iter().enumerate() {
         let at = JsonPath::root().key("targets").index(index);
@@ -161,7 +161,7 @@ impl SolverFields {
             rig.iterations_per_frame = from_1_to(
                 at("iterations_per_frame"),
                 count,
-                SkeletonRig::MOST_ITERATIONS_PER_FRAME,
+                SkeletonRig::MAX_ITERATIONS_PER_FRAME,
             )?;
         }
         Ok(())

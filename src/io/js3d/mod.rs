@@ -52,7 +52,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     };
     let mut odd = FieldWarnings::default();
     let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.error(&w))?;
-    let camera = rig.first_view();
+    let camera = rig.default_camera();
     Ok(Opened {
         document: Document {
             rig: RigKind::Skeleton,
@@ -84,7 +84,7 @@ fn rig(
         FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
     let mut rig = SkeletonRig::new(skeleton);
-    rig.targets = targets(&at, file, place, &order, rig.circle(), odd)?;
+    rig.targets = targets(&at, file, place, &order, rig.default_path_radius(), odd)?;
     Ok((rig, order))
 }
 

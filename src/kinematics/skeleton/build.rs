@@ -1,6 +1,6 @@
 use glam::{Affine3A, Vec3};
 
-use super::{Joint, JointId, Skeleton, SkeletonError};
+use super::{Joint, JointId, Skeleton, SkeletonError, SkeletonPose};
 
 /// New indices of joints after an edit, by old index.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,7 +88,11 @@ impl Skeleton {
     ///
     /// If a child's place below its new parent would not be finite; the skeleton is unchanged then.
     pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
+        for joint in joints {
+            self.known(*joint)?;
+        }
         let before = self.clone();
+        let pose = before.pose_in_skeleton();
         for child in self.ids() {
             let above = self[child].parent;
             if !above.is_some_and(|parent| joints.contains(&parent)) || joints.contains(&child) {
@@ -96,7 +100,7 @@ impl Skeleton {
             }
             let parent = before.ancestors(child).skip(1).find(|above| !joints.contains(above));
             let near = before[child].rotation;
-            let (offset, rotation) = before.placed_under(child, parent, near);
+            let (offset, rotation) = before.placed_under_in(&pose, child, parent, near);
             if let Err(error) = check_place(child, offset, rotation) {
                 *self = before;
                 return Err(error);
@@ -120,7 +124,17 @@ impl Skeleton {
         parent: Option<JointId>,
         near: Vec3,
     ) -> (Vec3, Vec3) {
-        let pose = self.pose_in_skeleton();
+        self.placed_under_in(&self.pose_in_skeleton(), joint, parent, near)
+    }
+
+    /// [`Skeleton::placed_under`] with the pose in the skeleton's own space.
+    pub(crate) fn placed_under_in(
+        &self,
+        pose: &SkeletonPose,
+        joint: JointId,
+        parent: Option<JointId>,
+        near: Vec3,
+    ) -> (Vec3, Vec3) {
         let above = parent.map_or(Affine3A::IDENTITY, |parent| pose.full(parent));
         let local = above.inverse() * pose.full(joint);
         let like = Joint { rotation: near, ..self[joint].clone() };

@@ -28,24 +28,24 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
         add_hand(scene, arm, pose, thickness);
     }
     add_guides(scene, &rig, display);
-    if display.shows(Overlay::Globe) {
+    if display.shows(Overlay::SingularityGlobe) {
         let (centre, radius) = (arm.root, rig.outer_limit());
         scene.add_globe(Globe { centre, radius, reference: arm.reference() });
     }
-    if display.shows(Overlay::Cursor) && arm.is_led_by_hand() {
-        add_cursor(scene, arm.cursor_world(), thickness);
+    if display.shows(Overlay::Cursor) && arm.uses_ik() {
+        add_cursor(scene, arm.cursor_in_world(), thickness);
         if arm.is_pinned() {
-            add_pin(scene, arm.cursor_world(), thickness);
+            add_pin(scene, arm.cursor_in_world(), thickness);
         }
         if pose.reach != Reach::Reached {
             add_gap(scene, &rig, arm, thickness);
         }
     }
-    if arm.twist_reference == TwistReferenceKind::Pole && arm.is_led_by_hand() {
+    if arm.twist_reference == TwistReferenceKind::Pole && arm.uses_ik() {
         add_pole(scene, &rig, arm.root + arm.pole, thickness, display);
     }
     if display.shows(Overlay::Labels) {
-        add_labels(scene, &rig, thickness, display.shows(Overlay::References));
+        add_labels(scene, &rig, thickness, display.shows(Overlay::TwistReferences));
     }
     if display.shows(Overlay::Shadow) {
         add_shadows(scene, &rig, thickness);
@@ -131,11 +131,11 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
 
 /// Adds a line from the hand to a Cursor out of reach, labelled with its length.
 fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
-    let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_world());
+    let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     let label = Label::new(cursor, CURSOR_BALL * thickness, LabelSide::Above, colour);
-    let (length, digits) = (hand.distance(cursor), arm.length_digits());
+    let (length, digits) = (hand.distance(cursor), arm.length_decimals());
     scene.add_label(label, format_args!("{length:.digits$}"));
 }
 

@@ -50,7 +50,7 @@ impl SceneBuilder {
         let (centre, reach, cell) = match document.rig {
             RigKind::Arm => {
                 let arm = &document.arm;
-                (arm.root, arm.bones.outer_limit(), arm.cell())
+                (arm.root, arm.bones.outer_limit(), arm.grid_cell())
             }
             RigKind::Skeleton => skeleton::measure(&document.skeleton_rig, &mut self.scratch),
         };
@@ -70,7 +70,7 @@ impl SceneBuilder {
         match document.rig {
             RigKind::Arm => {
                 arm::add(scene, &document.arm, &document.arm.pose(), display);
-                if display.shows(Overlay::References) {
+                if display.shows(Overlay::TwistReferences) {
                     references::add(scene, &document.arm, overlays.transported);
                 }
             }

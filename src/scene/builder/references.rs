@@ -17,12 +17,12 @@ const SHARED_LABEL_ANGLE: f32 = 20.0 * core::f32::consts::PI / 180.0;
 /// Adds the arm with every other twist reference and the same twist, as thin ghosts whose labels show the
 /// angles between their elbows and the arm's. `transported` is the frame for transport.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedFrame>) {
-    if !arm.is_led_by_hand() {
+    if !arm.uses_ik() {
         return;
     }
     let own = arm.solve().pose;
     let mut ghosts = TwistReferenceKind::ALL.map(|twist_reference| {
-        let pose = arm.pose_measured_from(twist_reference, transported);
+        let pose = arm.pose_with_reference(twist_reference, transported);
         ReferenceGhost {
             twist_reference,
             pose,

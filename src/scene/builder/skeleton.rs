@@ -30,8 +30,8 @@ const TRAIL: (f64, usize) = (1.2, 48);
 pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
     let reach = rig.reach_in(&mut scratch.distances);
     rig.skeleton.write_pose(&mut scratch.pose);
-    let (centre, radius) = rig.bounds_with(reach, &scratch.pose, 0.0);
-    (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::cell(reach))
+    let (centre, radius) = rig.bounds_with_reach(reach, &scratch.pose, 0.0);
+    (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::grid_cell_for(reach))
 }
 
 /// Adds the bones with their shadows, ghosts of other solvers, targets with their trails, the follow path, and
@@ -237,7 +237,7 @@ fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
 /// Adds the curve that the skeleton follows, once around.
 fn add_follow_path(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
     let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
-    let head = follow_path.head(time);
+    let head = follow_path.turns_at(time);
     let curve = || follow_path.trail(skeleton.transform(), height, head, head + 1.0);
     let colour = scene.palette.guide.with_opacity(0.35);
     let segments = curve().zip(curve().skip(1));

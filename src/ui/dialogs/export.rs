@@ -86,7 +86,7 @@ pub(in crate::ui) fn ui(
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
         let name = ui.label("ExportFrames per second");
-        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::HIGHEST_FRAME_RATE))
+        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::MAX_FRAME_RATE))
             .labelled_by(name.id);
         ui.end_row();
         if chosen.is_some_and(Format::is_picture) {

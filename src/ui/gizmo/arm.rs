@@ -22,12 +22,14 @@ impl ArmGizmo {
         let (arm, pose) = (session.arm(), session.pose());
         // In a blend of IK and FK the hand is away from the Cursor and is no handle of it.
         let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
-        let is_led = arm.is_led_by_hand();
+        let is_led = arm.uses_ik();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
         let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?);
         Self {
-            hand: is_led.then(|| TranslateHandles::new(screen, arm.cursor_world(), hand)).flatten(),
+            hand: is_led
+                .then(|| TranslateHandles::new(screen, arm.cursor_in_world(), hand))
+                .flatten(),
             pole: has_pole
                 .then(|| TranslateHandles::new(screen, arm.root + arm.pole, None))
                 .flatten(),

@@ -124,7 +124,7 @@ impl TimeScale {
     }
 
     fn pan(&mut self, points: f32) {
-        let farthest = 2.0 * Timeline::FARTHEST;
+        let farthest = 2.0 * Timeline::MAX_TIME;
         let by = f64::from(points) / self.points_per_second();
         let by = by.clamp(-farthest - self.from, farthest - self.to);
         self.from += by;
@@ -135,7 +135,7 @@ impl TimeScale {
     fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
         let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
         let span = self.to - self.from;
-        let asked = (span / factor).clamp(least, 4.0 * Timeline::FARTHEST);
+        let asked = (span / factor).clamp(least, 4.0 * Timeline::MAX_TIME);
         if !asked.is_finite() {
             return;
         }

@@ -83,7 +83,7 @@ fn skeleton(skeleton: Skeleton) -> Document {
     let skeleton_rig = SkeletonRig::new(skeleton);
     Document {
         rig: RigKind::Skeleton,
-        camera: skeleton_rig.first_view(),
+        camera: skeleton_rig.default_camera(),
         skeleton_rig,
         ..Document::default()
     }

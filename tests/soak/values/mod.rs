@@ -142,7 +142,7 @@ impl Values<'_> {
             1 => direction * inner,
             2 => direction * outer,
             3 => direction * outer * self.random.within(1.0..4.0),
-            4 => arm.cursor() + direction * outer * 0.01,
+            4 => arm.cursor_in_root() + direction * outer * 0.01,
             5 => self.point(outer),
             _ => direction * self.random.within(inner..outer.max(inner)),
         }

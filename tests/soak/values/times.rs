@@ -45,7 +45,7 @@ impl Values<'_> {
             4 => Channel::Enabled(self.aimed()),
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
-            _ => self.one_of(&Channel::OF_ARM),
+            _ => self.one_of(&Channel::ARM),
         }
     }
 

@@ -30,7 +30,7 @@ pub fn glb(
     progress: &Progress,
 ) -> Result<Vec<u8>, GlbError> {
     let rate = frames_per_second.unwrap_or(document.timeline.frame_rate);
-    let frame_rate = rate.clamp(1, Timeline::HIGHEST_FRAME_RATE);
+    let frame_rate = rate.clamp(1, Timeline::MAX_FRAME_RATE);
     let timeline = Timeline { frame_rate, ..document.timeline };
     let mut rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;

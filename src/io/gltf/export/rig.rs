@@ -77,17 +77,17 @@ impl GltfRig {
     /// Placements of all bones at a time, in seconds.
     pub fn at(&mut self, time: f64) -> Vec<BonePlacement> {
         // `at` would copy all keys for every frame.
-        self.document.keys_to(time);
+        self.document.apply_keys(time);
         let document = &self.document;
         self.metric(match document.rig {
             RigKind::Arm => posed_arm(document),
-            RigKind::Skeleton => placed(&document.skeleton_rig.at(time), turned),
+            RigKind::Skeleton => placed(&document.skeleton_rig.skeleton_at(time), turned),
         })
     }
 
     /// Whether the pose changes in time.
     pub fn is_moving(&self) -> bool {
-        self.document.is_posed_by_time()
+        self.document.is_animated()
     }
 
     /// Converts the document's units to metres.

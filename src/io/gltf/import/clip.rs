@@ -26,7 +26,7 @@ pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timelin
     let frames = if fitting.is_some() { frames.round() } else { frames.ceil() };
     let timeline = Timeline { start, end: start + frames / rate, frame_rate };
     if frames > 0.0 && !timeline.is_valid() {
-        let most = Timeline::FARTHEST;
+        let most = Timeline::MAX_TIME;
         let reason = format!("goes from {start} to {last} s; it must be within ±{most} s");
         return Err(FieldError::new(at.clone(), reason));
     }

@@ -84,7 +84,7 @@ pub fn build(
         left.extend((!is_tip).then_some(joint));
     }
     document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(left)?);
-    document.camera = document.skeleton_rig.first_view();
+    document.camera = document.skeleton_rig.default_camera();
     Ok(ImportedRig { document, kept })
 }
 

@@ -9,18 +9,19 @@ use crate::ui::widgets::{self, euler_sliders};
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
     let spaces = [
-        (HandSpace::Lower, "Follow forearm", "Turn the hand with the Lower limb"),
+        (HandSpace::LowerLimb, "Follow forearm", "Turn the hand with the Lower limb"),
         (HandSpace::World, "Keep in world", "Keep the world orientation of the hand"),
     ];
     ui.horizontal(|ui| {
         for (space, name, tooltip) in spaces {
-            if ui.radio(arm.wrist.space == space, name).on_hover_text(tooltip).clicked() {
-                actions.push(EditAction::SetWristSpace(space));
+            if ui.radio(arm.hand_orientation.space == space, name).on_hover_text(tooltip).clicked()
+            {
+                actions.push(EditAction::SetHandSpace(space));
             }
         }
     });
-    let tooltip = match arm.wrist.space {
-        HandSpace::Lower => "Rotate the hand relative to the forearm",
+    let tooltip = match arm.hand_orientation.space {
+        HandSpace::LowerLimb => "Rotate the hand relative to the forearm",
         HandSpace::World => "Rotate the hand in world space",
     };
     euler_sliders(
@@ -28,9 +29,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         session,
         "Hand rotation",
         tooltip,
-        arm.wrist.angles,
+        arm.hand_orientation.angles,
         actions,
-        EditAction::SetWrist,
+        EditAction::SetHandOrientation,
     );
     widgets::pair(ui, "Forearm roll τ", |ui| {
         let roll = format!("{:.1}°", arm.roll(session.pose()).to_degrees());

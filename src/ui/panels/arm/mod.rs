@@ -42,19 +42,19 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let (arm, default) = (session.arm(), Arm::default().cursor());
-    let disabled = (!arm.is_led_by_hand()).then_some(ANGLES_LEAD);
+    let (arm, default) = (session.arm(), Arm::default().cursor_in_root());
+    let disabled = (!arm.uses_ik()).then_some(ANGLES_LEAD);
     let hand = PointSliders {
         name: "Hand",
         labels: AXES,
-        value: arm.cursor(),
+        value: arm.cursor_in_root(),
         default,
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
         tooltip: "Move the Cursor, the hand's target, relative to the Root",
         disabled,
     };
-    match arm.goal {
+    match arm.cursor {
         Cursor::Root(_) => hand.show(ui, session, actions, EditAction::SetHand),
         Cursor::World(pin) => {
             let pinned = PointSliders {

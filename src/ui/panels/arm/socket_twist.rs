@@ -21,7 +21,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         default: 0.0,
         unit: "°",
         step: 1.0,
-        disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
+        disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
         ..Slider::default()
     };
     slider
@@ -64,7 +64,7 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         range: arm.bones.outer_limit(),
         step: session.arm_unit(),
         tooltip: "Move the Pole, the point that the elbow turns towards",
-        disabled: (!arm.is_led_by_hand()).then_some(ANGLES_LEAD),
+        disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
     };
     pole.show(ui, session, actions, EditAction::SetPole);
 }

@@ -51,7 +51,7 @@ fn sentence(ui: &mut Ui, session: &Session) {
 
 fn pointer(session: &Session) -> [FormulaRow; 4] {
     let (arm, pose) = (session.arm(), session.pose());
-    let cursor = if arm.is_led_by_hand() { arm.cursor() } else { pose.hand };
+    let cursor = if arm.uses_ik() { arm.cursor_in_root() } else { pose.hand };
     [
         FormulaRow {
             symbol: "Yaw θ_z",
@@ -180,8 +180,8 @@ fn degrees(radians: f32) -> String {
 
 /// Avoids "-0.0".
 fn length(arm: &Arm, length: f32) -> String {
-    let nothing = 0.0005 * arm.cell();
-    arm.length_in_words(if length.abs() < nothing { 0.0 } else { length })
+    let nothing = 0.0005 * arm.grid_cell();
+    arm.format_length(if length.abs() < nothing { 0.0 } else { length })
 }
 
 /// Avoids "-0.0".

@@ -131,7 +131,7 @@ fn why_none(pop: Pop, arm: &Arm) -> String {
             match least > 1e-3 * arm.bones.outer_limit() {
                 true => format!(
                     "No fix: the hand must jump by twice the inner limit, {}.",
-                    arm.length_in_words(2.0 * least)
+                    arm.format_length(2.0 * least)
                 ),
                 false => "No fix: the whole arm must turn around.".to_owned(),
             }

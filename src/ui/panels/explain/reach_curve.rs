@@ -23,7 +23,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let curves = ReachCurve::all(ui, arm);
     ui.weak("Hand distance / Cursor distance");
     let shown = show(ui, arm, &curves);
-    let said = reading(arm, arm.cursor().length());
+    let said = reading(arm, arm.cursor_in_root().length());
     let name = format!("Reach curve: {said}");
     shown.response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     if let Some(at) = shown.response.hover_pos() {
@@ -94,7 +94,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
     // Capped so that the limits stay readable.
     let most = f64::from(longest.min(4.0)) + 0.2;
-    let digits = format::decimals_of_cell(arm.cell());
+    let digits = format::decimals_of_cell(arm.grid_cell());
     let length = move |part: f64| format!("{:.digits$}", part * outer);
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
@@ -145,7 +145,7 @@ struct ReachMarker {
 impl ReachMarker {
     /// A Cursor beyond the plot is an arrow at the edge.
     fn new(arm: &Arm, most: f64) -> Self {
-        let asked = arm.cursor().length().min(f32::MAX);
+        let asked = arm.cursor_in_root().length().min(f32::MAX);
         let part = f64::from(asked) / outer(arm);
         let actual = f64::from(arm.soft_reach.extent(arm.bones, asked).distance) / outer(arm);
         let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };

@@ -13,9 +13,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     const BEYOND: f32 = 1.25;
     let arm = session.arm();
     let (inner, outer) = arm.reach();
-    let digits = format::decimals_of_cell(arm.cell());
-    let (what, asked) = match arm.is_led_by_hand() {
-        true => ("Cursor", arm.cursor().length()),
+    let digits = format::decimals_of_cell(arm.grid_cell());
+    let (what, asked) = match arm.uses_ik() {
+        true => ("Cursor", arm.cursor_in_root().length()),
         false => ("Hand", session.pose().distance),
     };
     let (rect, response) =
@@ -46,7 +46,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
         written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));
     }
     written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.digits$}"));
-    let [asked, inner, outer] = [asked, inner, outer].map(|it| arm.length_in_words(it));
+    let [asked, inner, outer] = [asked, inner, outer].map(|it| arm.format_length(it));
     let summary = format!("{what} at {asked}; the hand reaches from {inner} to {outer}");
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))

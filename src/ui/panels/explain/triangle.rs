@@ -21,9 +21,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     response.widget_info(|| {
         let text = format!(
             "Triangle: d 1 {}, d 2 {}, D {}, theta e {:.1} degrees",
-            arm.length_in_words(arm.bones.upper() * pose.stretch),
-            arm.length_in_words(arm.bones.lower() * pose.stretch),
-            arm.length_in_words(pose.distance),
+            arm.format_length(arm.bones.upper() * pose.stretch),
+            arm.format_length(arm.bones.lower() * pose.stretch),
+            arm.format_length(pose.distance),
             pose.shoulder_angle().to_degrees(),
         );
         WidgetInfo::labeled(Role::Image, true, text)

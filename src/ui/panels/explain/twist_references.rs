@@ -13,7 +13,7 @@ use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
-    if !arm.is_led_by_hand() {
+    if !arm.uses_ik() {
         ui.weak("Not used in FK: switch to IK to compare references.");
         return;
     }
@@ -22,8 +22,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     transport_path(ui, session, actions);
     let display = session.shown().display;
     let shown = [
-        (Overlay::References, "Ghosts", "Show the arm with the other twist references"),
-        (Overlay::Globe, "Singularity globe", "Colour the outer limit by how fast the elbow turns"),
+        (Overlay::TwistReferences, "Ghosts", "Show the arm with the other twist references"),
+        (
+            Overlay::SingularityGlobe,
+            "Singularity globe",
+            "Colour the outer limit by how fast the elbow turns",
+        ),
     ];
     ui.horizontal(|ui| {
         for (overlay, name, tooltip) in shown {
@@ -33,7 +37,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             }
         }
     });
-    if display.shows(Overlay::Globe) {
+    if display.shows(Overlay::SingularityGlobe) {
         legend(ui);
     }
 }
@@ -86,9 +90,9 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
             };
             let name = RichText::new(twist_reference.name()).color(colour);
             ui.label(name).on_hover_text(labels::twist_reference(twist_reference));
-            let pose = arm.pose_measured_from(twist_reference, Some(transported));
+            let pose = arm.pose_with_reference(twist_reference, Some(transported));
             let apart = turn_in_words(own.elbow_turn_to(&pose));
-            let gain = arm.reference_of(twist_reference).gain(own.facing);
+            let gain = arm.reference_for(twist_reference).gain(own.facing);
             for (value, tooltip) in [
                 (apart, "Elbow rotation from the current elbow at the same twist"),
                 (gain_in_words(gain), "Elbow degrees per degree of the Pointer"),

@@ -30,7 +30,7 @@ fn first(reach: f32) -> FollowPath {
 fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Actions) {
     let reach = session.skeleton_rig().reach();
     let first = first(reach);
-    let step = session.shown().cell() * 0.1;
+    let step = session.shown().grid_cell() * 0.1;
     let set = |follow_path| EditAction::SetFollowPath(Some(follow_path));
     let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
         name,

@@ -33,7 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let shown = match session.skeleton_rig().follow_path {
-        Some(_) => session.skeleton_rig().at(session.time())[index].rotation,
+        Some(_) => session.skeleton_rig().skeleton_at(session.time())[index].rotation,
         None => joint.rotation,
     };
     for (axis, label) in AXES.into_iter().enumerate() {
@@ -110,7 +110,7 @@ fn angle(
 }
 
 fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
-    let step = session.shown().cell() * 0.1;
+    let step = session.shown().grid_cell() * 0.1;
     let tooltip = "Set the vector from base to tip, in joint space";
     widgets::pair(ui, "Bone", |ui| {
         for axis in (0..3).rev() {

@@ -40,7 +40,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         value: rig.skeleton.transform().translation.into(),
         default: Vec3::ZERO,
         range: 2.0 * rig.reach(),
-        step: session.shown().cell() * 0.1,
+        step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the skeleton in world space; targets stay",
         disabled: None,
     };

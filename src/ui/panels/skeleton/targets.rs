@@ -53,7 +53,7 @@ pub(in crate::ui) fn selected(
     target: Target,
     actions: &mut Actions,
 ) {
-    let step = session.shown().cell() * 0.1;
+    let step = session.shown().grid_cell() * 0.1;
     place(ui, session, target, step, actions);
     widgets::pair(ui, "Weight", |ui| {
         let tooltip = "Weigh this target against the others";

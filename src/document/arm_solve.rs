@@ -1,0 +1,174 @@
+use glam::DMat3;
+
+use super::arm::Arm;
+use super::twist_reference::TwistReferenceKind;
+use crate::kinematics::fk::{Fk, blended};
+use crate::kinematics::ik::{Ik, Solved};
+use crate::kinematics::twist::{Stereographic, TransportedFrame, TwistReference, respun, wrapped};
+use crate::kinematics::two_bone::{Facing, TwoBonePose};
+
+/// Solving.
+impl Arm {
+    /// The twist reference.
+    pub fn reference(&self) -> TwistReference {
+        self.reference_for(self.twist_reference)
+    }
+
+    /// The twist reference of another kind, with this arm's pole.
+    pub fn reference_for(&self, kind: TwistReferenceKind) -> TwistReference {
+        match kind {
+            TwistReferenceKind::Limb => TwistReference::Limb,
+            TwistReferenceKind::Pole => TwistReference::Pole(self.pole),
+            TwistReferenceKind::Stereographic => {
+                TwistReference::Stereographic(Stereographic::default())
+            }
+            TwistReferenceKind::Transport => TwistReference::Transport,
+        }
+    }
+
+    /// The solver of this arm.
+    pub fn ik(&self) -> Ik {
+        Ik { bones: self.bones, reference: self.reference(), soft_reach: self.soft_reach }
+    }
+
+    /// Solves the arm by IK alone.
+    pub fn solve(&self) -> Solved {
+        self.ik().solve(self.cursor_in_root(), self.twist, self.facing, self.transported)
+    }
+
+    /// Pose by IK alone with the same twist measured from another kind of reference, which continues
+    /// from `transported`; the arm's own kind continues from its own.
+    pub fn pose_with_reference(
+        &self,
+        kind: TwistReferenceKind,
+        transported: Option<TransportedFrame>,
+    ) -> TwoBonePose {
+        let transported = if kind == self.twist_reference { self.transported } else { transported };
+        let ik = Ik { reference: self.reference_for(kind), ..self.ik() };
+        ik.solve(self.cursor_in_root(), self.twist, self.facing, transported).pose
+    }
+
+    /// Pose of the arm: FK and IK, blended by the influence.
+    pub fn pose(&self) -> TwoBonePose {
+        self.blended_with(&self.solve().pose)
+    }
+
+    /// Blends the FK pose with an IK pose by the influence.
+    fn blended_with(&self, solved: &TwoBonePose) -> TwoBonePose {
+        blended(self.fk, solved, self.influence, self.bones, self.cursor_in_root())
+    }
+
+    /// Orientation of the hand in the world, and in Root space, which has the same axes.
+    pub fn hand_rotation(&self, pose: &TwoBonePose) -> DMat3 {
+        self.hand_orientation.rotation(pose)
+    }
+
+    /// Roll of the forearm at the hand, in radians.
+    pub fn roll(&self, pose: &TwoBonePose) -> f32 {
+        self.hand_orientation.with_roll_in(pose).roll
+    }
+}
+
+/// State between solves.
+impl Arm {
+    /// Continues the transport of `previous` if the Cursor has moved since and this arm has no
+    /// transported frame yet.
+    #[must_use]
+    pub fn transported_from(self, previous: &Self) -> Self {
+        let is_new =
+            self.twist_reference == TwistReferenceKind::Transport && self.transported.is_none();
+        if is_new
+            && previous.twist_reference == self.twist_reference
+            && previous.cursor_in_root() != self.cursor_in_root()
+        {
+            return Self { transported: Some(previous.solve().transported), ..self };
+        }
+        self
+    }
+
+    /// Stores the state that the next solve starts from: facing, transported frame and forearm roll of
+    /// the present pose.
+    #[must_use]
+    pub fn with_solve_state(self) -> Self {
+        let solved = self.solve();
+        let pose = self.blended_with(&solved.pose);
+        let transported = match (self.twist_reference, self.transported) {
+            (TwistReferenceKind::Limb, _) | (TwistReferenceKind::Transport, None) => None,
+            _ => Some(solved.transported),
+        };
+        let hand_orientation = self.hand_orientation.with_roll_in(&pose);
+        Self { facing: solved.pose.facing, transported, hand_orientation, ..self }
+    }
+
+    /// Changes the kind of the twist reference, and the twist so that the elbow stays where it is.
+    #[must_use]
+    pub fn with_twist_reference(self, kind: TwistReferenceKind) -> Self {
+        if kind == self.twist_reference {
+            return self;
+        }
+        let pose = self.solve().pose;
+        let to = Self { twist_reference: kind, transported: None, facing: pose.facing, ..self };
+        let twist = respun(pose.spin, 0.0, to.reference().angle(pose.facing, None));
+        Self { twist, ..to }.with_solve_state()
+    }
+
+    /// Switches to FK in the present pose.
+    #[must_use]
+    pub fn switched_to_fk(self) -> Self {
+        let fk = Fk::matching(&self.pose(), self.fk);
+        Self { fk, influence: 0.0, ..self }.with_solve_state()
+    }
+
+    /// Switches to IK in the present pose.
+    #[must_use]
+    pub fn switched_to_ik(self) -> Self {
+        let pose = self.pose();
+        let last = match self.twist_reference {
+            TwistReferenceKind::Transport => Some(self.solve().transported),
+            _ => self.transported,
+        };
+        let transported = last.map(|transported| transported.to(pose.facing.direction));
+        let (cursor, twist) = self.ik().matching(&pose, transported);
+        let mut arm = Self { twist, influence: 1.0, facing: pose.facing, transported, ..self };
+        arm.set_cursor(cursor);
+        arm.with_solve_state()
+    }
+}
+
+/// The twist in keys. With Transport it is measured from the stereographic direction, so that playing
+/// needs no past.
+impl Arm {
+    /// The twist as keys store it.
+    pub(super) fn keyed_twist(&self) -> f32 {
+        match self.transported {
+            Some(transported) if self.twist_reference == TwistReferenceKind::Transport => {
+                let facing = Facing::towards(self.cursor_in_root(), self.facing);
+                self.stereographic_twist(transported.to(facing.direction))
+            }
+            _ => self.twist,
+        }
+    }
+
+    /// Sets the twist as keys store it.
+    pub(super) fn set_keyed_twist(&mut self, twist: f32) {
+        self.twist = wrapped(twist);
+        if self.twist_reference == TwistReferenceKind::Transport {
+            self.transported = None;
+        }
+    }
+
+    /// Ends the transport: measures a transported twist from the stereographic direction, where the
+    /// Pointer was last.
+    pub(super) fn end_transport(&mut self) {
+        if let Some(transported) = self.transported
+            && self.twist_reference == TwistReferenceKind::Transport
+        {
+            self.set_keyed_twist(self.stereographic_twist(transported));
+        }
+    }
+
+    fn stereographic_twist(&self, transported: TransportedFrame) -> f32 {
+        let start = TransportedFrame::new(Facing::towards(transported.direction, self.facing));
+        respun(self.twist, start.turn_to(transported), 0.0)
+    }
+}

@@ -1,0 +1,141 @@
+use glam::Vec3;
+
+use super::channel::Channel;
+use super::cursor::Cursor;
+use super::document::Document;
+use super::rig_kind::RigKind;
+use super::skeleton_rig::SkeletonRig;
+use crate::kinematics::skeleton::JointId;
+
+/// Values in a document.
+impl Channel {
+    /// The channels that shape the shown rig. Of a skeleton: its translation, the offsets of its roots,
+    /// the rotations of its joints and its targets.
+    pub fn of_rig(document: &Document) -> Vec<Self> {
+        if document.rig == RigKind::Arm {
+            let shapes = |channel: &Self| channel.shapes(&document.arm);
+            return Self::ARM.into_iter().filter(shapes).collect();
+        }
+        let SkeletonRig { skeleton, targets, .. } = &document.skeleton_rig;
+        let joints = skeleton.iter();
+        let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
+        let mut channels = vec![Self::Translation];
+        channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
+        channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
+        channels.extend(targets.iter().map(|target| Self::Target(target.joint)));
+        channels
+    }
+
+    /// Its value in a document; `None` where there is no such joint or target, and for that one of
+    /// [`Channel::Hand`] and [`Channel::Pin`] that the Cursor does not use.
+    pub fn value(self, document: &Document) -> Option<Vec3> {
+        let Document { arm, skeleton_rig: rig, display, .. } = document;
+        let number = |value| Vec3::new(value, 0.0, 0.0);
+        let switch = |on: bool| number(f32::from(u8::from(on)));
+        let target = |joint| Some(rig.targets[rig.target(joint)?]);
+        Some(match self {
+            Self::Hand => match arm.cursor {
+                Cursor::Root(cursor) => cursor,
+                Cursor::World(_) => return None,
+            },
+            Self::Pin => match arm.cursor {
+                Cursor::World(cursor) => cursor,
+                Cursor::Root(_) => return None,
+            },
+            Self::Twist => number(arm.keyed_twist()),
+            Self::Pole => arm.pole,
+            Self::Influence => number(arm.influence),
+            Self::Shoulder => arm.fk.shoulder,
+            Self::Bend => number(arm.fk.bend),
+            Self::Stretch => number(arm.fk.stretch),
+            Self::HandOrientation => arm.hand_orientation.angles,
+            Self::Root => arm.root,
+            Self::Upper => number(arm.bones.upper()),
+            Self::Lower => number(arm.bones.lower()),
+            Self::Translation => rig.skeleton.transform().translation.into(),
+            Self::Rotation(joint) => rig.skeleton.joint(joint)?.rotation,
+            Self::Offset(joint) => rig.skeleton.joint(joint)?.offset,
+            Self::Target(joint) => target(joint)?.home,
+            Self::Enabled(joint) => switch(target(joint)?.enabled),
+            Self::Overlay(overlay) => switch(display.shows(overlay)),
+        })
+    }
+
+    /// Sets its value in a document, clamped to its range. Changes nothing where there is no such joint
+    /// or target, and for NaN.
+    pub fn set(self, document: &mut Document, value: Vec3) {
+        let Document { arm, skeleton_rig: rig, display, .. } = document;
+        let value = value.clamp(Vec3::MIN, Vec3::MAX);
+        if value.is_nan() {
+            return;
+        }
+        let on = value.x >= 0.5;
+        match self {
+            Self::Hand => {
+                if let Cursor::Root(cursor) = &mut arm.cursor {
+                    *cursor = value;
+                }
+            }
+            Self::Pin => {
+                if let Cursor::World(cursor) = &mut arm.cursor {
+                    *cursor = value;
+                }
+            }
+            Self::Twist => arm.set_keyed_twist(value.x),
+            Self::Pole => arm.pole = value,
+            Self::Influence => arm.influence = value.x.clamp(0.0, 1.0),
+            Self::Shoulder => arm.fk.shoulder = value,
+            Self::Bend => arm.fk.bend = value.x,
+            Self::Stretch => arm.fk.stretch = value.x.max(f32::MIN_POSITIVE),
+            Self::HandOrientation => arm.hand_orientation.angles = value,
+            Self::Root => arm.root = value,
+            Self::Upper => arm.set_lengths(value.x, arm.bones.lower()),
+            Self::Lower => arm.set_lengths(arm.bones.upper(), value.x),
+            Self::Translation => translate(rig, value),
+            Self::Rotation(joint) => rotate(rig, joint, value),
+            Self::Offset(joint) => offset(rig, joint, value),
+            Self::Target(joint) => {
+                if let Some(target) = rig.target(joint) {
+                    rig.targets[target].home = value;
+                }
+            }
+            Self::Enabled(joint) => {
+                if let Some(target) = rig.target(joint) {
+                    rig.targets[target].enabled = on;
+                }
+            }
+            Self::Overlay(overlay) => *display = display.with(overlay, on),
+        }
+    }
+}
+
+// A value that stays must not copy the skeleton, which documents share.
+
+fn translate(rig: &mut SkeletonRig, translation: Vec3) {
+    let mut transform = rig.skeleton.transform();
+    if !is_identical(transform.translation.into(), translation) {
+        transform.translation = translation.into();
+        // Refused only where it is not finite, which it is.
+        let _ = rig.skeleton_mut().set_transform(transform);
+    }
+}
+
+fn rotate(rig: &mut SkeletonRig, joint: JointId, rotation: Vec3) {
+    let Some(before) = rig.skeleton.joint(joint) else { return };
+    let rotation = before.clamped(rotation);
+    if !is_identical(before.rotation, rotation) {
+        rig.skeleton_mut().turn(joint, |joint| joint.rotation = rotation);
+    }
+}
+
+fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
+    let Some(before) = rig.skeleton.joint(joint) else { return };
+    if !is_identical(before.offset, offset) {
+        rig.skeleton_mut().turn(joint, |joint| joint.offset = offset);
+    }
+}
+
+/// Whether two values have the same bits.
+fn is_identical(a: Vec3, b: Vec3) -> bool {
+    a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
+}

@@ -1,0 +1,100 @@
+use super::arm::Arm;
+use super::camera::Camera;
+use super::display::Display;
+use super::keys::Keys;
+use super::rig_kind::RigKind;
+use super::skeleton_rig::SkeletonRig;
+use super::timeline::Timeline;
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
+
+/// All that a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// The rig that is shown and edited; the other one is kept.
+    pub rig: RigKind,
+    /// The two-bone arm.
+    pub arm: Arm,
+    /// The skeleton with its targets.
+    pub skeleton_rig: SkeletonRig,
+    /// Keys of both rigs and of the overlays.
+    pub keys: Keys,
+    /// The time that is played.
+    pub timeline: Timeline,
+    /// The camera of the shown rig.
+    pub camera: Camera,
+    /// The camera of the other rig; `None` frames that rig when it is shown.
+    pub other_rig_camera: Option<Camera>,
+    /// The overlays that are shown.
+    pub display: Display,
+    /// Length in metres of a unit of the shown rig, for exports; `None` is the rig's default: see
+    /// [`Document::metres_per_unit`].
+    pub metres_per_unit: Option<f32>,
+}
+
+impl Document {
+    /// Length in metres of a unit of the shown rig; by default a millimetre for the arm and a metre for
+    /// a skeleton.
+    pub fn metres_per_unit(&self) -> f32 {
+        self.metres_per_unit.unwrap_or(match self.rig {
+            RigKind::Arm => 0.001,
+            RigKind::Skeleton => 1.0,
+        })
+    }
+
+    /// The joints of the skeleton rig.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton_rig.skeleton
+    }
+
+    /// The joints of the skeleton rig for an edit; copied first if other documents share them.
+    pub fn skeleton_mut(&mut self) -> &mut Skeleton {
+        self.skeleton_rig.skeleton_mut()
+    }
+
+    /// Shows a rig through the camera that it had last.
+    pub fn show(&mut self, rig: RigKind) {
+        if rig == self.rig {
+            return;
+        }
+        let camera = self.other_rig_camera.unwrap_or_else(|| self.default_camera(rig));
+        self.other_rig_camera = Some(self.camera);
+        (self.rig, self.camera) = (rig, camera);
+    }
+
+    /// A camera that frames a whole rig.
+    fn default_camera(&self, rig: RigKind) -> Camera {
+        match rig {
+            RigKind::Arm if self.arm.bones == Arm::default().bones => Camera::default(),
+            RigKind::Arm => {
+                let (centre, radius) = self.arm.bounds(&self.arm.pose());
+                Camera::default().framing(centre, radius, 1.0)
+            }
+            RigKind::Skeleton => self.skeleton_rig.default_camera(),
+        }
+    }
+
+    /// Deletes joints with all their descendants, their targets and their keys.
+    ///
+    /// # Errors
+    ///
+    /// [`SkeletonError::NoJoint`], and the document is unchanged.
+    pub fn delete(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
+        let remap = self.skeleton_mut().remove(joints)?;
+        self.remap_joints(&remap);
+        Ok(remap)
+    }
+
+    /// Renumbers the joints that targets and keys belong to; drops those of removed joints.
+    pub fn remap_joints(&mut self, remap: &JointRemap) {
+        self.skeleton_rig.remap(remap);
+        self.keys.remap(remap);
+    }
+
+    /// Width of a cell of the grid around the shown rig, a power of ten.
+    pub fn grid_cell(&self) -> f32 {
+        match self.rig {
+            RigKind::Arm => self.arm.grid_cell(),
+            RigKind::Skeleton => SkeletonRig::grid_cell_for(self.skeleton_rig.reach()),
+        }
+    }
+}

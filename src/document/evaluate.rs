@@ -1,0 +1,66 @@
+use core::f32::consts::TAU;
+
+use glam::Vec3;
+
+use super::arm::Arm;
+use super::channel::Channel;
+use super::document::Document;
+use super::rig_kind::RigKind;
+
+/// The document in time.
+impl Document {
+    /// The document at a time, in seconds: every keyed channel has its interpolated value. A
+    /// [`FollowPath`](super::FollowPath) is evaluated by
+    /// [`SkeletonRig::skeleton_at`](super::SkeletonRig::skeleton_at).
+    #[must_use]
+    pub fn evaluate(&self, time: f64) -> Self {
+        let mut evaluated = self.clone();
+        evaluated.apply_keys(time);
+        evaluated
+    }
+
+    /// The arm at a time: [`Document::evaluate`] without the skeleton.
+    pub(super) fn arm_at(&self, time: f64) -> Arm {
+        let mut evaluated = self.clone();
+        evaluated.apply_keys_of(time, |channel| channel.rig() == Some(RigKind::Arm));
+        evaluated.arm
+    }
+
+    /// Sets every keyed channel to its interpolated value at a time.
+    pub(crate) fn apply_keys(&mut self, time: f64) {
+        self.apply_keys_of(time, |_| true);
+    }
+
+    fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
+        let keys = self.keys.clone();
+        if [Channel::Hand, Channel::Pin, Channel::Root].into_iter().any(|it| keys.has(it)) {
+            // Playing never transports.
+            self.arm.end_transport();
+        }
+        for channel in keys.tracks().map(|(channel, _)| channel).filter(|it| includes(*it)) {
+            if let Some(value) = keys.value(channel, time) {
+                channel.set(self, value);
+            }
+        }
+    }
+
+    /// Whether the pose of the shown rig changes in time.
+    pub fn is_animated(&self) -> bool {
+        let follows = self.rig == RigKind::Skeleton && self.skeleton_rig.follow_path.is_some();
+        follows || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
+    }
+
+    /// Keys the present value of a channel at a time. The twist is unwrapped to be near the keys that it
+    /// has.
+    pub fn key(&mut self, channel: Channel, time: f64) {
+        let Some(mut value) = channel.value(self) else {
+            return;
+        };
+        if channel == Channel::Twist
+            && let Some(Vec3 { x: near, .. }) = self.keys.value(channel, time)
+        {
+            value.x += ((near - value.x) / TAU).round() * TAU;
+        }
+        self.keys.insert(channel, time, value);
+    }
+}

@@ -1,0 +1,73 @@
+use glam::{Mat4, Vec2, Vec3};
+
+/// Projection of a camera for the aspect of a picture: maps points of the world into the picture and
+/// back.
+///
+/// Picture coordinates are normalised: x from −1 (left) to 1 (right), y from −1 (bottom) to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// From the world to clip space; depth is 1 at the near plane and 0 at infinity.
+    pub clip_from_world: Mat4,
+    /// Position of the eye; for an orthographic picture a point on the central ray.
+    pub eye: Vec3,
+    /// Unit vector into the picture.
+    pub forward: Vec3,
+    /// From the middle of the picture to its right edge, at distance 1 in perspective.
+    pub right: Vec3,
+    /// From the middle of the picture to its upper edge, at distance 1 in perspective.
+    pub up: Vec3,
+    /// Whether the projection is orthographic.
+    pub orthographic: bool,
+}
+
+/// A ray in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Start of the ray.
+    pub origin: Vec3,
+    /// Direction, of any length.
+    pub direction: Vec3,
+}
+
+impl Projection {
+    /// Projects a point of the world into the picture; `None` behind the eye.
+    pub fn project(&self, point: Vec3) -> Option<Vec2> {
+        let clip = self.clip_from_world * point.extend(1.0);
+        (clip.w > 0.0 && clip.z <= clip.w).then(|| clip.truncate().truncate() / clip.w)
+    }
+
+    /// The ray through a point of the picture.
+    pub fn ray(&self, at: Vec2) -> Ray {
+        let aside = self.right * at.x + self.up * at.y;
+        if self.orthographic {
+            Ray { origin: self.eye + aside, direction: self.forward }
+        } else {
+            Ray { origin: self.eye, direction: self.forward + aside }
+        }
+    }
+
+    /// Half the height of the picture at the depth of a point, in units of the world.
+    pub fn half_height_at(&self, point: Vec3) -> f32 {
+        let span = self.up.length();
+        if self.orthographic { span } else { span * (point - self.eye).dot(self.forward) }
+    }
+}
+
+impl Ray {
+    /// Intersection with the plane through `point`; `None` behind the origin or where it overflows.
+    pub fn meets_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
+        let along = (point - self.origin).dot(normal) / self.direction.dot(normal);
+        let met = self.origin + self.direction * along;
+        (along >= 0.0 && met.is_finite()).then_some(met)
+    }
+
+    /// Distance from `point` along the unit vector `axis` at which that line is nearest to the ray; `None`
+    /// behind the ray's origin or where it overflows.
+    pub fn nearest_on_line(&self, point: Vec3, axis: Vec3) -> Option<f32> {
+        let normal = axis.cross(self.direction).cross(axis);
+        let along_ray = (point - self.origin).dot(normal) / self.direction.dot(normal);
+        let met = self.origin + self.direction * along_ray;
+        let along = (met - point).dot(axis);
+        (along_ray >= 0.0 && along.is_finite()).then_some(along)
+    }
+}

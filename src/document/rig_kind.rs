@@ -1,0 +1,12 @@
+use serde::{Deserialize, Serialize};
+
+/// The two rigs of a document.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RigKind {
+    /// The two-bone arm.
+    #[default]
+    Arm,
+    /// The skeleton with its targets.
+    Skeleton,
+}

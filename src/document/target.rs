@@ -1,0 +1,72 @@
+use core::f32::consts::TAU;
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::kinematics::skeleton::JointId;
+
+/// A target of a skeleton: a point for the tip of a joint's bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Its joint.
+    pub joint: JointId,
+    /// Position at time 0, in the world.
+    pub home: Vec3,
+    /// Weight against the other targets, above 0.
+    pub weight: f32,
+    /// Whether solvers use it.
+    pub enabled: bool,
+    /// Motion in time.
+    pub motion: TargetMotion,
+}
+
+/// Motion of a target along a closed curve through its home, in the plane that faces +z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetMotion {
+    /// Shape of the curve.
+    pub path: TargetPath,
+    /// Radius of the curve, in units of the world.
+    pub radius: f32,
+    /// Duration of one revolution in seconds.
+    pub period: f32,
+}
+
+/// The shape of a target's path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetPath {
+    /// The target stays at its home.
+    #[default]
+    Still,
+    /// A circle.
+    Circle,
+    /// An eight: the lemniscate of Gerono.
+    FigureEight,
+}
+
+impl TargetMotion {
+    /// Offset from the home at a time in seconds; zero at time 0.
+    pub fn offset(&self, time: f64) -> Vec3 {
+        let angle = (time / f64::from(self.period)).fract() as f32 * TAU;
+        let (sin, cos) = angle.sin_cos();
+        self.radius
+            * match self.path {
+                TargetPath::Still => Vec3::ZERO,
+                TargetPath::Circle => Vec3::new(sin, cos - 1.0, 0.0),
+                TargetPath::FigureEight => Vec3::new(sin, sin * cos, 0.0),
+            }
+    }
+}
+
+impl Target {
+    /// An enabled target that stays at its home; `radius` is that of its path once it moves.
+    pub fn new(joint: JointId, home: Vec3, radius: f32) -> Self {
+        let motion = TargetMotion { path: TargetPath::Still, radius, period: 4.0 };
+        Self { joint, home, weight: 1.0, enabled: true, motion }
+    }
+
+    /// Position at a time in seconds, in the world.
+    pub fn at(&self, time: f64) -> Vec3 {
+        self.home + self.motion.offset(time)
+    }
+}
