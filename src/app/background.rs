@@ -14,7 +14,7 @@ use crate::export::{self, ExportError, ExportOptions, Format};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
-use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, ShellAction};
+use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, PathDialog, ShellAction};
 
 /// Saves a picture of the viewport, drawn on a device of its own.
 pub(super) fn save_picture(
@@ -125,16 +125,15 @@ pub(super) fn open_actions(
 }
 
 /// Opens the system's file dialog in place of one of the program's, starting at `path`.
-pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
+pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
     /// A system without dialogs answers like a user who cancels, but faster than any user.
     const FASTEST_USER: Duration = Duration::from_millis(400);
     let export_extensions = Format::EXTENSIONS.map(|(extension, _)| extension);
     let (name, extensions): (_, &[&str]) = match &dialog {
-        Dialog::SavePicture { .. } => ("PNG", &["png"]),
-        Dialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
-        Dialog::SaveAs { .. } => ("Scene", &["json"]),
-        Dialog::Export(_) => ("Export", &export_extensions),
-        _ => return,
+        PathDialog::SavePicture { .. } => ("PNG", &["png"]),
+        PathDialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
+        PathDialog::SaveAs { .. } => ("Scene", &["json"]),
+        PathDialog::Export(_) => ("Export", &export_extensions),
     };
     let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
     if let Some(name) = path.file_name() {
@@ -144,7 +143,7 @@ pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<Use
         system = system.set_directory(folder);
     }
     let start = Instant::now();
-    let is_open = matches!(dialog, Dialog::Open { .. });
+    let is_open = matches!(dialog, PathDialog::Open { .. });
     let (open, save) = match is_open {
         true => (Some(system.pick_file()), None),
         false => (None, Some(system.save_file())),
@@ -165,20 +164,20 @@ pub(super) fn choose_path(dialog: Dialog, path: &Path, proxy: EventLoopProxy<Use
 }
 
 /// Action for the answer of the system's dialog; without one, the program's own dialog opens.
-pub(super) fn path_action(dialog: Dialog, choice: PathChoice) -> Option<Action> {
+pub(super) fn path_action(dialog: PathDialog, choice: PathChoice) -> Action {
     match (choice, dialog) {
-        (PathChoice::Path(path), Dialog::Open { .. }) => {
-            Some(FileAction::Open { path, skeleton: None }.into())
+        (PathChoice::Path(path), PathDialog::Open { .. }) => {
+            FileAction::Open { path, skeleton: None }.into()
         }
-        (PathChoice::Path(path), Dialog::SaveAs { .. }) => Some(FileAction::SaveAs(path).into()),
-        (PathChoice::Path(path), Dialog::SavePicture { .. }) => {
-            Some(FileAction::SavePicture(path.display().to_string()).into())
+        (PathChoice::Path(path), PathDialog::SaveAs { .. }) => FileAction::SaveAs(path).into(),
+        (PathChoice::Path(path), PathDialog::SavePicture { .. }) => {
+            FileAction::SavePicture(path.display().to_string()).into()
         }
-        (PathChoice::Path(path), Dialog::Export(export)) => {
-            Some(ShellAction::OpenDialog(Dialog::Export(Export { path, ..export })).into())
+        (PathChoice::Path(path), PathDialog::Export(export)) => {
+            let dialog = PathDialog::Export(Export { path, ..export });
+            ShellAction::OpenDialog(dialog.into()).into()
         }
-        (PathChoice::Path(_), _) => None,
-        (PathChoice::Cancelled, _) => Some(FileAction::ChoseNothing.into()),
-        (PathChoice::NoDialog, dialog) => Some(FileAction::NoSystemDialog(dialog).into()),
+        (PathChoice::Cancelled, _) => FileAction::ChoseNothing.into(),
+        (PathChoice::NoDialog, dialog) => FileAction::NoSystemDialog(dialog).into(),
     }
 }

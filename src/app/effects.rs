@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use winit::event_loop::EventLoopProxy;
 
@@ -66,7 +66,7 @@ impl AppWindow {
                 session.apply(FileAction::ExportStarted(job));
             }
             Effect::ChoosePath(dialog) => {
-                let path = session.full_path(&dialog, dialog.path().unwrap_or(Path::new("")));
+                let path = session.full_path(&dialog, dialog.path());
                 background::choose_path(dialog, &path, proxy.clone());
             }
             Effect::Open { path, skeleton } => background::open(path, skeleton, proxy.clone()),

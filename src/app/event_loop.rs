@@ -207,9 +207,8 @@ impl ApplicationHandler<UserEvent> for App {
                 }
             }
             UserEvent::Chosen(dialog, choice) => {
-                if let Some(action) = background::path_action(dialog, choice) {
-                    window.act(action, &mut self.session, &self.proxy);
-                }
+                let action = background::path_action(dialog, choice);
+                window.act(action, &mut self.session, &self.proxy);
             }
         }
         window.request_redraw();

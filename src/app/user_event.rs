@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use winit::event_loop::EventLoopProxy;
 
 use crate::io::{OpenError, Opened};
-use crate::session::Dialog;
+use crate::session::PathDialog;
 
 /// Events that do not come from the window.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub enum UserEvent {
     /// The graphics device failed.
     GraphicsFailed,
     /// Answer of the system's file dialog.
-    Chosen(Dialog, PathChoice),
+    Chosen(PathDialog, PathChoice),
     /// A file was read; `has_chosen_skeleton` if one of its skeletons was asked for.
     Opened { path: PathBuf, has_chosen_skeleton: bool, read: Box<Result<Opened, OpenError>> },
 }

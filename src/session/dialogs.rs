@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use super::dialog::Dialog;
 use super::effect::Effect;
 use super::message::Message;
+use super::path_dialog::PathDialog;
 use super::pose_line;
 use super::preferences::Preferences;
 use super::session::Session;
@@ -27,8 +28,8 @@ impl Session {
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {
         // What waits for the document to be saved waits for no other question.
         let is_saving = match &dialog {
-            Dialog::SaveAs { .. } => true,
-            Dialog::Replace { back, .. } => matches!(**back, Dialog::SaveAs { .. }),
+            Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
+            Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
             _ => false,
         };
         if !is_saving {
@@ -41,32 +42,34 @@ impl Session {
     pub(super) fn close_dialog(&mut self) {
         self.shell.set_choosing(false);
         match self.shell.take_dialog() {
-            Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(*back),
+            Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(back.into()),
             _ => drop(self.files.take_after_save()),
         }
     }
 
     /// The system has no file dialog: ours asks, or says so where it is open already.
-    pub(super) fn ask_ourselves(&mut self, dialog: Dialog) {
+    pub(super) fn ask_ourselves(&mut self, dialog: PathDialog) {
         if self.shell.dialog().is_some() {
             self.shell.set_choosing(false);
             self.fail("this system has no file dialog: type the path");
         } else {
-            self.open_dialog(dialog);
+            self.open_dialog(dialog.into());
         }
     }
 
     /// The path that is typed into a dialog; a relative one is in the folder that was used last.
-    pub fn full_path(&self, dialog: &Dialog, typed: &Path) -> PathBuf {
+    pub fn full_path(&self, dialog: &PathDialog, typed: &Path) -> PathBuf {
         let in_folder = |folder: &Path| folder.join(typed);
         let full = match dialog {
-            Dialog::Export(_) | Dialog::SavePicture { .. } => {
+            PathDialog::Export(_) | PathDialog::SavePicture { .. } => {
                 self.files.export_folder().or(self.files.document_folder()).map(in_folder)
             }
-            Dialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
+            PathDialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
             // A path of the command line's folder is meant where there is such a file.
-            Dialog::Open { .. } if !typed.exists() => self.files.document_folder().map(in_folder),
-            _ => None,
+            PathDialog::Open { .. } if !typed.exists() => {
+                self.files.document_folder().map(in_folder)
+            }
+            PathDialog::Open { .. } => None,
         };
         full.unwrap_or_else(|| typed.to_owned())
     }

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
-use super::dialog::Dialog;
 use super::export::Export;
+use super::path_dialog::PathDialog;
 
 /// A request of the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub enum Effect {
     /// Starts an export.
     Export(Export),
     /// Opens the system's dialog.
-    ChoosePath(Dialog),
+    ChoosePath(PathDialog),
     /// Reads a file.
     Open {
         /// The file.

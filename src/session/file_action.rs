@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
-use super::dialog::Dialog;
 use super::export::{Export, Job};
+use super::path_dialog::PathDialog;
 use crate::document::Document;
 use crate::io::Example;
 
@@ -9,13 +9,13 @@ use crate::io::Example;
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileAction {
     /// Asks for a path in the system's dialog, or in this one where the system has none.
-    AskPath(Dialog),
+    AskPath(PathDialog),
     /// Opens the system's dialog for the path that the open dialog asks for.
     ChoosePath,
     /// The system's dialog was closed without a path.
     ChoseNothing,
     /// The system has no dialog; this one is opened instead.
-    NoSystemDialog(Dialog),
+    NoSystemDialog(PathDialog),
     /// Opens a file.
     Open {
         /// The file.

@@ -6,6 +6,7 @@ use super::dialog::Dialog;
 use super::effect::Effect;
 use super::export::{Export, Job};
 use super::file_action::FileAction;
+use super::path_dialog::PathDialog;
 use super::session::{ASPECT, Session};
 use crate::document::{Document, RigKind};
 use crate::io::Example;
@@ -69,7 +70,7 @@ impl Session {
         self.end_glide();
         match self.files.file() {
             Some(path) => Effect::Save(path.to_owned()),
-            None => Effect::ChoosePath(Dialog::save_as()),
+            None => Effect::ChoosePath(PathDialog::save_as()),
         }
     }
 
@@ -89,16 +90,20 @@ impl Session {
     pub(super) fn not_saved(&mut self, path: &Path, why: &str) {
         self.fail(format!("not saved: {why}"));
         let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
-        self.open_dialog(Dialog::SaveAs { path, problem });
+        self.open_dialog(PathDialog::SaveAs { path, problem }.into());
         self.files.take_after_save();
     }
 
     /// Keeps the dialog with the path that could not be opened.
     pub(super) fn not_opened(&mut self, path: &Path, why: &str) {
         self.fail(format!("not opened: {why}"));
-        if self.shell.dialog().is_none_or(|dialog| matches!(dialog, Dialog::Open { .. })) {
+        if self
+            .shell
+            .dialog()
+            .is_none_or(|dialog| matches!(dialog, Dialog::Path(PathDialog::Open { .. })))
+        {
             let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
-            self.open_dialog(Dialog::Open { path, problem });
+            self.open_dialog(PathDialog::Open { path, problem }.into());
         }
     }
 
@@ -150,7 +155,9 @@ impl Session {
                 self.files.take_after_save();
                 return Some(Effect::ChoosePath(dialog));
             }
-            FileAction::ChoosePath => return self.shell.dialog().cloned().map(Effect::ChoosePath),
+            FileAction::ChoosePath => {
+                return self.shell.path_dialog().cloned().map(Effect::ChoosePath);
+            }
             FileAction::ChoseNothing => {
                 self.files.take_after_save();
                 self.shell.set_choosing(false);
@@ -159,7 +166,7 @@ impl Session {
             FileAction::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
             FileAction::Open { path, skeleton } => {
                 self.shell.set_choosing(false);
-                if !matches!(self.shell.dialog(), Some(Dialog::Open { .. })) {
+                if !matches!(self.shell.path_dialog(), Some(PathDialog::Open { .. })) {
                     self.shell.take_dialog();
                 }
                 self.files.set_opening(self.revision());
@@ -224,11 +231,11 @@ impl Session {
     }
 
     /// Asks how to export the document.
-    pub fn export_dialog(&self) -> Dialog {
+    pub fn export_dialog(&self) -> PathDialog {
         const SIZE: (u32, u32) = (1280, 800);
         let stem = self.files.file().and_then(|file| file.file_stem());
         let stem = stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy());
-        Dialog::Export(Export {
+        PathDialog::Export(Export {
             path: format!("{stem}.glb").into(),
             frame_rate: self.document().timeline.frame_rate,
             size: SIZE,

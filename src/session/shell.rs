@@ -1,5 +1,6 @@
 use super::dialog::Dialog;
 use super::message::Message;
+use super::path_dialog::PathDialog;
 
 /// The open dialog and the message in the status bar.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +14,14 @@ pub(super) struct Shell {
 impl Shell {
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
+    }
+
+    /// The open dialog if it asks for a path.
+    pub fn path_dialog(&self) -> Option<&PathDialog> {
+        match self.dialog() {
+            Some(Dialog::Path(dialog)) => Some(dialog),
+            _ => None,
+        }
     }
 
     pub fn is_choosing(&self) -> bool {

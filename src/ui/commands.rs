@@ -2,18 +2,20 @@
 
 use crate::document::{AxisView, Camera};
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Action, Dialog, EditAction, FileAction, Session, ShellAction, ViewAction};
+use crate::session::{
+    Action, Dialog, EditAction, FileAction, PathDialog, Session, ShellAction, ViewAction,
+};
 
 pub(in crate::ui) fn open() -> FileAction {
-    FileAction::AskPath(Dialog::open())
+    FileAction::AskPath(PathDialog::open())
 }
 
 pub(in crate::ui) fn save_as() -> FileAction {
-    FileAction::AskPath(Dialog::save_as())
+    FileAction::AskPath(PathDialog::save_as())
 }
 
 pub(in crate::ui) fn save_picture() -> FileAction {
-    FileAction::AskPath(Dialog::save_picture())
+    FileAction::AskPath(PathDialog::save_picture())
 }
 
 pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [

@@ -57,7 +57,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     ui.separator();
     if item(ui, "Export…", "Ctrl+E") {
-        actions.push(ShellAction::OpenDialog(session.export_dialog()));
+        actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
     }
     if item(ui, "Save picture…", "Ctrl+P") {
         actions.push(commands::save_picture());

@@ -186,10 +186,10 @@ kinds! {
         CancelExport: Look 1, |_| FileAction::CancelExport;
         ExportEnded: Look 1, |v| FileAction::ExportEnded(if v.coin() { Ok(v.name()) } else { Err(v.name()) });
         StopExportAndQuit: Look 1, |_| FileAction::StopExportAndQuit;
-        AskPath: Look 1, |v| FileAction::AskPath(v.dialog());
+        AskPath: Look 1, |v| FileAction::AskPath(v.path_dialog());
         ChoosePath: Look 1, |_| FileAction::ChoosePath;
         ChoseNothing: Look 1, |_| FileAction::ChoseNothing;
-        NoSystemDialog: Look 1, |v| FileAction::NoSystemDialog(v.dialog());
+        NoSystemDialog: Look 1, |v| FileAction::NoSystemDialog(v.path_dialog());
         Open: Files 1, |v| FileAction::Open { path: v.path(), skeleton: None };
         Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file() };
         NotOpened: Look 1, |v| FileAction::NotOpened { path: v.path(), why: v.name() };

@@ -138,7 +138,7 @@ impl Bench {
             match app.session.apply(action) {
                 // As on a system that has no dialog of its own.
                 Some(Effect::ChoosePath(dialog)) if app.session.dialog().is_none() => {
-                    app.session.apply(ShellAction::OpenDialog(dialog));
+                    app.session.apply(ShellAction::OpenDialog(dialog.into()));
                 }
                 effect => app.effects.extend(effect),
             }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::TwistReferenceKind;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::session::{Action, Dialog, EditAction, Effect};
+use ik_arm::session::{Action, Dialog, EditAction, Effect, PathDialog};
 use serde_json::json;
 
 use crate::bench::Bench;
@@ -59,7 +59,10 @@ fn a_picture_is_saved_where_the_typed_path_says() {
         bench.key_with(CTRL, Key::A);
         bench.type_text("out/a b.png");
         let path = "out/a b.png".to_owned();
-        assert_eq!(bench.session().dialog(), Some(&Dialog::SavePicture { path: path.clone() }));
+        assert_eq!(
+            bench.session().dialog(),
+            Some(&Dialog::Path(PathDialog::SavePicture { path: path.clone() }))
+        );
         if by_enter {
             bench.key(Key::Enter);
         } else {
@@ -106,7 +109,7 @@ fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
     bench.click(Role::Button, "Browse…");
     assert_eq!(
         bench.effects(),
-        [Effect::ChoosePath(Dialog::SavePicture { path: "ik-arm.png".to_owned() })]
+        [Effect::ChoosePath(PathDialog::SavePicture { path: "ik-arm.png".to_owned() })]
     );
     bench.click(Role::Button, "Cancel");
     assert_eq!(bench.session().dialog(), None);

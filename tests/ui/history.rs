@@ -8,8 +8,8 @@ use ik_arm::document::{Cursor, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, PlaybackAction, SelectAction, ShellAction,
-    SolverAction, TransactionAction, ViewAction,
+    Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, SelectAction,
+    ShellAction, SolverAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -180,7 +180,10 @@ fn saving_first_goes_on_once_it_is_saved() {
     let mut bench = moved();
     bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
-    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
+    assert!(
+        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        "it has no file yet"
+    );
     bench.settle();
     bench.key(Key::Enter);
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);

@@ -8,7 +8,7 @@ use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, RigKind, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, Effect, FileAction, Grip, Job, SelectAction,
+    Action, Dialog, DragInput, EditAction, Effect, FileAction, Grip, Job, PathDialog, SelectAction,
     ShellAction, SolverAction, SolverState, TransactionAction, ViewAction,
 };
 
@@ -129,7 +129,10 @@ fn nothing_behind_an_open_question_answers() {
     bench.settle();
     bench.key(Key::Enter);
     bench.settle();
-    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "Enter saves");
+    assert!(
+        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        "Enter saves"
+    );
 }
 
 #[test]
@@ -348,7 +351,9 @@ fn an_export_over_a_file_asks_and_the_folder_is_remembered() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(bench.effects(), [], "Enter twice overwrites nothing");
-    let Some(Dialog::Export(export)) = bench.session().dialog() else { panic!("it is kept") };
+    let Some(Dialog::Path(PathDialog::Export(export))) = bench.session().dialog() else {
+        panic!("it is kept")
+    };
     assert_eq!(export.path, there, "with its path");
     bench.click(Role::Button, "Export");
     bench.click(Role::Button, "Replace");
@@ -446,7 +451,10 @@ fn enter_in_the_frame_of_the_key_that_asks_is_the_answer() {
         key(Key::Enter, Modifiers::NONE),
     ]);
     bench.settle();
-    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "Enter saves");
+    assert!(
+        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        "Enter saves"
+    );
 }
 
 #[test]

@@ -10,8 +10,8 @@ use ik_arm::document::{RigKind, TargetPath};
 use ik_arm::io::{Example, Group};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, SelectAction, ShellAction, SolverAction,
-    ViewAction,
+    Action, Dialog, EditAction, Effect, FileAction, PathDialog, SelectAction, ShellAction,
+    SolverAction, ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -454,7 +454,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
 fn files_are_asked_for_opened_and_saved() {
     let mut bench = Bench::new();
     bench.key_with(Modifiers::COMMAND, Key::O);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::open()));
+    assert_eq!(bench.session().dialog(), Some(&Dialog::Path(PathDialog::open())));
     bench.frame([]);
     bench.frame([egui::Event::Text("scene.js3d".to_owned())]);
     bench.key(Key::Enter);
@@ -463,7 +463,10 @@ fn files_are_asked_for_opened_and_saved() {
     let document = Box::new(bench.session().document().clone());
     bench.apply([FileAction::Opened { document, file: None }]);
     bench.key_with(Modifiers::COMMAND, Key::S);
-    assert!(matches!(bench.session().dialog(), Some(Dialog::SaveAs { .. })), "it has no file yet");
+    assert!(
+        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        "it has no file yet"
+    );
     bench.settle();
     bench.key(Key::Enter);
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);

@@ -9,7 +9,7 @@ use super::prompt::prompt;
 use crate::document::Timeline;
 use crate::export::{ExportOptions, Format};
 use crate::io::ExportFrames;
-use crate::session::{Actions, Dialog, EditAction, Export, FileAction, Session, ShellAction};
+use crate::session::{Actions, EditAction, Export, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets::NumberField;
 
 /// A file format with its name, file extension and tooltip.
@@ -68,7 +68,7 @@ pub(in crate::ui) fn ui(
 ) {
     ui.set_width(460.0);
     let path = export.path.to_string_lossy();
-    let change = |export: Export| ShellAction::OpenDialog(Dialog::Export(export));
+    let change = |export: Export| ShellAction::OpenDialog(PathDialog::Export(export).into());
     let chosen = Format::of(&export.path).ok();
     ui.horizontal_wrapped(|ui| {
         for FormatChoice { format, name, ending, tooltip } in CHOICES {
@@ -137,7 +137,11 @@ pub(in crate::ui) fn ui(
     if typed != path {
         actions.push(change(Export { path: typed.clone().into(), ..export.clone() }));
     }
-    folder(ui, session, &Dialog::Export(Export { path: typed.clone().into(), ..export.clone() }));
+    folder(
+        ui,
+        session,
+        &PathDialog::Export(Export { path: typed.clone().into(), ..export.clone() }),
+    );
     ui.add_space(4.0);
     buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
 }
@@ -154,7 +158,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
         let accept = ui.add_enabled(why_not.is_none(), egui::Button::new("Export"));
         let accept = accept.on_disabled_hover_text(why_not.unwrap_or_default());
         if (accept.clicked() || entered) && why_not.is_none() {
-            let back = Dialog::Export(export.clone());
+            let back = PathDialog::Export(export.clone());
             let path = session.full_path(&back, &export.path);
             let action = FileAction::Export(Export { path: path.clone(), ..export.clone() });
             actions.push(unless_there(session, path, action, back));

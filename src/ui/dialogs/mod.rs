@@ -8,9 +8,11 @@ mod prompt;
 mod shortcuts;
 mod unsaved;
 
+use std::mem::discriminant;
+
 use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
 
-use crate::session::{Actions, Dialog, Session, ShellAction};
+use crate::session::{Actions, Dialog, PathDialog, Session, ShellAction};
 use crate::ui::machine::Machine;
 use crate::ui::panels::statistics;
 use first_button::first_button;
@@ -36,10 +38,10 @@ pub(in crate::ui) fn ui(
         Dialog::Unsaved { .. } => "Save changes?",
         Dialog::Exporting => "Quit while exporting?",
         Dialog::Replace { .. } => "Replace the file?",
-        Dialog::SavePicture { .. } => "Save picture",
-        Dialog::Export(_) => "Export",
-        Dialog::Open { .. } => "Open",
-        Dialog::SaveAs { .. } => "Save as",
+        Dialog::Path(PathDialog::SavePicture { .. }) => "Save picture",
+        Dialog::Path(PathDialog::Export(_)) => "Export",
+        Dialog::Path(PathDialog::Open { .. }) => "Open",
+        Dialog::Path(PathDialog::SaveAs { .. }) => "Save as",
         Dialog::ChooseSkeleton { .. } => "Choose a skeleton",
         Dialog::Rename { .. } => "Rename",
         Dialog::DeleteJoints { .. } => "Delete joints",
@@ -56,14 +58,16 @@ pub(in crate::ui) fn ui(
         Dialog::Unsaved { then } => unsaved::unsaved(ui, session, then, actions),
         Dialog::Exporting => unsaved::quit_during_export(ui, session, actions),
         Dialog::Replace { path, then, .. } => unsaved::replace(ui, path, then, actions),
-        Dialog::SavePicture { path } => {
+        Dialog::Path(PathDialog::SavePicture { path }) => {
             path::ask_path(ui, session, &path::SAVE_PICTURE, (path, None), is_new, actions);
         }
-        Dialog::Export(export) => export::ui(ui, session, export, is_new, actions),
-        Dialog::Open { path, problem } => {
+        Dialog::Path(PathDialog::Export(export)) => {
+            export::ui(ui, session, export, is_new, actions)
+        }
+        Dialog::Path(PathDialog::Open { path, problem }) => {
             path::ask_path(ui, session, &path::OPEN, (path, problem.as_deref()), is_new, actions);
         }
-        Dialog::SaveAs { path, problem } => {
+        Dialog::Path(PathDialog::SaveAs { path, problem }) => {
             path::ask_path(
                 ui,
                 session,
@@ -84,7 +88,10 @@ pub(in crate::ui) fn ui(
 
 /// True in the first frame of a dialog.
 fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
-    let now = dialog.map(std::mem::discriminant);
+    let now = dialog.map(|dialog| match dialog {
+        Dialog::Path(path) => (discriminant(dialog), Some(discriminant(path))),
+        _ => (discriminant(dialog), None),
+    });
     let id = Id::unique("open dialog");
     let before = ui.data_mut(|data| *data.get_temp_mut_or_default::<Option<_>>(id));
     ui.data_mut(|data| data.insert_temp(id, now));

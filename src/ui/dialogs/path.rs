@@ -6,35 +6,35 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::prompt::prompt;
 use crate::export::existing;
-use crate::session::{Action, Actions, Dialog, FileAction, Session, ShellAction};
+use crate::session::{Action, Actions, Dialog, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets;
 
 /// Texts and actions of a path dialog.
 pub(super) struct PathPrompt {
     prompt: &'static str,
     accept: &'static str,
-    dialog: fn(String) -> Dialog,
+    dialog: fn(String) -> PathDialog,
     action: fn(PathBuf) -> FileAction,
 }
 
 pub(super) const SAVE_PICTURE: PathPrompt = PathPrompt {
     prompt: "PNG file",
     accept: "Save",
-    dialog: |path| Dialog::SavePicture { path },
+    dialog: |path| PathDialog::SavePicture { path },
     action: |path| FileAction::SavePicture(path.display().to_string()),
 };
 
 pub(super) const OPEN: PathPrompt = PathPrompt {
     prompt: "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf",
     accept: "Open",
-    dialog: |path| Dialog::Open { path, problem: None },
+    dialog: |path| PathDialog::Open { path, problem: None },
     action: |path| FileAction::Open { path, skeleton: None },
 };
 
 pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     prompt: "Document file",
     accept: "Save",
-    dialog: |path| Dialog::SaveAs { path, problem: None },
+    dialog: |path| PathDialog::SaveAs { path, problem: None },
     action: FileAction::SaveAs,
 };
 
@@ -51,7 +51,7 @@ pub(super) fn ask_path(
     let (typed, entered) = prompt(ui, question.prompt, path, is_new);
     let dialog = (question.dialog)(typed.clone());
     if typed != path {
-        actions.push(ShellAction::OpenDialog(dialog.clone()));
+        actions.push(ShellAction::OpenDialog(dialog.clone().into()));
     }
     folder(ui, session, &dialog);
     if let Some(problem) = problem {
@@ -67,7 +67,7 @@ pub(super) fn ask_path(
             let path = session.full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
             actions.push(match dialog {
-                Dialog::Open { .. } => action.into(),
+                PathDialog::Open { .. } => action.into(),
                 _ => unless_there(session, path, action, dialog),
             });
         }
@@ -86,9 +86,8 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
 }
 
 /// Shows the folder of a path that is typed without one.
-pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &Dialog) {
-    let Some(typed) = dialog.path() else { return };
-    let full = session.full_path(dialog, typed);
+pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog) {
+    let full = session.full_path(dialog, dialog.path());
     let full = std::path::absolute(&full).unwrap_or(full);
     let folder = full.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
     ui.add(Label::new(RichText::new(format!("In {folder}")).weak()).truncate());
@@ -99,12 +98,12 @@ pub(in crate::ui) fn unless_there(
     session: &Session,
     path: PathBuf,
     action: FileAction,
-    back: Dialog,
+    back: PathDialog,
 ) -> Action {
     let is_own = session.file() == Some(path.as_path());
     match existing(&path).filter(|_| !is_own) {
         Some(path) => {
-            let (then, back) = (Box::new(action), Box::new(back));
+            let then = Box::new(action);
             ShellAction::OpenDialog(Dialog::Replace { path, then, back }).into()
         }
         None => action.into(),

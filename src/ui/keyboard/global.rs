@@ -47,7 +47,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(FileAction::Open { path, skeleton: None });
     }
     if pressed(Modifiers::COMMAND, Key::E) {
-        actions.push(ShellAction::OpenDialog(session.export_dialog()));
+        actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
     }
     if pressed(Modifiers::COMMAND, Key::P) {
         actions.push(commands::save_picture());

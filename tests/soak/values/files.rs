@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 use ik_arm::document::{Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{Dialog, Export, FileAction, Job};
+use ik_arm::session::{Dialog, Export, FileAction, Job, PathDialog};
 
 use super::Values;
 use crate::common::skeletons;
@@ -53,26 +53,31 @@ impl Values<'_> {
         }
     }
 
-    pub fn dialog(&mut self) -> Dialog {
+    pub fn path_dialog(&mut self) -> PathDialog {
         let path = || "x.json".to_owned();
+        match self.random.below(4) {
+            0 => PathDialog::SavePicture { path: path() },
+            1 => PathDialog::Export(self.export()),
+            2 => PathDialog::Open { path: path(), problem: None },
+            _ => PathDialog::SaveAs { path: path(), problem: Some(self.name()) },
+        }
+    }
+
+    pub fn dialog(&mut self) -> Dialog {
         match self.random.below(13) {
             0 => Dialog::About,
             1 => Dialog::Shortcuts,
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
             3 => Dialog::Unsaved { then: Box::new(FileAction::Quit) },
-            4 => Dialog::SavePicture { path: path() },
-            5 => Dialog::Export(self.export()),
-            6 => Dialog::Open { path: path(), problem: None },
-            7 => Dialog::SaveAs { path: path(), problem: Some(self.name()) },
+            4..=7 => Dialog::Path(self.path_dialog()),
             8 => {
                 Dialog::ChooseSkeleton { path: self.path(), names: vec![self.name(), self.name()] }
             }
             9 => Dialog::Exporting,
             10 => Dialog::DeleteJoints { joints: self.some_joints() },
             11 => {
-                let (then, back) =
-                    (Box::new(FileAction::SaveAs(self.path())), Box::new(self.dialog()));
-                Dialog::Replace { path: self.path(), then, back }
+                let then = Box::new(FileAction::SaveAs(self.path()));
+                Dialog::Replace { path: self.path(), then, back: self.path_dialog() }
             }
             _ => Dialog::Rename { joint: self.joint(), name: self.name() },
         }
