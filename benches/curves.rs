@@ -6,17 +6,17 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use glam::Vec3;
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame, TwistReference};
-use ik_arm::kinematics::two_bone::Facing;
+use ik_arm::kinematics::two_bone::Pointer;
 
-fn facings() -> Vec<Facing> {
-    let facing = |i: usize| {
+fn facings() -> Vec<Pointer> {
+    let pointer = |i: usize| {
         let turn = i as f32 * 2.399_963;
         let height = 1.0 - (i as f32 + 0.5) / 512.0;
         let around = (1.0 - height * height).sqrt();
         let towards = Vec3::new(around * turn.cos(), height, around * turn.sin());
-        Facing::towards(towards, Facing::default())
+        Pointer::towards(towards, Pointer::default())
     };
-    (0..1024).map(facing).collect()
+    (0..1024).map(pointer).collect()
 }
 
 fn twist_reference(criterion: &mut Criterion) {
@@ -30,11 +30,11 @@ fn twist_reference(criterion: &mut Criterion) {
         ("transport", TwistReference::Transport),
     ];
     for (name, reference) in references {
-        let last = Some(TransportedFrame::new(Facing::default()));
+        let last = Some(TransportedFrame::new(Pointer::default()));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
-                for facing in &facings {
-                    black_box(reference.outward(black_box(*facing), black_box(last)));
+                for pointer in &facings {
+                    black_box(reference.outward(black_box(*pointer), black_box(last)));
                 }
             });
         });

@@ -8,10 +8,10 @@ use std::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use ik_arm::kinematics::euler;
 use ik_arm::kinematics::fk::{Fk, blended};
-use ik_arm::kinematics::ik::Ik;
+use ik_arm::kinematics::ik::{Ik, IkState};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::TwistReference;
-use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
+use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
 
 fn arms() -> impl Strategy<Value = TwoBone> {
@@ -71,11 +71,11 @@ proptest! {
         bones in arms(), shoulder in angles(), bend in bends()
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
-        let pose = fk.pose(bones, Facing::default());
+        let pose = fk.pose(bones, Pointer::default());
         let (elbow, hand) = apart(&pose, twin(fk, bones));
         prop_assert!(elbow < 3e-7 * limits(bones).1 && hand < 3e-7 * limits(bones).1);
         // What the hierarchy is made of says the same.
-        let w = pose.facing.direction.as_dvec3();
+        let w = pose.pointer.direction.as_dvec3();
         let out = pose.outward().as_dvec3();
         let again = w * f64::from(pose.along) + out * f64::from(pose.out);
         prop_assert!(again.distance(pose.elbow.as_dvec3()) < 1e-6 * limits(bones).1);
@@ -88,7 +88,7 @@ proptest! {
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let turned = Fk { shoulder: shoulder + Vec3::X * core::f32::consts::PI, bend: -bend, ..fk };
-        let (elbow, hand) = apart(&fk.pose(bones, Facing::default()), points(&turned.pose(bones, Facing::default())));
+        let (elbow, hand) = apart(&fk.pose(bones, Pointer::default()), points(&turned.pose(bones, Pointer::default())));
         prop_assert!(elbow < 1e-6 * limits(bones).1 && hand < 1e-6 * limits(bones).1);
     }
 
@@ -97,11 +97,11 @@ proptest! {
         bones in arms(), shoulder in angles(), bend in bends(), reference in references(poles())
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
-        let pose = fk.pose(bones, Facing::default());
+        let pose = fk.pose(bones, Pointer::default());
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let (cursor, spin) = ik.matching(&pose, None);
-        let solved = ik.solve(cursor, spin, pose.facing, None).pose;
-        let again = Fk::matching(&solved, fk).pose(bones, solved.facing);
+        let solved = ik.solve(cursor, spin, IkState { pointer: pose.pointer, transported: None }).pose;
+        let again = Fk::matching(&solved, fk).pose(bones, solved.pointer);
         for found in [solved, again] {
             let (elbow, hand) = apart(&found, points(&pose));
             let l = limits(bones).1;
@@ -117,11 +117,11 @@ proptest! {
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let cursor = direction.as_vec3() * part * bones.outer_limit();
-        let solved = ik.solve(cursor, spin, Facing::default(), None);
+        let solved = ik.solve(cursor, spin, IkState::default());
         let fk = Fk::matching(&solved.pose, Fk::default());
-        let posed = fk.pose(bones, solved.pose.facing);
+        let posed = fk.pose(bones, solved.pose.pointer);
         let (cursor, spin) = ik.matching(&posed, Some(solved.transported));
-        let again = ik.solve(cursor, spin, posed.facing, Some(solved.transported)).pose;
+        let again = ik.solve(cursor, spin, IkState { pointer: posed.pointer, ..solved.state() }).pose;
         for found in [posed, again] {
             let (elbow, hand) = apart(&found, points(&solved.pose));
             let l = limits(bones).1;
@@ -136,7 +136,7 @@ proptest! {
         let turned = f64::from(turns) * 2.0 * PI;
         let around = |angle: f32| (f64::from(angle) + turned) as f32;
         let last = Fk { shoulder: shoulder.map(around), bend: around(bend), stretch: 1.0 };
-        let found = Fk::matching(&last.pose(bones, Facing::default()), last);
+        let found = Fk::matching(&last.pose(bones, Pointer::default()), last);
         let degenerate = shoulder.z.cos().abs() < 1e-3 || bend.sin().abs() < 1e-3;
         prop_assert!(degenerate || found.shoulder.distance(last.shoulder) < 2e-3, "{:?} is not {:?}", found, last);
         prop_assert!((found.bend - last.bend).abs() < 2e-3 || degenerate, "{:?} is not {:?}", found, last);
@@ -155,7 +155,7 @@ proptest! {
         let (elbow, hand) = points(&pose);
         prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 3e-7 * l);
         prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 4e-7 * l);
-        prop_assert!(pose.reach != Reach::Reached || hand.distance(cursor.as_dvec3()) < 2e-6 * l);
+        prop_assert!(pose.reach != Some(Reach::Reached) || hand.distance(cursor.as_dvec3()) < 2e-6 * l);
         prop_assert_eq!(blended(fk, &solved, 1.0, bones, cursor), solved);
         let (elbow, hand) = apart(&blended(fk, &solved, 0.0, bones, cursor), twin(fk, bones));
         prop_assert!(elbow < 3e-7 * l && hand < 3e-7 * l);
@@ -187,7 +187,7 @@ proptest! {
 /// The upper limb's axes as its points tell: x along it, z the hinge.
 fn frame(pose: &TwoBonePose) -> DMat3 {
     let x = pose.elbow.as_dvec3().normalize();
-    let z = pose.facing.direction.as_dvec3().cross(pose.outward().as_dvec3()).normalize();
+    let z = pose.pointer.direction.as_dvec3().cross(pose.outward().as_dvec3()).normalize();
     DMat3::from_cols(x, z.cross(x), z)
 }
 
@@ -198,11 +198,13 @@ fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
     for twist in [0.0, 1.0, -2.5_f32] {
         for bend in [0.0, core::f32::consts::PI] {
             let fk = Fk { shoulder: Vec3::new(twist, 0.3, -0.7), bend, stretch: 1.0 };
-            let pose = fk.pose(bones, Facing::default());
+            let pose = fk.pose(bones, Pointer::default());
             let (cursor, spin) = ik.matching(&pose, None);
-            let solved = ik.solve(cursor * 0.999, spin, pose.facing, None).pose;
+            let solved = ik
+                .solve(cursor * 0.999, spin, IkState { pointer: pose.pointer, transported: None })
+                .pose;
             let hinge = DQuat::from_mat3(&euler::rotation(fk.shoulder)) * DVec3::Z;
-            let found = solved.facing.direction.cross(solved.outward()).as_dvec3();
+            let found = solved.pointer.direction.cross(solved.outward()).as_dvec3();
             assert!(hinge.distance(-found).min(hinge.distance(found)) < 1e-3);
             if bend == 0.0 {
                 assert!(hinge.distance(found) < 1e-3, "{hinge} is not {found}");
@@ -221,9 +223,9 @@ proptest! {
         let bones = TwoBone::new(2.0, 3.0).expect("lengths");
         let around = |angle: f32| (f64::from(angle) + f64::from(turns) * 2.0 * PI) as f32;
         let last = Fk { shoulder: shoulder.map(around), bend: around(bend), stretch: 1.0 };
-        let pose = last.pose(bones, Facing::default());
+        let pose = last.pose(bones, Pointer::default());
         prop_assert!(pose.out >= 0.0 && (0.0..=180.001).contains(&pose.elbow_angle().to_degrees()));
-        let again = Fk::matching(&pose, last).pose(bones, Facing::default());
+        let again = Fk::matching(&pose, last).pose(bones, Pointer::default());
         let (elbow, hand) = apart(&again, points(&pose));
         prop_assert!(hand <= 1e-6 * 5.0 && elbow <= elbow_tolerance(&pose) * 5.0, "{} {}", hand, elbow);
     }

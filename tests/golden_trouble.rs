@@ -10,7 +10,7 @@ mod pictures;
 use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
 use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
-use ik_arm::kinematics::two_bone::Facing;
+use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;
 use ik_arm::rig::Cone;
 use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
@@ -123,8 +123,8 @@ fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[
 }
 
 fn gain(reference: TwistReference, direction: DVec3) -> f64 {
-    let facing = Facing::towards(direction.as_vec3(), Facing::default());
-    f64::from(reference.gain(facing))
+    let pointer = Pointer::towards(direction.as_vec3(), Pointer::default());
+    f64::from(reference.gain(pointer))
 }
 
 #[test]

@@ -6,10 +6,10 @@ use common::strategies::{arms_of, config, limits, points, references};
 use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
-use ik_arm::kinematics::ik::{Ik, Solved};
+use ik_arm::kinematics::ik::{Ik, IkSolution, IkState};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
-use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone};
+use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone};
 use proptest::prelude::*;
 
 fn softenings() -> impl Strategy<Value = SoftReach> {
@@ -34,7 +34,7 @@ proptest! {
     ) {
         let plain = bones.solve(cursor, spin);
         let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
-        let pose = ik.solve(cursor, spin, Facing::default(), None).pose;
+        let pose = ik.solve(cursor, spin, IkState::default()).pose;
         prop_assert_eq!(bits(pose.elbow), bits(plain.elbow));
         prop_assert_eq!(bits(pose.hand), bits(plain.hand));
         prop_assert_eq!(pose, plain);
@@ -47,7 +47,7 @@ proptest! {
     ) {
         let hard = Ik { bones, reference, soft_reach: SoftReach::default() };
         let soft = Ik { soft_reach, ..hard };
-        let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, spin, Facing::default(), None));
+        let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, spin, IkState::default()));
         prop_assert!(hard.pose.outward().distance(soft.pose.outward()) < 1e-6);
         prop_assert_eq!(hard.transported, soft.transported);
     }
@@ -57,8 +57,8 @@ proptest! {
         bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32, reference in references(points(25.0))
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
-        let Solved { pose, transported, .. } = ik.solve(cursor, spin, Facing::default(), None);
-        let (w, e) = (pose.facing.direction.as_dvec3(), transported.outward.as_dvec3());
+        let IkSolution { pose, transported, .. } = ik.solve(cursor, spin, IkState::default());
+        let (w, e) = (pose.pointer.direction.as_dvec3(), transported.outward.as_dvec3());
         let (sin, cos) = f64::from(spin).sin_cos();
         let expected = e * cos + w.cross(e) * sin;
         let elbow = w * f64::from(pose.along) + expected * f64::from(pose.out);
@@ -71,7 +71,7 @@ proptest! {
         bones in arms_of(1.0..10.0), cursor in points(25.0), reference in references(points(25.0)), soft_reach in softenings()
     ) {
         let ik = Ik { bones, reference, soft_reach };
-        let pose = ik.solve(cursor, 0.3, Facing::default(), None).pose;
+        let pose = ik.solve(cursor, 0.3, IkState::default()).pose;
         let (l, sigma) = (limits(bones).1, f64::from(pose.stretch));
         let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
         let asked = cursor.as_dvec3();
@@ -88,8 +88,8 @@ proptest! {
             off if off.abs() < 0.5e-6 => Some(Reach::Reached),
             _ => None,
         };
-        prop_assert!(expected.is_none_or(|reach| reach == pose.reach), "{:?} off by {}", pose.reach, short);
-        prop_assert!(pose.reach != Reach::Reached || hand.distance(asked) < 3e-6 * l);
+        prop_assert!(expected.is_none_or(|reach| Some(reach) == pose.reach), "{:?} off by {}", pose.reach, short);
+        prop_assert!(pose.reach != Some(Reach::Reached) || hand.distance(asked) < 3e-6 * l);
     }
 
     #[test]
@@ -99,10 +99,10 @@ proptest! {
     ) {
         let from = Ik { bones, reference: from, soft_reach };
         let to = Ik { reference: to, ..from };
-        let solved = from.solve(cursor, spin, Facing::default(), None);
+        let solved = from.solve(cursor, spin, IkState::default());
         let (cursor, spin) = to.matching(&solved.pose, None);
         prop_assert!((0.0..TAU as f32).contains(&spin));
-        let again = to.solve(cursor, spin, solved.pose.facing, None).pose;
+        let again = to.solve(cursor, spin, IkState { pointer: solved.pose.pointer, transported: None }).pose;
         let l = limits(bones).1;
         let hand = again.hand.as_dvec3().distance(solved.pose.hand.as_dvec3());
         let stretched = f64::from(solved.pose.stretch) * l;
@@ -166,17 +166,15 @@ fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
         cursor.length() > 0.05 * l && !near
     };
     let gain = |cursor: DVec3| {
-        let facing = Facing::towards(cursor.as_vec3(), Facing::default());
-        f64::from(ik.reference.gain(facing))
+        let pointer = Pointer::towards(cursor.as_vec3(), Pointer::default());
+        f64::from(ik.reference.gain(pointer))
     };
     let mut worst: f64 = 0.0;
-    let mut last: Option<(DVec3, Solved)> = None;
+    let mut last: Option<(DVec3, IkSolution)> = None;
     for step in 0..=STEPS {
         let cursor = way.at(TAU * step as f64 / STEPS as f64) * l;
-        let (facing, transported) = last.map_or((Facing::default(), None), |(_, solved)| {
-            (solved.pose.facing, Some(solved.transported))
-        });
-        let solved = ik.solve(cursor.as_vec3(), 0.7, facing, transported);
+        let state = last.map_or_else(IkState::default, |(_, solved)| solved.state());
+        let solved = ik.solve(cursor.as_vec3(), 0.7, state);
         if let Some((before, was)) = last
             && counts(before)
             && counts(cursor)
@@ -227,9 +225,8 @@ fn speed_beside_vertical(reference: TwistReference, aside: f32) -> f64 {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let ik = Ik { bones, reference, soft_reach: soft(0.2, 1.0, 0.0) };
     let step = 0.1 * aside;
-    let elbow = |x: f32| {
-        ik.solve(Vec3::new(x, 1.2, aside), 0.0, Facing::default(), None).pose.elbow.as_dvec3()
-    };
+    let elbow =
+        |x: f32| ik.solve(Vec3::new(x, 1.2, aside), 0.0, IkState::default()).pose.elbow.as_dvec3();
     elbow(-0.5 * step).distance(elbow(0.5 * step)) / f64::from(step)
 }
 
@@ -250,7 +247,7 @@ fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let speed = |soft_reach, from: f32| {
         let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
-        let elbow = |x| ik.solve(Vec3::X * x, 0.0, Facing::default(), None).pose.elbow.as_dvec3();
+        let elbow = |x| ik.solve(Vec3::X * x, 0.0, IkState::default()).pose.elbow.as_dvec3();
         elbow(from).distance(elbow(2.0)) / f64::from(2.0 - from)
     };
     for (near, bound) in [(1e-2, 5.0), (1e-4, 50.0), (1e-6, 500.0)] {
@@ -264,7 +261,7 @@ fn transport_without_a_past_begins_on_the_map() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let solve = |reference| {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
-        ik.solve(Vec3::new(0.3, 0.9, -0.4), 0.5, Facing::default(), None)
+        ik.solve(Vec3::new(0.3, 0.9, -0.4), 0.5, IkState::default())
     };
     let map = TwistReference::Stereographic(Stereographic::default());
     assert_eq!(solve(TwistReference::Transport), solve(map));
@@ -277,7 +274,7 @@ fn a_cursor_farther_than_numbers_go_is_not_reached() {
     let cursor = Vec3::new(0.0, FAR, FAR);
     let bones = TwoBone::new(1.0, FAR).expect("lengths");
     let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: soft(0.1, 1.0, 0.0) };
-    let pose = ik.solve(cursor, 0.0, Facing::default(), None).pose;
-    assert_eq!(pose.reach, Reach::TooFar);
+    let pose = ik.solve(cursor, 0.0, IkState::default()).pose;
+    assert_eq!(pose.reach, Some(Reach::TooFar));
     assert!((pose.hand.as_dvec3().length() / f64::from(FAR) - 1.0).abs() < 0.1, "{}", pose.hand);
 }

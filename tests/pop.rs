@@ -7,11 +7,11 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::ik::Ik;
+use ik_arm::kinematics::ik::{Ik, IkState};
 use ik_arm::kinematics::pop::{Change, Moment, Pop, Step};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
-use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
 use proptest::prelude::*;
 
 fn map() -> TwistReference {
@@ -29,10 +29,10 @@ fn arm(reference: TwistReference, softness: f32) -> Ik {
 
 /// Moments of a drag: each pose continues from the one before.
 fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Moment> {
-    let (mut facing, mut transported) = (Facing::default(), None);
+    let mut state = IkState::default();
     let poses = cursors.into_iter().map(|cursor| {
-        let solved = ik.solve(cursor, 0.0, facing, transported);
-        (facing, transported) = (solved.pose.facing, Some(solved.transported));
+        let solved = ik.solve(cursor, 0.0, state);
+        state = solved.state();
         Moment {
             pose: solved.pose,
             cursor,
@@ -232,8 +232,8 @@ fn references() -> impl Strategy<Value = TwistReference> {
 
 /// Where an elbow is sure in f32.
 fn is_well_placed(ik: &Ik, cursor: Vec3) -> bool {
-    let facing = Facing::towards(cursor, Facing::default());
-    ik.reference.gain(facing) < 10.0
+    let pointer = Pointer::towards(cursor, Pointer::default());
+    ik.reference.gain(pointer) < 10.0
 }
 
 proptest! {

@@ -256,7 +256,9 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
 fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
     prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
     prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor_in_root().is_finite());
-    prop_assert!(arm.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3));
+    prop_assert!(
+        arm.ik_state.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3)
+    );
     let bones =
         [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
     let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);

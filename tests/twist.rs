@@ -7,13 +7,13 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use ik_arm::kinematics::twist::{
-    Stereographic, TransportedFrame, TwistReference, angle_from_limb, respun,
+    Stereographic, TransportedFrame, TwistReference, angle_from_limb, remeasured,
 };
-use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
 use proptest::prelude::*;
 
-fn facing(w: DVec3) -> Facing {
-    Facing::towards(w.as_vec3(), Facing::default())
+fn pointer(w: DVec3) -> Pointer {
+    Pointer::towards(w.as_vec3(), Pointer::default())
 }
 
 const POLE: Vec3 = Vec3::new(30.0, -250.0, 120.0);
@@ -64,22 +64,22 @@ proptest! {
 
     #[test]
     fn every_reference_is_a_unit_vector_at_right_angles_to_the_pointer(w in uniform_directions()) {
-        let facing = facing(w);
-        let last = TransportedFrame::new(facing);
+        let pointer = pointer(w);
+        let last = TransportedFrame::new(pointer);
         for reference in stateless().into_iter().chain([TwistReference::Transport]) {
-            let outward = reference.outward(facing, Some(last));
+            let outward = reference.outward(pointer, Some(last));
             prop_assert!((outward.length() - 1.0).abs() < 1e-6, "{reference:?}");
-            prop_assert!(outward.dot(facing.direction).abs() < 1e-6, "{reference:?}");
+            prop_assert!(outward.dot(pointer.direction).abs() < 1e-6, "{reference:?}");
         }
     }
 
     #[test]
     fn every_reference_is_what_its_formula_says(w in uniform_directions()) {
-        let facing = facing(w);
+        let pointer = pointer(w);
         for reference in stateless() {
-            if reference.gain(facing) < 1e3 {
-                let expected = twin(reference, facing.direction.as_dvec3());
-                let found = reference.outward(facing, None).as_dvec3();
+            if reference.gain(pointer) < 1e3 {
+                let expected = twin(reference, pointer.direction.as_dvec3());
+                let found = reference.outward(pointer, None).as_dvec3();
                 prop_assert!(found.distance(expected) < 1e-3, "{reference:?}: {found}");
             }
         }
@@ -89,7 +89,7 @@ proptest! {
     fn the_gain_is_the_worst_turn_against_transport_for_a_turn_of_the_pointer(w in uniform_directions()) {
         const STEP: f64 = 1e-5;
         for reference in stateless() {
-            let gain = f64::from(reference.gain(facing(w)));
+            let gain = f64::from(reference.gain(pointer(w)));
             if gain > 100.0 {
                 continue;
             }
@@ -109,7 +109,7 @@ proptest! {
 
     #[test]
     fn transport_is_the_least_turn(w in uniform_directions(), to in uniform_directions()) {
-        let from = TransportedFrame::new(facing(w));
+        let from = TransportedFrame::new(pointer(w));
         let transported = from.to(to.as_vec3());
         if w.dot(to) > -0.999 {
             let expected = self::transported(from.outward.as_dvec3(), w, to);
@@ -125,7 +125,7 @@ proptest! {
     ) {
         // Not near half turns, where the least turn is not defined.
         prop_assume!(a.dot(b) > -0.9 && b.dot(c) > -0.9 && c.dot(a) > -0.9);
-        let start = TransportedFrame::new(facing(a));
+        let start = TransportedFrame::new(pointer(a));
         let end = start.to(b.as_vec3()).to(c.as_vec3()).to(a.as_vec3());
         let turned = turn(start.outward.as_dvec3(), end.outward.as_dvec3(), a);
         // Van Oosterom and Strackee.
@@ -138,18 +138,18 @@ proptest! {
     fn another_reference_leaves_the_elbow_where_it_is(
         w in uniform_directions(), spin in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
     ) {
-        let (arm, facing) = (TwoBone::new(200.0, 300.0).expect("lengths"), facing(w));
+        let (arm, pointer) = (TwoBone::new(200.0, 300.0).expect("lengths"), pointer(w));
         let cursor = (w * length).as_vec3();
-        let last = Some(TransportedFrame::new(facing));
+        let last = Some(TransportedFrame::new(pointer));
         let all = stateless().into_iter().chain([TwistReference::Transport]);
-        let angles: Vec<f32> = all.map(|reference| reference.angle(facing, last)).collect();
+        let angles: Vec<f32> = all.map(|reference| reference.angle(pointer, last)).collect();
         let elbow = arm.solve(cursor, spin + angles[0]).elbow;
         for from in &angles {
-            let spin = respun(spin, angles[0], *from);
+            let spin = remeasured(spin, angles[0], *from);
             for to in &angles {
-                let respun = respun(spin, *from, *to);
-                prop_assert!((0.0..std::f32::consts::TAU).contains(&respun));
-                let moved = arm.solve(cursor, respun + to).elbow.distance(elbow);
+                let again = remeasured(spin, *from, *to);
+                prop_assert!((0.0..std::f32::consts::TAU).contains(&again));
+                let moved = arm.solve(cursor, again + to).elbow.distance(elbow);
                 prop_assert!(moved < 5e-3, "moved by {moved}");
             }
         }
@@ -159,8 +159,8 @@ proptest! {
 #[test]
 fn a_stereographic_elbow_is_up_when_the_hand_is_in_front() {
     let map = TwistReference::Stereographic(Stereographic::default());
-    assert_eq!(map.outward(Facing::default(), None), Vec3::Y);
-    assert_eq!(map.gain(Facing::default()), 0.0);
+    assert_eq!(map.outward(Pointer::default(), None), Vec3::Y);
+    assert_eq!(map.gain(Pointer::default()), 0.0);
 }
 
 #[test]
@@ -172,16 +172,16 @@ fn singular_directions_have_an_infinite_gain_and_take_what_is_carried() {
         (TwistReference::Pole(Vec3::ZERO), Vec3::X),
         (TwistReference::Stereographic(Stereographic::default()), Vec3::NEG_X),
     ] {
-        let facing = Facing::towards(w, Facing::default());
-        assert_eq!(reference.gain(facing), f32::INFINITY, "{reference:?} at {w}");
-        let expected = transported.to(facing.direction).outward;
-        assert_eq!(reference.outward(facing, Some(transported)), expected, "{reference:?} at {w}");
-        assert_eq!(reference.outward(facing, None), facing.limb_frame().y_axis);
+        let pointer = Pointer::towards(w, Pointer::default());
+        assert_eq!(reference.gain(pointer), f32::INFINITY, "{reference:?} at {w}");
+        let expected = transported.to(pointer.direction).outward;
+        assert_eq!(reference.outward(pointer, Some(transported)), expected, "{reference:?} at {w}");
+        assert_eq!(reference.outward(pointer, None), pointer.limb_frame().y_axis);
     }
     for w in [Vec3::Y, Vec3::NEG_Y] {
-        let facing = Facing::towards(w, Facing::default());
-        assert_eq!(TwistReference::Limb.gain(facing), f32::INFINITY);
-        assert!(TwistReference::Limb.outward(facing, None).is_finite());
+        let pointer = Pointer::towards(w, Pointer::default());
+        assert_eq!(TwistReference::Limb.gain(pointer), f32::INFINITY);
+        assert!(TwistReference::Limb.outward(pointer, None).is_finite());
     }
 }
 
@@ -195,7 +195,7 @@ fn between_opposite_pointers_what_is_carried_stays() {
 #[test]
 fn what_is_carried_nowhere_stays_bit_for_bit() {
     for cursor in [Vec3::new(0.3, 0.9, -0.4), Vec3::new(-250.0, 1.0, 3.0), Vec3::Y] {
-        let transported = TransportedFrame::new(Facing::towards(cursor, Facing::default()));
+        let transported = TransportedFrame::new(Pointer::towards(cursor, Pointer::default()));
         assert_eq!(transported.to(transported.direction), transported);
     }
 }
@@ -206,9 +206,9 @@ fn beside_its_singular_direction_the_map_is_as_exact_as_elsewhere() {
         // Two directions that are the same but for the rounding of their lengths.
         let w = Vec3::new(-1.0, aside, 0.7 * aside).normalize();
         let longer =
-            Facing { direction: w * (1.0 + f32::EPSILON), heading: facing(w.as_dvec3()).heading };
+            Pointer { direction: w * (1.0 + f32::EPSILON), heading: pointer(w.as_dvec3()).heading };
         let map = TwistReference::Stereographic(Stereographic::default());
-        let same = Facing { direction: w, ..longer };
+        let same = Pointer { direction: w, ..longer };
         let apart = map.outward(longer, None).distance(map.outward(same, None));
         assert!(f64::from(apart) < 1e-6 / f64::from(aside), "{apart} at {aside}");
     }
@@ -225,9 +225,9 @@ fn a_map_needs_two_directions() {
 
 #[test]
 fn the_limbs_reference_is_the_seeds() {
-    let facing = Facing::towards(Vec3::new(1.0, 2.0, -0.5), Facing::default());
-    assert_eq!(TwistReference::Limb.angle(facing, None), 0.0);
-    let limb = facing.limb_frame();
-    assert_eq!(angle_from_limb(facing, limb.y_axis), 0.0);
-    assert!((angle_from_limb(facing, limb.z_axis) - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    let pointer = Pointer::towards(Vec3::new(1.0, 2.0, -0.5), Pointer::default());
+    assert_eq!(TwistReference::Limb.angle(pointer, None), 0.0);
+    let limb = pointer.limb_frame();
+    assert_eq!(angle_from_limb(pointer, limb.y_axis), 0.0);
+    assert!((angle_from_limb(pointer, limb.z_axis) - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
 }

@@ -9,7 +9,7 @@ use common::strategies::{
     limb_rotation, limits, out_of_reach, within, yaw_and_pitch,
 };
 use glam::{DMat3, DVec3, Vec2, Vec3};
-use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
+use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
@@ -26,7 +26,7 @@ struct Twin {
 }
 
 impl Twin {
-    fn new(arm: TwoBone, asked: f64, facing: (f64, f64), spin: f32) -> Self {
+    fn new(arm: TwoBone, asked: f64, pointer: (f64, f64), spin: f32) -> Self {
         let (upper, lower) = bones(arm);
         let (inner, outer) = limits(arm);
         let (distance, difference) = (asked.clamp(inner, outer), upper - lower);
@@ -38,7 +38,7 @@ impl Twin {
         let shoulder_angle =
             if distance == 0.0 { FRAC_PI_2 } else { 2.0 * near.sqrt().atan2(far.sqrt()) };
         let elbow_socket = DMat3::from_rotation_z(shoulder_angle) * (DVec3::X * upper);
-        let socket = limb_rotation(facing) * DMat3::from_rotation_x(spin.into());
+        let socket = limb_rotation(pointer) * DMat3::from_rotation_x(spin.into());
         Self {
             distance,
             shoulder_angle,
@@ -56,7 +56,7 @@ impl Twin {
     }
 }
 
-/// Compares points and limb lengths with the twin's, where the caller knows the facing.
+/// Compares points and limb lengths with the twin's, where the caller knows the pointer.
 fn agrees(pose: &TwoBonePose, arm: TwoBone, twin: &Twin) -> TestCaseResult {
     let length = limits(arm).1;
     let (elbow, hand) = (pose.elbow.as_dvec3(), pose.hand.as_dvec3());
@@ -89,7 +89,7 @@ proptest! {
     #[test]
     fn between_the_limits_the_hand_is_the_cursor_bit_for_bit(case in in_reach()) {
         let pose = case.solve();
-        prop_assert_eq!(pose.reach, Reach::Reached);
+        prop_assert_eq!(pose.reach, Some(Reach::Reached));
         prop_assert_eq!(bits(pose.hand), bits(case.cursor));
     }
 
@@ -98,9 +98,9 @@ proptest! {
         case in out_of_reach()
     ) {
         let pose = case.solve();
-        prop_assert_eq!(pose.reach, reach(case.arm, case.cursor));
+        prop_assert_eq!(pose.reach.unwrap(), reach(case.arm, case.cursor));
         let (inner, outer) = limits(case.arm);
-        let limit = if pose.reach == Reach::TooFar { outer } else { inner };
+        let limit = if pose.reach == Some(Reach::TooFar) { outer } else { inner };
         let hand = pose.hand.as_dvec3();
         let line = case.cursor.as_dvec3().try_normalize().unwrap_or(DVec3::X);
         within("hand from the sphere", (hand.length() - limit).abs(), EXACT * outer)?;
@@ -133,7 +133,7 @@ proptest! {
     #[test]
     fn spinning_turns_the_elbow_about_the_pointer_and_leaves_the_hand(case in anywhere()) {
         let (still, spun) = (Case { spin: 0.0, ..case }.solve(), case.solve());
-        let unspun = TwoBonePose { elbow: still.elbow, spin: still.spin, ..spun };
+        let unspun = TwoBonePose { elbow: still.elbow, twist: still.twist, ..spun };
         prop_assert_eq!(unspun, still, "more than the elbow moved");
 
         let axis = case.cursor.as_dvec3().try_normalize().unwrap_or(DVec3::X);
@@ -198,9 +198,9 @@ proptest! {
         let last = last.as_vec3();
         for (pose, way) in [
             (arm.solve(Vec3::ZERO, spin), Vec3::X),
-            (arm.solve_from(Vec3::ZERO, spin, arm.solve(last, 0.0).facing), last),
+            (arm.solve_from(Vec3::ZERO, spin, arm.solve(last, 0.0).pointer), last),
         ] {
-            prop_assert_eq!(pose.reach, if equal { Reach::Reached } else { Reach::TooClose });
+            prop_assert_eq!(pose.reach.unwrap(), if equal { Reach::Reached } else { Reach::TooClose });
             agrees(&pose, arm, &Twin::new(arm, 0.0, yaw_and_pitch(way), spin))?;
         }
     }
@@ -215,7 +215,7 @@ proptest! {
         let last = last.as_vec3();
         for (pose, yaw) in [
             (arm.solve(cursor, spin), 0.0),
-            (arm.solve_from(cursor, spin, arm.solve(last, 0.0).facing), yaw_and_pitch(last).0),
+            (arm.solve_from(cursor, spin, arm.solve(last, 0.0).pointer), yaw_and_pitch(last).0),
         ] {
             agrees(&pose, arm, &Twin::new(arm, height.into(), (yaw, pitch), spin))?;
         }
@@ -226,7 +226,7 @@ proptest! {
         arm in arms(), axis in either_sign(prop::sample::select(&Vec3::AXES)),
     ) {
         let (inner, outer) = (arm.inner_limit(), arm.outer_limit());
-        let reach = |radius: f32| arm.solve(axis * radius, 1.0).reach;
+        let reach = |radius: f32| arm.solve(axis * radius, 1.0).reach.unwrap();
         prop_assert_eq!(reach(outer), Reach::Reached);
         prop_assert_eq!(reach(outer.next_up()), Reach::TooFar);
         prop_assert_eq!(reach(inner), Reach::Reached);
@@ -245,10 +245,10 @@ proptest! {
         let arm = TwoBone::new(upper, if equal { upper } else { lower }).unwrap();
         let cursor = Vec3::from_array(cursor);
         let pose = arm.solve(cursor, spin);
-        let TwoBonePose { elbow, hand, distance, along, out, facing, .. } = pose;
+        let TwoBonePose { elbow, hand, distance, along, out, pointer, .. } = pose;
         prop_assert!(elbow.is_finite() && hand.is_finite(), "{:?}", pose);
         prop_assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{:?}", pose);
-        prop_assert!(facing.direction.is_normalized() && facing.heading.is_normalized());
+        prop_assert!(pointer.direction.is_normalized() && pointer.heading.is_normalized());
         prop_assert!((0.0..=PI as f32).contains(&pose.shoulder_angle()));
         prop_assert!(pose.yaw().is_finite() && pose.pitch().is_finite());
         prop_assert!(pose.elbow_angle().is_finite() && arm.outer_limit().is_finite());
@@ -257,7 +257,7 @@ proptest! {
         within("upper length", length_error, EXACT * outer + f64::from(f32::from_bits(2)))?;
         let asked = cursor.as_dvec3().length();
         if [inner, outer].iter().all(|limit| (asked - limit).abs() > 8.0 * U * limit) {
-            prop_assert_eq!(pose.reach, reach(arm, cursor));
+            prop_assert_eq!(pose.reach.unwrap(), reach(arm, cursor));
         }
     }
 
@@ -305,7 +305,7 @@ fn a_cursor_that_is_not_finite_is_the_callers_mistake() {
 
 #[test]
 fn an_arm_that_keeps_no_facing_faces_x() {
-    assert_eq!(Facing::default(), Facing { direction: Vec3::X, heading: Vec2::X });
+    assert_eq!(Pointer::default(), Pointer { direction: Vec3::X, heading: Vec2::X });
 }
 
 #[test]
@@ -328,7 +328,7 @@ fn poses_agree_with_the_original_program() {
         let hand_error = (root + pose.hand.as_dvec3()).distance(point("hand_world"));
         assert!(elbow_error <= at_elbow, "elbow off by {elbow_error}: {row}");
         assert!(hand_error <= at_hand, "hand off by {hand_error}: {row}");
-        assert_eq!(pose.reach == Reach::Reached, between, "{row}");
+        assert_eq!(pose.reach == Some(Reach::Reached), between, "{row}");
         reached += usize::from(between);
     }
     assert_eq!((poses["poses"].as_array().unwrap().len(), reached), (100, 61));
@@ -347,7 +347,7 @@ fn too_close_folds_the_arm_along_the_line_to_the_cursor() {
         (30.0, 1.0, Vec3::new(-8.0, 12.0, 24.0), sevenths * Vec3::new(-1.0, 1.0, 1.0)),
     ] {
         let pose = TwoBone::new(upper, lower).unwrap().solve(cursor, 1.0);
-        assert_eq!(pose.reach, Reach::TooClose);
+        assert_eq!(pose.reach, Some(Reach::TooClose));
         // A longer upper bone points at the cursor, a shorter one away from it.
         let elbow = way * if upper > lower { upper } else { -upper };
         let bound = EXACT as f32 * (upper + lower);

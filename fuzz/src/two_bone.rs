@@ -2,10 +2,10 @@ use core::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 use ik_arm::kinematics::fk::{Fk, blended};
-use ik_arm::kinematics::ik::{Ik, Solved};
+use ik_arm::kinematics::ik::{Ik, IkSolution, IkState};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame, TwistReference};
-use ik_arm::kinematics::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
+use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 
 use super::bits::Bits;
 use super::job::job;
@@ -62,7 +62,7 @@ fn reference(bits: &mut Bits<'_>) -> TwistReference {
 
 /// The seed's arm, first without a past and then with one.
 fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
-    let mut last = Facing::default();
+    let mut last = Pointer::default();
     for cursor in [first, second] {
         let pose = bones.solve_from(cursor, spin, last);
         is_whole(&pose);
@@ -71,45 +71,50 @@ fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
         let [inner, outer] = limits(bones);
         let bound = EXACT * outer + TINY;
         match pose.reach {
-            Reach::Reached => {
+            Some(Reach::Reached) => {
                 assert_eq!(pose.hand, cursor);
                 assert!(inner - bound <= asked && asked <= outer + bound, "{pose:?}");
             }
-            Reach::TooFar => assert!(asked >= outer - bound, "{pose:?}"),
-            Reach::TooClose => {
+            Some(Reach::TooFar) => assert!(asked >= outer - bound, "{pose:?}"),
+            Some(Reach::TooClose) => {
                 assert!(asked <= inner + bound && hand >= inner - bound, "{pose:?}");
             }
+            None => panic!("no reach: {pose:?}"),
         }
-        last = pose.facing;
+        last = pose.pointer;
     }
 }
 
 /// With all its choices, from one cursor to the next.
-fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> Solved {
-    let one = ik.solve(first, spin, Facing::default(), None);
-    let two = ik.solve(second, spin, one.pose.facing, Some(one.transported));
+fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> IkSolution {
+    let one = ik.solve(first, spin, IkState::default());
+    let two = ik.solve(second, spin, one.state());
     for (cursor, solved) in [(first, one), (second, two)] {
-        let Solved { pose, transported, slope } = solved;
+        let IkSolution { pose, transported, slope } = solved;
         is_whole(&pose);
         is_frame(transported);
         let most = ik.soft_reach.max_stretch();
         assert!((0.0..=most).contains(&slope), "{slope}");
         assert!((1.0..=most).contains(&pose.stretch), "{pose:?}");
-        assert!(ik.reference.gain(pose.facing) >= 0.0);
+        assert!(ik.reference.gain(pose.pointer) >= 0.0);
         has_its_lengths(&pose, ik.bones.stretched(pose.stretch), 2.0 * EXACT);
         let missed = pose.hand.as_dvec3().distance(cursor.as_dvec3());
         let length = limits(ik.bones)[1] * f64::from(pose.stretch);
         let is_there = missed <= 3.0 * REACHED * length + TINY;
-        assert!(pose.reach != Reach::Reached || is_there, "{cursor} is off by {missed}: {pose:?}");
+        assert!(
+            pose.reach != Some(Reach::Reached) || is_there,
+            "{cursor} is off by {missed}: {pose:?}"
+        );
     }
     two
 }
 
 /// The cursor and the spin of a pose lead to it again.
-fn found_again(ik: Ik, Solved { pose, transported, .. }: &Solved) {
-    let (cursor, spin) = ik.matching(pose, Some(*transported));
+fn found_again(ik: Ik, solved: &IkSolution) {
+    let pose = &solved.pose;
+    let (cursor, spin) = ik.matching(pose, Some(solved.transported));
     assert!(cursor.is_finite() && (0.0..TAU).contains(&spin), "{cursor}, {spin}");
-    let again = ik.solve(cursor, spin, pose.facing, Some(*transported)).pose;
+    let again = ik.solve(cursor, spin, solved.state()).pose;
     is_whole(&again);
     let length = limits(ik.bones)[1] * f64::from(pose.stretch);
     if length <= LARGEST {
@@ -126,14 +131,14 @@ fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &TwoBonePose) {
     let last = Fk { shoulder: bits.finite_vector(), bend: bits.finite(), stretch: 1.0 };
     let fk = Fk::matching(pose, last);
     assert!(fk.shoulder.is_finite() && fk.bend.is_finite() && fk.stretch.is_finite(), "{fk:?}");
-    let again = fk.pose(bones, pose.facing);
+    let again = fk.pose(bones, pose.pointer);
     is_whole(&again);
     let length = limits(bones)[1] * f64::from(pose.stretch);
     if length <= LARGEST {
         let off = again.hand.as_dvec3().distance(pose.hand.as_dvec3());
         assert!(off <= REACHED * length + TINY, "off by {off}: {again:?}, not {pose:?}");
     }
-    let any = last.pose(bones, pose.facing);
+    let any = last.pose(bones, pose.pointer);
     is_whole(&any);
     has_its_lengths(&any, bones, EXACT);
     let between = blended(last, pose, bits.number(), bones, pose.hand);
@@ -157,13 +162,13 @@ fn limits(bones: TwoBone) -> [f64; 2] {
 }
 
 fn is_whole(pose: &TwoBonePose) {
-    let TwoBonePose { elbow, hand, distance, along, out, facing, .. } = pose;
+    let TwoBonePose { elbow, hand, distance, along, out, pointer, .. } = pose;
     assert!(elbow.is_finite() && hand.is_finite(), "{pose:?}");
     assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{pose:?}");
     assert!(*distance >= 0.0 && *out >= 0.0, "{pose:?}");
-    assert!(facing.direction.is_normalized() && facing.heading.is_normalized(), "{pose:?}");
+    assert!(pointer.direction.is_normalized() && pointer.heading.is_normalized(), "{pose:?}");
     assert!((0.0..=PI).contains(&pose.shoulder_angle()), "{pose:?}");
-    let angles = [pose.yaw(), pose.pitch(), pose.elbow_angle(), pose.spin, pose.stretch];
+    let angles = [pose.yaw(), pose.pitch(), pose.elbow_angle(), pose.twist, pose.stretch];
     assert!(angles.into_iter().all(f32::is_finite), "{pose:?}");
 }
 

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::document::{Display, Overlay, Theme};
 use crate::export::ExportOptions;
-use crate::kinematics::two_bone::{LengthError, TwoBone};
+use crate::kinematics::two_bone::TwoBone;
 
 /// Rule that the text of an argument breaks. The command line names the argument and its text.
 #[derive(Debug, Error, PartialEq)]
@@ -21,8 +21,8 @@ pub enum ArgumentError {
     Number,
     #[error("time must be a finite number of seconds")]
     Time,
-    #[error(transparent)]
-    Length(#[from] LengthError),
+    #[error("limb length is {0}; it must be a finite number above 0")]
+    Length(f32),
     #[error("guides must be some of cursor, pointer, inner, outer, or none alone, got {0:?}")]
     Guide(String),
 }
@@ -100,7 +100,7 @@ impl FromStr for LengthArgument {
         let NumberArgument(length) = text.parse()?;
         TwoBone::new(length, length)
             .map(|bones| Self(bones.upper()))
-            .map_err(|_| ArgumentError::Length(LengthError { bone: "limb", value: length }))
+            .map_err(|_| ArgumentError::Length(length))
     }
 }
 

@@ -2,11 +2,11 @@ use glam::Vec3;
 
 use super::cursor::Cursor;
 use super::hand_orientation::HandOrientation;
-use super::twist_reference::TwistReferenceKind;
 use crate::kinematics::fk::Fk;
+use crate::kinematics::ik::IkState;
 use crate::kinematics::soft_reach::SoftReach;
-use crate::kinematics::twist::TransportedFrame;
-use crate::kinematics::two_bone::{Facing, LengthError, TwoBone, TwoBonePose};
+use crate::kinematics::twist::TwistReferenceKind;
+use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone, TwoBonePose};
 use crate::rig::ArmRig;
 
 /// The arm: what poses it, and the state that its next solve starts from.
@@ -20,16 +20,13 @@ pub struct Arm {
     pub root: Vec3,
     /// Lengths of the limbs.
     pub bones: TwoBone,
-    /// Last facing of the Pointer: used where the Cursor is at the shoulder and gives none.
-    pub facing: Facing,
     /// Kind of the twist reference.
     pub twist_reference: TwistReferenceKind,
     /// Point in Root space that the elbow turns to with [`TwistReferenceKind::Pole`].
     pub pole: Vec3,
-    /// Last direction that the twist was measured from. Transport continues from it; Pole and
-    /// Stereographic use it where they are singular. `None` with Transport starts from the
-    /// stereographic direction.
-    pub transported: Option<TransportedFrame>,
+    /// State that the next solve starts from. Without a transported frame,
+    /// [`TwistReferenceKind::Transport`] starts from the stereographic direction.
+    pub ik_state: IkState,
     /// Soft limits and stretch.
     pub soft_reach: SoftReach,
     /// Influence of IK (hand → joint angles) over FK (joint angles → hand): 0 is FK alone, 1 is IK alone.
@@ -53,10 +50,12 @@ impl Arm {
             twist: 0.0,
             root: Vec3::ZERO,
             bones: TwoBone::new(upper, lower)?,
-            facing: Facing::towards(cursor, Facing::default()),
             twist_reference: TwistReferenceKind::default(),
             pole: Vec3::new(100.0, 300.0, -100.0),
-            transported: None,
+            ik_state: IkState {
+                pointer: Pointer::towards(cursor, Pointer::default()),
+                transported: None,
+            },
             soft_reach: SoftReach::default(),
             influence: 1.0,
             fk: Fk::default(),

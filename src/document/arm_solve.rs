@@ -1,11 +1,13 @@
 use glam::DMat3;
 
 use super::arm::Arm;
-use super::twist_reference::TwistReferenceKind;
+use crate::kinematics::angle::wrapped;
 use crate::kinematics::fk::{Fk, blended};
-use crate::kinematics::ik::{Ik, Solved};
-use crate::kinematics::twist::{Stereographic, TransportedFrame, TwistReference, respun, wrapped};
-use crate::kinematics::two_bone::{Facing, TwoBonePose};
+use crate::kinematics::ik::{Ik, IkSolution, IkState};
+use crate::kinematics::twist::{
+    Stereographic, TransportedFrame, TwistReference, TwistReferenceKind, remeasured,
+};
+use crate::kinematics::two_bone::{Pointer, TwoBonePose};
 
 /// Solving.
 impl Arm {
@@ -32,8 +34,8 @@ impl Arm {
     }
 
     /// Solves the arm by IK alone.
-    pub fn solve(&self) -> Solved {
-        self.ik().solve(self.cursor_in_root(), self.twist, self.facing, self.transported)
+    pub fn solve(&self) -> IkSolution {
+        self.ik().solve(self.cursor_in_root(), self.twist, self.ik_state)
     }
 
     /// Pose by IK alone with the same twist measured from another kind of reference, which continues
@@ -43,9 +45,12 @@ impl Arm {
         kind: TwistReferenceKind,
         transported: Option<TransportedFrame>,
     ) -> TwoBonePose {
-        let transported = if kind == self.twist_reference { self.transported } else { transported };
+        let state = match kind == self.twist_reference {
+            true => self.ik_state,
+            false => IkState { transported, ..self.ik_state },
+        };
         let ik = Ik { reference: self.reference_for(kind), ..self.ik() };
-        ik.solve(self.cursor_in_root(), self.twist, self.facing, transported).pose
+        ik.solve(self.cursor_in_root(), self.twist, state).pose
     }
 
     /// Pose of the arm: FK and IK, blended by the influence.
@@ -75,29 +80,31 @@ impl Arm {
     /// transported frame yet.
     #[must_use]
     pub fn transported_from(self, previous: &Self) -> Self {
-        let is_new =
-            self.twist_reference == TwistReferenceKind::Transport && self.transported.is_none();
+        let is_new = self.twist_reference == TwistReferenceKind::Transport
+            && self.ik_state.transported.is_none();
         if is_new
             && previous.twist_reference == self.twist_reference
             && previous.cursor_in_root() != self.cursor_in_root()
         {
-            return Self { transported: Some(previous.solve().transported), ..self };
+            let transported = Some(previous.solve().transported);
+            return Self { ik_state: IkState { transported, ..self.ik_state }, ..self };
         }
         self
     }
 
-    /// Stores the state that the next solve starts from: facing, transported frame and forearm roll of
+    /// Stores the state that the next solve starts from: pointer, transported frame and forearm roll of
     /// the present pose.
     #[must_use]
     pub fn with_solve_state(self) -> Self {
         let solved = self.solve();
         let pose = self.blended_with(&solved.pose);
-        let transported = match (self.twist_reference, self.transported) {
+        let transported = match (self.twist_reference, self.ik_state.transported) {
             (TwistReferenceKind::Limb, _) | (TwistReferenceKind::Transport, None) => None,
             _ => Some(solved.transported),
         };
         let hand_orientation = self.hand_orientation.with_roll_in(&pose);
-        Self { facing: solved.pose.facing, transported, hand_orientation, ..self }
+        let ik_state = IkState { transported, ..solved.state() };
+        Self { ik_state, hand_orientation, ..self }
     }
 
     /// Changes the kind of the twist reference, and the twist so that the elbow stays where it is.
@@ -107,8 +114,9 @@ impl Arm {
             return self;
         }
         let pose = self.solve().pose;
-        let to = Self { twist_reference: kind, transported: None, facing: pose.facing, ..self };
-        let twist = respun(pose.spin, 0.0, to.reference().angle(pose.facing, None));
+        let ik_state = IkState { pointer: pose.pointer, transported: None };
+        let to = Self { twist_reference: kind, ik_state, ..self };
+        let twist = remeasured(pose.twist, 0.0, to.reference().angle(pose.pointer, None));
         Self { twist, ..to }.with_solve_state()
     }
 
@@ -125,11 +133,12 @@ impl Arm {
         let pose = self.pose();
         let last = match self.twist_reference {
             TwistReferenceKind::Transport => Some(self.solve().transported),
-            _ => self.transported,
+            _ => self.ik_state.transported,
         };
-        let transported = last.map(|transported| transported.to(pose.facing.direction));
+        let transported = last.map(|transported| transported.to(pose.pointer.direction));
         let (cursor, twist) = self.ik().matching(&pose, transported);
-        let mut arm = Self { twist, influence: 1.0, facing: pose.facing, transported, ..self };
+        let ik_state = IkState { pointer: pose.pointer, transported };
+        let mut arm = Self { twist, influence: 1.0, ik_state, ..self };
         arm.set_cursor(cursor);
         arm.with_solve_state()
     }
@@ -140,10 +149,10 @@ impl Arm {
 impl Arm {
     /// The twist as keys store it.
     pub(super) fn keyed_twist(&self) -> f32 {
-        match self.transported {
+        match self.ik_state.transported {
             Some(transported) if self.twist_reference == TwistReferenceKind::Transport => {
-                let facing = Facing::towards(self.cursor_in_root(), self.facing);
-                self.stereographic_twist(transported.to(facing.direction))
+                let pointer = Pointer::towards(self.cursor_in_root(), self.ik_state.pointer);
+                self.stereographic_twist(transported.to(pointer.direction))
             }
             _ => self.twist,
         }
@@ -153,14 +162,14 @@ impl Arm {
     pub(super) fn set_keyed_twist(&mut self, twist: f32) {
         self.twist = wrapped(twist);
         if self.twist_reference == TwistReferenceKind::Transport {
-            self.transported = None;
+            self.ik_state.transported = None;
         }
     }
 
     /// Ends the transport: measures a transported twist from the stereographic direction, where the
     /// Pointer was last.
     pub(super) fn end_transport(&mut self) {
-        if let Some(transported) = self.transported
+        if let Some(transported) = self.ik_state.transported
             && self.twist_reference == TwistReferenceKind::Transport
         {
             self.set_keyed_twist(self.stereographic_twist(transported));
@@ -168,7 +177,8 @@ impl Arm {
     }
 
     fn stereographic_twist(&self, transported: TransportedFrame) -> f32 {
-        let start = TransportedFrame::new(Facing::towards(transported.direction, self.facing));
-        respun(self.twist, start.turn_to(transported), 0.0)
+        let start =
+            TransportedFrame::new(Pointer::towards(transported.direction, self.ik_state.pointer));
+        remeasured(self.twist, start.turn_to(transported), 0.0)
     }
 }

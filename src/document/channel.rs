@@ -2,8 +2,8 @@ use super::arm::Arm;
 use super::display::Overlay;
 use super::hand_orientation::HandOrientation;
 use super::rig_kind::RigKind;
-use super::twist_reference::TwistReferenceKind;
 use crate::kinematics::skeleton::{JointId, JointRemap};
+use crate::kinematics::twist::TwistReferenceKind;
 
 /// A value of a document that keys animate.
 ///

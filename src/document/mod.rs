@@ -29,8 +29,8 @@ mod shared;
 mod skeleton_rig;
 mod target;
 mod timeline;
-mod twist_reference;
 
+pub use crate::kinematics::twist::TwistReferenceKind;
 pub use arm::Arm;
 pub use camera::{AxisView, Camera};
 pub use channel::{Channel, Quantity};
@@ -46,4 +46,3 @@ pub use shared::Shared;
 pub use skeleton_rig::SkeletonRig;
 pub use target::{Target, TargetMotion, TargetPath};
 pub use timeline::Timeline;
-pub use twist_reference::TwistReferenceKind;

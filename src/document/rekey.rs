@@ -6,8 +6,8 @@ use super::arm::Arm;
 use super::channel::Channel;
 use super::document::Document;
 use super::hand_orientation::HandSpace;
-use super::twist_reference::TwistReferenceKind;
 use crate::kinematics::spline::Spline;
+use crate::kinematics::twist::TwistReferenceKind;
 
 /// Changes of what angles are measured from, at every key.
 impl Document {
@@ -21,7 +21,8 @@ impl Document {
         };
         let mut shift = 0.0;
         for knot in track.knots() {
-            let arm = Arm { transported: None, ..self.arm_at(knot.time) };
+            let mut arm = self.arm_at(knot.time);
+            arm.ik_state.transported = None;
             let measured = arm.with_twist_reference(kind).keyed_twist();
             let (old, turned) = (knot.value.x, measured - knot.value.x);
             shift = turned + ((shift - turned) / TAU).round() * TAU;

@@ -23,10 +23,11 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 use super::euler;
 use super::ik::{length, reach};
 use super::twist::angle_from_limb;
-use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
+use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 
 /// Joint angles of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fk {
     /// Shoulder angles about x, y and z, unwrapped: see [`euler`].
     pub shoulder: Vec3,
@@ -47,9 +48,9 @@ impl Fk {
     /// Angles of a pose, the equivalent ones nearest to `last`.
     #[must_use]
     pub fn matching(pose: &TwoBonePose, last: Self) -> Self {
-        let turned = Turned::of_pose(pose);
+        let turned = ArmRotations::of_pose(pose);
         let last_bend = euler::few_turns(f64::from(last.bend));
-        // A bend that was negative stays so.
+        // A negative bend stays negative.
         let is_back = (last_bend / TAU).round() * TAU > last_bend;
         let (upper, bend) = if is_back && turned.bend > 0.0 {
             (turned.upper * DQuat::from_rotation_x(PI), -turned.bend)
@@ -64,49 +65,51 @@ impl Fk {
         }
     }
 
-    /// The pose of the angles; `last` resolves a yaw or direction that the angles leave open. Its reach
-    /// is always [`Reach::Reached`].
-    pub fn pose(self, bones: TwoBone, last: Facing) -> TwoBonePose {
-        Turned::of_fk(self).pose(bones, last)
+    /// The pose of the angles; `last` resolves a yaw or direction that the angles leave open.
+    /// Angles have no cursor, so its reach is `None`.
+    #[must_use]
+    pub fn pose(self, bones: TwoBone, last: Pointer) -> TwoBonePose {
+        ArmRotations::of_fk(self).pose(bones, last)
     }
 }
 
 /// Rotations of the upper and the lower limb, with +x along the limb and +z the hinge.
 pub fn limb_rotations(pose: &TwoBonePose) -> (DMat3, DMat3) {
-    let Turned { upper, bend, .. } = Turned::of_pose(pose);
+    let ArmRotations { upper, bend, .. } = ArmRotations::of_pose(pose);
     let upper = DMat3::from_quat(upper);
     (upper, upper * DMat3::from_rotation_z(-bend))
 }
 
-/// A blend of FK angles (`weight` 0) and a solved pose (`weight` 1, to which it is clamped). Rotation,
-/// bend and stretch are interpolated.
+/// Blend of FK angles (`influence` 0) and a solved pose (`influence` 1, to which it is clamped).
+/// Rotation, bend and stretch are interpolated.
 ///
-/// The reach is [`Reach::Reached`] only when the hand is within 1e-6·L of the cursor.
+/// The reach is [`Reach::Reached`] when the hand is within 1e-6·L of the cursor.
+#[must_use]
 pub fn blended(
     fk: Fk,
     solved: &TwoBonePose,
-    weight: f32,
+    influence: f32,
     bones: TwoBone,
     cursor: Vec3,
 ) -> TwoBonePose {
-    if weight >= 1.0 {
+    if influence >= 1.0 {
         return *solved;
     }
-    let (fk, ik) = (Turned::of_fk(fk), Turned::of_pose(solved));
-    let between = if weight > 0.0 { fk.to(ik, f64::from(weight)) } else { fk };
-    let pose = between.pose(bones, solved.facing);
+    let (fk, ik) = (ArmRotations::of_fk(fk), ArmRotations::of_pose(solved));
+    let between = if influence > 0.0 { fk.to(ik, f64::from(influence)) } else { fk };
+    let pose = between.pose(bones, solved.pointer);
     let missed = length(pose.hand - cursor);
     let reach = match reach(0.0, missed, bones) {
         Reach::Reached => Reach::Reached,
         _ if pose.distance > length(cursor) => Reach::TooClose,
         _ => Reach::TooFar,
     };
-    TwoBonePose { reach, ..pose }
+    TwoBonePose { reach: Some(reach), ..pose }
 }
 
-/// How the two limbs are turned, in f64: rounding of an angle is felt at the end of a long limb.
+/// Rotations of the two limbs in f64: the end of a long limb magnifies the rounding of an angle.
 #[derive(Clone, Copy)]
-struct Turned {
+struct ArmRotations {
     /// U.
     upper: DQuat,
     /// β, from 0 to π.
@@ -114,7 +117,7 @@ struct Turned {
     stretch: f64,
 }
 
-impl Turned {
+impl ArmRotations {
     fn of_fk(fk: Fk) -> Self {
         let bend = f64::from(fk.bend) % TAU;
         let bend = bend - (bend / TAU).round() * TAU;
@@ -128,8 +131,8 @@ impl Turned {
         let at_shoulder = out.atan2(along);
         let at_hand = out.atan2(distance - along);
         let upper =
-            DMat3::from_cols_array(&pose.facing.limb_frame().to_cols_array().map(f64::from))
-                * DMat3::from_rotation_x(f64::from(pose.spin))
+            DMat3::from_cols_array(&pose.pointer.limb_frame().to_cols_array().map(f64::from))
+                * DMat3::from_rotation_x(f64::from(pose.twist))
                 * DMat3::from_rotation_z(at_shoulder);
         Self {
             upper: DQuat::from_mat3(&upper).normalize(),
@@ -147,7 +150,7 @@ impl Turned {
         }
     }
 
-    fn pose(self, bones: TwoBone, last: Facing) -> TwoBonePose {
+    fn pose(self, bones: TwoBone, last: Pointer) -> TwoBonePose {
         let bones = bones.stretched(self.stretch as f32);
         let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
         let (sin, _) = self.bend.sin_cos();
@@ -161,25 +164,25 @@ impl Turned {
         let (sin, cos) = at_shoulder.sin_cos();
         let direction = axes.x_axis * cos - axes.y_axis * sin;
         let outward = axes.x_axis * sin + axes.y_axis * cos;
-        let facing = Facing {
+        let pointer = Pointer {
             direction: direction.as_vec3().normalize(),
             heading: heading(direction).unwrap_or(last.heading),
         };
         TwoBonePose {
             elbow: saturated(axes.x_axis * upper),
             hand: saturated(direction * distance),
-            reach: Reach::Reached,
+            reach: None,
             distance: saturate(distance),
             along: saturate(upper * cos),
             out: saturate(upper * sin),
-            spin: angle_from_limb(facing, outward.as_vec3()),
+            twist: angle_from_limb(pointer, outward.as_vec3()),
             stretch: self.stretch as f32,
-            facing,
+            pointer,
         }
     }
 }
 
-/// Seen from above; nothing where it stands upright, but for rounding.
+/// Heading of a direction; `None` for a vertical one, to within rounding.
 fn heading(direction: DVec3) -> Option<Vec2> {
     const VERTICAL: f64 = 1e-7;
     let flat = DVec2::new(direction.x, direction.z);

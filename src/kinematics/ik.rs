@@ -14,36 +14,40 @@
 //! hypot( r'·d₁·|D − hₑ| / (D·oₑ),  (d₁ + oₑ·g) / d )
 //! ```
 //!
-//! times as fast as the cursor; r' = dD/dd is [`Solved::slope`], g the reference's
-//! [gain](TwistReference::gain), d how far the cursor is from the shoulder. Where this is unbounded the
+//! times as fast as the cursor; r' = dD/dd is [`IkSolution::slope`], g the reference's
+//! [gain](TwistReference::gain), d the cursor's distance from the shoulder. Where this is unbounded the
 //! elbow pops: at a straight or folded arm without softness (oₑ → 0 while r' = 1), where the reference
 //! is singular (g → ∞), and at a cursor that crosses the shoulder (d → 0).
 
 use glam::Vec3;
 
 use super::soft_reach::SoftReach;
-use super::twist::{TransportedFrame, TwistReference, angle_from_limb, respun};
-use super::two_bone::{Facing, Reach, TwoBone, TwoBonePose};
+use super::twist::{TransportedFrame, TwistReference, angle_from_limb, remeasured};
+use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 
 /// Bones with a twist reference and soft limits.
 ///
 /// ```
 /// use glam::Vec3;
-/// use ik_arm::kinematics::ik::Ik;
+/// use ik_arm::kinematics::ik::{Ik, IkState};
 /// use ik_arm::kinematics::soft_reach::SoftReach;
-/// use ik_arm::kinematics::twist::{TwistReference, Stereographic};
-/// use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+/// use ik_arm::kinematics::twist::{Stereographic, TwistReference};
+/// use ik_arm::kinematics::two_bone::TwoBone;
 ///
 /// let ik = Ik {
 ///     bones: TwoBone::new(200.0, 300.0)?,
 ///     reference: TwistReference::Stereographic(Stereographic::default()),
 ///     soft_reach: SoftReach::new(0.1, 1.0, 0.0)?,
 /// };
-/// let solved = ik.solve(Vec3::new(0.0, 490.0, 0.0), 0.0, Facing::default(), None);
+/// let solved = ik.solve(Vec3::new(0.0, 490.0, 0.0), 0.0, IkState::default());
 /// assert!(solved.pose.distance < 490.0, "the hand lags behind before the arm is straight");
+/// // The next solve continues from this one.
+/// let next = ik.solve(Vec3::new(0.0, 480.0, 10.0), 0.0, solved.state());
+/// assert!(next.pose.elbow.distance(solved.pose.elbow) < 30.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ik {
     /// The two bones.
     pub bones: TwoBone,
@@ -53,9 +57,22 @@ pub struct Ik {
     pub soft_reach: SoftReach,
 }
 
-/// A solved arm, with the state that the next solve continues from.
+/// State of an arm that the next solve continues from: it resolves a cursor without a direction or yaw
+/// and a singular twist reference. The default is an arm without a previous pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct IkState {
+    /// Direction and yaw of the previous pose's Pointer.
+    pub pointer: Pointer,
+    /// The previous twist reference; without one [`TwistReference::Transport`] begins at the
+    /// stereographic direction.
+    pub transported: Option<TransportedFrame>,
+}
+
+/// A solved arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solved {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct IkSolution {
     /// The pose.
     pub pose: TwoBonePose,
     /// The Pointer with the direction from which the twist was measured.
@@ -64,13 +81,17 @@ pub struct Solved {
     pub slope: f32,
 }
 
+impl IkSolution {
+    /// The state from which to solve the next pose.
+    #[must_use]
+    pub fn state(&self) -> IkState {
+        IkState { pointer: self.pose.pointer, transported: Some(self.transported) }
+    }
+}
+
 impl Ik {
-    /// Poses the hand at `cursor` with the elbow at the twist `spin` (ψ) from the reference.
-    ///
-    /// `last` and `transported` are [`TwoBonePose::facing`] and [`Solved::transported`] of the previous
-    /// pose. They resolve a cursor without a direction and a singular reference, and
-    /// [`TwistReference::Transport`] continues from them; without them it begins at the stereographic
-    /// direction.
+    /// Poses the hand at `cursor` with the elbow at the angle `twist` (ψ) from the reference. `last`
+    /// is the [state](IkSolution::state) of the previous pose.
     ///
     /// With softness or stretch the hand is [`Reach::Reached`] when it is within 1e-6·L of the
     /// cursor.
@@ -78,32 +99,27 @@ impl Ik {
     /// # Panics
     ///
     /// In debug builds, if an argument is not finite.
-    pub fn solve(
-        &self,
-        cursor: Vec3,
-        spin: f32,
-        last: Facing,
-        transported: Option<TransportedFrame>,
-    ) -> Solved {
-        let facing = Facing::towards(cursor, last);
-        let outward = self.reference.outward(facing, transported);
-        let transported = TransportedFrame { direction: facing.direction, outward };
-        let spin = match self.reference {
-            TwistReference::Limb => spin,
-            _ => spin + angle_from_limb(facing, outward),
+    #[must_use]
+    pub fn solve(&self, cursor: Vec3, twist: f32, last: IkState) -> IkSolution {
+        let pointer = Pointer::towards(cursor, last.pointer);
+        let outward = self.reference.outward(pointer, last.transported);
+        let transported = TransportedFrame { direction: pointer.direction, outward };
+        let twist = match self.reference {
+            TwistReference::Limb => twist,
+            _ => twist + angle_from_limb(pointer, outward),
         };
-        let asked = length(cursor);
-        let extent = self.soft_reach.extent(self.bones, asked.min(f32::MAX));
+        let wanted = length(cursor);
+        let extent = self.soft_reach.extent(self.bones, wanted.min(f32::MAX));
         let pose = if self.soft_reach.is_hard() {
-            self.bones.solve_from(cursor, spin, last)
+            self.bones.solve_from(cursor, twist, last.pointer)
         } else {
             let bones = self.bones.stretched(extent.stretch);
-            let pose = bones.solve_at(facing, extent.distance, spin);
-            let hand = if extent.distance == asked { cursor } else { pose.hand };
-            let reach = reach(extent.distance, asked, self.bones);
+            let pose = bones.solve_at(pointer, extent.distance, twist);
+            let hand = if extent.distance == wanted { cursor } else { pose.hand };
+            let reach = Some(reach(extent.distance, wanted, self.bones));
             TwoBonePose { hand, reach, stretch: extent.stretch, ..pose }
         };
-        Solved { pose, transported, slope: extent.slope }
+        IkSolution { pose, transported, slope: extent.slope }
     }
 
     /// Inverse of [`Self::solve`]: cursor and twist ψ in [0, 2π) of a pose. The side of the elbow is
@@ -111,6 +127,7 @@ impl Ik {
     ///
     /// A hand that soft limits cannot reach is brought as near as they allow. Stretch is a function of
     /// the hand's distance: a pose with another stretch keeps its hand and changes its elbow.
+    #[must_use]
     pub fn matching(
         &self,
         pose: &TwoBonePose,
@@ -120,27 +137,26 @@ impl Ik {
         let cursor = if self.soft_reach.is_hard() || distance == pose.distance {
             pose.hand
         } else {
-            (pose.facing.direction * distance).clamp(Vec3::MIN, Vec3::MAX)
+            (pose.pointer.direction * distance).clamp(Vec3::MIN, Vec3::MAX)
         };
-        let facing = Facing::towards(cursor, pose.facing);
-        let reference = self.reference.angle(facing, transported);
-        (cursor, respun(angle_from_limb(facing, pose.outward()), 0.0, reference))
+        let pointer = Pointer::towards(cursor, pose.pointer);
+        let reference = self.reference.angle(pointer, transported);
+        (cursor, remeasured(angle_from_limb(pointer, pose.outward()), 0.0, reference))
     }
 }
 
-/// Whether a hand that is `distance` from the shoulder is as far out as a cursor.
-pub(super) fn reach(distance: f32, asked: f32, bones: TwoBone) -> Reach {
+/// Reach of a hand at `distance` from the shoulder for a cursor at `wanted`.
+pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
     const NEAR: f64 = 1e-6;
     let near = NEAR * (f64::from(bones.upper()) + f64::from(bones.lower()));
-    match f64::from(distance) - f64::from(asked) {
+    match f64::from(distance) - f64::from(wanted) {
         short if short < -near => Reach::TooFar,
         long if long > near => Reach::TooClose,
         _ => Reach::Reached,
     }
 }
 
-/// In f64, where no square overflows. Infinite where it is more than the largest number: a hand that
-/// is as far as that is not there.
+/// Length, computed in f64 where no square overflows; infinite above `f32::MAX`.
 pub(super) fn length(v: Vec3) -> f32 {
     v.as_dvec3().length() as f32
 }

@@ -1,5 +1,6 @@
 //! Inverse and forward kinematics as pure functions of numbers.
 
+pub mod angle;
 pub mod batch;
 pub mod chain_ik;
 pub mod euler;

@@ -182,10 +182,10 @@ impl Step {
 /// The parts turn, bend and swing.
 fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     let outward = before.outward();
-    let transported = TransportedFrame { direction: before.facing.direction, outward };
-    let [w, to] = [before, after].map(|pose| pose.facing.direction.as_dvec3());
+    let transported = TransportedFrame { direction: before.pointer.direction, outward };
+    let [w, to] = [before, after].map(|pose| pose.pointer.direction.as_dvec3());
     let (out, transported) =
-        (outward.as_dvec3(), transported.to(after.facing.direction).outward.as_dvec3());
+        (outward.as_dvec3(), transported.to(after.pointer.direction).outward.as_dvec3());
     let [from, at] =
         [before, after].map(|pose| DVec3::new(pose.along.into(), pose.out.into(), 0.0));
     let side = after.outward().as_dvec3();
@@ -212,7 +212,7 @@ fn is_far_out(before: &Moment, after: &Moment, sum: f64) -> bool {
 
 /// Least angle between the Pointer and a singular direction of the twist reference.
 fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
-    let [from, to] = [before, after].map(|it| it.pose.facing.direction.as_dvec3());
+    let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {
         direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_way(it, from, to))
     };

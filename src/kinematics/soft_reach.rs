@@ -38,6 +38,11 @@ use super::two_bone::TwoBone;
 
 /// Behaviour of the hand near its limits; hard limits by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "UncheckedSoftReach")
+)]
 pub struct SoftReach {
     softness: f32,
     max_stretch: f32,
@@ -221,4 +226,22 @@ impl Limits {
 
 fn saturated(value: f64) -> f32 {
     value.min(f64::from(f32::MAX)) as f32
+}
+
+/// Soft limits before they are checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct UncheckedSoftReach {
+    softness: f32,
+    max_stretch: f32,
+    min_elbow_angle: f32,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<UncheckedSoftReach> for SoftReach {
+    type Error = SoftReachError;
+
+    fn try_from(limits: UncheckedSoftReach) -> Result<Self, SoftReachError> {
+        Self::new(limits.softness, limits.max_stretch, limits.min_elbow_angle)
+    }
 }

@@ -94,8 +94,8 @@ impl ArmRig {
 
         let local = Part::ALL.map(|part| match part {
             Part::Root => Affine3A::from_translation(root),
-            Part::Limb => Affine3A::from_mat3(pose.facing.limb_frame()),
-            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(pose.spin).into()),
+            Part::Limb => Affine3A::from_mat3(pose.pointer.limb_frame()),
+            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(pose.twist).into()),
             Part::UpperLimb => upper_limb,
             Part::LowerLimb => lower_limb,
             Part::Elbow => Affine3A::from_translation(elbow),

@@ -7,8 +7,8 @@ use super::pose_mode::PoseMode;
 use super::session::Session;
 use super::turn_drag::{Ring, TurnDrag};
 use crate::document::{Arm, Channel, Document, Ray, TwistReferenceKind};
+use crate::kinematics::angle::wrapped;
 use crate::kinematics::euler;
-use crate::kinematics::twist::wrapped;
 use crate::kinematics::two_bone::TwoBone;
 
 /// What actions do to the arm.

@@ -276,14 +276,14 @@ impl Editing {
                 channel.set(after, value);
             }
             if matches!(channel, Channel::Hand | Channel::Pin) {
-                after.arm.facing = self.document.arm.facing;
+                after.arm.ik_state.pointer = self.document.arm.ik_state.pointer;
             }
         }
         let goes_along = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
         if goes_along || is_keyed(&Channel::Twist) {
             let rest = self.document.arm.with_twist_reference(after.arm.twist_reference);
             after.arm.twist = rest.twist;
-            after.arm.transported = rest.transported;
+            after.arm.ik_state.transported = rest.ik_state.transported;
         }
         if is_keyed(&Channel::HandOrientation) {
             let Arm { hand_orientation, .. } = self.document.arm;

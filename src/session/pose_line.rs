@@ -1,9 +1,11 @@
 use serde_json::{Map, Value, json};
 
 use crate::document::{Arm, TwistReferenceKind};
+use crate::kinematics::angle::wrapped;
+use crate::kinematics::ik::IkState;
 use crate::kinematics::soft_reach::SoftReach;
-use crate::kinematics::twist::{angle_from_limb, respun, wrapped};
-use crate::kinematics::two_bone::Facing;
+use crate::kinematics::twist::{angle_from_limb, remeasured};
+use crate::kinematics::two_bone::Pointer;
 
 /// A line that `ik-arm solve` reads, and that gives the arm as its hand would lead it to where it is.
 /// A hand at the shoulder itself has no direction in a line.
@@ -50,10 +52,10 @@ fn spin_alone(arm: &Arm) -> f32 {
     const SAME: f32 = 1e-6;
     let (cursor, outward) = (arm.cursor_in_root(), arm.solve().pose.outward());
     let spin = wrapped(arm.twist);
-    let alone = arm.ik().solve(cursor, spin, Facing::default(), None).pose;
+    let alone = arm.ik().solve(cursor, spin, IkState::default()).pose;
     if alone.outward().distance(outward) < SAME {
         return spin;
     }
-    let facing = Facing::towards(cursor, Facing::default());
-    respun(angle_from_limb(facing, outward), 0.0, arm.reference().angle(facing, None))
+    let pointer = Pointer::towards(cursor, Pointer::default());
+    remeasured(angle_from_limb(pointer, outward), 0.0, arm.reference().angle(pointer, None))
 }

@@ -1,6 +1,6 @@
 use crate::document::Arm;
 use crate::kinematics::twist::TransportedFrame;
-use crate::kinematics::two_bone::Facing;
+use crate::kinematics::two_bone::Pointer;
 
 /// What is carried along with the Pointer on its way: what transport would measure the elbow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ impl TransportPath {
     }
 
     pub(super) fn go_on(&mut self, arm: &Arm) {
-        let direction = Facing::towards(arm.cursor_in_root(), arm.facing).direction;
+        let direction = Pointer::towards(arm.cursor_in_root(), arm.ik_state.pointer).direction;
         if direction != self.now.direction {
             self.now = self.now.to(direction);
         }

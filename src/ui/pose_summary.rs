@@ -17,21 +17,21 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
         return format!("Between FK and IK: the hand is {gap} from the Cursor.");
     }
     if pose.stretch > 1.0 {
-        let reached = if pose.reach == Reach::Reached { "" } else { ", the maximum" };
+        let reached = if pose.reach == Some(Reach::Reached) { "" } else { ", the maximum" };
         return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
     }
     match pose.reach {
-        Reach::Reached => "Reached: the hand is at the Cursor.".to_owned(),
-        Reach::TooFar if arm.soft_reach.softness() > 0.0 => {
+        Some(Reach::Reached) | None => "Reached: the hand is at the Cursor.".to_owned(),
+        Some(Reach::TooFar) if arm.soft_reach.softness() > 0.0 => {
             format!("Soft: the hand stays {gap} behind the Cursor, so the elbow does not snap.")
         }
-        Reach::TooClose if !arm.soft_reach.is_hard() => {
+        Some(Reach::TooClose) if !arm.soft_reach.is_hard() => {
             format!("Soft: the hand stays off the shoulder, {gap} from the Cursor.")
         }
-        Reach::TooFar => {
+        Some(Reach::TooFar) => {
             format!("Too far: the arm is straight and points at the Cursor, {gap} short.")
         }
-        Reach::TooClose => {
+        Some(Reach::TooClose) => {
             format!("Too close: the arm is folded and overshoots the Cursor by {gap}.")
         }
     }
@@ -96,9 +96,9 @@ fn describe_pose(session: &Session) -> String {
     let reach = match pose.reach {
         _ if !arm.uses_ik() => "FK",
         _ if arm.influence < 1.0 => "Between FK and IK",
-        Reach::Reached => "Reached",
-        Reach::TooFar => "Too far",
-        Reach::TooClose => "Too close",
+        Some(Reach::Reached) | None => "Reached",
+        Some(Reach::TooFar) => "Too far",
+        Some(Reach::TooClose) => "Too close",
     };
     let hand = pose.hand;
     let (least, most) = arm.reach();

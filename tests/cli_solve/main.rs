@@ -252,9 +252,9 @@ impl Asked {
         let arm = TwoBone::new(self.upper, self.lower).expect("random lengths are above 0");
         let pose = arm.solve(self.hand, (self.spin_deg % 360.0).to_radians());
         let reach = match pose.reach {
-            Reach::Reached => "reached",
-            Reach::TooFar => "too_far",
-            Reach::TooClose => "too_close",
+            Some(Reach::Reached) | None => "reached",
+            Some(Reach::TooFar) => "too_far",
+            Some(Reach::TooClose) => "too_close",
         };
         assert_eq!(answer.reach, reach, "{self:?}");
         assert_eq!(bits(answer.elbow), bits(self.root + pose.elbow), "{self:?}");

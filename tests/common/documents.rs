@@ -8,10 +8,11 @@ use ik_arm::document::{
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
+use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::TransportedFrame;
-use ik_arm::kinematics::two_bone::{Facing, TwoBone};
+use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
 
 use super::Random;
 
@@ -73,7 +74,7 @@ pub fn document(random: &mut Random) -> Document {
 }
 
 fn arm(random: &mut Random) -> Arm {
-    let facing = Facing::towards(random.finite_vector(), Facing::default());
+    let pointer = Pointer::towards(random.finite_vector(), Pointer::default());
     let soft_reach = SoftReach::new(
         random.within(0.0..0.99),
         1.0 + random.finite().abs().min(9.0),
@@ -87,10 +88,12 @@ fn arm(random: &mut Random) -> Arm {
         twist: random.finite(),
         root: random.finite_vector(),
         bones: TwoBone::new(random.positive(), random.positive()).expect("lengths"),
-        facing: Facing::towards(random.finite_vector(), Facing::default()),
+        ik_state: IkState {
+            pointer: Pointer::towards(random.finite_vector(), Pointer::default()),
+            transported: random.coin().then(|| TransportedFrame::new(pointer)),
+        },
         twist_reference: random.one_of(&TwistReferenceKind::ALL),
         pole: random.finite_vector(),
-        transported: random.coin().then(|| TransportedFrame::new(facing)),
         soft_reach: soft_reach.expect("a softening"),
         influence: random.within(0.0..1.0),
         fk: Fk {

@@ -19,7 +19,7 @@ fn twin(arm: &Arm) -> Twin {
     let (least, length) = ((upper - lower).abs(), upper + lower);
     let cursor = arm.cursor_in_root().as_dvec3();
     let distance = soften(cursor.length(), least, length, f64::from(arm.soft_reach.softness()));
-    let forward = cursor.try_normalize().unwrap_or(arm.facing.direction.as_dvec3());
+    let forward = cursor.try_normalize().unwrap_or(arm.ik_state.pointer.direction.as_dvec3());
     let along = match distance {
         0.0 => 0.0,
         _ => (distance * distance + upper * upper - lower * lower) / (2.0 * distance),
@@ -43,11 +43,11 @@ fn soften(d: f64, least: f64, length: f64, softness: f64) -> f64 {
     }
 }
 
-/// e₀. Straight up or down and along the pole it is the Limb's for the last facing.
+/// e₀. Straight up or down and along the pole it is the Limb's for the last pointer.
 fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     let [x, y, z] = forward.to_array();
     let (sin_pitch, flat) = (y, x.hypot(z));
-    let heading = arm.facing.heading.as_dvec2();
+    let heading = arm.ik_state.pointer.heading.as_dvec2();
     let (cos_yaw, sin_yaw) = if flat == 0.0 { heading.into() } else { (x / flat, z / flat) };
     let limb = DVec3::new(-sin_pitch * cos_yaw, flat, -sin_pitch * sin_yaw);
     match arm.twist_reference {

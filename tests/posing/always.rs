@@ -89,7 +89,7 @@ proptest! {
                 session.apply(EditAction::SetHand(ends[0].lerp(ends[1], step as f32 / 20.0)));
                 let now = *session.pose();
                 let [from, to] = [was, now].map(|pose| pose.outward().as_dvec3());
-                let [w0, w1] = [was, now].map(|pose| pose.facing.direction.as_dvec3());
+                let [w0, w1] = [was, now].map(|pose| pose.pointer.direction.as_dvec3());
                 // Parallel transport in f64.
                 let turn = DQuat::from_rotation_arc(w0.normalize(), w1.normalize());
                 prop_assert!(w0.dot(w1) < -0.999 || (turn * from).distance(to) < 2e-5);
@@ -131,7 +131,7 @@ proptest! {
             let was = *session.pose();
             session.apply(EditAction::SetHand(from.lerp(to, step as f32 / 200.0)));
             let now = *session.pose();
-            let turned = angle(was.facing.direction, now.facing.direction);
+            let turned = angle(was.pointer.direction, now.pointer.direction);
             let swung = angle(was.outward(), now.outward());
             prop_assert!(swung <= turned * 1.01 + 1e-5, "swung {} for {}", swung, turned);
         }

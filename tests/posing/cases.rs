@@ -105,7 +105,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
     assert_eq!(session.undo_name(), Some("Move pole"));
     let (arm, pose) = (session.arm(), session.pose());
     let aside =
-        (arm.pole - pose.facing.direction * arm.pole.dot(pose.facing.direction)).normalize();
+        (arm.pole - pose.pointer.direction * arm.pole.dot(pose.pointer.direction)).normalize();
     assert!(aside.distance(pose.outward()) < 1e-5, "the elbow points at the pole");
 }
 

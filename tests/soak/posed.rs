@@ -19,14 +19,17 @@ pub fn all(session: &Session) -> Result<(), Broken> {
 }
 
 fn arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
-    let numbers = [pose.distance, pose.along, pose.out, pose.spin, pose.stretch];
+    let numbers = [pose.distance, pose.along, pose.out, pose.twist, pose.stretch];
     let are_finite = numbers.into_iter().all(f32::is_finite);
     hold!(
         are_finite && pose.elbow.is_finite() && pose.hand.is_finite(),
         "the arm is finite: {pose:?}"
     );
-    let facing = pose.facing;
-    hold!(facing.direction.is_finite() && facing.heading.is_finite(), "the arm faces: {facing:?}");
+    let pointer = pose.pointer;
+    hold!(
+        pointer.direction.is_finite() && pointer.heading.is_finite(),
+        "the arm faces: {pointer:?}"
+    );
     lengths(arm, pose)?;
     reach(arm, pose)
 }
@@ -53,7 +56,7 @@ fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
     let cursor = arm.cursor_in_root().as_dvec3();
     let missed = pose.hand.as_dvec3().distance(cursor);
-    let is_reached = pose.reach == Reach::Reached;
+    let is_reached = pose.reach == Some(Reach::Reached);
     let rounding = 4.0 * U * cursor.length();
     hold!(
         !is_reached || missed <= near + rounding,

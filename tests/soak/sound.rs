@@ -8,6 +8,7 @@ use ik_arm::document::{
     Arm, Camera, Channel, Document, FollowPath, HandOrientation, Quantity, SkeletonRig, Target,
 };
 use ik_arm::kinematics::chain_ik::SolverOptions;
+use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
 use ik_arm::session::Session;
 
@@ -50,9 +51,8 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
         twist,
         root,
         bones,
-        facing,
+        ik_state: IkState { pointer, transported },
         pole,
-        transported,
         soft_reach: _,
         influence,
         fk,
@@ -66,8 +66,8 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
     hold!(twist.is_finite(), "the twist is finite: {twist}");
     hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
     hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
-    hold!(is_unit(facing.direction.length()), "the arm faces somewhere: {facing:?}");
-    hold!(is_unit(facing.heading.length()), "the arm heads somewhere: {facing:?}");
+    hold!(is_unit(pointer.direction.length()), "the arm faces somewhere: {pointer:?}");
+    hold!(is_unit(pointer.heading.length()), "the arm heads somewhere: {pointer:?}");
     if let Some(it) = transported {
         let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
         hold!(are_units, "the transported frame has unit vectors: {it:?}");

@@ -59,7 +59,7 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
             let seen = bench.cursor_place();
             assert!(seen.distance(pointer) < 0.05, "{seen} is not under {pointer}");
             let pose = *bench.session().pose();
-            if pose.reach == Reach::Reached {
+            if pose.reach == Some(Reach::Reached) {
                 let hand = bench.place(bench.session().arm().root + pose.hand);
                 assert!(hand.distance(pointer) < 0.05, "{hand} is not under {pointer}");
             } else {
@@ -67,7 +67,7 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
                 let beside = pose.hand.cross(cursor).length() / cursor.length();
                 assert!(beside < 0.01, "the arm points at the cursor");
             }
-            reaches.push(pose.reach);
+            reaches.extend(pose.reach);
         }
         assert_eq!(reaches[0], Reach::Reached);
         assert!(reaches.contains(&Reach::TooFar), "{reaches:?}");

@@ -210,7 +210,7 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
         ),
     ] {
         let bench = Bench::after([EditAction::SetHand(hand)]);
-        assert_eq!(bench.session().pose().reach, reach);
+        assert_eq!(bench.session().pose().reach, Some(reach));
         assert!(bench.shows(Role::Label, sentence), "{sentence}");
         assert!(bench.shows(Role::Image, &format!("Viewport. {sentence}")), "{sentence}");
     }

@@ -128,8 +128,8 @@ fn arm(arm: &Arm) -> BvhPose {
     let (along, out) = (f64::from(pose.along), f64::from(pose.out));
     let upper = out.atan2(along);
     let lower = (-out).atan2(f64::from(pose.distance) - along);
-    let limb = pose.facing.limb_frame().as_dmat3();
-    let socket = DMat3::from_rotation_x(f64::from(pose.spin));
+    let limb = pose.pointer.limb_frame().as_dmat3();
+    let socket = DMat3::from_rotation_x(f64::from(pose.twist));
     let bones = arm.bones.stretched(pose.stretch);
     let bone = |length: f32| Vec3::new(length, 0.0, 0.0).as_dvec3();
     BvhPose {

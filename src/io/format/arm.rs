@@ -13,7 +13,7 @@ use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
 use crate::kinematics::fk::Fk;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TransportedFrame;
-use crate::kinematics::two_bone::{Facing, TwoBone};
+use crate::kinematics::two_bone::{Pointer, TwoBone};
 
 #[derive(Serialize, Deserialize)]
 pub struct ArmFields {
@@ -80,7 +80,7 @@ impl ArmFields {
             Cursor::Root(cursor) => (Some(JsonPoint(cursor)), None),
             Cursor::World(pin) => (None, Some(JsonPoint(pin))),
         };
-        let Facing { direction, heading } = arm.facing;
+        let Pointer { direction, heading } = arm.ik_state.pointer;
         let facing = FacingFields {
             direction: JsonPoint(direction),
             heading: JsonNumbers(heading.to_array()),
@@ -119,8 +119,8 @@ impl ArmFields {
             )?,
             ..default
         };
-        let facing = Facing::towards(arm.cursor_in_root(), Facing::default());
-        let mut arm = Arm { facing, ..arm };
+        let mut arm = arm;
+        arm.ik_state.pointer = Pointer::towards(arm.cursor_in_root(), Pointer::default());
         if let Some(JsonObject(fields)) = &self.twist_reference {
             fields.set(&mut arm, &at.clone().key("twist_reference"))?;
         }
@@ -134,7 +134,7 @@ impl ArmFields {
             arm.hand_orientation = fields.hand_orientation();
         }
         if let Some(JsonObject(fields)) = &self.facing {
-            arm.facing = fields.facing(&at.clone().key("facing"))?;
+            arm.ik_state.pointer = fields.facing(&at.clone().key("facing"))?;
         }
         Ok(arm)
     }
@@ -143,13 +143,13 @@ impl ArmFields {
         TwoBone::new(number(self.upper, default.upper()), number(self.lower, default.lower()))
             .map_err(|error| {
                 let reason = format!("must be finite and above 0, got {}", error.value);
-                FieldError::new(at.clone().key(error.bone), reason)
+                FieldError::new(at.clone().key(&error.bone.to_string()), reason)
             })
     }
 }
 
 impl FacingFields {
-    fn facing(&self, at: &JsonPath) -> Result<Facing, FieldError> {
+    fn facing(&self, at: &JsonPath) -> Result<Pointer, FieldError> {
         let [direction, heading] = [
             ("direction", self.direction.0),
             ("heading", Vec2::from_array(self.heading.0).extend(0.0)),
@@ -161,7 +161,7 @@ impl FacingFields {
             let reason = "must be `direction` as seen from above";
             return Err(FieldError::new(at.clone().key("heading"), reason));
         }
-        Ok(Facing { direction, heading })
+        Ok(Pointer { direction, heading })
     }
 }
 
@@ -176,7 +176,7 @@ impl TwistReferenceFields {
         Self {
             kind: Some(arm.twist_reference),
             pole: Some(JsonPoint(arm.pole)),
-            transported: arm.transported.map(transported),
+            transported: arm.ik_state.transported.map(transported),
         }
     }
 
@@ -184,7 +184,7 @@ impl TwistReferenceFields {
         arm.twist_reference = self.kind.unwrap_or(arm.twist_reference);
         arm.pole = self.pole.map_or(arm.pole, |JsonPoint(pole)| pole);
         if let Some(JsonObject(fields)) = &self.transported {
-            arm.transported = Some(fields.frame(&at.clone().key("transported"))?);
+            arm.ik_state.transported = Some(fields.frame(&at.clone().key("transported"))?);
         }
         Ok(())
     }

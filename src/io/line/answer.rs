@@ -2,14 +2,14 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::error::LineError;
-use crate::kinematics::ik::Solved;
+use crate::kinematics::ik::IkSolution;
 use crate::kinematics::twist::TwistReference;
 use crate::kinematics::two_bone::Reach;
 
 /// The pose that answers a line, written as JSON. Elbow and hand are in the world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
-    reach: &'static str,
+    reach: Option<Reach>,
     elbow: Vec3,
     hand: Vec3,
     distance: f32,
@@ -24,14 +24,14 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub fn new(root: Vec3, reference: TwistReference, solved: &Solved) -> Result<Self, LineError> {
+    pub fn new(
+        root: Vec3,
+        reference: TwistReference,
+        solved: &IkSolution,
+    ) -> Result<Self, LineError> {
         let pose = &solved.pose;
         Ok(Self {
-            reach: match pose.reach {
-                Reach::Reached => "reached",
-                Reach::TooFar => "too_far",
-                Reach::TooClose => "too_close",
-            },
+            reach: pose.reach,
             elbow: in_world("elbow", root, pose.elbow)?,
             hand: in_world("hand", root, pose.hand)?,
             distance: pose.distance,
@@ -40,7 +40,7 @@ impl Answer {
             theta_e_deg: pose.shoulder_angle().to_degrees(),
             along: pose.along,
             out: pose.out,
-            reference_gain: Some(reference.gain(pose.facing)).filter(|gain| gain.is_finite()),
+            reference_gain: Some(reference.gain(pose.pointer)).filter(|gain| gain.is_finite()),
             elbow_angle_deg: pose.elbow_angle().to_degrees(),
         })
     }

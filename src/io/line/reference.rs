@@ -5,7 +5,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 
 use crate::io::value::JsonPoint;
-use crate::kinematics::twist::{Stereographic, TwistReference};
+use crate::kinematics::twist::{Stereographic, TwistReference, TwistReferenceKind};
 
 /// The twist reference of a line: a name, or an object with a pole.
 #[derive(Default)]
@@ -29,13 +29,17 @@ impl<'de> Deserialize<'de> for ReferenceField {
             }
 
             fn visit_str<E: Error>(self, name: &str) -> Result<ReferenceField, E> {
-                match name {
-                    "limb" => Ok(ReferenceField(TwistReference::Limb)),
-                    "stereographic" => {
+                match name.parse() {
+                    Ok(TwistReferenceKind::Limb) => Ok(ReferenceField(TwistReference::Limb)),
+                    Ok(TwistReferenceKind::Stereographic) => {
                         Ok(ReferenceField(TwistReference::Stereographic(Stereographic::default())))
                     }
-                    "transport" => Ok(ReferenceField(TwistReference::Transport)),
-                    _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
+                    Ok(TwistReferenceKind::Transport) => {
+                        Ok(ReferenceField(TwistReference::Transport))
+                    }
+                    Ok(TwistReferenceKind::Pole) | Err(_) => {
+                        Err(E::invalid_value(Unexpected::Str(name), &self))
+                    }
                 }
             }
 

@@ -11,9 +11,9 @@ use super::error::LineError;
 use super::previous::PreviousLine;
 use super::reference::ReferenceField;
 use crate::io::value::{JsonNumber, JsonPoint};
-use crate::kinematics::ik::{Ik, Solved};
+use crate::kinematics::ik::{Ik, IkSolution, IkState};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
-use crate::kinematics::two_bone::{Facing, TwoBone};
+use crate::kinematics::two_bone::TwoBone;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -80,11 +80,11 @@ impl Request {
         })
     }
 
-    pub fn solve(&self, ik: Ik, previous: Option<PreviousLine>) -> Solved {
+    pub fn solve(&self, ik: Ik, previous: Option<PreviousLine>) -> IkSolution {
         // In degrees the remainder is exact; in radians a large angle would lose its turns.
         let twist = (self.twist_deg.0 % 360.0).to_radians();
-        let facing = previous.map_or_else(Facing::default, |previous| previous.facing);
-        ik.solve(self.hand.0, twist, facing, previous.map(|previous| previous.transported))
+        let last = previous.map_or_else(IkState::default, |PreviousLine(state)| state);
+        ik.solve(self.hand.0, twist, last)
     }
 }
 

@@ -7,7 +7,7 @@
 use glam::{Mat3, Vec3};
 use multiversion::multiversion;
 
-use crate::kinematics::two_bone::{Facing, Placed, Scaled, TwoBone};
+use crate::kinematics::two_bone::{ClosedForm, Pointer, ScaledBones, TwoBone};
 
 /// How many arms are placed before they are handed over.
 ///
@@ -31,7 +31,7 @@ const ALIKE: f32 = 8.0;
 /// What is kept of arms that were placed.
 pub(super) trait Block {
     /// Says whether the arm was plain enough for what is kept of it, or `ANY` has seen to it.
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool;
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool;
 }
 
 /// Elbows and hands of a block: x, y, z each.
@@ -67,15 +67,15 @@ pub(super) fn place<const ANY: bool, const SAME: bool, B: Block>(
     let [upper, lower] = bones.map(|of| &of[..if SAME { 1 } else { arms }]);
     let [x, y, z] = cursor.map(|of| &of[..arms]);
     let [cos, sin] = spin.map(|of| &of[..arms]);
-    let mut are_plain = true;
+    let mut are_normal = true;
     for arm in 0..arms {
         let of = if SAME { 0 } else { arm };
         let bones = TwoBone { upper: upper[of], lower: lower[of] };
         let cursor = Vec3::new(x[arm], y[arm], z[arm]);
-        let placed = Placed::new::<ANY>(bones, cursor, cos[arm], sin[arm], Facing::default());
-        are_plain &= placed.is_plain & block.keep::<ANY>(arm, &placed, placed.hand_of(cursor));
+        let placed = ClosedForm::new::<ANY>(bones, cursor, cos[arm], sin[arm], Pointer::default());
+        are_normal &= placed.is_normal & block.keep::<ANY>(arm, &placed, placed.hand_or(cursor));
     }
-    are_plain
+    are_normal
 }
 
 impl Places {
@@ -89,7 +89,7 @@ impl PlacesAndRotations {
 
 impl Block for Places {
     #[inline(always)]
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool {
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool {
         put(&mut self.elbow, arm, placed.elbow.to_array());
         put(&mut self.hand, arm, hand.to_array());
         true
@@ -98,9 +98,9 @@ impl Block for Places {
 
 impl Block for PlacesAndRotations {
     #[inline(always)]
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &Placed, hand: Vec3) -> bool {
+    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool {
         self.places.keep::<ANY>(arm, placed, hand);
-        let Scaled { upper, lower, .. } = placed.scaled;
+        let ScaledBones { upper, lower, .. } = placed.scaled;
         let are_alike = (upper <= ALIKE * lower) & (lower <= ALIKE * upper);
         let [of_upper, of_lower] = rotations(placed, ANY && !are_alike);
         put(&mut self.upper, arm, of_upper);
@@ -118,14 +118,14 @@ fn put<const N: usize>(lanes: &mut [Lane; N], arm: usize, values: [f32; N]) {
 
 /// The rotations of the upper and the lower limb, as quaternions: +x along the limb, +z the hinge.
 #[inline(always)]
-fn rotations(placed: &Placed, is_uneven: bool) -> [[f32; 4]; 2] {
-    let Placed { facing, outward, distance, along, out, scaled, .. } = *placed;
-    let hinge = facing.direction.cross(outward);
+fn rotations(placed: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
+    let ClosedForm { pointer, outward, distance, along, out, scaled, .. } = *placed;
+    let hinge = pointer.direction.cross(outward);
     let limb = |ahead: f32, aside: f32| {
         let (cos, sin) = if is_uneven { turn(ahead, aside) } else { (ahead, aside) };
         quaternion(Mat3::from_cols(
-            facing.direction * cos + outward * sin,
-            outward * cos - facing.direction * sin,
+            pointer.direction * cos + outward * sin,
+            outward * cos - pointer.direction * sin,
             hinge,
         ))
     };

@@ -34,7 +34,7 @@
 //! # What breaks
 //!
 //! What is not a finite number has no meaning: the arm that it belongs to is then anywhere, the
-//! others are as they should be. An arm has no last facing: a cursor at the shoulder faces +x, one
+//! others are as they should be. An arm has no last pointer: a cursor at the shoulder faces +x, one
 //! straight above or below has no yaw.
 //!
 //! # How fast

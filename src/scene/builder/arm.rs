@@ -37,7 +37,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
         if arm.is_pinned() {
             add_pin(scene, arm.cursor_in_world(), thickness);
         }
-        if pose.reach != Reach::Reached {
+        if pose.reach != Some(Reach::Reached) {
             add_gap(scene, &rig, arm, thickness);
         }
     }

@@ -92,7 +92,7 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
             ui.label(name).on_hover_text(labels::twist_reference(twist_reference));
             let pose = arm.pose_with_reference(twist_reference, Some(transported));
             let apart = turn_in_words(own.elbow_turn_to(&pose));
-            let gain = arm.reference_for(twist_reference).gain(own.facing);
+            let gain = arm.reference_for(twist_reference).gain(own.pointer);
             for (value, tooltip) in [
                 (apart, "Elbow rotation from the current elbow at the same twist"),
                 (gain_in_words(gain), "Elbow degrees per degree of the Pointer"),

@@ -1,0 +1,122 @@
+use core::fmt;
+
+use thiserror::Error;
+
+/// Two bones joined at an elbow, with the shoulder at the origin.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm::kinematics::two_bone::{Reach, TwoBone};
+///
+/// let arm = TwoBone::new(200.0, 300.0)?;
+/// let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 0.0);
+///
+/// assert_eq!(pose.reach, Some(Reach::Reached));
+/// assert_eq!(pose.hand, Vec3::new(250.0, 120.0, 60.0));
+/// assert!((pose.elbow.length() - 200.0).abs() < 1e-4);
+/// assert!((pose.elbow.distance(pose.hand) - 300.0).abs() < 1e-4);
+/// # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "UncheckedBones")
+)]
+pub struct TwoBone {
+    pub(in crate::kinematics) upper: f32,
+    pub(in crate::kinematics) lower: f32,
+}
+
+/// One of the two bones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Bone {
+    /// From shoulder to elbow.
+    Upper,
+    /// From elbow to hand.
+    Lower,
+}
+
+/// An invalid bone length.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{bone} length is {value}; it must be a finite number above 0")]
+pub struct LengthError {
+    /// The bone.
+    pub bone: Bone,
+    /// The refused length.
+    pub value: f32,
+}
+
+impl TwoBone {
+    /// Two bones of finite lengths above 0.
+    ///
+    /// # Errors
+    ///
+    /// [`LengthError`] for the first invalid length.
+    pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
+        for (bone, value) in [(Bone::Upper, upper), (Bone::Lower, lower)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(LengthError { bone, value });
+            }
+        }
+        Ok(Self { upper, lower })
+    }
+
+    /// Length d₁ from shoulder to elbow.
+    pub fn upper(self) -> f32 {
+        self.upper
+    }
+
+    /// Length d₂ from elbow to hand.
+    pub fn lower(self) -> f32 {
+        self.lower
+    }
+
+    /// The bones scaled by `factor`, clamped to finite lengths; unchanged for an invalid factor.
+    #[must_use]
+    pub fn stretched(self, factor: f32) -> Self {
+        let length = |length: f32| (length * factor).min(f32::MAX);
+        Self::new(length(self.upper), length(self.lower)).unwrap_or(self)
+    }
+
+    /// L = d₁ + d₂, the hand's maximum distance (`f32::MAX` if the sum overflows).
+    pub fn outer_limit(self) -> f32 {
+        (self.upper + self.lower).min(f32::MAX)
+    }
+
+    /// |δ| = |d₁ − d₂|, the hand's minimum distance.
+    pub fn inner_limit(self) -> f32 {
+        (self.upper - self.lower).abs()
+    }
+}
+
+impl fmt::Display for Bone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Upper => "upper",
+            Self::Lower => "lower",
+        })
+    }
+}
+
+/// Lengths before they are checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct UncheckedBones {
+    upper: f32,
+    lower: f32,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<UncheckedBones> for TwoBone {
+    type Error = LengthError;
+
+    fn try_from(UncheckedBones { upper, lower }: UncheckedBones) -> Result<Self, LengthError> {
+        Self::new(upper, lower)
+    }
+}
