@@ -9,7 +9,7 @@
 //!
 //! let arm = TwoBone::new(200.0, 300.0)?;
 //! let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 30_f32.to_radians());
-//! println!("elbow at {}, hand {:?}", pose.elbow, pose.reach);
+//! println!("elbow at {}, hand at {}", pose.elbow, pose.hand);
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!

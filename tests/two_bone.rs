@@ -300,7 +300,7 @@ fn a_length_that_no_bone_can_have_is_refused_by_name_and_value() {
 #[cfg(debug_assertions)]
 #[should_panic(expected = "cursor is [1, NaN, 0]")]
 fn a_cursor_that_is_not_finite_is_the_callers_mistake() {
-    TwoBone::new(2.0, 3.0).unwrap().solve(Vec3::new(1.0, f32::NAN, 0.0), 0.0);
+    let _ = TwoBone::new(2.0, 3.0).unwrap().solve(Vec3::new(1.0, f32::NAN, 0.0), 0.0);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! timeline, the cameras and what is displayed.
 //!
 //! A pose is a function of the document and the time alone: [`Document::evaluate`]. State that a solve
-//! continues from (the last facing, the transported frame, the forearm's roll) is therefore part of the
+//! continues from (the last Pointer, the transported frame, the forearm's roll) is therefore part of the
 //! document too.
 //!
 //! What is large is [`Shared`]: a clone of a document takes little memory, and an edit copies what it

@@ -2,7 +2,6 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::arm::Arm;
 use super::channel::Channel;
 use super::document::Document;
 use super::hand_orientation::HandSpace;
