@@ -217,7 +217,7 @@ fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
     assert_eq!(session.crowd(), None);
     let after = Document { camera: before.camera, ..session.document().clone() };
     assert_eq!(after, before);
-    assert_eq!(session.undo_name(), None);
+    assert_eq!(session.undo_label(), None);
 }
 
 fn picture(gpu: &Gpu) -> PictureRenderer<'_> {

@@ -149,10 +149,10 @@ fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes()
         session.apply(edit.clone());
         let after = bytes(&session);
         assert!(before != after, "{} changes the document: {:?}", name(&edit), session.message());
-        assert_eq!(session.undo_name(), Some(label));
+        assert_eq!(session.undo_label(), Some(label));
         session.apply(TransactionAction::Undo);
         assert!(bytes(&session) == before, "undo of {}", name(&edit));
-        assert_eq!(session.redo_name(), Some(label));
+        assert_eq!(session.redo_label(), Some(label));
         assert_eq!(session.message(), Some(&*format!("Undid {label}")));
         session.apply(TransactionAction::Redo);
         assert!(bytes(&session) == after, "redo of {}", name(&edit));
@@ -164,13 +164,13 @@ fn every_edit_in_a_transaction_is_cancelled_to_the_same_bytes() {
     let bytes = |session: &Session| to_json(session.document()).expect("saved");
     for edit in examples() {
         let mut session = session();
-        let (before, last) = (bytes(&session), session.undo_name());
+        let (before, last) = (bytes(&session), session.undo_label());
         session.apply(TransactionAction::Begin);
         session.apply(edit.clone());
-        assert_eq!(session.undo_name(), Some(edit.label()));
+        assert_eq!(session.undo_label(), Some(edit.label()));
         session.apply(TransactionAction::Cancel);
         assert!(bytes(&session) == before, "cancelled {}", name(&edit));
-        assert_eq!(session.undo_name(), last);
+        assert_eq!(session.undo_label(), last);
     }
 }
 

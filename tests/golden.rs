@@ -16,7 +16,7 @@ use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Colour, Scene};
-use ik_arm::session::{Ghost, Overlays};
+use ik_arm::session::{Overlays, SolverGhost};
 use pictures::{GPU, SIZE, compare, draw, kept};
 
 fn scene(document: &Document, theme: Theme) -> Scene {
@@ -167,7 +167,7 @@ fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
     let bind = document.skeleton().bind_pose();
-    let ghosts = vec![Ghost { method: Method::Ccd, pose: bind }];
+    let ghosts = vec![SolverGhost { method: Method::Ccd, pose: bind }];
     let drawn =
         draw(&Scene::new(&document, &Overlays { ghosts, ..Overlays::default() }, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");

@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, RigKind, Theme};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, Renderer};
-use ik_arm::scene::{Ball, Line, Scene, Shell};
+use ik_arm::scene::{Ball, Line, Scene, SphereShell};
 use ik_arm::session::Overlays;
 
 const SIZE: (u32, u32) = (480, 300);
@@ -156,7 +156,7 @@ fn what_shells_take_does_not_depend_on_how_many_there_are() {
             let colour = scene.palette.guide;
             scene.shells.extend((0..count).map(|step| {
                 let part = f32::from(step);
-                Shell { centre: hand * part / 10.0, radius: 20.0 + part, colour }
+                SphereShell { centre: hand * part / 10.0, radius: 20.0 + part, colour }
             }));
             scene
         });

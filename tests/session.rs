@@ -15,7 +15,7 @@ use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, FileAction, Grip, Handle, PlaybackAction, PoseMode,
+    Action, Dialog, DragInput, EditAction, FileAction, Grip, PlaybackAction, PointHandle, PoseMode,
     SelectAction, Session, SolverAction, TransactionAction, ViewAction,
 };
 use proptest::collection::vec;
@@ -45,9 +45,9 @@ fn rays() -> impl Strategy<Value = Ray> {
 
 fn grips() -> impl Strategy<Value = Grip> {
     let handles = prop_oneof![
-        Just(Handle::Free),
-        (0..3_usize).prop_map(Handle::Axis),
-        (0..3_usize).prop_map(Handle::Plane)
+        Just(PointHandle::Free),
+        (0..3_usize).prop_map(PointHandle::Axis),
+        (0..3_usize).prop_map(PointHandle::Plane)
     ];
     prop_oneof![
         handles.clone().prop_map(Grip::Hand),
@@ -328,18 +328,18 @@ proptest! {
         for action in [Action::from(TransactionAction::Commit), Action::from(SolverAction::Run(false)), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
-        while session.redo_name().is_some() {
+        while session.redo_label().is_some() {
             session.apply(TransactionAction::Redo);
         }
         let last = session.document().clone();
         prop_assert!(session.is_unsaved() || content(&last) == content(&first));
-        while session.undo_name().is_some() {
+        while session.undo_label().is_some() {
             session.apply(TransactionAction::Undo);
             check(&session)?;
         }
         prop_assert_eq!(without_views(session.document()), without_views(&first));
         prop_assert!(!session.is_unsaved());
-        while session.redo_name().is_some() {
+        while session.redo_label().is_some() {
             session.apply(TransactionAction::Redo);
             check(&session)?;
         }

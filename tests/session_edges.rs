@@ -7,9 +7,9 @@ use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, CameraMotion, Constraint, Drag, DragInput, EditAction, FileAction, Grip, Handle,
-    PlaybackAction, PointDrag, PoseMode, Preferences, SelectAction, Session, ShellAction,
-    SolverAction, TransactionAction, TurnDrag, ViewAction,
+    Action, CameraMotion, Constraint, Drag, DragInput, EditAction, FileAction, Grip,
+    PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences, SelectAction, Session,
+    ShellAction, SolverAction, TransactionAction, TurnDrag, ViewAction,
 };
 
 fn ray() -> Ray {
@@ -79,7 +79,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
         let before = session.document().clone();
         session.apply(EditAction::SetLimit { joint: JointId::new(0), axis, limit: None });
         assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
-        let (line, plane) = (Handle::Axis(axis), Handle::Plane(axis));
+        let (line, plane) = (PointHandle::Axis(axis), PointHandle::Plane(axis));
         for grip in [
             Grip::Hand(line),
             Grip::Pole(plane),
@@ -93,7 +93,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
             assert!(!session.is_editing(), "{grip:?} holds nothing");
         }
         assert_eq!(session.ring(JointId::new(0), axis), None);
-        let grip = Grip::Hand(Handle::Free);
+        let grip = Grip::Hand(PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
             session.apply(TransactionAction::Constrain(Some(constraint)));
@@ -156,7 +156,7 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
         let mut session = session();
         session.apply(hang.clone());
         session.apply(EditAction::AddChild { parent: JointId::new(1), tip: None });
-        let grip = Grip::Tip(JointId::new(1), Handle::Free);
+        let grip = Grip::Tip(JointId::new(1), PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         assert!(session.drag().is_some());
         session.apply(change);
@@ -310,7 +310,7 @@ fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
         let mut session = session();
         session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
         session.apply(EditAction::SetPole(Vec3::new(0.0, 0.0, pole)));
-        let grip = Grip::Pole(Handle::Axis(2));
+        let grip = Grip::Pole(PointHandle::Axis(2));
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         session.apply(TransactionAction::TypeOffset(typed.to_owned()));
         let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };

@@ -1,4 +1,4 @@
-//! What the session keeps of how the elbow goes, and what it knows against pops.
+//! PopSampleKind the session keeps of how the elbow goes, and what it knows against pops.
 #![cfg(feature = "document")]
 
 use glam::Vec3;
@@ -6,7 +6,8 @@ use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
 use ik_arm::kinematics::pop::{Change, Pop};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    EditAction, FileAction, PlaybackAction, PopFix, Session, Spike, TransactionAction, What,
+    EditAction, FileAction, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
+    TransactionAction,
 };
 
 fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
@@ -36,16 +37,16 @@ fn past_the_shoulder(session: &mut Session) {
 }
 
 fn standing(session: &Session) -> Vec<Spike> {
-    let stands = |spike: &Spike| spike.stands(session.arm());
+    let stands = |spike: &Spike| spike.persists(session.arm());
     session.pops().spikes().into_iter().filter(stands).collect()
 }
 
 fn changes(session: &Session) -> Vec<Change> {
     let change = |what| match what {
-        What::Change(change) => Some(change),
-        What::Step(_) => None,
+        PopSampleKind::Change(change) => Some(change),
+        PopSampleKind::Step(_) => None,
     };
-    session.pops().samples().filter_map(|sample| change(sample.what)).collect()
+    session.pops().samples().filter_map(|sample| change(sample.kind)).collect()
 }
 
 /// Drags, does what is said to help against the one pop, and drags again: what cured it.
@@ -64,7 +65,7 @@ fn cure(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
 
 #[test]
 fn each_remedy_cures_the_drag_that_asked_for_it() {
-    let map = PopFix::Measure(TwistReferenceKind::Stereographic);
+    let map = PopFix::ChangeReference(TwistReferenceKind::Stereographic);
     assert_eq!(cure(&mut Session::default(), over_the_top), map);
     let soft = PopFix::Soften(SoftReach::new(0.25, 1.0, 0.0).expect("soft"));
     assert_eq!(cure(&mut Session::default(), into_the_limit), soft);
@@ -78,7 +79,7 @@ fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
     session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
     assert_eq!(
         cure(&mut session, over_the_top),
-        PopFix::Measure(TwistReferenceKind::Stereographic)
+        PopFix::ChangeReference(TwistReferenceKind::Stereographic)
     );
 }
 
@@ -89,7 +90,7 @@ fn behind_the_body_the_map_pops_and_transport_cures_it() {
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
-    assert_eq!(cure(&mut session, behind), PopFix::Measure(TwistReferenceKind::Transport));
+    assert_eq!(cure(&mut session, behind), PopFix::ChangeReference(TwistReferenceKind::Transport));
 }
 
 #[test]
@@ -234,9 +235,9 @@ fn a_hand_that_only_lies_out_of_reach_moves_no_elbow() {
     let ratios: Vec<f32> = session
         .pops()
         .samples()
-        .map(|sample| match sample.what {
-            What::Step(step) => step.ratio,
-            What::Change(change) => panic!("{change:?}"),
+        .map(|sample| match sample.kind {
+            PopSampleKind::Step(step) => step.ratio,
+            PopSampleKind::Change(change) => panic!("{change:?}"),
         })
         .collect();
     assert!(ratios.len() == 10 && ratios.iter().all(|ratio| *ratio < 1e-5), "{ratios:?}");

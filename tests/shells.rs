@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::twist::TwistReference;
 use ik_arm::render::PictureRenderer;
-use ik_arm::scene::{Ball, Colour, Globe, Scene, Shell};
+use ik_arm::scene::{Ball, Colour, Globe, Scene, SphereShell};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pictures::{GPU, SIZE, check, compare, draw};
@@ -17,12 +17,12 @@ const GREEN: Colour = Colour([70, 200, 80, 255]);
 const BLUE: Colour = Colour([60, 110, 240, 255]);
 const WHITE: Colour = Colour([255; 4]);
 
-fn shell(centre: Vec3, radius: f32, colour: Colour) -> Shell {
-    Shell { centre, radius, colour }
+fn shell(centre: Vec3, radius: f32, colour: Colour) -> SphereShell {
+    SphereShell { centre, radius, colour }
 }
 
 /// Three nested, one beside them, one behind, and two that intersect.
-fn shells() -> Vec<Shell> {
+fn shells() -> Vec<SphereShell> {
     vec![
         shell(Vec3::ZERO, 150.0, RED),
         shell(Vec3::new(20.0, 10.0, 0.0), 90.0, GREEN),
@@ -35,7 +35,7 @@ fn shells() -> Vec<Shell> {
 }
 
 /// Nothing but shells before an empty sky.
-fn scene(shells: Vec<Shell>) -> Scene {
+fn scene(shells: Vec<SphereShell>) -> Scene {
     let document = Document::default();
     let mut scene = Scene::new(
         &Document { display: [].into_iter().collect(), ..document },
@@ -50,7 +50,7 @@ fn scene(shells: Vec<Shell>) -> Scene {
     scene
 }
 
-fn seen_from(camera: Camera, shells: Vec<Shell>) -> Scene {
+fn seen_from(camera: Camera, shells: Vec<SphereShell>) -> Scene {
     let mut scene = scene(shells);
     scene.camera = camera;
     scene
@@ -200,7 +200,7 @@ fn what_is_solid_hides_the_shells_behind_it_alone() {
     let ball = |z: f32| Ball { centre: Vec3::Z * z, radius: 60.0, colour: WHITE };
     let middle = |scene: &Scene| *draw(scene).get_pixel(SIZE.0 / 2, SIZE.1 / 2);
     let camera = Camera { yaw: 0.0, pitch: 0.0, ..scene(Vec::new()).camera };
-    let drawn = |shells: Vec<Shell>, z| {
+    let drawn = |shells: Vec<SphereShell>, z| {
         let mut scene = seen_from(camera, shells);
         scene.balls.push(ball(z));
         middle(&scene)

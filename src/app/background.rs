@@ -14,7 +14,9 @@ use crate::export::{self, ExportError, ExportOptions, Format};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
-use crate::session::{Action, Actions, Dialog, Export, FileAction, Job, PathDialog, ShellAction};
+use crate::session::{
+    Action, Actions, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
+};
 
 /// Saves a picture of the viewport, drawn on a device of its own.
 pub(super) fn save_picture(
@@ -45,9 +47,9 @@ pub(super) fn export(
     document: Document,
     picture: &ViewportPicture,
     proxy: EventLoopProxy<UserEvent>,
-) -> (Job, JoinHandle<()>) {
+) -> (ExportJob, JoinHandle<()>) {
     let progress = Arc::new(Progress::default());
-    let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
+    let job = ExportJob { path: export.path.clone(), progress: Arc::clone(&progress) };
     let options = ExportOptions {
         fps: Some(export.frame_rate),
         size: export.size,

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::Gpu;
 use super::quads::{self, Quads};
 use super::sphere_order::SphereSide;
-use crate::scene::Shell;
+use crate::scene::SphereShell;
 
 pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
@@ -47,7 +47,7 @@ impl Shells {
     pub fn upload<'a>(
         &mut self,
         gpu: &Gpu,
-        sides: impl Iterator<Item = (&'a Shell, SphereSide)>,
+        sides: impl Iterator<Item = (&'a SphereShell, SphereSide)>,
     ) -> u64 {
         self.0.upload(gpu, sides.map(|(shell, side)| ShellInstance::new(shell, side)))
     }
@@ -62,12 +62,12 @@ impl Shells {
 }
 
 impl ShellInstance {
-    fn new(shell: &Shell, side: SphereSide) -> Self {
+    fn new(shell: &SphereShell, side: SphereSide) -> Self {
         let side = match side {
             SphereSide::Near => -1.0,
             SphereSide::Far => 1.0,
         };
-        let Shell { centre, radius, colour } = *shell;
+        let SphereShell { centre, radius, colour } = *shell;
         Self { centre, radius, colour: colour.channels(), side }
     }
 }

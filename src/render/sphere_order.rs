@@ -2,7 +2,7 @@ use core::cmp::Ordering;
 use core::ops::Range;
 
 use crate::document::Projection;
-use crate::scene::Shell;
+use crate::scene::SphereShell;
 
 /// One side of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub(super) struct SphereOrder {
 
 impl SphereOrder {
     /// Sorts the sides. It allocates only if there are more spheres than before.
-    pub fn sort(&mut self, projection: &Projection, spheres: &[Shell]) -> &[SphereSurface] {
+    pub fn sort(&mut self, projection: &Projection, spheres: &[SphereShell]) -> &[SphereSurface] {
         self.surfaces.clear();
         self.by_size.clear();
         self.by_size.extend(0..spheres.len());
@@ -50,7 +50,7 @@ impl SphereOrder {
     }
 
     /// Index of the first surface in front of a sphere that is at most as large as those in the list.
-    fn index_of(&self, projection: &Projection, spheres: &[Shell], sphere: usize) -> usize {
+    fn index_of(&self, projection: &Projection, spheres: &[SphereShell], sphere: usize) -> usize {
         let inner = &spheres[sphere];
         let mut inside = 0..self.surfaces.len();
         while let Some((_, sides)) =
@@ -79,8 +79,8 @@ impl SphereOrder {
 }
 
 /// Compares by size, the largest first, then by centre and colour.
-fn by_size(a: &Shell, b: &Shell) -> Ordering {
-    let key = |sphere: &Shell| {
+fn by_size(a: &SphereShell, b: &SphereShell) -> Ordering {
+    let key = |sphere: &SphereShell| {
         let [x, y, z] = sphere.centre.to_array();
         let [red, green, blue, opacity] = sphere.colour.channels();
         [sphere.radius, x, y, z, red, green, blue, opacity]
@@ -89,14 +89,14 @@ fn by_size(a: &Shell, b: &Shell) -> Ordering {
     pairs.map(|(b, a)| b.total_cmp(&a)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-fn contains(outer: &Shell, inner: &Shell) -> bool {
+fn contains(outer: &SphereShell, inner: &SphereShell) -> bool {
     let apart = outer.centre.as_dvec3().distance(inner.centre.as_dvec3());
     apart <= f64::from(outer.radius) - f64::from(inner.radius)
 }
 
 /// Squared length of the tangent from the eye; negative inside the sphere. In an orthographic view it is the
 /// depth of the centre, the limit as the eye moves away.
-fn distance(sphere: &Shell, projection: &Projection) -> f64 {
+fn distance(sphere: &SphereShell, projection: &Projection) -> f64 {
     let from_eye = sphere.centre.as_dvec3() - projection.eye.as_dvec3();
     if projection.orthographic {
         return from_eye.dot(projection.forward.as_dvec3());
@@ -112,12 +112,12 @@ mod tests {
     use crate::document::Camera;
     use crate::scene::Colour;
 
-    fn shell(centre: [f32; 3], radius: f32) -> Shell {
-        Shell { centre: centre.into(), radius, colour: Colour([255; 4]) }
+    fn shell(centre: [f32; 3], radius: f32) -> SphereShell {
+        SphereShell { centre: centre.into(), radius, colour: Colour([255; 4]) }
     }
 
     /// Disjoint, nested, doubly nested, touching and equal spheres.
-    fn shells() -> Vec<Shell> {
+    fn shells() -> Vec<SphereShell> {
         let mut shells = vec![
             shell([0.0, 0.0, 0.0], 100.0),
             shell([0.0, 0.0, 0.0], 40.0),
@@ -150,10 +150,10 @@ mod tests {
     }
 
     /// Intersections of a ray with the sides of the spheres, with distances along the ray.
-    fn met(projection: &Projection, at: Vec2, shells: &[Shell]) -> Vec<(SphereSurface, f64)> {
+    fn met(projection: &Projection, at: Vec2, shells: &[SphereShell]) -> Vec<(SphereSurface, f64)> {
         let ray = projection.ray(at);
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize());
-        let sides = |(sphere, shell): (usize, &Shell)| {
+        let sides = |(sphere, shell): (usize, &SphereShell)| {
             let from_centre: DVec3 = origin - shell.centre.as_dvec3();
             let middle = -from_centre.dot(direction);
             let miss = (from_centre + direction * middle).length_squared();
@@ -195,7 +195,7 @@ mod tests {
         shells.push(shell([95.0, 30.0, 0.0], 50.0)); // cuts others
         for camera in cameras() {
             let projection = camera.projection(1.5);
-            let sorted = |shells: &[Shell], order: &mut SphereOrder| -> Vec<_> {
+            let sorted = |shells: &[SphereShell], order: &mut SphereOrder| -> Vec<_> {
                 let surfaces = order.sort(&projection, shells).iter();
                 surfaces.map(|surface| (shells[surface.sphere], surface.side)).collect()
             };

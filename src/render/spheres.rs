@@ -2,7 +2,7 @@ use super::Gpu;
 use super::globe::Globes;
 use super::shell::Shells;
 use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
-use crate::scene::{Colour, Globe, Scene, Shell};
+use crate::scene::{Colour, Globe, Scene, SphereShell};
 
 /// Draws the shells and the globe, which are see-through, from back to front over everything opaque.
 #[derive(Debug)]
@@ -11,7 +11,7 @@ pub(super) struct Spheres {
     globe: Globes,
     order: SphereOrder,
     /// Shells with a size, then the globe.
-    spheres: Vec<Shell>,
+    spheres: Vec<SphereShell>,
     /// Number of shells' sides behind the globe's far side and behind its near side.
     behind_globe: [u32; 2],
 }
@@ -60,11 +60,11 @@ impl Spheres {
 }
 
 /// Whether a shell is finite, even with its radius squared, and not empty.
-fn has_size(shell: &Shell) -> bool {
+fn has_size(shell: &SphereShell) -> bool {
     let radius = shell.radius;
     shell.centre.is_finite() && radius > 0.0 && (radius * radius).is_finite()
 }
 
-fn of_globe(globe: Globe) -> Shell {
-    Shell { centre: globe.centre, radius: globe.radius, colour: Colour([0; 4]) }
+fn of_globe(globe: Globe) -> SphereShell {
+    SphereShell { centre: globe.centre, radius: globe.radius, colour: Colour([0; 4]) }
 }

@@ -18,4 +18,4 @@ pub use label::{Label, LabelSide};
 pub use palette::Palette;
 pub use planes::Planes;
 pub use scene::Scene;
-pub use shapes::{Ball, Line, Shadow, Shell, Solid};
+pub use shapes::{Ball, Line, Shadow, Solid, SphereShell};

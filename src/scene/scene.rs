@@ -4,7 +4,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 use super::label::TextRange;
-use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Shell, Solid};
+use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Solid, SphereShell};
 use crate::document::{Camera, Display, Theme};
 use crate::rig::{Cone, Crowd};
 
@@ -28,7 +28,7 @@ pub struct Scene {
     /// Balls that also show faintly through what hides them.
     pub guide_balls: Vec<Ball>,
     /// See-through spheres.
-    pub shells: Vec<Shell>,
+    pub shells: Vec<SphereShell>,
     /// Globe of gains.
     pub globe: Option<Globe>,
     /// Crowd that replaces the rig; the renderer solves it.

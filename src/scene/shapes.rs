@@ -30,7 +30,7 @@ pub struct Ball {
 
 /// A see-through sphere with a brighter rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shell {
+pub struct SphereShell {
     /// Centre in the world.
     pub centre: Vec3,
     /// Radius in world units.

@@ -1,6 +1,6 @@
 use std::time::{Duration, Instant};
 
-use super::solver_run::History;
+use super::solver_run::ResidualHistory;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SolverOptions};
 use crate::kinematics::skeleton::Skeleton;
@@ -8,16 +8,16 @@ use crate::kinematics::skeleton::Skeleton;
 /// Every solver from the same start to the same targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    runners: Vec<Runner>,
+    solvers: Vec<ComparedSolver>,
 }
 
 /// One solver in a race.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Runner {
+pub struct ComparedSolver {
     pub method: Method,
     /// The skeleton as this solver has it by now.
     pub skeleton: Skeleton,
-    pub history: History,
+    pub history: ResidualHistory,
     /// What the iterations took.
     pub time: Duration,
     solve: Result<ChainSolver, SolveError>,
@@ -26,14 +26,14 @@ pub struct Runner {
 impl Comparison {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Self {
         let goals = rig.targets_at(time);
-        let runners = Method::ALL.into_iter().map(|method| {
+        let solvers = Method::ALL.into_iter().map(|method| {
             let options = SolverOptions { method, iterations: None, ..rig.solver };
             let solve = ChainSolver::new(&rig.skeleton, &goals, &options);
-            let mut history = History::default();
+            let mut history = ResidualHistory::default();
             if let Ok(solve) = &solve {
                 history.push(solve.report().error);
             }
-            Runner {
+            ComparedSolver {
                 method,
                 skeleton: Skeleton::clone(&rig.skeleton),
                 history,
@@ -41,36 +41,36 @@ impl Comparison {
                 solve,
             }
         });
-        Self { runners: runners.collect() }
+        Self { solvers: solvers.collect() }
     }
 
-    pub fn runners(&self) -> &[Runner] {
-        &self.runners
+    pub fn solvers(&self) -> &[ComparedSolver] {
+        &self.solvers
     }
 
     /// Whether any solver still runs.
     pub fn is_running(&self) -> bool {
-        self.runners.iter().any(Runner::is_running)
+        self.solvers.iter().any(ComparedSolver::is_running)
     }
 
     /// Whether the joints are still those that it began with, turned or not.
     pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
-        let is_like = |runner: &Runner| {
+        let is_like = |solver: &ComparedSolver| {
             let parents = |skeleton: &Skeleton| -> Vec<_> {
                 skeleton.joints().iter().map(|joint| joint.parent).collect()
             };
-            parents(&runner.skeleton) == parents(skeleton)
+            parents(&solver.skeleton) == parents(skeleton)
         };
-        self.runners.first().is_none_or(is_like)
+        self.solvers.first().is_none_or(is_like)
     }
 
     /// Lets every solver run on: ever faster, so that the start can be watched and the end comes.
     pub(super) fn advance(&mut self) {
-        self.runners.iter_mut().for_each(Runner::advance);
+        self.solvers.iter_mut().for_each(ComparedSolver::advance);
     }
 }
 
-impl Runner {
+impl ComparedSolver {
     /// A running solver makes this part of the iterations that it has made, and at least one.
     const PACE: u32 = 8;
 

@@ -1,4 +1,4 @@
-use super::point_drag::{Constraint, DragInput, Handle, PointDrag};
+use super::point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn_drag::TurnDrag;
 use crate::kinematics::skeleton::JointId;
 
@@ -6,17 +6,17 @@ use crate::kinematics::skeleton::JointId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
     /// The arm's hand.
-    Hand(Handle),
+    Hand(PointHandle),
     /// What the arm's elbow points at.
-    Pole(Handle),
+    Pole(PointHandle),
     /// The ring about which the shoulder's angle x, y or z (0, 1, 2) turns.
     Shoulder(usize),
     /// The ring about which the elbow bends.
     Bend,
     /// The target of a joint.
-    Target(JointId, Handle),
+    Target(JointId, PointHandle),
     /// The tip of a joint's bone.
-    Tip(JointId, Handle),
+    Tip(JointId, PointHandle),
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns.
     Ring(JointId, usize),
 }
@@ -39,7 +39,7 @@ impl Grip {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
     pub(super) grip: Grip,
-    pub(super) way: DragKind,
+    pub(super) kind: DragKind,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +55,7 @@ impl Drag {
 
     /// The point that is held, unless it is a ring.
     pub fn point(&self) -> Option<&PointDrag> {
-        match &self.way {
+        match &self.kind {
             DragKind::Point(drag) => Some(drag),
             DragKind::Turn(_) => None,
         }
@@ -63,7 +63,7 @@ impl Drag {
 
     /// The ring that is held, unless it is a point.
     pub fn turn(&self) -> Option<&TurnDrag> {
-        match &self.way {
+        match &self.kind {
             DragKind::Turn(drag) => Some(drag),
             DragKind::Point(_) => None,
         }
@@ -71,21 +71,21 @@ impl Drag {
 
     /// What is typed while it is held.
     pub fn typed(&self) -> &str {
-        match &self.way {
+        match &self.kind {
             DragKind::Point(drag) => drag.typed(),
             DragKind::Turn(drag) => drag.typed(),
         }
     }
 
     pub(super) fn set_input(&mut self, input: DragInput) {
-        match &mut self.way {
+        match &mut self.kind {
             DragKind::Point(drag) => drag.set_input(input),
             DragKind::Turn(drag) => drag.set_input(input),
         }
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {
-        match &mut self.way {
+        match &mut self.kind {
             DragKind::Point(drag) => drag.set_typed(typed),
             DragKind::Turn(drag) => drag.set_typed(typed),
         }
@@ -93,7 +93,7 @@ impl Drag {
 
     /// Rings have nothing to be held to.
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
-        if let DragKind::Point(drag) = &mut self.way {
+        if let DragKind::Point(drag) = &mut self.kind {
             drag.set_constraint(constraint);
         }
     }

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use super::drag::Drag;
 use super::edit_label::{CHANGE, SOLVE};
-use super::history::{History, Overrides, State};
+use super::history::{History, Overrides, Snapshot};
 use super::playback::Playback;
 use super::transaction::Transaction;
 use crate::document::{Arm, Camera, Channel, Document, TwistReferenceKind};
@@ -18,7 +18,7 @@ pub(super) struct Editing {
     overrides: Overrides,
     transaction: Option<Transaction>,
     /// The state before the solver run that is open.
-    before_run: Option<State>,
+    before_run: Option<Snapshot>,
     history: History,
     /// Equal for equal documents.
     revision: u64,
@@ -30,7 +30,7 @@ pub(super) struct Editing {
 
 /// Consequences of a change of the document.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Change {
+pub(super) struct WriteOutcome {
     /// Joints were removed, renumbered or attached to other parents.
     pub is_rebuilt: bool,
     /// Keyed channels differ from their keys until the time changes.
@@ -118,12 +118,12 @@ impl Editing {
         match (&self.transaction, &self.before_run) {
             (Some(transaction), _) => Some(transaction.label.unwrap_or(CHANGE)),
             (None, Some(_)) => Some(SOLVE),
-            (None, None) => self.history.undo_name(),
+            (None, None) => self.history.undo_label(),
         }
     }
 
     pub fn redo_label(&self) -> Option<&'static str> {
-        self.history.redo_name()
+        self.history.redo_label()
     }
 
     /// Whether the document differs from the saved one in more than what is shown of it.
@@ -167,7 +167,7 @@ impl Editing {
 
     /// Replaces the shown document. Changed channels with keys get a key or are overridden until
     /// the time changes. `None` where nothing differs.
-    pub fn write(&mut self, mut after: Document, playback: &Playback) -> Option<Change> {
+    pub fn write(&mut self, mut after: Document, playback: &Playback) -> Option<WriteOutcome> {
         if after == self.shown {
             return None;
         }
@@ -188,7 +188,7 @@ impl Editing {
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
-        Some(Change { is_rebuilt, has_overridden })
+        Some(WriteOutcome { is_rebuilt, has_overridden })
     }
 
     /// Drags restart from the document before the transaction, but keep keys that were changed since,
@@ -294,12 +294,12 @@ impl Editing {
     }
 
     /// The state to restore at a time.
-    pub fn state(&self, time: f64) -> State {
-        State::new(&self.document, &self.overrides, time, self.revision, self.content)
+    pub fn state(&self, time: f64) -> Snapshot {
+        Snapshot::new(&self.document, &self.overrides, time, self.revision, self.content)
     }
 
     /// Adds an undo step if the document or the unkeyed edits have changed since `before`.
-    pub fn remember(&mut self, label: &'static str, before: State, time: f64) {
+    pub fn remember(&mut self, label: &'static str, before: Snapshot, time: f64) {
         if before.differs_from(&self.document) {
             self.newest_revision += 1;
             self.revision = self.newest_revision;
@@ -317,7 +317,7 @@ impl Editing {
     }
 
     /// Restores a state; returns whether joints were removed, renumbered or reattached.
-    pub fn restore(&mut self, state: &State, time: f64) -> bool {
+    pub fn restore(&mut self, state: &Snapshot, time: f64) -> bool {
         let document = state.document(&self.document);
         let is_rebuilt = is_rebuilt(self.document.skeleton(), document.skeleton());
         self.document = document;
@@ -347,7 +347,7 @@ impl Editing {
     }
 
     /// Closes the transaction and returns the state before it.
-    pub fn take_transaction(&mut self) -> Option<State> {
+    pub fn take_transaction(&mut self) -> Option<Snapshot> {
         Some(self.transaction.take()?.before)
     }
 
@@ -366,17 +366,17 @@ impl Editing {
     }
 
     /// Closes the solver run and returns the state before it.
-    pub fn take_run(&mut self) -> Option<State> {
+    pub fn take_run(&mut self) -> Option<Snapshot> {
         self.before_run.take()
     }
 
     /// The label of the last step and the state before it.
-    pub fn undo(&mut self, time: f64) -> Option<(&'static str, State)> {
+    pub fn undo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
         self.history.undo(self.state(time))
     }
 
     /// The label of the next step and the state after it.
-    pub fn redo(&mut self, time: f64) -> Option<(&'static str, State)> {
+    pub fn redo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
         self.history.redo(self.state(time))
     }
 }

@@ -14,14 +14,14 @@ pub struct Export {
 
 /// An export under way, on a thread of its own.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct ExportJob {
     /// Where it goes.
     pub path: PathBuf,
     pub progress: Arc<Progress>,
 }
 
 /// The same job, not one that is as far.
-impl PartialEq for Job {
+impl PartialEq for ExportJob {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.progress, &other.progress)
     }

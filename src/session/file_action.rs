@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use super::export::{Export, Job};
+use super::export::{Export, ExportJob};
 use super::path_dialog::PathDialog;
 use crate::document::Document;
 use crate::io::Example;
@@ -72,7 +72,7 @@ pub enum FileAction {
     /// Starts an export.
     Export(Export),
     /// An export has started.
-    ExportStarted(Job),
+    ExportStarted(ExportJob),
     /// Cancels the export.
     CancelExport,
     /// An export has ended, with a message or an error.

@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use super::export::Job;
+use super::export::ExportJob;
 use super::file_action::FileAction;
 
 /// The document's file, recent files, the running export and the answers that are waited for.
@@ -9,7 +9,7 @@ pub(super) struct Files {
     file: Option<PathBuf>,
     recent: Vec<PathBuf>,
     export_folder: Option<PathBuf>,
-    job: Option<Job>,
+    job: Option<ExportJob>,
     /// Whether an earlier run's unsaved document was opened or declined.
     recovery_settled: bool,
     /// The revision at which a file was asked for.
@@ -47,7 +47,7 @@ impl Files {
         self.export_folder.as_deref()
     }
 
-    pub fn job(&self) -> Option<&Job> {
+    pub fn job(&self) -> Option<&ExportJob> {
         self.job.as_ref()
     }
 
@@ -95,7 +95,7 @@ impl Files {
         last.parent().filter(|folder| folder.is_absolute())
     }
 
-    pub fn set_job(&mut self, job: Option<Job>) {
+    pub fn set_job(&mut self, job: Option<ExportJob>) {
         self.job = job;
     }
 

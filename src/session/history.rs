@@ -10,7 +10,7 @@ pub(super) type Overrides = BTreeMap<Channel, Vec3>;
 /// All that an undo restores: a document and its unkeyed edits. It shares with the documents before and
 /// after it what they have in common.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct State {
+pub(super) struct Snapshot {
     document: Document,
     overrides: Overrides,
     /// When the overrides were made.
@@ -21,7 +21,7 @@ pub(super) struct State {
     pub content: u64,
 }
 
-impl State {
+impl Snapshot {
     pub fn new(
         document: &Document,
         overrides: &Overrides,
@@ -93,15 +93,15 @@ impl State {
 /// What can be undone and done again. The oldest steps are forgotten when there are too many.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct History {
-    undo: VecDeque<Step>,
-    redo: Vec<Step>,
+    undo: VecDeque<UndoStep>,
+    redo: Vec<UndoStep>,
 }
 
 /// A change, and how everything was on its other side.
 #[derive(Clone, Debug, PartialEq)]
-struct Step {
+struct UndoStep {
     name: &'static str,
-    state: State,
+    state: Snapshot,
     /// What it takes beside the step before it.
     bytes: usize,
 }
@@ -111,7 +111,7 @@ impl History {
     const MOST_BYTES: usize = 256 << 20;
 
     /// Notes how everything was before a change.
-    pub fn push(&mut self, name: &'static str, before: State) {
+    pub fn push(&mut self, name: &'static str, before: Snapshot) {
         self.redo.clear();
         self.push_undo(name, before);
         while self.undo.len() > Self::MOST_STEPS || self.bytes() > Self::MOST_BYTES {
@@ -119,9 +119,9 @@ impl History {
         }
     }
 
-    fn push_undo(&mut self, name: &'static str, state: State) {
+    fn push_undo(&mut self, name: &'static str, state: Snapshot) {
         let bytes = state.unshared_bytes(self.undo.back().map(|step| &step.state));
-        self.undo.push_back(Step { name, state, bytes });
+        self.undo.push_back(UndoStep { name, state, bytes });
     }
 
     /// What the oldest step shared with the next one is the next one's alone.
@@ -133,30 +133,30 @@ impl History {
     }
 
     /// What Undo would take back.
-    pub fn undo_name(&self) -> Option<&'static str> {
+    pub fn undo_label(&self) -> Option<&'static str> {
         self.undo.back().map(|step| step.name)
     }
 
     /// What Redo would do again.
-    pub fn redo_name(&self) -> Option<&'static str> {
+    pub fn redo_label(&self) -> Option<&'static str> {
         self.redo.last().map(|step| step.name)
     }
 
     /// Goes a step back from `now`: its name, and how everything was.
-    pub fn undo(&mut self, now: State) -> Option<(&'static str, State)> {
+    pub fn undo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
-            let Step { name, state, .. } = self.undo.pop_back()?;
+            let UndoStep { name, state, .. } = self.undo.pop_back()?;
             if !state.looks_like(&now) {
-                self.redo.push(Step { name, state: now, bytes: 0 });
+                self.redo.push(UndoStep { name, state: now, bytes: 0 });
                 return Some((name, state));
             }
         }
     }
 
     /// Goes a step forward from `now`.
-    pub fn redo(&mut self, now: State) -> Option<(&'static str, State)> {
+    pub fn redo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
-            let Step { name, state, .. } = self.redo.pop()?;
+            let UndoStep { name, state, .. } = self.redo.pop()?;
             if !state.looks_like(&now) {
                 self.push_undo(name, now);
                 return Some((name, state));

@@ -14,9 +14,9 @@ pub struct Overlays {
     /// Joints that are selected; the last one is the one that is worked on.
     pub selection: Vec<JointId>,
     /// The joint that the pointer is on.
-    pub pointed: Option<JointId>,
+    pub hovered: Option<JointId>,
     /// The skeleton as solvers in a race have it.
-    pub ghosts: Vec<Ghost>,
+    pub ghosts: Vec<SolverGhost>,
     /// What was carried along with the Pointer, from which transport would measure the elbow.
     pub transported: Option<TransportedFrame>,
     /// Where the hand or the selected joint's tip is at every frame, in the world.
@@ -39,7 +39,7 @@ pub struct OnionSkin {
 
 /// A skeleton as a solver has it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ghost {
+pub struct SolverGhost {
     pub method: Method,
     pub pose: SkeletonPose,
 }

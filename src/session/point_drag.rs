@@ -6,7 +6,7 @@ use crate::document::Ray;
 
 /// Which part of a point's handles is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Handle {
+pub enum PointHandle {
     /// The point itself: it moves in the plane of the picture.
     Free,
     /// An arrow: 0, 1, 2 for x, y, z.
@@ -15,7 +15,7 @@ pub enum Handle {
     Plane(usize),
 }
 
-impl Handle {
+impl PointHandle {
     /// Whether its axis is one of three.
     pub(super) fn is_possible(self) -> bool {
         match self {
@@ -54,7 +54,7 @@ pub struct DragInput {
 /// from the last move, so that nothing drifts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointDrag {
-    handle: Handle,
+    handle: PointHandle,
     constraint: Option<Constraint>,
     /// The point at the press, and what it is relative to, in the world.
     start: Vec3,
@@ -66,13 +66,13 @@ pub struct PointDrag {
     pressed: Ray,
     now: DragInput,
     /// Where precision began, so that it goes on from there.
-    slow: Option<Slow>,
+    slow: Option<PrecisionStart>,
     typed: String,
     last: Vec3,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Slow {
+struct PrecisionStart {
     on: bool,
     ray: Ray,
     offset: Vec3,
@@ -85,7 +85,13 @@ impl PointDrag {
     const PRECISE_SNAP: f32 = 0.1;
 
     /// Takes hold of the point that is at `start` relative to `origin` in the world.
-    pub(super) fn new(handle: Handle, start: Vec3, origin: Vec3, forward: Vec3, ray: Ray) -> Self {
+    pub(super) fn new(
+        handle: PointHandle,
+        start: Vec3,
+        origin: Vec3,
+        forward: Vec3,
+        ray: Ray,
+    ) -> Self {
         let now = DragInput { ray, precise: false, snap: false };
         Self {
             handle,
@@ -107,16 +113,16 @@ impl PointDrag {
         Self { step, ..self }
     }
 
-    pub fn handle(&self) -> Handle {
+    pub fn handle(&self) -> PointHandle {
         self.handle
     }
 
     /// What the drag is held to, by the handle or by a key.
     pub fn constraint(&self) -> Option<Constraint> {
         self.constraint.or(match self.handle {
-            Handle::Free => None,
-            Handle::Axis(axis) => Some(Constraint::Axis(axis)),
-            Handle::Plane(axis) => Some(Constraint::Plane(axis)),
+            PointHandle::Free => None,
+            PointHandle::Axis(axis) => Some(Constraint::Axis(axis)),
+            PointHandle::Plane(axis) => Some(Constraint::Plane(axis)),
         })
     }
 
@@ -147,7 +153,7 @@ impl PointDrag {
     pub(super) fn set_input(&mut self, input: DragInput) {
         if input.precise != self.now.precise {
             let offset = self.pointed();
-            self.slow = Some(Slow { on: input.precise, ray: self.now.ray, offset });
+            self.slow = Some(PrecisionStart { on: input.precise, ray: self.now.ray, offset });
         }
         self.now = input;
     }
@@ -184,7 +190,7 @@ impl PointDrag {
 
     /// The offset that the pointer asks for.
     fn pointed(&self) -> Vec3 {
-        let Some(Slow { on, ray, offset }) = self.slow else {
+        let Some(PrecisionStart { on, ray, offset }) = self.slow else {
             return self.between(self.pressed, self.now.ray).unwrap_or(self.last - self.start);
         };
         let since = self.between(ray, self.now.ray).unwrap_or(Vec3::ZERO);
@@ -255,7 +261,7 @@ mod tests {
     const START: Vec3 = Vec3::new(250.0, 120.0, 60.0);
     const ROOT: Vec3 = Vec3::new(30.0, -20.0, 10.0);
 
-    fn drag(handle: Handle) -> (PointDrag, crate::document::Projection) {
+    fn drag(handle: PointHandle) -> (PointDrag, crate::document::Projection) {
         let projection = Camera::default().projection(1.6);
         let at = projection.project(ROOT + START).expect("in the picture");
         let ray = projection.ray(at);
@@ -268,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_free_hand_stays_under_the_pointer() {
-        let (mut drag, projection) = drag(Handle::Free);
+        let (mut drag, projection) = drag(PointHandle::Free);
         for at in [Vec2::new(0.1, 0.2), Vec2::new(-0.9, 0.8), Vec2::new(0.99, -0.99)] {
             drag.set_input(input(projection.ray(at)));
             let seen = projection.project(ROOT + drag.point()).expect("in the picture");
@@ -279,7 +285,7 @@ mod tests {
     #[test]
     fn an_arrow_moves_one_coordinate_and_keeps_the_others_bit_for_bit() {
         for axis in 0..3 {
-            let (mut drag, projection) = drag(Handle::Axis(axis));
+            let (mut drag, projection) = drag(PointHandle::Axis(axis));
             drag.set_input(input(projection.ray(Vec2::new(0.31, 0.47))));
             let hand = drag.point();
             for other in 0..3 {
@@ -291,7 +297,7 @@ mod tests {
     #[test]
     fn a_square_keeps_one_coordinate_bit_for_bit() {
         for axis in 0..3 {
-            let (mut drag, projection) = drag(Handle::Plane(axis));
+            let (mut drag, projection) = drag(PointHandle::Plane(axis));
             drag.set_input(input(projection.ray(Vec2::new(0.31, 0.17))));
             let hand = drag.point();
             for other in 0..3 {
@@ -302,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_hand_that_comes_back_to_where_it_was_pressed_is_where_it_was() {
-        for handle in [Handle::Free, Handle::Axis(1), Handle::Plane(2)] {
+        for handle in [PointHandle::Free, PointHandle::Axis(1), PointHandle::Plane(2)] {
             let (mut drag, projection) = drag(handle);
             let pressed = drag.pressed;
             for step in 0..50 {
@@ -316,7 +322,7 @@ mod tests {
 
     #[test]
     fn precision_goes_a_tenth_of_the_way_from_where_it_began() {
-        let (mut drag, projection) = drag(Handle::Axis(0));
+        let (mut drag, projection) = drag(PointHandle::Axis(0));
         let at = projection.project(ROOT + START).expect("in the picture");
         let ray = |x: f32| projection.ray(at + Vec2::new(x, 0.0));
         drag.set_input(input(ray(0.2)));
@@ -333,7 +339,7 @@ mod tests {
 
     #[test]
     fn snapping_lands_on_whole_steps_of_the_coordinates_that_move() {
-        let (mut drag, projection) = drag(Handle::Plane(1));
+        let (mut drag, projection) = drag(PointHandle::Plane(1));
         let ray = projection.ray(Vec2::new(0.3, 0.1));
         drag.set_input(DragInput { snap: true, ..input(ray) });
         let hand = drag.point();
@@ -345,7 +351,7 @@ mod tests {
 
     #[test]
     fn a_locked_axis_takes_a_free_drag_along_it() {
-        let (mut drag, projection) = drag(Handle::Free);
+        let (mut drag, projection) = drag(PointHandle::Free);
         drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
         drag.set_constraint(Some(Constraint::Axis(2)));
         let hand = drag.point();
@@ -363,17 +369,17 @@ mod tests {
             drag.set_typed(text.to_owned());
             drag.point() - START
         };
-        assert_eq!(typed(Handle::Axis(1), "12.5"), Vec3::new(0.0, 12.5, 0.0));
-        assert_eq!(typed(Handle::Plane(1), "-3,4"), Vec3::new(-3.0, 0.0, 4.0));
-        assert_eq!(typed(Handle::Free, "1,2,3"), Vec3::new(1.0, 2.0, 3.0));
-        assert_eq!(typed(Handle::Free, "1,"), Vec3::new(1.0, 0.0, 0.0));
-        assert_eq!(typed(Handle::Free, "-"), Vec3::ZERO);
-        assert_eq!(typed(Handle::Free, "1e99"), Vec3::ZERO);
+        assert_eq!(typed(PointHandle::Axis(1), "12.5"), Vec3::new(0.0, 12.5, 0.0));
+        assert_eq!(typed(PointHandle::Plane(1), "-3,4"), Vec3::new(-3.0, 0.0, 4.0));
+        assert_eq!(typed(PointHandle::Free, "1,2,3"), Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!(typed(PointHandle::Free, "1,"), Vec3::new(1.0, 0.0, 0.0));
+        assert_eq!(typed(PointHandle::Free, "-"), Vec3::ZERO);
+        assert_eq!(typed(PointHandle::Free, "1e99"), Vec3::ZERO);
     }
 
     #[test]
     fn a_pointer_that_looks_away_from_the_plane_leaves_the_hand() {
-        let (mut drag, _) = drag(Handle::Plane(1));
+        let (mut drag, _) = drag(PointHandle::Plane(1));
         let up = Ray { origin: Vec3::new(0.0, 500.0, 0.0), direction: Vec3::Y };
         drag.set_input(input(up));
         assert_eq!(drag.point(), START);

@@ -8,7 +8,7 @@ use crate::kinematics::soft_reach::SoftReach;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PopFix {
     /// Another reference for the elbow's spin.
-    Measure(TwistReferenceKind),
+    ChangeReference(TwistReferenceKind),
     /// A softer way into the limits.
     Soften(SoftReach),
     /// A smallest elbow angle, with which the arm does not fold up.
@@ -19,16 +19,16 @@ impl PopFix {
     /// Nothing where nothing helps: at the shoulder, with what is the remedy already, or where
     /// something has been done.
     pub fn new(spike: &Spike, arm: &Arm) -> Option<Self> {
-        if !spike.stands(arm) {
+        if !spike.persists(arm) {
             return None;
         }
         match spike.pop {
             Pop::Singular { .. } => match arm.twist_reference {
                 TwistReferenceKind::Limb | TwistReferenceKind::Pole => {
-                    Some(Self::Measure(TwistReferenceKind::Stereographic))
+                    Some(Self::ChangeReference(TwistReferenceKind::Stereographic))
                 }
                 TwistReferenceKind::Stereographic => {
-                    Some(Self::Measure(TwistReferenceKind::Transport))
+                    Some(Self::ChangeReference(TwistReferenceKind::Transport))
                 }
                 TwistReferenceKind::Transport => None,
             },
@@ -43,7 +43,9 @@ impl PopFix {
 
     pub fn action(self) -> EditAction {
         match self {
-            Self::Measure(twist_reference) => EditAction::SetTwistReference(twist_reference),
+            Self::ChangeReference(twist_reference) => {
+                EditAction::SetTwistReference(twist_reference)
+            }
             Self::Soften(soft_reach) | Self::KeepOpen(soft_reach) => {
                 EditAction::SetSoftReach(soft_reach)
             }

@@ -9,23 +9,23 @@ use crate::kinematics::two_bone::TwoBonePose;
 /// played: not saved, and not undone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pops {
-    samples: VecDeque<Sample>,
-    last: Last,
+    samples: VecDeque<PopSample>,
+    last: PreviousMoment,
     run: u32,
 }
 
 /// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct PopSample {
     /// Samples of one drag, or of one stretch that was played, have the same number.
     pub run: u32,
-    /// What posed the arm.
+    /// PopSampleKind posed the arm.
     pub ik: Ik,
-    pub what: What,
+    pub kind: PopSampleKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
+pub enum PopSampleKind {
     /// The cursor moved, and nothing else.
     Step(Step),
     /// Something else changed the pose, once or many times in a row.
@@ -40,7 +40,7 @@ pub struct Spike {
     /// The ratio of that.
     pub ratio: f32,
     pub pop: Pop,
-    /// What posed the arm.
+    /// PopSampleKind posed the arm.
     pub ik: Ik,
 }
 
@@ -55,7 +55,7 @@ pub(super) enum CursorMove {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Last {
+struct PreviousMoment {
     moment: Moment,
     cause: CursorMove,
     time: f64,
@@ -66,12 +66,12 @@ impl Pops {
 
     /// None yet of an arm that stands so.
     pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
-        let last = Last { moment: moment(arm, pose), cause: CursorMove::Set, time };
+        let last = PreviousMoment { moment: moment(arm, pose), cause: CursorMove::Set, time };
         Self { samples: VecDeque::new(), last, run: 0 }
     }
 
     /// The last 600, the oldest first.
-    pub fn samples(&self) -> impl ExactSizeIterator<Item = &Sample> + Clone {
+    pub fn samples(&self) -> impl ExactSizeIterator<Item = &PopSample> + Clone {
         self.samples.iter()
     }
 
@@ -81,7 +81,7 @@ impl Pops {
         const APART: usize = 4;
         let mut spikes: Vec<(Spike, usize)> = Vec::new();
         for (at, sample) in self.samples.iter().enumerate() {
-            let What::Step(Step { ratio, pop: Some(pop), .. }) = sample.what else {
+            let PopSampleKind::Step(Step { ratio, pop: Some(pop), .. }) = sample.kind else {
                 continue;
             };
             let spike = Spike { at, ratio, pop, ik: sample.ik };
@@ -107,7 +107,7 @@ impl Pops {
 
     fn go_on(&mut self, moment: Moment, cause: CursorMove, time: f64) {
         let last = &mut self.last;
-        // What is played begins again.
+        // PopSampleKind is played begins again.
         let cause =
             if cause == CursorMove::Played && time < last.time { CursorMove::Set } else { cause };
         let is_elsewhen = cause == CursorMove::Set && time != last.time;
@@ -119,10 +119,10 @@ impl Pops {
         match Change::between(&before, &moment) {
             _ if is_elsewhen => {}
             Some(_) if before.pose == moment.pose => {}
-            Some(change) => self.push(moment.ik, What::Change(change)),
+            Some(change) => self.push(moment.ik, PopSampleKind::Change(change)),
             None if cause == CursorMove::Set => {}
             None => match Step::between(&before, &moment) {
-                Some(step) => self.push(moment.ik, What::Step(step)),
+                Some(step) => self.push(moment.ik, PopSampleKind::Step(step)),
                 // Short ones add up.
                 None => return,
             },
@@ -130,11 +130,11 @@ impl Pops {
         self.last.moment = moment;
     }
 
-    fn push(&mut self, ik: Ik, what: What) {
-        let sample = Sample { run: self.run, ik, what };
-        if let (What::Change(_), Some(last)) = (what, self.samples.back_mut())
+    fn push(&mut self, ik: Ik, kind: PopSampleKind) {
+        let sample = PopSample { run: self.run, ik, kind };
+        if let (PopSampleKind::Change(_), Some(last)) = (kind, self.samples.back_mut())
             && last.run == sample.run
-            && last.what == what
+            && last.kind == kind
         {
             *last = sample;
             return;
@@ -164,7 +164,7 @@ impl Spike {
     }
 
     /// Whether the same cause of the cursor would pop again: nothing has been done about it.
-    pub fn stands(self, arm: &Arm) -> bool {
+    pub fn persists(self, arm: &Arm) -> bool {
         match self.pop {
             Pop::Singular { .. } => self.ik.reference == arm.reference(),
             _ => self.ik.soft_reach == arm.soft_reach && self.ik.bones == arm.bones,

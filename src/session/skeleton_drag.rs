@@ -2,9 +2,9 @@ use glam::{Vec3, Vec3A};
 
 use super::drag::DragKind;
 use super::drag::{Drag, Grip};
-use super::point_drag::{Handle, PointDrag};
+use super::point_drag::{PointDrag, PointHandle};
 use super::session::Session;
-use super::turn_drag::{Ring, TurnDrag};
+use super::turn_drag::{GripRing, TurnDrag};
 use crate::document::Ray;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -14,35 +14,47 @@ const ITERATIONS_OF_A_DRAG: u32 = 64;
 
 /// What is dragged of a skeleton.
 impl Session {
-    pub(super) fn grab_target(&mut self, joint: JointId, handle: Handle, ray: Ray, forward: Vec3) {
+    pub(super) fn grab_target(
+        &mut self,
+        joint: JointId,
+        handle: PointHandle,
+        ray: Ray,
+        forward: Vec3,
+    ) {
         if let Some(target) = self.skeleton_rig().target(joint) {
             let at = self.skeleton_rig().targets[target].at(self.time());
             self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
         }
     }
 
-    pub(super) fn grab_tip(&mut self, joint: JointId, handle: Handle, ray: Ray, forward: Vec3) {
+    pub(super) fn grab_tip(
+        &mut self,
+        joint: JointId,
+        handle: PointHandle,
+        ray: Ray,
+        forward: Vec3,
+    ) {
         if joint.index() < self.skeleton_pose().len() && self.skeleton_rig().follow_path.is_none() {
             let tip = self.skeleton_pose().tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
     }
 
-    fn grab_point(&mut self, grip: Grip, handle: Handle, at: Vec3, ray: Ray, forward: Vec3) {
+    fn grab_point(&mut self, grip: Grip, handle: PointHandle, at: Vec3, ray: Ray, forward: Vec3) {
         let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip, way: DragKind::Point(drag) }));
+        self.begin_edit(Some(Drag { grip, kind: DragKind::Point(drag) }));
     }
 
     pub(super) fn grab_ring(&mut self, joint: JointId, axis: usize, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
         let start = self.skeleton()[joint].rotation[axis];
         let drag = TurnDrag::new(ring, start, ray);
-        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), way: DragKind::Turn(drag) }));
+        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), kind: DragKind::Turn(drag) }));
     }
 
     /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
     /// limit leaves no room.
-    pub fn ring(&self, joint: JointId, axis: usize) -> Option<Ring> {
+    pub fn ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
         let skeleton = &self.skeleton();
         let limit = skeleton.joint(joint)?.limits.get(axis)?;
         if limit.is_some_and(|limit| limit.min == limit.max) {
@@ -53,7 +65,7 @@ impl Session {
         // A mirror turns every rotation around.
         let sign = world.matrix3.determinant().signum();
         let axis = (Vec3::from(world.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
-        Some(Ring { centre: world.translation.into(), axis })
+        Some(GripRing { centre: world.translation.into(), axis })
     }
 
     /// A tenth of the grid.

@@ -16,18 +16,18 @@ pub struct SolverRun {
     written: Shared<Skeleton>,
     /// Iterations before the targets moved last, or somebody else turned a joint.
     before: u32,
-    history: History,
+    history: ResidualHistory,
     pub(super) running: bool,
 }
 
 /// The error after every iteration, the first ones forgotten when there are too many.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct History {
+pub struct ResidualHistory {
     forgotten: usize,
     errors: Vec<f32>,
 }
 
-impl History {
+impl ResidualHistory {
     const MOST: usize = 4096;
 
     pub(super) fn push(&mut self, error: f32) {
@@ -49,7 +49,7 @@ impl SolverRun {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Result<Self, SolveError> {
         let goals = rig.targets_at(time);
         let solve = ChainSolver::new(&rig.skeleton, &goals, &rig.solver)?;
-        let mut history = History::default();
+        let mut history = ResidualHistory::default();
         history.push(solve.report().error);
         Ok(Self {
             start: rig.skeleton.clone(),
@@ -78,7 +78,7 @@ impl SolverRun {
         self.solve.is_over() && !report.converged && !report.resting
     }
 
-    pub fn history(&self) -> &History {
+    pub fn history(&self) -> &ResidualHistory {
         &self.history
     }
 

@@ -13,12 +13,12 @@ pub struct SolverStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
     /// Every tip is within the tolerance of its target, whoever brought it there.
-    Reached,
+    Converged,
     Running,
     /// Further iterations would change nothing.
-    AtRest,
+    Stalled,
     /// The iterations are used up.
-    GaveUp,
+    OutOfIterations,
     Paused,
     /// No run led to this pose: there was none, or something was changed since.
     NotSolved,
@@ -27,10 +27,10 @@ pub enum SolverState {
 impl SolverState {
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Reached => "converged",
+            Self::Converged => "converged",
             Self::Running => "running",
-            Self::AtRest => "stalled",
-            Self::GaveUp => "out of iterations",
+            Self::Stalled => "stalled",
+            Self::OutOfIterations => "out of iterations",
             Self::Paused => "paused",
             Self::NotSolved => "not solved yet",
         }
@@ -51,9 +51,9 @@ impl Session {
         let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
         let state = match current {
             _ if self.is_running() => SolverState::Running,
-            _ if report.converged => SolverState::Reached,
-            Some(_) if report.resting => SolverState::AtRest,
-            Some(run) if run.is_spent() => SolverState::GaveUp,
+            _ if report.converged => SolverState::Converged,
+            Some(_) if report.resting => SolverState::Stalled,
+            Some(run) if run.is_spent() => SolverState::OutOfIterations,
             Some(_) if report.iterations > 0 => SolverState::Paused,
             _ => SolverState::NotSolved,
         };

@@ -1,12 +1,12 @@
 use super::drag::Drag;
-use super::history::State;
+use super::history::Snapshot;
 use crate::document::Document;
 
 /// Edits between press and release that become one undo step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Transaction {
     /// The state that cancelling restores.
-    pub before: State,
+    pub before: Snapshot,
     /// The document as shown before, with changes since that a drag does not revert.
     pub shown: Document,
     /// The label of the last edit; `None` before the first.

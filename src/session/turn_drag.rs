@@ -9,7 +9,7 @@ use crate::document::Ray;
 /// computed from the press, never from the last move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurnDrag {
-    ring: Ring,
+    ring: GripRing,
     /// The angle at the press, radians.
     start: f32,
     pressed: Ray,
@@ -24,7 +24,7 @@ pub struct TurnDrag {
 
 /// A circle around a joint, in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ring {
+pub struct GripRing {
     pub centre: Vec3,
     /// Unit vector about which a growing angle turns, right-handed.
     pub axis: Vec3,
@@ -35,7 +35,7 @@ impl TurnDrag {
     const SNAP: f32 = 5.0 * PI / 180.0;
     const PRECISE_SNAP: f32 = PI / 180.0;
 
-    pub(super) fn new(ring: Ring, start: f32, ray: Ray) -> Self {
+    pub(super) fn new(ring: GripRing, start: f32, ray: Ray) -> Self {
         let now = DragInput { ray, precise: false, snap: false };
         Self {
             ring,
@@ -102,7 +102,7 @@ impl TurnDrag {
     }
 }
 
-impl Ring {
+impl GripRing {
     /// A ring whose axis is nearer than this (the sine) to lying in the picture is seen edge-on.
     const EDGE_ON: f32 = 0.1;
 
@@ -141,12 +141,12 @@ mod tests {
     use super::*;
     use crate::document::{Camera, Projection};
 
-    fn ring(axis: Vec3) -> (Ring, Projection) {
-        (Ring { centre: Vec3::new(10.0, 20.0, -5.0), axis }, Camera::default().projection(1.6))
+    fn ring(axis: Vec3) -> (GripRing, Projection) {
+        (GripRing { centre: Vec3::new(10.0, 20.0, -5.0), axis }, Camera::default().projection(1.6))
     }
 
     /// A ray through the point of the ring at an angle.
-    fn through(ring: Ring, projection: &Projection, radius: f32, angle: f32) -> Ray {
+    fn through(ring: GripRing, projection: &Projection, radius: f32, angle: f32) -> Ray {
         let (u, v) = ring.axis.any_orthonormal_pair();
         let (u, v) = if u.cross(v).dot(ring.axis) > 0.0 { (u, v) } else { (v, u) };
         let at = ring.centre + (u * angle.cos() + v * angle.sin()) * radius;
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn a_ring_seen_edge_on_rolls() {
         let (ring, projection) = ring(Vec3::ZERO);
-        let ring = Ring { axis: projection.up.normalize(), ..ring };
+        let ring = GripRing { axis: projection.up.normalize(), ..ring };
         let near = ring.centre - projection.forward * 60.0;
         let at = projection.project(near).expect("seen");
         let mut drag = TurnDrag::new(ring, 0.0, projection.ray(at + Vec2::new(0.02, 0.0)));

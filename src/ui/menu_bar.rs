@@ -79,8 +79,8 @@ fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    step(ui, "Undo", session.undo_name(), "Ctrl+Z", TransactionAction::Undo.into(), actions);
-    step(ui, "Redo", session.redo_name(), "Ctrl+Shift+Z", TransactionAction::Redo.into(), actions);
+    step(ui, "Undo", session.undo_label(), "Ctrl+Z", TransactionAction::Undo.into(), actions);
+    step(ui, "Redo", session.redo_label(), "Ctrl+Shift+Z", TransactionAction::Redo.into(), actions);
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     ui.separator();

@@ -6,14 +6,14 @@ use super::machine::Machine;
 use super::pose_summary;
 use super::widgets::{self, format};
 use crate::document::RigKind;
-use crate::session::{Actions, Drag, FileAction, Grip, Job, PointDrag, Session, TurnDrag};
+use crate::session::{Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, TurnDrag};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) {
     ui.horizontal(|ui| {
         ui.set_height(24.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add(Label::new(RichText::new(describe_machine(machine)).weak()).selectable(false));
-            if let Some(job) = session.job() {
+            if let Some(job) = session.export_job() {
                 show_job(ui, job, actions);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actio
 }
 
 /// Progress of an export with a button that cancels it.
-fn show_job(ui: &mut Ui, job: &Job, actions: &mut Actions) {
+fn show_job(ui: &mut Ui, job: &ExportJob, actions: &mut Actions) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Cancel the export; no file is written").clicked() {
         actions.push(FileAction::CancelExport);

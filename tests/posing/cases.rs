@@ -7,7 +7,7 @@ use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::session::{
-    DragInput, EditAction, Grip, Handle, PoseMode, Session, TransactionAction, ViewAction,
+    DragInput, EditAction, Grip, PointHandle, PoseMode, Session, TransactionAction, ViewAction,
 };
 
 use crate::*;
@@ -98,11 +98,11 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
     let projection = session.camera().projection(1.0);
     let ray = projection.ray(projection.project(session.arm().pole).expect("seen"));
     let forward = projection.forward;
-    session.apply(TransactionAction::Grab { grip: Grip::Pole(Handle::Free), ray, forward });
+    session.apply(TransactionAction::Grab { grip: Grip::Pole(PointHandle::Free), ray, forward });
     let to = projection.ray(glam::Vec2::new(0.2, -0.3));
     session.apply(TransactionAction::Drag(DragInput { ray: to, precise: false, snap: false }));
     session.apply(TransactionAction::Commit);
-    assert_eq!(session.undo_name(), Some("Move pole"));
+    assert_eq!(session.undo_label(), Some("Move pole"));
     let (arm, pose) = (session.arm(), session.pose());
     let aside =
         (arm.pole - pose.pointer.direction * arm.pole.dot(pose.pointer.direction)).normalize();
@@ -155,15 +155,19 @@ fn a_click_on_the_hand_leaves_the_document_unchanged() {
                 EditAction::SetTwistReference(twist_reference),
                 EditAction::SetHand(hand),
             ]);
-            let (before, undo) = (session.document().clone(), session.undo_name());
+            let (before, undo) = (session.document().clone(), session.undo_label());
             let projection = session.camera().projection(1.0);
             let ray = projection.ray(projection.project(hand).expect("seen"));
             let forward = projection.forward;
-            session.apply(TransactionAction::Grab { grip: Grip::Hand(Handle::Free), ray, forward });
+            session.apply(TransactionAction::Grab {
+                grip: Grip::Hand(PointHandle::Free),
+                ray,
+                forward,
+            });
             session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap: false }));
             session.apply(TransactionAction::Commit);
             assert_eq!(session.document(), &before);
-            assert_eq!(session.undo_name(), undo);
+            assert_eq!(session.undo_label(), undo);
         }
     }
 }

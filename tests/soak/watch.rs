@@ -115,7 +115,7 @@ impl Watch {
                 | Action::File(FileAction::Discard(_))
                 | Action::File(FileAction::Saved(_))
         );
-        let is_fresh = session.undo_name().is_none() && session.redo_name().is_none();
+        let is_fresh = session.undo_label().is_none() && session.redo_label().is_none();
         let is_replaced = can_replace
             && is_fresh
             && session.revision() != before.revision

@@ -66,7 +66,7 @@ fn fk_takes_over_the_pose_and_ik_takes_it_back() {
     let pose = *bench.session().pose();
     bench.click(Role::Button, "IK");
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
-    assert_eq!(bench.session().undo_name(), Some("Switch to IK"));
+    assert_eq!(bench.session().undo_label(), Some("Switch to IK"));
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
 }
 
@@ -184,7 +184,7 @@ fn the_elbow_is_measured_from_elsewhere_and_stays() {
             bench.shows(Role::Slider, "Pole x"),
             twist_reference == TwistReferenceKind::Pole
         );
-        assert_eq!(bench.session().undo_name(), Some("Change twist reference"));
+        assert_eq!(bench.session().undo_label(), Some("Change twist reference"));
     }
 }
 
@@ -201,7 +201,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.release(LEFT);
     bench.drag_and_drop(LEFT, at, at + vec2(-40.0, 20.0));
-    assert_eq!(bench.session().undo_name(), Some("Move pole"));
+    assert_eq!(bench.session().undo_label(), Some("Move pole"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.enter("Pole y", "123.5");

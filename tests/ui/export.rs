@@ -8,7 +8,7 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Channel;
 use ik_arm::io::{self, Cancelled, Example, Progress};
-use ik_arm::session::{Action, EditAction, Effect, Export, FileAction, Job, PlaybackAction};
+use ik_arm::session::{Action, EditAction, Effect, Export, ExportJob, FileAction, PlaybackAction};
 
 use crate::bench::Bench;
 
@@ -70,7 +70,7 @@ fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
     bench.click(Role::Button, "Export");
     let export = exported(&mut bench);
     let progress = Arc::new(Progress::default());
-    let job = Job { path: export.path.clone(), progress: Arc::clone(&progress) };
+    let job = ExportJob { path: export.path.clone(), progress: Arc::clone(&progress) };
     bench.apply_moving([FileAction::ExportStarted(job)]);
     assert_eq!(progress.step(30, 120), Ok(()));
     bench.frame([]);

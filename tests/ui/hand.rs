@@ -4,7 +4,7 @@ use egui::{CursorIcon, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, EditAction, Handle, PointDrag, ViewAction};
+use ik_arm::session::{Action, EditAction, PointDrag, PointHandle, ViewAction};
 
 use crate::bench::{Bench, SMALL, bits};
 
@@ -196,7 +196,10 @@ fn an_arrow_moves_its_coordinate_and_no_other_bit() {
         bench.move_to(grabbed);
         assert_eq!(bench.harness.output().platform_output.cursor_icon, CursorIcon::Grab);
         bench.press(LEFT);
-        assert_eq!(bench.session().point_drag().map(PointDrag::handle), Some(Handle::Axis(axis)));
+        assert_eq!(
+            bench.session().point_drag().map(PointDrag::handle),
+            Some(PointHandle::Axis(axis))
+        );
         let step = along(&bench, axis);
         for part in [3.0, 20.0, 45.0, -30.0, 60.0] {
             bench.move_to(grabbed + step * part);
@@ -219,7 +222,10 @@ fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
         let grabbed = on_square(&bench, axis);
         let start = bench.cursor_place();
         grab(&mut bench, grabbed);
-        assert_eq!(bench.session().point_drag().map(PointDrag::handle), Some(Handle::Plane(axis)));
+        assert_eq!(
+            bench.session().point_drag().map(PointDrag::handle),
+            Some(PointHandle::Plane(axis))
+        );
         for offset in [vec2(2.0, 1.0), vec2(25.0, -10.0), vec2(-20.0, 15.0)] {
             bench.move_to(grabbed + offset);
             for other in 0..3 {
@@ -239,7 +245,7 @@ fn an_arrow_along_the_view_cannot_be_taken() {
     let place = bench.cursor_place();
     bench.move_to(place + vec2(17.0, 12.0));
     bench.press(LEFT);
-    assert!(bench.session().point_drag().is_none_or(|d| d.handle() != Handle::Axis(2)));
+    assert!(bench.session().point_drag().is_none_or(|d| d.handle() != PointHandle::Axis(2)));
 }
 
 #[test]

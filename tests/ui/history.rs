@@ -97,10 +97,10 @@ fn a_running_solver_is_one_step() {
     bench.wait(2.0);
     assert!(!bench.session().is_running());
     assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_name(), Some("Solve"));
+    assert_eq!(bench.session().undo_label(), Some("Solve"));
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_name(), None);
+    assert_eq!(bench.session().undo_label(), None);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn the_view_and_the_selection_are_no_steps() {
         ViewAction::SetCamera(camera.orbited(1.0, 0.1)).into(),
     ]);
     bench.apply([PlaybackAction::SetTime(2.0)]);
-    assert_eq!(bench.session().undo_name(), None);
+    assert_eq!(bench.session().undo_label(), None);
     assert!(!bench.session().is_unsaved());
     bench.apply([
         Action::from(EditAction::SetLocked { joint: JointId::new(3), locked: true }),

@@ -8,8 +8,8 @@ use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, RigKind, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, Effect, FileAction, Grip, Job, PathDialog, SelectAction,
-    ShellAction, SolverAction, SolverState, TransactionAction, ViewAction,
+    Action, Dialog, DragInput, EditAction, Effect, ExportJob, FileAction, Grip, PathDialog,
+    SelectAction, ShellAction, SolverAction, SolverState, TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -267,7 +267,7 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     assert_eq!(status(&bench).state, SolverState::NotSolved);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
-    assert_eq!(status(&bench).state, SolverState::Reached);
+    assert_eq!(status(&bench).state, SolverState::Converged);
     assert!(bench.says("converged after"), "the status line says so");
 
     bench.apply([EditAction::SetRotation { joint: JointId::new(2), rotation: Vec3::splat(0.7) }]);
@@ -277,7 +277,7 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
 
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(status(&bench).state, SolverState::Reached, "it is the solved pose again");
+    assert_eq!(status(&bench).state, SolverState::Converged, "it is the solved pose again");
     let mut target = bench.session().skeleton_rig().targets[0];
     target.home += Vec3::splat(0.5);
     bench.apply([EditAction::SetTarget(target)]);
@@ -392,7 +392,7 @@ fn saving_as_over_another_file_asks_too() {
 fn quitting_during_an_export_asks() {
     let mut bench = Bench::new();
     let progress = std::sync::Arc::new(ik_arm::io::Progress::default());
-    let job = Job { path: "walk.glb".into(), progress };
+    let job = ExportJob { path: "walk.glb".into(), progress };
     bench.apply_moving([FileAction::ExportStarted(job.clone())]);
     bench.key_with(CTRL, Key::Q);
     bench.wait(0.2);

@@ -282,12 +282,12 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     bench.wait(4.0);
     let comparison = bench.session().comparison().expect("it goes on");
     assert!(!comparison.is_running(), "it ends");
-    assert_eq!(comparison.runners().len(), Method::ALL.len());
-    for runner in comparison.runners() {
-        let report = runner.report().expect("all can run here");
-        assert!(report.iterations > 0 && runner.time.as_nanos() > 0);
-        let converges = !matches!(runner.method, Method::TwoBone | Method::TransposeFixed);
-        assert!(report.converged || !converges, "{:?}: {report:?}", runner.method);
+    assert_eq!(comparison.solvers().len(), Method::ALL.len());
+    for solver in comparison.solvers() {
+        let report = solver.report().expect("all can run here");
+        assert!(report.iterations > 0 && solver.time.as_nanos() > 0);
+        let converges = !matches!(solver.method, Method::TwoBone | Method::TransposeFixed);
+        assert!(report.converged || !converges, "{:?}: {report:?}", solver.method);
     }
     assert_eq!(bench.session().overlays().ghosts.len(), Method::ALL.len());
     assert_eq!(bench.session().skeleton_rig(), &before);
@@ -304,7 +304,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(1.0);
     let comparison = bench.session().comparison().expect("it goes on");
-    let two_bone = comparison.runners().iter().find(|runner| runner.method == Method::TwoBone);
+    let two_bone = comparison.solvers().iter().find(|solver| solver.method == Method::TwoBone);
     let error = two_bone.expect("it is there").report().expect_err("its parent is locked");
     assert!(error.to_string().contains("locked"), "{error}");
 }

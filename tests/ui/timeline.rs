@@ -94,7 +94,7 @@ fn the_time_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     bench.move_to(place(&bench, 3.0));
     assert_eq!(bench.session().time(), 0.0, "it is let go");
     assert_eq!(bench.session().document(), &document);
-    assert_eq!(bench.session().undo_name(), Some("Key Socket twist"), "it is no step");
+    assert_eq!(bench.session().undo_label(), Some("Key Socket twist"), "it is no step");
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     bench.release(PointerButton::Primary);
     bench.settle();
     assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
-    assert_eq!(bench.session().undo_name(), Some("Move keys"));
+    assert_eq!(bench.session().undo_label(), Some("Move keys"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
     bench.apply([TransactionAction::Redo]);
@@ -209,7 +209,7 @@ fn a_box_selects_what_is_in_it() {
 }
 
 #[test]
-fn a_double_click_on_a_lane_adds_a_key_on_the_curve() {
+fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
     let mut bench = keyed();
     let at = pos2(place(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
     bench.double_click_at(at);
@@ -360,13 +360,13 @@ fn start_and_end_are_typed_and_what_cannot_be_is_said() {
 #[test]
 fn the_time_is_dragged_in_its_number_from_frame_to_frame() {
     let mut bench = keyed();
-    let undo = bench.session().undo_name();
+    let undo = bench.session().undo_label();
     let at = bench.rect(Role::SpinButton, "Time").center();
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(40.0, 0.0));
     bench.settle();
     let time = bench.session().time();
     assert!(time > 0.1 && time == Timeline::default().snapped(time), "{time}");
-    assert!(!bench.session().is_editing() && bench.session().undo_name() == undo);
+    assert!(!bench.session().is_editing() && bench.session().undo_label() == undo);
 }
 
 #[test]
@@ -499,7 +499,7 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     assert!(top(&format!("Channel {turned} · rotation")) < top("Channel Hand"));
 }
 
-/// Only the lanes in sight are laid out.
+/// Only the rows in sight are laid out.
 #[test]
 fn ten_thousand_channels_are_scrolled_in_no_time() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };

@@ -8,12 +8,12 @@ pub struct MotionData {
     /// Number of channels of all joints.
     width: usize,
     values: Vec<f32>,
-    pub timing: FrameTimes,
+    pub timing: FrameTiming,
 }
 
 /// The times of the frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameTimes {
+pub struct FrameTiming {
     pub frame_rate: u32,
     /// The frame time in seconds, if it is not one over a whole number.
     step: Option<f64>,
@@ -26,7 +26,7 @@ pub fn read(
 ) -> Result<(MotionData, Option<TextError>), TextError> {
     let count = labelled(text, &["Frames"])?;
     let frames = count.whole("")?;
-    let timing = FrameTimes::read(labelled(text, &["Frame", "Time"])?, frames)?;
+    let timing = FrameTiming::read(labelled(text, &["Frame", "Time"])?, frames)?;
     let channels: Vec<(&BvhNode, BvhChannel)> =
         nodes.iter().flat_map(|node| node.channels.iter().map(move |it| (node, *it))).collect();
     let width = channels.len();
@@ -103,7 +103,7 @@ impl MotionData {
     }
 }
 
-impl FrameTimes {
+impl FrameTiming {
     fn read(word: Token<'_>, frames: usize) -> Result<Self, TextError> {
         let step: f64 =
             word.text.parse().ok().filter(|step: &f64| step.is_finite()).ok_or_else(|| {

@@ -4,7 +4,7 @@ use super::shadow::above_ground;
 use crate::document::{Arm, Display, Overlay, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmRig, Cone, Part};
-use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Shell, Solid};
+use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Solid, SphereShell};
 
 /// Radii and sizes on an arm of thickness 1. The balls of the joints are as large as the limbs' ends, so that
 /// no gap shows when the elbow bends.
@@ -124,7 +124,7 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
         (Overlay::OuterLimit, Part::OuterLimit, rig.outer_limit()),
     ] {
         if display.shows(overlay) && radius > 0.0 {
-            scene.shells.push(Shell { centre: rig.origin(part), radius, colour });
+            scene.shells.push(SphereShell { centre: rig.origin(part), radius, colour });
         }
     }
 }

@@ -140,7 +140,7 @@ impl DrawnSkeleton<'_> {
         };
         if overlays.selection.contains(&joint) {
             palette.accent
-        } else if overlays.pointed == Some(joint) {
+        } else if overlays.hovered == Some(joint) {
             colour.mixed(palette.guide, 0.3)
         } else {
             colour
@@ -202,7 +202,7 @@ impl DrawnSkeleton<'_> {
     /// Adds the names of the selected joints and of the one under the mouse.
     fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
         labelled.clear();
-        labelled.extend(overlays.selection.iter().copied().chain(overlays.pointed));
+        labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
         labelled.sort_unstable();
         labelled.dedup();
         for joint in labelled.iter().copied().filter(|joint| joint.index() < self.joints.len()) {

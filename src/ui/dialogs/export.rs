@@ -147,7 +147,7 @@ pub(in crate::ui) fn ui(
 }
 
 fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {
-    let why_not = if session.job().is_some() {
+    let why_not = if session.export_job().is_some() {
         Some("Another export is running")
     } else if Format::of(&export.path).is_err() {
         Some("The file extension must name a format")

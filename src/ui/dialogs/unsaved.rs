@@ -27,7 +27,7 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut
 
 pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.set_width(380.0);
-    let path = session.job().map(|job| job.path.as_path());
+    let path = session.export_job().map(|job| job.path.as_path());
     let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
     ui.label(format!("{name} is being exported. Quitting now discards it."));
     ui.add_space(4.0);

@@ -6,7 +6,7 @@ use super::rotate::RotateRing;
 use super::shape::bright;
 use super::translate::TranslateHandles;
 use crate::document::TwistReferenceKind;
-use crate::session::{Grip, Handle, Session};
+use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
@@ -73,7 +73,7 @@ fn paint(
     handles: Option<&TranslateHandles>,
     painter: &Painter,
     ui: &Ui,
-    [pointed, own]: [Option<Handle>; 2],
+    [pointed, own]: [Option<PointHandle>; 2],
     held: Option<Grip>,
 ) {
     if let Some(handles) = handles.filter(|_| held.is_none() || own.is_some()) {

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 
 use super::shape::to_segment;
-use crate::session::{Grip, Ring};
+use crate::session::{Grip, GripRing};
 use crate::ui::viewport::projection::ScreenProjection;
 
 /// Radius in points.
@@ -23,8 +23,8 @@ pub(in crate::ui) struct RotateRing {
 
 impl RotateRing {
     /// `None` if the centre is behind the eye.
-    pub fn new(screen: &ScreenProjection, grip: Grip, ring: Ring) -> Option<Self> {
-        let Ring { centre, axis } = ring;
+    pub fn new(screen: &ScreenProjection, grip: Grip, ring: GripRing) -> Option<Self> {
+        let GripRing { centre, axis } = ring;
         let radius = RADIUS * screen.units_per_point(centre);
         let (u, v) = axis.any_orthonormal_pair();
         let mut points = Vec::with_capacity(STEPS + 1);

@@ -7,7 +7,7 @@ use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Grip, Handle, Session};
+use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
@@ -65,7 +65,7 @@ impl SkeletonGizmo {
 
     fn target_at(&self, mouse: Pos2) -> Option<Grip> {
         let hit = self.targets.iter().find(|target| target.at.distance(mouse) <= TARGET_HIT)?;
-        Some(Grip::Target(hit.joint, Handle::Free))
+        Some(Grip::Target(hit.joint, PointHandle::Free))
     }
 
     /// The tip at a screen position: the selected one first, then the nearest, then the last.
@@ -80,7 +80,7 @@ impl SkeletonGizmo {
             let ((a_selected, a_near), (b_selected, b_near)) = (rank(a), rank(b));
             a_selected.cmp(&b_selected).then(a_near.total_cmp(&b_near))
         })?;
-        Some(Grip::Tip(JointId::new(joint), Handle::Free))
+        Some(Grip::Tip(JointId::new(joint), PointHandle::Free))
     }
 
     /// The joint whose bone is at a screen position, nearest to the eye.
@@ -111,12 +111,12 @@ impl SkeletonGizmo {
         }
         let strong = ui.visuals().strong_text_color();
         for target in &self.targets {
-            let grip = Grip::Target(target.joint, Handle::Free);
+            let grip = Grip::Target(target.joint, PointHandle::Free);
             let colour = if target.enabled { strong } else { strong.gamma_multiply(0.4) };
             painter.circle_stroke(target.at, TARGET, Stroke::new(1.5, faded(grip, colour)));
         }
         for (joint, bone) in self.bones.iter().enumerate() {
-            let grip = Grip::Tip(JointId::new(joint), Handle::Free);
+            let grip = Grip::Tip(JointId::new(joint), PointHandle::Free);
             if stand_out(grip) {
                 painter.circle_stroke(bone.tip, TIP, Stroke::new(2.0, bright(strong)));
             }

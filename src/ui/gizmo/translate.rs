@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 use glam::Vec3;
 
 use super::shape::bright;
-use crate::session::Handle;
+use crate::session::PointHandle;
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
@@ -46,27 +46,33 @@ impl TranslateHandles {
     }
 
     /// The handle at a screen position.
-    pub fn at(&self, mouse: Pos2) -> Option<Handle> {
+    pub fn at(&self, mouse: Pos2) -> Option<PointHandle> {
         let on_free = |centre: Pos2| centre.distance(mouse) <= FREE_RADIUS;
         if on_free(self.centre) || self.hand.is_some_and(on_free) {
-            return Some(Handle::Free);
+            return Some(PointHandle::Free);
         }
         if let Some(axis) = (0..3).find(|axis| self.on_square(*axis, mouse)) {
-            return Some(Handle::Plane(axis));
+            return Some(PointHandle::Plane(axis));
         }
         (0..3)
             .filter(|axis| self.arrow_shows(*axis))
             .map(|axis| (self.to_arrow(axis, mouse), axis))
             .filter(|(distance, _)| *distance <= HIT)
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, axis)| Handle::Axis(axis))
+            .map(|(_, axis)| PointHandle::Axis(axis))
     }
 
     /// Draws the handles, highlights the hovered or dragged one, and fades the others during a
     /// drag.
-    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Handle>, held: Option<Handle>) {
+    pub fn paint(
+        &self,
+        painter: &Painter,
+        ui: &Ui,
+        pointed: Option<PointHandle>,
+        held: Option<PointHandle>,
+    ) {
         let axes = style::palette(ui).axes.map(style::colour);
-        let look = |handle: Handle, colour: Color32| match (held, pointed) {
+        let look = |handle: PointHandle, colour: Color32| match (held, pointed) {
             (Some(held), _) if held == handle => bright(colour),
             (Some(_), _) => colour.gamma_multiply(0.25),
             (None, Some(pointed)) if pointed == handle => bright(colour),
@@ -74,7 +80,7 @@ impl TranslateHandles {
         };
         for (axis, colour) in axes.into_iter().enumerate() {
             if self.square_shows(axis) {
-                let colour = look(Handle::Plane(axis), colour);
+                let colour = look(PointHandle::Plane(axis), colour);
                 let fill = colour.gamma_multiply(0.35);
                 let corners = self.square(axis).to_vec();
                 painter.add(Shape::convex_polygon(corners, fill, Stroke::new(1.5, colour)));
@@ -82,11 +88,11 @@ impl TranslateHandles {
         }
         for (axis, colour) in axes.into_iter().enumerate() {
             if self.arrow_shows(axis) {
-                self.paint_arrow(painter, axis, look(Handle::Axis(axis), colour));
+                self.paint_arrow(painter, axis, look(PointHandle::Axis(axis), colour));
             }
         }
         let ring = ui.visuals().strong_text_color();
-        let free = look(Handle::Free, ring.gamma_multiply(0.85));
+        let free = look(PointHandle::Free, ring.gamma_multiply(0.85));
         painter.circle_stroke(self.centre, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
         if let Some(hand) = self.hand.filter(|hand| hand.distance(self.centre) > FREE_RADIUS) {
             painter.circle_stroke(hand, FREE_RADIUS - 2.0, Stroke::new(1.5, free));
@@ -167,12 +173,12 @@ mod tests {
     #[test]
     fn each_part_is_hit_where_it_is_drawn() {
         let handles = handles();
-        assert_eq!(handles.at(handles.centre), Some(Handle::Free));
+        assert_eq!(handles.at(handles.centre), Some(PointHandle::Free));
         for axis in 0..3 {
             let arrow = handles.arrows[axis];
-            assert_eq!(handles.at(handles.centre + arrow * 0.85), Some(Handle::Axis(axis)));
+            assert_eq!(handles.at(handles.centre + arrow * 0.85), Some(PointHandle::Axis(axis)));
             let [a, _, c, _] = handles.square(axis);
-            assert_eq!(handles.at(a + (c - a) / 2.0), Some(Handle::Plane(axis)));
+            assert_eq!(handles.at(a + (c - a) / 2.0), Some(PointHandle::Plane(axis)));
         }
         assert_eq!(handles.at(pos2(600.0, 100.0)), None);
     }
@@ -181,17 +187,20 @@ mod tests {
     fn an_arrow_along_the_view_and_a_square_edge_on_cannot_be_hit() {
         let mut handles = handles();
         handles.arrows[2] = Vec2::new(3.0, 1.0);
-        assert_ne!(handles.at(handles.centre + Vec2::new(3.0, 1.0) * 6.0), Some(Handle::Axis(2)));
+        assert_ne!(
+            handles.at(handles.centre + Vec2::new(3.0, 1.0) * 6.0),
+            Some(PointHandle::Axis(2))
+        );
         handles.arrows = [Vec2::new(80.0, 0.0), Vec2::new(0.0, -80.0), Vec2::ZERO];
         for axis in [0, 1] {
             let [a, _, c, _] = handles.square(axis);
-            assert_ne!(handles.at(a + (c - a) / 2.0), Some(Handle::Plane(axis)));
+            assert_ne!(handles.at(a + (c - a) / 2.0), Some(PointHandle::Plane(axis)));
         }
     }
 
     #[test]
     fn a_hand_away_from_its_cursor_can_be_taken_too() {
         let handles = TranslateHandles { hand: Some(pos2(100.0, 100.0)), ..handles() };
-        assert_eq!(handles.at(pos2(108.0, 100.0)), Some(Handle::Free));
+        assert_eq!(handles.at(pos2(108.0, 100.0)), Some(PointHandle::Free));
     }
 }

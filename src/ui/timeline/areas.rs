@@ -18,10 +18,10 @@ pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
 /// Rectangles of the parts of the timeline.
 pub(super) struct TimelineAreas {
     pub whole: Rect,
-    /// Left of the lanes.
+    /// The names of the channels, left of the keys.
     pub names: Rect,
     pub ruler: Rect,
-    pub lanes: Rect,
+    pub keys: Rect,
 }
 
 impl TimelineAreas {
@@ -32,7 +32,7 @@ impl TimelineAreas {
             whole,
             names: Rect::from_min_max(pos2(whole.left(), top), pos2(split, whole.bottom())),
             ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(whole.right(), top)),
-            lanes: Rect::from_min_max(pos2(split, top), whole.max),
+            keys: Rect::from_min_max(pos2(split, top), whole.max),
         }
     }
 }

@@ -3,43 +3,43 @@
 use egui::{Id, Response, Ui};
 
 use super::drag;
-use super::lane::TimelineLane;
-use super::mouse::LaneView;
+use super::mouse::DopeSheetView;
+use super::row::DopeSheetRow;
 use crate::document::Channel;
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
-/// Lane and time of the right click.
+/// Row and time of the right click.
 #[derive(Clone, Copy)]
 struct MenuTarget {
-    lane: Option<TimelineLane>,
+    row: Option<DopeSheetRow>,
     time: f64,
 }
 
-/// Context menu of the lanes.
-pub(in crate::ui) fn of_lanes(
+/// Context menu of the sheet.
+pub(in crate::ui) fn of_rows(
     ui: &Ui,
-    lanes: &LaneView<'_>,
+    sheet: &DopeSheetView<'_>,
     body: &Response,
     actions: &mut Actions,
 ) {
     let id = Id::unique("asked in the timeline");
-    let session = lanes.session;
+    let session = sheet.session;
     if body.secondary_clicked()
         && let Some(at) = ui.input(|input| input.pointer.interact_pos())
     {
-        let time = drag::pointed_time(ui, session, lanes.scale, at);
-        ui.data_mut(|data| data.insert_temp(id, MenuTarget { lane: lanes.lane(at), time }));
+        let time = drag::pointed_time(ui, session, sheet.scale, at);
+        ui.data_mut(|data| data.insert_temp(id, MenuTarget { row: sheet.row(at), time }));
     }
-    let Some(MenuTarget { lane, time }) = ui.data(|data| data.get_temp(id)) else {
+    let Some(MenuTarget { row, time }) = ui.data(|data| data.get_temp(id)) else {
         return;
     };
     body.context_menu(|ui| {
-        if let Some(lane) = lane
+        if let Some(row) = row
             && widgets::button(ui, "Add key here", "Add keys at this time", None)
         {
             actions.push(PlaybackAction::SetTime(time));
-            actions.push(EditAction::Key(lane.channels(session)));
+            actions.push(EditAction::Key(row.channels(session)));
             ui.close();
         }
         of_keys(ui, session, actions);
@@ -49,7 +49,7 @@ pub(in crate::ui) fn of_lanes(
             actions.push(EditAction::PasteKeys);
             ui.close();
         }
-        if let Some(TimelineLane::Channel(channel)) = lane {
+        if let Some(DopeSheetRow::Channel(channel)) = row {
             clear(ui, session, channel, actions);
         }
     });

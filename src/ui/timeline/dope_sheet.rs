@@ -1,4 +1,4 @@
-//! The dope sheet: a lane for all keys and one for every keyed channel.
+//! The dope sheet: a row for all keys and one for every keyed channel.
 
 use egui::containers::scroll_area::{DragScroll, ScrollSource};
 use egui::{
@@ -7,8 +7,8 @@ use egui::{
 };
 
 use super::areas::{ROW, TimelineAreas};
-use super::lane::{SelectedKeys, TimelineLane, channels};
-use super::mouse::{self, LaneView};
+use super::mouse::{self, DopeSheetView};
+use super::row::{DopeSheetRow, SelectedKeys, channels};
 use super::time_scale::TimeScale;
 use super::{context_menu, text};
 use crate::document::Channel;
@@ -34,20 +34,20 @@ pub(in crate::ui) fn ui(
         text::hint(ui, areas, sentence);
         return;
     }
-    let body = ui.interact(areas.lanes, Id::unique("timeline lanes"), Sense::click_and_drag());
+    let body = ui.interact(areas.keys, Id::unique("timeline rows"), Sense::click_and_drag());
     body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Dope sheet"));
     let shown = DopeSheet { session, scale, picked: SelectedKeys::new(session), areas, ruler };
 
     let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
-    shown.lane(ui, TimelineLane::All, first, actions);
+    shown.row(ui, DopeSheetRow::All, first, actions);
     let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
     let offset = shown.scrolled(ui, &channels, rest, actions);
 
-    let lanes = LaneView { session, scale, channels: &channels, area: areas.lanes, offset };
-    mouse::press(ui, &lanes, &body, ruler, actions);
-    mouse::follow(ui, &lanes, actions);
-    context_menu::of_lanes(ui, &lanes, &body, actions);
-    mouse::paint_box(ui, &lanes);
+    let sheet = DopeSheetView { session, scale, channels: &channels, area: areas.keys, offset };
+    mouse::press(ui, &sheet, &body, ruler, actions);
+    mouse::follow(ui, &sheet, actions);
+    context_menu::of_rows(ui, &sheet, &body, actions);
+    mouse::paint_box(ui, &sheet);
 }
 
 struct DopeSheet<'a> {
@@ -59,7 +59,7 @@ struct DopeSheet<'a> {
 }
 
 impl DopeSheet<'_> {
-    /// Shows the visible lanes. Returns the scroll offset.
+    /// Shows the visible sheet. Returns the scroll offset.
     fn scrolled(
         &self,
         ui: &mut Ui,
@@ -67,11 +67,11 @@ impl DopeSheet<'_> {
         rect: Rect,
         actions: &mut Actions,
     ) -> f32 {
-        // Over the lanes the wheel zooms.
+        // Over the rows the wheel zooms.
         let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
         let source = ScrollSource { scroll_bar: true, drag: DragScroll::Never, mouse_wheel };
         let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            let area = ScrollArea::vertical().id_salt("lanes").auto_shrink(false);
+            let area = ScrollArea::vertical().id_salt("rows").auto_shrink(false);
             area.scroll_source(source).show_viewport(ui, |ui, seen| {
                 ui.set_height(ROW * channels.len() as f32);
                 let (top, left) = (ui.max_rect().top(), rect.left());
@@ -80,27 +80,27 @@ impl DopeSheet<'_> {
                 for (row, channel) in channels.iter().enumerate().skip(first).take(count) {
                     let at = pos2(left, top + ROW * row as f32);
                     let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
-                    self.lane(ui, TimelineLane::Channel(*channel), rect, actions);
+                    self.row(ui, DopeSheetRow::Channel(*channel), rect, actions);
                 }
             })
         });
         scroll.inner.state.clamped_offset().y
     }
 
-    fn lane(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Actions) {
-        let split = self.areas.lanes.left();
+    fn row(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
+        let split = self.areas.keys.left();
         let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
         let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
         let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6);
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
-        match lane {
-            TimelineLane::All => {
+        match row {
+            DopeSheetRow::All => {
                 text::line(ui, name, "All", ui.visuals().strong_text_color());
             }
-            TimelineLane::Channel(channel) => self.name(ui, channel, name, actions),
+            DopeSheetRow::Channel(channel) => self.name(ui, channel, name, actions),
         }
-        self.keys(ui, lane, keys, actions);
-        if let TimelineLane::Channel(channel) = lane
+        self.keys(ui, row, keys, actions);
+        if let DopeSheetRow::Channel(channel) = row
             && self.session.is_overridden(channel)
         {
             self.overridden(ui, channel, keys);
@@ -155,21 +155,21 @@ impl DopeSheet<'_> {
         response.on_hover_text(shown);
     }
 
-    fn keys(&self, ui: &Ui, lane: TimelineLane, rect: Rect, actions: &mut Actions) {
+    fn keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
         let mut last = f32::NEG_INFINITY;
-        for time in lane.times(self.session, from, to) {
+        for time in row.times(self.session, from, to) {
             let x = self.scale.x(time);
-            let picked = self.picked.has(lane, time);
+            let picked = self.picked.has(row, time);
             if x - last < 1.0 && !picked {
                 continue;
             }
             let at = pos2(x, rect.center().y);
-            let hovered = x - last >= NEAR && self.key(ui, lane, time, at, rect, actions);
+            let hovered = x - last >= NEAR && self.key(ui, row, time, at, rect, actions);
             last = x;
             let visuals = ui.visuals();
-            let plain = if lane == TimelineLane::All {
+            let plain = if row == DopeSheetRow::All {
                 visuals.weak_text_color()
             } else {
                 visuals.text_color()
@@ -189,29 +189,29 @@ impl DopeSheet<'_> {
     fn key(
         &self,
         ui: &Ui,
-        lane: TimelineLane,
+        row: DopeSheetRow,
         time: f64,
         at: egui::Pos2,
-        lane_rect: Rect,
+        row_rect: Rect,
         actions: &mut Actions,
     ) -> bool {
         let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
-        let (id, said) = match lane {
-            TimelineLane::All => {
+        let (id, said) = match row {
+            DopeSheetRow::All => {
                 (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
             }
-            TimelineLane::Channel(channel) => (
+            DopeSheetRow::Channel(channel) => (
                 Id::unique(("timeline key", channel, time.to_bits())),
                 format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),
         };
-        // The lanes handle presses.
-        let response = ui.interact(rect.intersect(lane_rect), id, Sense::hover());
-        let picked = self.picked.has(lane, time);
+        // The rows handle presses.
+        let response = ui.interact(rect.intersect(row_rect), id, Sense::hover());
+        let picked = self.picked.has(row, time);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
         ui.ctx().accesskit_node_builder(id, |node| node.add_action(accesskit::Action::Click));
         if ui.input(|input| input.has_accesskit_action_request(id, accesskit::Action::Click)) {
-            actions.push(SelectAction::Keys(lane.keys(self.session, time)));
+            actions.push(SelectAction::Keys(row.keys(self.session, time)));
         }
         let hovered = response.hovered();
         response.on_hover_text(said);

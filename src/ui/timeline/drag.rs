@@ -34,7 +34,7 @@ pub(in crate::ui) struct KeyDrag {
 #[derive(Clone, Debug)]
 pub(in crate::ui) struct BoxDrag {
     pub time: f64,
-    /// Offset in points from the top of the first channel's lane.
+    /// Offset in points from the top of the first channel's row.
     pub y: f32,
     /// Keys that stay selected.
     pub base: Vec<KeyOf>,

@@ -9,7 +9,7 @@ use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 use super::areas::{ROW, TimelineAreas, take_keyboard};
 use super::drag::{self, TimelineDrag};
 use super::time_scale::TimeScale;
-use super::{lane, ruler, text};
+use super::{row, ruler, text};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::chain_ik::Method;
 use crate::session::{Actions, Session};
@@ -56,7 +56,7 @@ pub(in crate::ui) fn ui(
     legend(ui, session, areas, &channels);
     plot(ui, scale, areas, &curves);
 
-    let area = ui.interact(areas.lanes, Id::unique("timeline curves"), Sense::click_and_drag());
+    let area = ui.interact(areas.keys, Id::unique("timeline curves"), Sense::click_and_drag());
     let names: Vec<String> = channels.iter().map(|it| labels::channel(session, *it)).collect();
     let said = format!("Curves of {}", names.join(", "));
     area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
@@ -77,7 +77,7 @@ const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
 /// The selected channels with keys, else those of the shown rig.
 fn shown(session: &Session) -> Vec<Channel> {
-    let all = lane::channels(session);
+    let all = row::channels(session);
     let selected = session.selected_channels();
     let is_of_rig = |channel: &Channel| channel.rig() == Some(session.rig());
     let chosen: Vec<_> = match selected.is_empty() {
@@ -157,8 +157,8 @@ fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelC
     // A constant value lies in the middle.
     let room = if high - low < room { 0.5 * room + 0.5 } else { room };
     let bounds = PlotBounds::from_min_max([from, low - room], [to, high + room]);
-    let left = areas.lanes.left() - VALUES;
-    let rect = Rect::from_min_max(pos2(left, areas.lanes.top()), areas.lanes.max);
+    let left = areas.keys.left() - VALUES;
+    let rect = Rect::from_min_max(pos2(left, areas.keys.top()), areas.keys.max);
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     plot::still("timeline curves", rect.height())
         .width(rect.width())

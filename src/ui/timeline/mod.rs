@@ -6,8 +6,8 @@ mod dope_sheet;
 mod drag;
 mod graph_editor;
 mod keyboard;
-mod lane;
 mod mouse;
+mod row;
 mod ruler;
 mod text;
 mod time_scale;
@@ -28,19 +28,19 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let areas = TimelineAreas::new(ui.available_rect_before_wrap());
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
-    let mut scale = TimeScale::load(ui, timeline, areas.lanes.x_range());
+    let mut scale = TimeScale::load(ui, timeline, areas.keys.x_range());
     let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
-    let wheeled = Rect::from_min_max(areas.ruler.min, areas.lanes.max);
+    let wheeled = Rect::from_min_max(areas.ruler.min, areas.keys.max);
     scale.follow_input(ui, session, wheeled, is_panning);
 
     ruler::ground(ui, scale, timeline, wheeled);
-    ruler::grid(ui, scale, timeline, areas.lanes);
+    ruler::grid(ui, scale, timeline, areas.keys);
     let ruler = ruler::ui(ui, session, scale, areas.ruler, actions);
     if session.preferences().curves {
         graph_editor::ui(ui, session, scale, &areas, &ruler, actions);
     } else {
         dope_sheet::ui(ui, session, scale, &areas, &ruler, actions);
     }
-    ruler::playhead(ui, session, scale, areas.ruler, areas.lanes.bottom());
+    ruler::playhead(ui, session, scale, areas.ruler, areas.keys.bottom());
     keyboard::focused(ui, session, actions);
 }

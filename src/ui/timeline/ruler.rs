@@ -112,7 +112,7 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     }
 }
 
-/// Extends the labelled lines over the lanes.
+/// Extends the labelled lines over the sheet.
 pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
@@ -129,7 +129,7 @@ pub(in crate::ui) fn ground(ui: &Ui, scale: TimeScale, timeline: Timeline, rect:
     ui.painter().rect_filled(played, 0.0, ui.visuals().extreme_bg_color);
 }
 
-/// Draws the playhead: a handle in the ruler and a line through all lanes.
+/// Draws the playhead: a handle in the ruler and a line through all sheet.
 pub(in crate::ui) fn playhead(
     ui: &Ui,
     session: &Session,

@@ -7,8 +7,8 @@ use super::areas::{ROW, TimelineAreas};
 /// A weak sentence in an empty timeline.
 pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     let rect = Rect::from_center_size(
-        areas.lanes.center(),
-        vec2(areas.lanes.width(), ROW).min(areas.lanes.size()),
+        areas.keys.center(),
+        vec2(areas.keys.width(), ROW).min(areas.keys.size()),
     );
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.centered_and_justified(|ui| {

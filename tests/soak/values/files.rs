@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 use ik_arm::document::{Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{Dialog, Export, FileAction, Job, PathDialog};
+use ik_arm::session::{Dialog, Export, ExportJob, FileAction, PathDialog};
 
 use super::Values;
 use crate::common::skeletons;
@@ -27,8 +27,8 @@ impl Values<'_> {
         Export { path: self.path(), frame_rate: self.one_of(&[0, 24, 5000]), size: (side, 100) }
     }
 
-    pub fn job(&mut self) -> Job {
-        Job { path: self.path(), progress: Arc::new(Progress::default()) }
+    pub fn job(&mut self) -> ExportJob {
+        ExportJob { path: self.path(), progress: Arc::new(Progress::default()) }
     }
 
     pub fn example(&mut self) -> Example {

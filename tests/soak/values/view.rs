@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Overlay, Ray};
-use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, Handle, PointDrag};
+use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, PointDrag, PointHandle};
 
 use super::Values;
 
@@ -71,11 +71,11 @@ impl Values<'_> {
         }
     }
 
-    fn handle(&mut self) -> Handle {
+    fn handle(&mut self) -> PointHandle {
         match self.random.below(4) {
-            0 => Handle::Axis(self.axis()),
-            1 => Handle::Plane(self.axis()),
-            _ => Handle::Free,
+            0 => PointHandle::Axis(self.axis()),
+            1 => PointHandle::Plane(self.axis()),
+            _ => PointHandle::Free,
         }
     }
 

@@ -10,7 +10,7 @@ use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::{Change, Pop};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TwistReference;
-use crate::session::{Actions, PopFix, Pops, Sample, Session, Spike, What};
+use crate::session::{Actions, PopFix, PopSample, PopSampleKind, Pops, Session, Spike};
 use crate::ui::style;
 use crate::ui::widgets::{self, plot};
 
@@ -42,13 +42,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn is_marked(pops: &Pops, change: Change) -> bool {
-    pops.samples().any(|sample| sample.what == What::Change(change))
+    pops.samples().any(|sample| sample.kind == PopSampleKind::Change(change))
 }
 
 /// One pop with its fix, unless the fix is offered above already.
 fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
-    if !spike.stands(arm) {
+    if !spike.persists(arm) {
         ui.weak(format!("{text} – settings have changed since"));
         return;
     }
@@ -100,10 +100,10 @@ fn describe(spike: &Spike) -> String {
 /// Label and tooltip of a fix.
 fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
     match pop_fix {
-        PopFix::Measure(TwistReferenceKind::Transport) => {
+        PopFix::ChangeReference(TwistReferenceKind::Transport) => {
             ("Use Transport", "Use the Transport twist reference, which never flips".to_owned())
         }
-        PopFix::Measure(_) => (
+        PopFix::ChangeReference(_) => (
             "Use Stereographic",
             "Use the Stereographic twist reference, which flips only at −x".to_owned(),
         ),
@@ -202,7 +202,7 @@ struct PlottedRun {
 fn places(pops: &Pops) -> Vec<f64> {
     const GAP: f64 = 4.0;
     let (mut at, mut last) = (0.0, None);
-    let place = |sample: &Sample| {
+    let place = |sample: &PopSample| {
         at += if last.is_some_and(|run| run != sample.run) { GAP } else { 1.0 };
         last = Some(sample.run);
         at
@@ -214,7 +214,7 @@ fn runs(pops: &Pops, places: &[f64]) -> Vec<PlottedRun> {
     let mut runs: Vec<PlottedRun> = Vec::new();
     let mut last = None;
     for (sample, at) in pops.samples().zip(places) {
-        let What::Step(step) = sample.what else {
+        let PopSampleKind::Step(step) = sample.kind else {
             last = None;
             continue;
         };
@@ -244,7 +244,7 @@ fn draw_run(plot: &mut PlotUi<'_>, run: &PlottedRun, colours: PopColours) {
 fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: PopColours) {
     let dotted = LineStyle::Dotted { spacing: 4.0 };
     for (sample, at) in pops.samples().zip(places) {
-        if let What::Change(change) = sample.what {
+        if let PopSampleKind::Change(change) = sample.kind {
             let stroke = Stroke::new(1.0, colours.change);
             plot.vline(VLine::new(change.name(), *at).stroke(stroke).style(dotted));
         }

@@ -6,7 +6,7 @@ use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInf
 
 use super::can_solve::why_not;
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Actions, Runner, Session, SolverAction};
+use crate::session::{Actions, ComparedSolver, Session, SolverAction};
 use crate::ui::widgets::{self, format};
 use crate::ui::{labels, style};
 
@@ -28,38 +28,38 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             right(ui, |ui| ui.weak(heading));
         }
         ui.end_row();
-        for runner in comparison.runners() {
-            show(ui, runner);
+        for solver in comparison.solvers() {
+            show(ui, solver);
             ui.end_row();
         }
     });
 }
 
-fn show(ui: &mut Ui, runner: &Runner) {
-    let colour = style::colour(style::palette(ui).method(runner.method));
+fn show(ui: &mut Ui, solver: &ComparedSolver) {
+    let colour = style::colour(style::palette(ui).method(solver.method));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-        let said = format!("{}: {}", short_name(runner.method), status(runner));
+        let said = format!("{}: {}", short_name(solver.method), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         // Only converged solvers are filled.
-        if runner.report().is_ok_and(|report| report.converged) {
+        if solver.report().is_ok_and(|report| report.converged) {
             ui.painter().rect_filled(rect, 2.0, colour);
         } else {
             ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside);
         }
         response.on_hover_text(said);
-        let label = ui.label(short_name(runner.method));
-        label.on_hover_text(format!("{}. {}", labels::method(runner.method), status(runner)));
+        let label = ui.label(short_name(solver.method));
+        label.on_hover_text(format!("{}. {}", labels::method(solver.method), status(solver)));
     });
-    let texts = match runner.report() {
+    let texts = match solver.report() {
         Ok(report) => {
-            [report.iterations.to_string(), format::short(report.error), duration(runner.time)]
+            [report.iterations.to_string(), format::short(report.error), duration(solver.time)]
         }
         Err(_) => ["–", "–", "–"].map(str::to_owned),
     };
     for text in texts {
-        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(status(runner));
+        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(status(solver));
     }
 }
 
@@ -67,12 +67,12 @@ fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Re
     ui.with_layout(Layout::right_to_left(Align::Center), label).inner
 }
 
-fn status(runner: &Runner) -> String {
-    match runner.report() {
+fn status(solver: &ComparedSolver) -> String {
+    match solver.report() {
         Err(error) => error.to_string(),
         Ok(report) if report.converged => "Converged".to_owned(),
         Ok(report) if report.resting => "Stalled".to_owned(),
-        Ok(_) if runner.is_running() => "Running".to_owned(),
+        Ok(_) if solver.is_running() => "Running".to_owned(),
         Ok(_) => "Out of iterations".to_owned(),
     }
 }

@@ -6,7 +6,7 @@ use egui::{Rangef, Stroke, Ui, Vec2b};
 use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints};
 
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Comparison, History, Session};
+use crate::session::{Comparison, ResidualHistory, Session};
 use crate::ui::style;
 use crate::ui::widgets::{format, plot};
 
@@ -76,16 +76,16 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
 
 /// Iteration and log₁₀ of the error, for every solver that has run.
 fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
-    let points = |history: &History| {
+    let points = |history: &ResidualHistory| {
         let point = |(iteration, error): (usize, f32)| {
             [iteration as f64, f64::from(error).max(least).log10()]
         };
         history.points().map(point).collect::<Vec<_>>()
     };
     if let Some(comparison) = session.comparison() {
-        let runners =
-            Comparison::runners(comparison).iter().filter(|runner| runner.report().is_ok());
-        return runners.map(|runner| (runner.method, points(&runner.history))).collect();
+        let solvers =
+            Comparison::solvers(comparison).iter().filter(|solver| solver.report().is_ok());
+        return solvers.map(|solver| (solver.method, points(&solver.history))).collect();
     }
     let solver_run = session.solver_run();
     solver_run.map(|it| (it.report().method, points(it.history()))).into_iter().collect()

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::dialog::Dialog;
 use super::effect::Effect;
-use super::export::{Export, Job};
+use super::export::{Export, ExportJob};
 use super::file_action::FileAction;
 use super::path_dialog::PathDialog;
 use super::session::{ASPECT, Session};
@@ -226,7 +226,7 @@ impl Session {
     }
 
     /// What is being exported.
-    pub fn job(&self) -> Option<&Job> {
+    pub fn export_job(&self) -> Option<&ExportJob> {
         self.files.job()
     }
 

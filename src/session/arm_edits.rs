@@ -2,10 +2,10 @@ use glam::{Mat3, Vec3};
 
 use super::drag::DragKind;
 use super::drag::{Drag, Grip};
-use super::point_drag::{Handle, PointDrag};
+use super::point_drag::{PointDrag, PointHandle};
 use super::pose_mode::PoseMode;
 use super::session::Session;
-use super::turn_drag::{Ring, TurnDrag};
+use super::turn_drag::{GripRing, TurnDrag};
 use crate::document::{Arm, Channel, Document, Ray, TwistReferenceKind};
 use crate::kinematics::angle::wrapped;
 use crate::kinematics::euler;
@@ -105,25 +105,25 @@ impl Session {
 
     /// The hand is taken where it is seen, or its cursor if that is out of reach and nearer to the
     /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
-    pub(super) fn grab_hand(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
+    pub(super) fn grab_hand(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
         let (arm, hand) = (*self.arm(), self.pose().hand);
         if !arm.uses_ik() {
             return;
         }
         let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
-        let is_led = handle == Handle::Free && arm.influence == 1.0;
+        let is_led = handle == PointHandle::Free && arm.influence == 1.0;
         let is_at_hand = is_led && aside(hand) < aside(arm.cursor_in_root());
         let start = if is_at_hand { hand } else { arm.cursor_in_root() };
         let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), way: DragKind::Point(drag) }));
+        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), kind: DragKind::Point(drag) }));
     }
 
-    pub(super) fn grab_pole(&mut self, handle: Handle, ray: Ray, forward: Vec3) {
+    pub(super) fn grab_pole(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
         let arm = *self.arm();
         if arm.twist_reference == TwistReferenceKind::Pole {
             let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
             let drag = drag.with_step(self.snap());
-            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), way: DragKind::Point(drag) }));
+            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), kind: DragKind::Point(drag) }));
         }
     }
 
@@ -134,14 +134,14 @@ impl Session {
             _ => fk.bend,
         };
         if let Some(ring) = self.arm_ring(grip) {
-            let way = DragKind::Turn(TurnDrag::new(ring, start, ray));
-            self.begin_edit(Some(Drag { grip, way }));
+            let kind = DragKind::Turn(TurnDrag::new(ring, start, ray));
+            self.begin_edit(Some(Drag { grip, kind }));
         }
     }
 
     /// What one of the arm's own angles turns about, in the world, while they lead: the shoulder's
     /// about x, y or z, or the elbow's bend.
-    pub fn arm_ring(&self, grip: Grip) -> Option<Ring> {
+    pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
         let arm = self.arm();
         if arm.uses_ik() {
             return None;
@@ -157,6 +157,6 @@ impl Session {
             _ => return None,
         };
         let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
-        Some(Ring { centre, axis })
+        Some(GripRing { centre, axis })
     }
 }

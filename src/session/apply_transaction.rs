@@ -2,7 +2,7 @@ use core::fmt::Display;
 
 use super::drag::{Drag, DragKind, Grip};
 use super::edit_action::EditAction;
-use super::history::State;
+use super::history::Snapshot;
 use super::point_drag::{Constraint, PointDrag};
 use super::session::Session;
 use super::transaction_action::TransactionAction;
@@ -32,12 +32,12 @@ impl Session {
     }
 
     /// Label of the step that Undo undoes.
-    pub fn undo_name(&self) -> Option<&'static str> {
+    pub fn undo_label(&self) -> Option<&'static str> {
         self.editing.undo_label()
     }
 
     /// Label of the step that Redo redoes.
-    pub fn redo_name(&self) -> Option<&'static str> {
+    pub fn redo_label(&self) -> Option<&'static str> {
         self.editing.redo_label()
     }
 
@@ -129,7 +129,7 @@ impl Session {
         self.editing.clear_overrides();
     }
 
-    fn restore(&mut self, state: &State) {
+    fn restore(&mut self, state: &Snapshot) {
         if self.editing.restore(state, self.time()) {
             self.selection.forget_joints();
             self.solvers.forget_run();
@@ -230,7 +230,7 @@ impl Session {
         let grip = drag.grip;
         let Arm { cursor, pole, fk, .. } = shown.arm;
         let mut angles = fk.shoulder;
-        match (grip, &mut drag.way) {
+        match (grip, &mut drag.kind) {
             (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
                 let angle = turn.angle();
                 self.turn_joint(joint, axis, angle);

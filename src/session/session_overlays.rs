@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::comparison::Comparison;
 use super::onion_skins::write_onion_skins;
-use super::overlays::{Ghost, Overlays};
+use super::overlays::{Overlays, SolverGhost};
 use super::session::Session;
 use super::trail::{has_trail, walk};
 use crate::document::Document;
@@ -46,7 +46,7 @@ impl Session {
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
-        overlays.pointed = self.hovered();
+        overlays.hovered = self.hovered();
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());
@@ -64,17 +64,17 @@ impl Session {
     }
 }
 
-fn write_ghosts(comparison: Option<&Comparison>, ghosts: &mut Vec<Ghost>) {
-    let runners = comparison.into_iter().flat_map(Comparison::runners);
+fn write_ghosts(comparison: Option<&Comparison>, ghosts: &mut Vec<SolverGhost>) {
+    let solvers = comparison.into_iter().flat_map(Comparison::solvers);
     let mut count = 0;
-    for runner in runners.filter(|runner| runner.report().is_ok()) {
-        let method = runner.method;
+    for solver in solvers.filter(|solver| solver.report().is_ok()) {
+        let method = solver.method;
         match ghosts.get_mut(count) {
             Some(ghost) => {
                 ghost.method = method;
-                runner.skeleton.write_pose(&mut ghost.pose);
+                solver.skeleton.write_pose(&mut ghost.pose);
             }
-            None => ghosts.push(Ghost { method, pose: runner.skeleton.pose() }),
+            None => ghosts.push(SolverGhost { method, pose: solver.skeleton.pose() }),
         }
         count += 1;
     }

@@ -1,13 +1,13 @@
-//! Lanes of the dope sheet, and their keys.
+//! Rows of the dope sheet, and their keys.
 
 use std::collections::HashSet;
 
 use crate::document::Channel;
 use crate::session::{Key, Session};
 
-/// A lane: the keys of all channels, or of one.
+/// A row: the keys of all channels, or of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::ui) enum TimelineLane {
+pub(in crate::ui) enum DopeSheetRow {
     All,
     Channel(Channel),
 }
@@ -21,8 +21,8 @@ pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
     first
 }
 
-impl TimelineLane {
-    /// Sorted times of the lane's keys within a range.
+impl DopeSheetRow {
+    /// Sorted times of the row's keys within a range.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
         let keys = &session.document().keys;
         match self {
@@ -40,7 +40,7 @@ impl TimelineLane {
         }
     }
 
-    /// The lane's keys at a time.
+    /// The row's keys at a time.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
         match self {
             Self::Channel(channel) => vec![(channel, time)],
@@ -52,7 +52,7 @@ impl TimelineLane {
         }
     }
 
-    /// Channels that "Add key" keys in this lane.
+    /// Channels that "Add key" keys in this row.
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel(channel) => vec![channel],
@@ -90,12 +90,12 @@ impl SelectedKeys {
         }
     }
 
-    /// True if any of the lane's keys at a time is in the set.
-    pub fn has(&self, lane: TimelineLane, time: f64) -> bool {
+    /// True if any of the row's keys at a time is in the set.
+    pub fn has(&self, row: DopeSheetRow, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
-        match lane {
-            TimelineLane::All => self.times.contains(&bits),
-            TimelineLane::Channel(channel) => self.keys.contains(&(channel, bits)),
+        match row {
+            DopeSheetRow::All => self.times.contains(&bits),
+            DopeSheetRow::Channel(channel) => self.keys.contains(&(channel, bits)),
         }
     }
 }
