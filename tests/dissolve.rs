@@ -43,7 +43,7 @@ fn human() -> Document {
 }
 
 #[test]
-fn children_of_a_deleted_joint_stay_where_they_are() {
+fn children_of_a_dissolved_joint_keep_their_positions() {
     let document = human();
     for joint in document.skeleton().ids() {
         assert_children_stay(&document, &[joint], &[0.0]);
@@ -52,7 +52,7 @@ fn children_of_a_deleted_joint_stay_where_they_are() {
 }
 
 #[test]
-fn at_every_key_children_stay_too() {
+fn children_keep_their_positions_at_every_key() {
     let mut document = human();
     let (shoulder, elbow) = (JointId::new(1), JointId::new(2));
     for (time, angle) in [(0.0, 0.2), (1.0, -0.7), (2.5, 1.1)] {

@@ -81,7 +81,7 @@ fn a_file_is_laid_out_for_people() {
 // Files written by hand
 
 #[test]
-fn what_a_file_leaves_out_is_as_at_first() {
+fn fields_left_out_have_their_defaults() {
     let small = "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"arm\"}";
     assert_eq!(open(small).document, Document::default());
 }
@@ -119,22 +119,22 @@ fn a_file_without_a_camera_shows_the_whole_skeleton() {
 }
 
 #[test]
-fn a_byte_order_mark_is_no_fault() {
+fn a_byte_order_mark_is_accepted() {
     assert_eq!(open(&format!("\u{feff}{}", with("\"targets\":[]"))).warnings, []);
 }
 
 #[test]
-fn unknown_fields_and_angles_beyond_limits_are_remarked_on_and_do_no_harm() {
+fn unknown_fields_and_angles_outside_limits_only_warn() {
     let opened = open(&with(concat!(
         "\"colour\":{\"a\":[[[]]]},\n",
         "\"skeleton\":{\"joints\":[{\"name\":\"a\",\"rotation\":[1,0,0],\n",
         "  \"limits\":{\"x\":[0,0.5],\"w\":3}}]},\n",
         " \"camera\":{\"fov\":  90}"
     )));
-    let remarks: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
+    let warnings: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
     let unknown = "unknown field, ignored";
     assert_eq!(
-        remarks,
+        warnings,
         [
             format!("line 2, column 10: colour: {unknown}"),
             format!("line 4, column 29: skeleton.joints[0].limits.w: {unknown}"),
@@ -147,7 +147,7 @@ fn unknown_fields_and_angles_beyond_limits_are_remarked_on_and_do_no_harm() {
 }
 
 #[test]
-fn of_many_remarks_the_first_are_made() {
+fn only_the_first_of_many_warnings_are_listed() {
     let unknown: Vec<_> = (0..5000).map(|n| format!("\"u{n}\":0")).collect();
     let warnings = open(&with(&unknown.join(",\n"))).warnings;
     assert_eq!(warnings.len(), 21);
@@ -158,7 +158,7 @@ fn of_many_remarks_the_first_are_made() {
 // Files that are refused
 
 #[test]
-fn what_is_no_document_is_told_apart() {
+fn a_file_that_is_no_document_is_refused_with_the_reason() {
     for (text, expected) in [
         ("", "line 1, column 1: the file is empty"),
         ("  \n ", "line 2, column 2: the file is empty"),
@@ -198,7 +198,7 @@ fn what_is_no_document_is_told_apart() {
 }
 
 #[test]
-fn what_is_no_json_is_said_where() {
+fn a_json_error_has_its_position() {
     for (fields, expected) in [
         ("\"targets\":[,]", "line 2, column 12: targets[0]: not JSON: expected value"),
         ("\"arm\":{\"upper\":01}", "line 2, column 17: arm.upper: not JSON: invalid number"),
@@ -214,7 +214,7 @@ fn what_is_no_json_is_said_where() {
 }
 
 #[test]
-fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
+fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
     for (fields, expected) in [
         ("\"arm\":[]", "line 2, column 7: arm: invalid type: sequence, expected an object: {…}"),
         (
@@ -264,7 +264,7 @@ fn a_field_of_the_wrong_kind_is_named_with_what_would_be_right() {
 }
 
 #[test]
-fn a_value_that_cannot_be_is_named_with_what_would_be_right() {
+fn an_invalid_value_is_named_with_the_rule() {
     let joints = |joints: &str| format!("\"skeleton\":{{\"joints\":[\n{joints}]}}");
     let a = "{\"name\":\"a\",\"axis\":[0,1,0]}";
     let limit = "{\"name\":\"a\",\n\"limits\":{\"y\":[1,\n0]}}";
@@ -390,7 +390,7 @@ fn more_joints_than_a_skeleton_can_have_are_refused() {
 }
 
 #[test]
-fn bytes_that_are_no_text_are_said_where() {
+fn invalid_utf_8_has_its_position() {
     let error = io::read("x.json", &b"{\n \"\xc3\xa9\":\"\xff\"}"[..], None).expect_err("refused");
     let expected = "byte 0xff is not UTF-8 there; JSON is written in UTF-8";
     assert_eq!(message(error), format!("x.json, line 2, column 7: {expected}"));
@@ -465,7 +465,7 @@ fn a_saved_document_is_opened_again() {
 }
 
 #[test]
-fn a_document_that_cannot_be_saved_names_the_file_and_leaves_it_as_it_was() {
+fn a_document_that_cannot_be_saved_names_the_file_and_leaves_it_unchanged() {
     let folder = tempfile::tempdir().expect("a folder");
     let nowhere = folder.path().join("no/arm.json");
     let error = io::save(&Document::default(), &nowhere).expect_err("refused").to_string();
@@ -479,7 +479,7 @@ fn a_document_that_cannot_be_saved_names_the_file_and_leaves_it_as_it_was() {
 
 #[cfg(unix)]
 #[test]
-fn a_saved_file_keeps_its_rights_and_a_link_stays_a_link() {
+fn a_saved_file_keeps_its_permissions_and_a_link_stays_a_link() {
     use std::os::unix::fs::{PermissionsExt as _, symlink};
 
     let folder = tempfile::tempdir().expect("a folder");
@@ -498,7 +498,7 @@ fn a_saved_file_keeps_its_rights_and_a_link_stays_a_link() {
 // Examples
 
 #[test]
-fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
+fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
     for example in Example::ALL {
         let opened = example.open().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(opened.warnings, [], "{}", example.name);
@@ -514,7 +514,7 @@ fn every_example_opens_without_a_remark_and_is_saved_as_it_is() {
 }
 
 #[test]
-fn the_examples_are_what_they_are_called() {
+fn the_examples_hold_what_their_names_say() {
     let rig =
         |name| Example::find(name).expect("there").open().expect("opens").document.skeleton_rig;
     let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
@@ -563,7 +563,7 @@ fn the_snake_lies_in_an_s() {
 // Keys
 
 #[test]
-fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
+fn a_key_has_one_number_or_three_and_an_absent_channel_has_no_keys() {
     let opened = open(&with(
         r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"targets":[{"joint":0,"home":[0,1,0]}],
            "channels":[{"channel":"hand","keys":[[0,1,2,3],[1.5,4,5,6]]},
@@ -589,7 +589,7 @@ fn keys_are_one_number_or_three_at_a_time_and_what_is_absent_has_no_keys() {
 }
 
 #[test]
-fn keys_that_are_wrong_are_named() {
+fn invalid_keys_are_named() {
     let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"channels":"#;
     for (keys, reason) in [
         (

@@ -15,7 +15,7 @@ fn human() -> Document {
 }
 
 #[test]
-fn every_channel_gives_the_document_its_value_and_nothing_else_changes() {
+fn setting_a_channel_changes_its_value_alone() {
     let mut document = human();
     document.rig = RigKind::Arm;
     let (point, on) = (Vec3::new(1.5, -2.5, 0.25), Vec3::ZERO);
@@ -114,7 +114,7 @@ fn huge_values_stay_finite() {
 }
 
 #[test]
-fn keys_that_are_not_numbers_are_refused() {
+fn keys_that_are_not_finite_are_refused() {
     let mut keys = Keys::default();
     keys.insert(Channel::Hand, f64::NAN, Vec3::ZERO);
     keys.insert(Channel::Hand, 0.0, Vec3::new(0.0, f32::INFINITY, 0.0));

@@ -252,7 +252,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Where numbers are of a size, elbow and hand are as far from each other as the limbs are long.
+/// The limbs have their lengths.
 fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
     prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
     prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor_in_root().is_finite());
@@ -273,7 +273,7 @@ fn without_views(document: &Document) -> Document {
     Document { camera: Camera::default(), other_rig_camera: None, ..document.clone() }
 }
 
-/// A document without all that only says how it is looked at.
+/// A document without cameras, shown rig and overlays.
 fn content(document: &Document) -> Document {
     Document { rig: RigKind::Arm, display: Display::default(), ..without_views(document) }
 }
@@ -282,7 +282,7 @@ proptest! {
     #![proptest_config(config(200, 0x5ce1_e70e))]
 
     #[test]
-    fn any_actions_leave_a_session_that_is_one(actions in actions()) {
+    fn any_actions_leave_a_valid_session(actions in actions()) {
         let mut session = session();
         for action in actions {
             session.apply(action);
@@ -291,7 +291,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_taken_back_is_as_it_was(before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
+    fn a_cancelled_drag_restores_the_session(before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
         let mut session = session();
         for action in before {
             session.apply(action);
@@ -319,7 +319,7 @@ proptest! {
     }
 
     #[test]
-    fn undo_leads_back_to_the_first_document_and_redo_to_the_last(actions in actions()) {
+    fn undo_returns_to_the_first_document_and_redo_to_the_last(actions in actions()) {
         let mut session = session();
         let first = session.document().clone();
         for action in actions {
@@ -361,7 +361,7 @@ fn halfway() -> Session {
 }
 
 #[test]
-fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
+fn an_unkeyed_edit_is_shown_until_the_time_changes() {
     let mut session = halfway();
     let document = session.document().clone();
     session.apply(FileAction::Saved("x.json".into()));
@@ -382,7 +382,7 @@ fn what_is_changed_against_its_keys_is_shown_until_the_time_changes() {
 }
 
 #[test]
-fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
+fn an_unkeyed_edit_can_be_undone_and_keyed() {
     let mut session = halfway();
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Undo);
@@ -396,7 +396,7 @@ fn what_is_changed_against_its_keys_can_be_undone_and_keyed() {
 }
 
 #[test]
-fn what_is_changed_against_its_keys_is_no_change_of_the_document() {
+fn an_unkeyed_edit_leaves_the_document_unchanged() {
     let mut session = halfway();
     session.apply(FileAction::Saved("x.json".into()));
     let document = session.document().clone();
@@ -410,7 +410,7 @@ fn what_is_changed_against_its_keys_is_no_change_of_the_document() {
 }
 
 #[test]
-fn a_key_takes_the_place_of_what_was_changed_against_the_keys() {
+fn a_key_replaces_an_unkeyed_edit() {
     let mut session = halfway();
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetAutoKey(true));
@@ -453,7 +453,7 @@ fn selected_and_copied_keys_follow_their_joints() {
 }
 
 #[test]
-fn a_file_that_comes_late_asks_before_it_takes_the_place_of_changes() {
+fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
     let mut session = Session::default();
     session.apply(FileAction::Open { path: "slow.glb".into(), skeleton: None });
     session.apply(EditAction::SetTwist(1.0));
@@ -495,7 +495,7 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
 }
 
 #[test]
-fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
+fn a_cancelled_drag_restores_no_edit_that_the_time_has_discarded() {
     let mut session = halfway();
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Begin);
@@ -508,23 +508,23 @@ fn taking_back_a_drag_brings_nothing_back_that_the_time_has_dropped() {
 fn with_auto_key_every_edit_makes_a_key() {
     let mut session = Session::default();
     session.apply(PlaybackAction::SetAutoKey(true));
-    for (time, spin) in [(0.0, 6.0), (1.0, 0.5)] {
+    for (time, twist) in [(0.0, 6.0), (1.0, 0.5)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(EditAction::SetTwist(spin));
+        session.apply(EditAction::SetTwist(twist));
     }
     let keys = &session.document().keys;
     let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(channels, [Channel::Twist]);
-    // The shorter way, past 0 and not back around.
-    let spun = keys.value(Channel::Twist, 1.0).expect("a key").x;
-    assert!((spun - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{spun}");
+    // The shorter turn, past 0.
+    let twist = keys.value(Channel::Twist, 1.0).expect("a key").x;
+    assert!((twist - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{twist}");
     // A switch gets no key by being switched.
     session.apply(EditAction::ShowOverlay(Overlay::Cursor, false));
     assert!(!session.document().keys.has(Channel::Overlay(Overlay::Cursor)));
 }
 
 #[test]
-fn playing_keeps_time_however_slow_the_pictures_are_and_writes_nothing() {
+fn playing_keeps_time_at_any_frame_rate_and_edits_nothing() {
     for (steps, step) in [(200, 0.01), (4, 0.5), (1, 2.0)] {
         let mut session = halfway();
         session.apply(PlaybackAction::SetTime(0.0));
@@ -539,7 +539,7 @@ fn playing_keeps_time_however_slow_the_pictures_are_and_writes_nothing() {
 }
 
 #[test]
-fn time_ends_where_the_timeline_does_or_begins_again() {
+fn playing_stops_at_the_end_or_loops() {
     for (looping, expected, playing) in [(true, 1.5, true), (false, 8.0, false)] {
         let mut session = halfway();
         session.apply(PlaybackAction::SetTime(0.0));
@@ -553,7 +553,7 @@ fn time_ends_where_the_timeline_does_or_begins_again() {
 }
 
 #[test]
-fn a_solver_that_waits_heeds_a_target_that_gets_another_weight() {
+fn a_paused_solver_uses_the_new_weight_of_a_target() {
     let mut session = Session::default();
     session.apply(FileAction::OpenExample(Example::find("two-targets").expect("an example")));
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];

@@ -8,7 +8,7 @@ use ik_arm::document::FollowPath;
 use ik_arm::kinematics::follow;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
-const WAY: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
+const PATH: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
 
 /// Bones of uneven lengths along −x, the head first.
 fn snake() -> Skeleton {
@@ -27,10 +27,10 @@ fn snake() -> Skeleton {
     snake
 }
 
-/// How far a point is from the way that the head goes, by looking everywhere.
-fn from_way(point: Vec3) -> f32 {
+/// Distance of a point from the path, by sampling all of it.
+fn distance_to_path(point: Vec3) -> f32 {
     const STEPS: usize = 40_000;
-    let at = |step: usize| WAY.point(step as f64 / STEPS as f64);
+    let at = |step: usize| PATH.point(step as f64 / STEPS as f64);
     let flat = Vec3 { y: 0.0, ..point };
     (0..STEPS).map(|step| at(step).distance(flat)).fold(f32::INFINITY, f32::min)
 }
@@ -38,10 +38,10 @@ fn from_way(point: Vec3) -> f32 {
 #[test]
 fn every_joint_is_on_the_path_of_the_head() {
     for time in [0.0, 1.7, 100.0] {
-        let pose = WAY.pose(&snake(), time).pose();
+        let pose = PATH.pose(&snake(), time).pose();
         for joint in 0..pose.len() {
             for point in [pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))] {
-                assert!(from_way(point) < 2e-4, "{point} of joint {joint} at {time} s");
+                assert!(distance_to_path(point) < 2e-4, "{point} of joint {joint} at {time} s");
             }
         }
     }
@@ -51,8 +51,8 @@ fn every_joint_is_on_the_path_of_the_head() {
 fn the_head_leads_and_bones_keep_their_lengths() {
     let snake = snake();
     for time in [0.0, 0.4, 3.0, 8.99] {
-        let pose = WAY.pose(&snake, time).pose();
-        let head = WAY.point(WAY.turns_at(time)) + Vec3::Y * 0.07;
+        let pose = PATH.pose(&snake, time).pose();
+        let head = PATH.point(PATH.turns_at(time)) + Vec3::Y * 0.07;
         assert!(pose.base(JointId::new(0)).distance(head) < 1e-6);
         for (joint, before) in snake.joints().iter().enumerate() {
             let length = pose.base(JointId::new(joint)).distance(pose.tip(JointId::new(joint)));
@@ -65,7 +65,7 @@ fn the_head_leads_and_bones_keep_their_lengths() {
 fn the_body_trails_behind_the_head_and_never_overtakes_it() {
     let lengths: Vec<f32> = snake().joints().iter().map(|joint| joint.axis.length()).collect();
     let along = |time: f64| {
-        follow::along(|s| WAY.point(s), WAY.turns_at(time), 1.0 / 256.0, lengths.iter().copied())
+        follow::along(|s| PATH.point(s), PATH.turns_at(time), 1.0 / 256.0, lengths.iter().copied())
     };
     let turn = |point: Vec3| f64::from(-point.z).atan2(f64::from(point.x));
     let points = along(4.0);
@@ -77,7 +77,7 @@ fn the_body_trails_behind_the_head_and_never_overtakes_it() {
 
 #[test]
 fn time_goes_on_smoothly_and_comes_around() {
-    let place = |time: f64| WAY.pose(&snake(), time).pose().tip(JointId::new(23));
+    let place = |time: f64| PATH.pose(&snake(), time).pose().tip(JointId::new(23));
     for step in 0..200 {
         let time = f64::from(step) * 0.05;
         let moved = place(time).distance(place(time + 1e-3));
@@ -87,29 +87,29 @@ fn time_goes_on_smoothly_and_comes_around() {
 }
 
 #[test]
-fn a_path_that_stands_still_holds_the_body_and_ends() {
+fn following_a_path_that_is_one_point_ends() {
     let points = follow::along(|_| Vec3::ONE, 0.0, 0.1, [1.0, 2.0]);
     assert_eq!(points, [Vec3::ONE; 3]);
 }
 
 #[test]
 fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
-    assert_eq!(WAY.pose(&Skeleton::default(), 1.0), Skeleton::default());
+    assert_eq!(PATH.pose(&Skeleton::default(), 1.0), Skeleton::default());
     let mut point = Skeleton::default();
     point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
-    let posed = WAY.pose(&point, 1.0).pose();
+    let posed = PATH.pose(&point, 1.0).pose();
     assert_eq!(posed.base(JointId::new(0)), posed.tip(JointId::new(0)));
 }
 
 #[test]
 fn a_long_snake_on_a_path_that_it_does_not_fit_on_is_no_search_without_end() {
     const JOINTS: usize = 10_000;
-    let asked = Cell::new(0_usize);
+    let evaluated = Cell::new(0_usize);
     let ring = |s: f64| {
-        asked.set(asked.get() + 1);
+        evaluated.set(evaluated.get() + 1);
         Vec3::new(s.cos() as f32, 0.0, s.sin() as f32)
     };
     let points = follow::along(ring, 0.0, 0.1, [5.0; JOINTS]);
     assert_eq!(points.len(), JOINTS + 1);
-    assert!(asked.get() < 2_000_000, "{} places asked for", asked.get());
+    assert!(evaluated.get() < 2_000_000, "{} evaluations", evaluated.get());
 }

@@ -27,9 +27,9 @@ proptest! {
             session.apply(EditAction::SetRoot(root));
             let (arm, pose) = (session.arm(), session.pose());
             prop_assert_eq!(bits(arm.cursor_in_world()), bits(before));
-            let asked = before.as_dvec3() - root.as_dvec3();
-            if (100.1..499.9).contains(&asked.length()) {
-                let missed = asked.distance(pose.hand.as_dvec3());
+            let cursor = before.as_dvec3() - root.as_dvec3();
+            if (100.1..499.9).contains(&cursor.length()) {
+                let missed = cursor.distance(pose.hand.as_dvec3());
                 let ulps = 2.0 * f64::from(f32::EPSILON) * f64::from(before.abs().max(root.abs()).max_element());
                 prop_assert!(missed <= 3e-7 * 500.0 + ulps, "off by {}", missed);
             }
