@@ -138,7 +138,7 @@ fn trees_bring_several_tips_to_their_targets_by_damped_least_squares() {
 
 /// X of a joint's own space in f64, from the formula, in skeleton space.
 fn twin(skeleton: &Skeleton, joint: JointId, angles: &[DVec3]) -> DMat4 {
-    let Joint { parent, offset, frame, .. } = &skeleton.joints()[joint.index()];
+    let Joint { parent, offset, frame, .. } = &skeleton[joint];
     let above = parent.map_or(DMat4::IDENTITY, |parent| twin(skeleton, parent, angles));
     let DVec3 { x, y, z } = angles[joint.index()];
     let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
@@ -553,7 +553,7 @@ fn a_step_beyond_numbers_leaves_angles_that_are_numbers() {
         let targets = [target(JointId::new(3), Vec3::new(1.0, 0.5, 0.0))];
         solve(&mut skeleton, &targets, &options).expect("solve");
         let is_whole = |joint: &Joint| joint.rotation.is_finite() && joint.offset.is_finite();
-        assert!(skeleton.joints().iter().all(is_whole), "{root:?}");
+        assert!(skeleton.iter().all(|(_, joint)| is_whole(joint)), "{root:?}");
     }
 }
 

@@ -104,7 +104,7 @@ fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
         .map(|base| base.y),
         [0.0, 1.0, 3.0, 0.0]
     );
-    assert_eq!(rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
+    assert_eq!(*rig.skeleton.joints()[0], Joint::new("a", None, Vec3::Y));
     assert_eq!(rig.skeleton.joints()[1].radius, 0.2);
     assert_eq!((rig.targets.len(), rig.solver), (0, SolverOptions::default()));
 }

@@ -12,7 +12,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton, SkeletonErro
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.
 fn twin(skeleton: &Skeleton, joint: JointId, is_turned: bool, to_base: bool) -> DMat4 {
-    let Joint { parent, offset, rotation, frame, .. } = &skeleton.joints()[joint.index()];
+    let Joint { parent, offset, rotation, frame, .. } = &skeleton[joint];
     let above = parent.map_or_else(
         || world(skeleton.transform()),
         |parent| twin(skeleton, parent, is_turned, false),
@@ -134,8 +134,9 @@ fn x_is_turned_about_first_in_the_joints_own_frame() {
 
 /// Parents before children, names that differ, numbers, angles within limits.
 fn assert_is_one(skeleton: &Skeleton) {
-    let joints = skeleton.joints();
-    assert_eq!(Skeleton::from_joints(joints.to_vec()).expect("a skeleton").joints(), joints);
+    let joints = skeleton.iter().map(|(_, joint)| joint.clone()).collect();
+    let again = Skeleton::from_joints(joints).expect("a skeleton");
+    assert_eq!(again.joints(), skeleton.joints());
     for (id, joint) in skeleton.iter() {
         assert!(joint.parent.is_none_or(|parent| parent < id));
         assert_eq!(joint.clamped(joint.rotation), joint.rotation);

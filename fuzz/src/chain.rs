@@ -153,7 +153,7 @@ impl Case<'_> {
             let may_turn = !was.locked && on_path.contains(&joint);
             let offset = if may_move { is.offset } else { was.offset };
             let rotation = if may_turn { is.rotation } else { was.rotation };
-            assert_eq!(*is, Joint { offset, rotation, ..was.clone() }, "{by:?}");
+            assert_eq!(**is, Joint { offset, rotation, ..was.clone() }, "{by:?}");
             is_rigid(is);
         }
         // A root that has gone far and come back has the seven digits that it had there.

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::channel::{Channel, Quantity};
-use super::shared::Shared;
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::JointRemap;
 use crate::kinematics::spline::Spline;
 

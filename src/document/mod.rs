@@ -5,7 +5,7 @@
 //! continues from (the last Pointer, the transported frame, the forearm's roll) is therefore part of the
 //! document too.
 //!
-//! What is large is [`Shared`]: a clone of a document takes little memory, and an edit copies what it
+//! What is large is [`Shared`](crate::kinematics::Shared): a clone of a document takes little memory, and an edit copies what it
 //! changes.
 
 mod arm;
@@ -25,7 +25,6 @@ mod keys;
 mod projection;
 mod rekey;
 mod rig_kind;
-mod shared;
 mod skeleton_rig;
 mod target;
 mod timeline;
@@ -42,7 +41,6 @@ pub use hand_orientation::{HandOrientation, HandSpace};
 pub use keys::Keys;
 pub use projection::{Projection, Ray};
 pub use rig_kind::RigKind;
-pub use shared::Shared;
 pub use skeleton_rig::SkeletonRig;
 pub use target::{Target, TargetMotion, TargetPath};
 pub use timeline::Timeline;

@@ -2,8 +2,8 @@ use glam::{Vec3, Vec3A};
 
 use super::camera::Camera;
 use super::follow_path::FollowPath;
-use super::shared::Shared;
 use super::target::{Target, TargetPath};
+use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 

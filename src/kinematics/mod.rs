@@ -11,11 +11,14 @@ pub mod job;
 mod normalize;
 pub mod pop;
 mod rotation_between;
+mod shared;
 pub mod skeleton;
 pub mod soft_reach;
 pub mod spline;
 pub mod twist;
 pub mod two_bone;
+
+pub use shared::Shared;
 
 pub(crate) use normalize::normalize;
 pub(crate) use rotation_between::rotation_between;

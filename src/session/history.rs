@@ -3,6 +3,8 @@ use std::collections::{BTreeMap, VecDeque};
 use glam::Vec3;
 
 use crate::document::{Channel, Document};
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::Joint;
 
 /// Values that keyed channels have against their keys, until the time changes.
 pub(super) type Overrides = BTreeMap<Channel, Vec3>;
@@ -80,10 +82,15 @@ impl Snapshot {
         let skeleton = &skeleton_rig.skeleton;
         let is_shared = other.is_some_and(|other| skeleton.is_same(&other.skeleton_rig.skeleton));
         let joints = if is_shared { &[] } else { skeleton.joints() };
-        let names = joints.iter().map(|joint| joint.name.len()).sum::<usize>();
+        let theirs = other.map_or(&[][..], |other| other.skeleton().joints());
+        let is_own = |(index, joint): &(usize, &Shared<Joint>)| {
+            !theirs.get(*index).is_some_and(|theirs| theirs.is_same(joint))
+        };
+        let own = joints.iter().enumerate().filter(is_own);
+        let own_joints = own.map(|(_, joint)| size_of::<Joint>() + joint.name.len()).sum::<usize>();
         size_of::<Self>()
             + size_of_val(joints)
-            + names
+            + own_joints
             + size_of_val(&*skeleton_rig.targets)
             + self.overrides.len() * size_of::<(Channel, Vec3)>()
             + keys.unshared_bytes(other.map(|other| &other.keys))

@@ -1,6 +1,7 @@
 use std::mem;
 
-use crate::document::{Shared, SkeletonRig};
+use crate::document::SkeletonRig;
+use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 

@@ -43,7 +43,7 @@ struct LimitsFields {
 impl SkeletonFields {
     pub fn new(skeleton: &Skeleton) -> Self {
         Self {
-            joints: Some(skeleton.joints().iter().map(JointFields::new).map(JsonObject).collect()),
+            joints: Some(skeleton.iter().map(|(_, joint)| JsonObject(JointFields::new(joint))).collect()),
             transform: Some(JsonNumbers(skeleton.transform().to_cols_array())),
         }
     }

@@ -28,7 +28,7 @@ impl Skeleton {
         joint.check(added)?;
         self.check_name(&joint.name, added)?;
         joint.clamp();
-        self.joints.push(joint);
+        self.joints.push(joint.into());
         Ok(added)
     }
 
@@ -73,7 +73,9 @@ impl Skeleton {
                 moved.push(None);
                 continue;
             }
-            joint.parent = parent.flatten();
+            if joint.parent != parent.flatten() {
+                joint.make_mut().parent = parent.flatten();
+            }
             moved.push(Some(kept.len().into()));
             kept.push(joint);
         }
@@ -105,7 +107,7 @@ impl Skeleton {
                 *self = before;
                 return Err(error);
             }
-            let joint = &mut self.joints[child.index()];
+            let joint = self.joints[child.index()].make_mut();
             (joint.parent, joint.offset, joint.rotation) = (parent, offset, rotation);
             joint.widen_limits(rotation);
         }
@@ -162,7 +164,7 @@ impl Skeleton {
         let near = self[joint].rotation;
         let (offset, rotation) = self.placed_under(joint, parent, near);
         check_place(joint, offset, rotation)?;
-        let moved = &mut self.joints[joint.index()];
+        let moved = self.joints[joint.index()].make_mut();
         (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
         moved.clamp();
         Ok(self.sort())
@@ -177,7 +179,7 @@ impl Skeleton {
     pub fn rename(&mut self, joint: JointId, name: &str) -> Result<(), SkeletonError> {
         self.known(joint)?;
         self.check_name(name, joint)?;
-        name.clone_into(&mut self.joints[joint.index()].name);
+        name.clone_into(&mut self.joints[joint.index()].make_mut().name);
         Ok(())
     }
 
@@ -198,10 +200,9 @@ impl Skeleton {
     pub fn set_axis(&mut self, joint: JointId, axis: Vec3) -> Result<(), SkeletonError> {
         let before = self.known(joint)?.axis;
         self.change(joint, |joint| joint.axis = axis)?;
-        for child in self.joints.iter_mut().filter(|child| child.parent == Some(joint)) {
-            if child.offset == before {
-                child.offset = axis;
-            }
+        let is_at_tip = |child: &Joint| child.parent == Some(joint) && child.offset == before;
+        for child in self.joints.iter_mut().filter(|child| is_at_tip(child)) {
+            child.make_mut().offset = axis;
         }
         Ok(())
     }
@@ -224,7 +225,7 @@ impl Skeleton {
         changed.name.clone_from(&before.name);
         changed.check(joint)?;
         changed.clamp();
-        self.joints[joint.index()] = changed;
+        self.joints[joint.index()] = changed.into();
         Ok(())
     }
 
@@ -232,6 +233,7 @@ impl Skeleton {
     /// from about 1e19 whose squares overflow.
     pub(crate) fn turn(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
         let Some(joint) = self.joints.get_mut(joint.index()) else { return };
+        let joint = joint.make_mut();
         let (rotation, offset) = (joint.rotation, joint.offset);
         change(joint);
         if !(joint.rotation.is_finite() && joint.offset.is_finite()) {
@@ -267,7 +269,10 @@ impl Skeleton {
         let mut joints: Vec<_> =
             order.into_iter().map(|index| self.joints[index].clone()).collect();
         for joint in &mut joints {
-            joint.parent = joint.parent.and_then(|parent| moved[parent.index()]);
+            let parent = joint.parent.and_then(|parent| moved[parent.index()]);
+            if joint.parent != parent {
+                joint.make_mut().parent = parent;
+            }
         }
         self.joints = joints;
         JointRemap(moved)

@@ -34,6 +34,8 @@ use core::ops::Index;
 
 use glam::{Affine3A, Vec3};
 
+use crate::kinematics::Shared;
+
 pub use build::JointRemap;
 pub use error::SkeletonError;
 pub use joint::{Joint, Limit};
@@ -59,7 +61,7 @@ pub(crate) use joint::within;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
-    joints: Vec<Joint>,
+    joints: Vec<Shared<Joint>>,
     transform: Affine3A,
 }
 
@@ -77,7 +79,7 @@ impl Skeleton {
     /// A skeleton of one locked joint without a bone.
     pub fn with_root(name: &str) -> Self {
         let root = Joint { locked: true, ..Joint::new(name, None, Vec3::ZERO) };
-        Self { joints: vec![root], ..Self::default() }
+        Self { joints: vec![root.into()], ..Self::default() }
     }
 
     /// A skeleton of joints in which parents precede their children. Rotations are clamped to the
@@ -98,19 +100,22 @@ impl Skeleton {
                 return Err(SkeletonError::Name(joint.name.clone()));
             }
         }
-        skeleton.joints = joints;
-        skeleton.joints.iter_mut().for_each(Joint::clamp);
+        let clamped = |mut joint: Joint| {
+            joint.clamp();
+            joint.into()
+        };
+        skeleton.joints = joints.into_iter().map(clamped).collect();
         Ok(skeleton)
     }
 
-    /// All joints, parents before children.
-    pub fn joints(&self) -> &[Joint] {
+    /// All joints, parents before children. Clones of a skeleton share them.
+    pub fn joints(&self) -> &[Shared<Joint>] {
         &self.joints
     }
 
     /// The joint of an index; `None` if there is none.
     pub fn joint(&self, joint: JointId) -> Option<&Joint> {
-        self.joints.get(joint.index())
+        self.joints.get(joint.index()).map(|joint| &**joint)
     }
 
     /// The indices of all joints, parents before children.
@@ -122,7 +127,7 @@ impl Skeleton {
     pub fn iter(
         &self,
     ) -> impl DoubleEndedIterator<Item = (JointId, &Joint)> + ExactSizeIterator + Clone {
-        self.joints.iter().enumerate().map(|(index, joint)| (JointId::new(index), joint))
+        self.joints.iter().enumerate().map(|(index, joint)| (JointId::new(index), &**joint))
     }
 
     /// The joint of a name.

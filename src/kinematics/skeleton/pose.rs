@@ -1,6 +1,7 @@
 use glam::{Affine3A, Vec3};
 
 use super::{Joint, JointId};
+use crate::kinematics::Shared;
 
 /// Transforms of all joints. Overflow is clamped to ±`f32::MAX`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,7 +17,7 @@ struct Posed {
 
 impl SkeletonPose {
     pub(super) fn new(
-        joints: &[Joint],
+        joints: &[Shared<Joint>],
         transform: Affine3A,
         local: impl FnMut(usize, &Joint) -> Affine3A,
     ) -> Self {
@@ -28,7 +29,7 @@ impl SkeletonPose {
     /// [`SkeletonPose::new`] into existing memory.
     pub(super) fn refill(
         &mut self,
-        joints: &[Joint],
+        joints: &[Shared<Joint>],
         transform: Affine3A,
         mut local: impl FnMut(usize, &Joint) -> Affine3A,
     ) {

@@ -3,6 +3,7 @@ use glam::Vec3;
 use super::scratch::Scratch;
 use super::shadow::above_ground;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
@@ -78,7 +79,7 @@ pub(super) fn add(
 }
 
 /// Counts the bones above each joint, without those of no length, and finds the joints without children.
-fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
+fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
     depths.clear();
     depths.resize(joints.len(), 0);
     are_leaves.clear();
@@ -95,7 +96,7 @@ fn read_tree(joints: &[Joint], depths: &mut Vec<usize>, are_leaves: &mut Vec<boo
 /// A posed skeleton with the measures for drawing it.
 #[derive(Clone, Copy)]
 struct DrawnSkeleton<'a> {
-    joints: &'a [Joint],
+    joints: &'a [Shared<Joint>],
     pose: &'a SkeletonPose,
     depths: &'a [usize],
     are_leaves: &'a [bool],

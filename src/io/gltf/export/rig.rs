@@ -3,6 +3,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use super::error::GlbError;
 use crate::document::{Arm, Channel, Document, RigKind};
 use crate::io::gltf::frame::frame;
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{ArmRig, Cone, Part};
@@ -126,7 +127,7 @@ impl GltfRig {
         ]
     }
 
-    fn joints(&self, joints: &[Joint]) -> Vec<RigBone> {
+    fn joints(&self, joints: &[Shared<Joint>]) -> Vec<RigBone> {
         let scale = self.document.skeleton().transform().as_daffine3().matrix3;
         let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
         let reach = f64::from(self.document.skeleton_rig.reach()) * self.metres_per_unit;
@@ -139,7 +140,7 @@ impl GltfRig {
                 are_leaves[parent.index()] = false;
             }
         }
-        let bone = |(index, joint): (usize, &Joint)| RigBone {
+        let bone = |(index, joint): (usize, &Shared<Joint>)| RigBone {
             name: joint.name.clone(),
             parent: joint.parent.map(JointId::index),
             has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
@@ -181,13 +182,13 @@ fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePl
             above * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
         );
     }
-    let place = |(joint, full): (&Joint, DAffine3)| BonePlacement {
+    let place = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
         base: full.translation,
         along: full.matrix3 * joint.axis.as_dvec3(),
         x: full.matrix3.x_axis,
         y: full.matrix3.y_axis,
     };
-    skeleton.joints().iter().zip(full).map(place).collect()
+    skeleton.iter().zip(full).map(place).collect()
 }
 
 /// The arm along the Root's +x, with the hinge of an unrotated Socket.
