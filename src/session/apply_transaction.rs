@@ -2,9 +2,9 @@ use core::fmt::Display;
 
 use super::drag::{Drag, DragKind, Grip};
 use super::edit_action::EditAction;
-use super::history::Snapshot;
 use super::point_drag::{Constraint, PointDrag};
 use super::session::Session;
+use super::snapshot::Snapshot;
 use super::transaction_action::TransactionAction;
 use crate::document::{Arm, Channel, Document, Ray};
 use glam::Vec3;

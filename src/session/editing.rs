@@ -2,8 +2,9 @@ use std::collections::BTreeSet;
 
 use super::drag::Drag;
 use super::edit_label::{CHANGE, SOLVE};
-use super::history::{History, Overrides, Snapshot};
+use super::history::History;
 use super::playback::Playback;
+use super::snapshot::{Overrides, Snapshot};
 use super::transaction::Transaction;
 use crate::document::{Arm, Camera, Channel, Document, TwistReferenceKind};
 use crate::kinematics::skeleton::Skeleton;

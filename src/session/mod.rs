@@ -46,6 +46,7 @@ mod shell;
 mod shell_action;
 mod skeleton_drag;
 mod skeleton_edits;
+mod snapshot;
 mod solver_action;
 mod solver_run;
 mod solver_status;

@@ -1,5 +1,5 @@
 use super::drag::Drag;
-use super::history::Snapshot;
+use super::snapshot::Snapshot;
 use crate::document::Document;
 
 /// Edits between press and release that become one undo step.

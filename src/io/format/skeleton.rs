@@ -43,7 +43,9 @@ struct LimitsFields {
 impl SkeletonFields {
     pub fn new(skeleton: &Skeleton) -> Self {
         Self {
-            joints: Some(skeleton.iter().map(|(_, joint)| JsonObject(JointFields::new(joint))).collect()),
+            joints: Some(
+                skeleton.iter().map(|(_, joint)| JsonObject(JointFields::new(joint))).collect(),
+            ),
             transform: Some(JsonNumbers(skeleton.transform().to_cols_array())),
         }
     }

@@ -1,0 +1,104 @@
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use crate::document::{Channel, Document};
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::Joint;
+
+/// Unkeyed edits: values of keyed channels that differ from their keys, until the time changes.
+pub(super) type Overrides = BTreeMap<Channel, Vec3>;
+
+/// All that undo restores: a document and its unkeyed edits. It shares memory with the documents before
+/// and after it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Snapshot {
+    document: Document,
+    overrides: Overrides,
+    /// Time of the overrides.
+    time: f64,
+    /// Number of the document: equal numbers, equal documents.
+    pub revision: u64,
+    /// Number of the document's content: equal numbers, documents that are equal except for their
+    /// display.
+    pub content: u64,
+}
+
+impl Snapshot {
+    pub fn new(
+        document: &Document,
+        overrides: &Overrides,
+        time: f64,
+        revision: u64,
+        content: u64,
+    ) -> Self {
+        let (document, overrides) = (document.clone(), overrides.clone());
+        Self { document, overrides, time, revision, content }
+    }
+
+    /// Its document, with the cameras of the open one.
+    pub fn document(&self, open: &Document) -> Document {
+        let mut document = Document {
+            rig: open.rig,
+            camera: open.camera,
+            other_rig_camera: open.other_rig_camera,
+            ..self.document.clone()
+        };
+        document.show(self.document.rig);
+        document
+    }
+
+    /// Whether its document differs from another one, cameras aside.
+    pub fn differs_from(&self, document: &Document) -> bool {
+        self.document.rig != document.rig
+            || self.document.display != document.display
+            || self.differs_in_content_from(document)
+    }
+
+    /// Whether its document differs from another one in more than cameras, shown rig and overlays.
+    pub fn differs_in_content_from(&self, other: &Document) -> bool {
+        let Document { arm, skeleton_rig, keys, timeline, metres_per_unit, .. } = &self.document;
+        *arm != other.arm
+            || *skeleton_rig != other.skeleton_rig
+            || *keys != other.keys
+            || *timeline != other.timeline
+            || *metres_per_unit != other.metres_per_unit
+    }
+
+    /// The overrides at a time; none at another time than theirs.
+    pub fn overrides_at(&self, time: f64) -> Overrides {
+        if self.time == time { self.overrides.clone() } else { Overrides::default() }
+    }
+
+    /// Whether undoing to this state from `now` would change nothing: overrides of another time are
+    /// discarded.
+    pub fn is_restored_in(&self, now: &Self) -> bool {
+        self.revision == now.revision && self.overrides_at(now.time) == now.overrides
+    }
+
+    /// Bytes that it takes and `other` does not share, approximately.
+    pub fn unshared_bytes(&self, other: Option<&Self>) -> usize {
+        let other = other.map(|other| &other.document);
+        size_of::<Self>()
+            + self.unshared_joint_bytes(other)
+            + size_of_val(&*self.document.skeleton_rig.targets)
+            + self.overrides.len() * size_of::<(Channel, Vec3)>()
+            + self.document.keys.unshared_bytes(other.map(|other| &other.keys))
+    }
+
+    fn unshared_joint_bytes(&self, other: Option<&Document>) -> usize {
+        let skeleton = &self.document.skeleton_rig.skeleton;
+        let theirs = other.map(|other| &other.skeleton_rig.skeleton);
+        if theirs.is_some_and(|theirs| skeleton.is_same(theirs)) {
+            return 0;
+        }
+        let theirs = theirs.map_or(&[][..], |theirs| theirs.joints());
+        let is_shared = |index: usize, joint: &Shared<Joint>| {
+            theirs.get(index).is_some_and(|theirs| theirs.is_same(joint))
+        };
+        let joints = skeleton.joints();
+        let own = joints.iter().enumerate().filter(|(index, joint)| !is_shared(*index, joint));
+        let own = own.map(|(_, joint)| size_of::<Joint>() + joint.name.len());
+        size_of_val(joints) + own.sum::<usize>()
+    }
+}
