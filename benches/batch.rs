@@ -7,7 +7,8 @@ use criterion::{
     BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
 use ik_arm::kinematics::batch::{
-    Arms, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
+    ArmBatch, BatchBones, BatchPositions, BatchRotations, BatchTwist, Points, PointsMut,
+    QuaternionsMut,
 };
 use ik_arm::kinematics::two_bone::TwoBone;
 
@@ -27,7 +28,7 @@ struct Data {
 }
 
 impl Data {
-    /// Cursors in a cube twice as wide as the arm is long, and spins all around.
+    /// Cursors in a cube twice as wide as the arm is long, and twists all around.
     fn new(arms: usize) -> Self {
         let numbers = |seed: usize, least: f32, most: f32| {
             let share = |arm: usize| {
@@ -52,21 +53,24 @@ impl Data {
     }
 
     /// The question, and room for the answer.
-    fn split(&mut self, kind: Kind) -> (Arms<'_>, Places<'_>, Option<Rotations<'_>>) {
+    fn split(
+        &mut self,
+        kind: Kind,
+    ) -> (ArmBatch<'_>, BatchPositions<'_>, Option<BatchRotations<'_>>) {
         let Self { cursor: [x, y, z], angle, cos, sin, upper, lower, elbow, hand, rotations } =
             self;
         let bones = match kind {
-            Kind::OwnBones => Bones::Each { upper, lower },
-            _ => Bones::Same(TwoBone::new(200.0, 300.0).expect("lengths")),
+            Kind::OwnBones => BatchBones::Each { upper, lower },
+            _ => BatchBones::Same(TwoBone::new(200.0, 300.0).expect("lengths")),
         };
-        let spin = match kind {
-            Kind::Angles => Spin::Angle(angle),
-            _ => Spin::Turn { cos, sin },
+        let twist = match kind {
+            Kind::Angles => BatchTwist::Angle(angle),
+            _ => BatchTwist::CosSin { cos, sin },
         };
-        let arms = Arms::new(bones, Points { x, y, z }, spin).expect("a batch");
-        let places = Places { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
+        let arms = ArmBatch::new(bones, Points { x, y, z }, twist).expect("a batch");
+        let places = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
         let [of_upper, of_lower] = rotations;
-        let rotations = matches!(kind, Kind::Rotations).then(|| Rotations {
+        let rotations = matches!(kind, Kind::Rotations).then(|| BatchRotations {
             upper: QuaternionsMut::of(of_upper),
             lower: QuaternionsMut::of(of_lower),
         });

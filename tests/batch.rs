@@ -5,7 +5,8 @@ mod common;
 use common::Random;
 use glam::{DQuat, DVec3, Quat, Vec3};
 use ik_arm::kinematics::batch::{
-    Arms, BatchError, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
+    ArmBatch, BatchArray, BatchBones, BatchError, BatchPositions, BatchRotations, BatchTwist,
+    Points, PointsMut, QuaternionsMut,
 };
 use ik_arm::kinematics::fk;
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -54,12 +55,12 @@ impl Crowd {
         self.angle.len()
     }
 
-    fn each(&self) -> Bones<'_> {
-        Bones::Each { upper: &self.upper, lower: &self.lower }
+    fn each(&self) -> BatchBones<'_> {
+        BatchBones::Each { upper: &self.upper, lower: &self.lower }
     }
 
-    fn turn(&self) -> Spin<'_> {
-        Spin::Turn { cos: &self.cos, sin: &self.sin }
+    fn turn(&self) -> BatchTwist<'_> {
+        BatchTwist::CosSin { cos: &self.cos, sin: &self.sin }
     }
 
     fn points(&self) -> Points<'_> {
@@ -67,8 +68,8 @@ impl Crowd {
         Points { x, y, z }
     }
 
-    fn arms(&self) -> Arms<'_> {
-        Arms::new(self.each(), self.points(), self.turn()).expect("a batch")
+    fn arms(&self) -> ArmBatch<'_> {
+        ArmBatch::new(self.each(), self.points(), self.turn()).expect("a batch")
     }
 
     fn bones(&self, arm: usize) -> TwoBone {
@@ -92,17 +93,17 @@ impl Answer {
         }
     }
 
-    fn of(arms: &Arms<'_>, turned: bool) -> Self {
+    fn of(arms: &ArmBatch<'_>, turned: bool) -> Self {
         let mut answer = Self::none(arms.len(), turned);
         let (places, rotations) = answer.room();
         arms.solve(places, rotations).expect("room");
         answer
     }
 
-    fn room(&mut self) -> (Places<'_>, Option<Rotations<'_>>) {
+    fn room(&mut self) -> (BatchPositions<'_>, Option<BatchRotations<'_>>) {
         let Self { elbow, hand, rotations } = self;
-        let places = Places { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
-        let rotations = rotations.as_mut().map(|[upper, lower]| Rotations {
+        let places = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
+        let rotations = rotations.as_mut().map(|[upper, lower]| BatchRotations {
             upper: QuaternionsMut::of(upper),
             lower: QuaternionsMut::of(lower),
         });
@@ -129,7 +130,7 @@ fn point(of: &[Vec<f32>; 3], arm: usize) -> Vec3 {
     Vec3::from_array([&of[0], &of[1], &of[2]].map(|of| of[arm]))
 }
 
-/// Arms as they are posed: in reach, too far and too close.
+/// ArmBatch as they are posed: in reach, too far and too close.
 fn plain(random: &mut Random) -> (TwoBone, Vec3, f32) {
     let mut length = || 10_f32.powf(random.within(-2.0..4.0));
     let bones = TwoBone::new(length(), length()).expect("lengths");
@@ -158,8 +159,8 @@ fn each_arm_has_the_bits_that_it_has_alone() {
         for count in [0, 1, 7, 16, 17, 2_047, 2_048, 2_049, 10_000] {
             let crowd = Crowd::new((0..count).map(|_| kind(&mut random)));
             let by_turn = Answer::of(&crowd.arms(), false);
-            let angles = Spin::Angle(&crowd.angle);
-            let by_angle = Arms::new(crowd.each(), crowd.points(), angles).expect("a batch");
+            let angles = BatchTwist::Angle(&crowd.angle);
+            let by_angle = ArmBatch::new(crowd.each(), crowd.points(), angles).expect("a batch");
             for (answer, is_alone) in [(by_turn, false), (Answer::of(&by_angle, false), true)] {
                 for arm in 0..count {
                     let alone = crowd.bones(arm).solve(crowd.cursor(arm), crowd.angle[arm]);
@@ -180,10 +181,11 @@ fn arms_of_the_same_bones_have_the_bits_of_arms_with_their_own() {
     for kind in [plain, any] {
         let (bones, _, _) = kind(&mut random);
         let crowd = Crowd::new((0..5_000).map(|_| {
-            let (_, cursor, spin) = kind(&mut random);
-            (bones, cursor, spin)
+            let (_, cursor, twist) = kind(&mut random);
+            (bones, cursor, twist)
         }));
-        let same = Arms::new(Bones::Same(bones), crowd.points(), crowd.turn()).expect("a batch");
+        let same =
+            ArmBatch::new(BatchBones::Same(bones), crowd.points(), crowd.turn()).expect("a batch");
         for turned in [false, true] {
             let of_same = Answer::of(&same, turned).bits();
             assert_eq!(of_same, Answer::of(&crowd.arms(), turned).bits());
@@ -207,14 +209,17 @@ fn cut_up_in_any_way_a_batch_gives_the_same_bits() {
             let mut from = 0;
             while from < crowd.len() {
                 let to = crowd.len().min(from + 1 + random.below(longest));
-                let arms = Arms::new(
-                    Bones::Each { upper: &crowd.upper[from..to], lower: &crowd.lower[from..to] },
+                let arms = ArmBatch::new(
+                    BatchBones::Each {
+                        upper: &crowd.upper[from..to],
+                        lower: &crowd.lower[from..to],
+                    },
                     Points {
                         x: &crowd.cursor[0][from..to],
                         y: &crowd.cursor[1][from..to],
                         z: &crowd.cursor[2][from..to],
                     },
-                    Spin::Turn { cos: &crowd.cos[from..to], sin: &crowd.sin[from..to] },
+                    BatchTwist::CosSin { cos: &crowd.cos[from..to], sin: &crowd.sin[from..to] },
                 );
                 parts.append(Answer::of(&arms.expect("a batch"), turned));
                 from = to;
@@ -308,7 +313,7 @@ fn straight_and_folded_arms_and_cursors_without_a_direction_have_unit_rotations(
             [(2.0, 1.0), (1.0, 2.0), (1.5, 1.5), (3.0, 1e-7), (3.0, 1e-45), (1e-30, 3.0)]
                 .map(|(upper, lower)| bones(upper, lower))
                 .into_iter()
-                .flat_map(move |bones| [0.0, 1.0, 3.0].map(|spin| (bones, towards * far, spin)))
+                .flat_map(move |bones| [0.0, 1.0, 3.0].map(|twist| (bones, towards * far, twist)))
         })
     }));
     let answer = Answer::of(&crowd.arms(), true);
@@ -323,30 +328,30 @@ fn straight_and_folded_arms_and_cursors_without_a_direction_have_unit_rotations(
 #[test]
 fn arrays_that_are_no_batch_are_refused_by_name() {
     let (three, two) = ([1.0; 3], [1.0; 2]);
-    let bones = Bones::Same(TwoBone::new(2.0, 3.0).expect("lengths"));
+    let bones = BatchBones::Same(TwoBone::new(2.0, 3.0).expect("lengths"));
     let cursor = Points { x: &three, y: &three, z: &three };
-    let refused = |bones, cursor, spin| Arms::new(bones, cursor, spin).expect_err("no batch");
+    let refused = |bones, cursor, twist| ArmBatch::new(bones, cursor, twist).expect_err("no batch");
     let len = |array| BatchError::Len { array, len: 2, arms: 3 };
-    let turn = Spin::Turn { cos: &three, sin: &two };
+    let turn = BatchTwist::CosSin { cos: &three, sin: &two };
     assert_eq!(
-        refused(bones, Points { z: &two, ..cursor }, Spin::Angle(&three)),
-        len("the cursors' z")
+        refused(bones, Points { z: &two, ..cursor }, BatchTwist::Angle(&three)),
+        len(BatchArray::CursorZ)
     );
-    assert_eq!(refused(bones, cursor, Spin::Angle(&two)), len("the spins' angle"));
-    assert_eq!(refused(bones, cursor, turn), len("the spins' sin"));
-    let each = Bones::Each { upper: &three, lower: &two };
-    assert_eq!(refused(each, cursor, Spin::Angle(&three)), len("the lower lengths"));
-    let each = Bones::Each { upper: &three, lower: &[1.0, 0.0, f32::NAN] };
+    assert_eq!(refused(bones, cursor, BatchTwist::Angle(&two)), len(BatchArray::TwistAngle));
+    assert_eq!(refused(bones, cursor, turn), len(BatchArray::TwistSin));
+    let each = BatchBones::Each { upper: &three, lower: &two };
+    assert_eq!(refused(each, cursor, BatchTwist::Angle(&three)), len(BatchArray::LowerLengths));
+    let each = BatchBones::Each { upper: &three, lower: &[1.0, 0.0, f32::NAN] };
     assert_eq!(
-        refused(each, cursor, Spin::Angle(&three)).to_string(),
+        refused(each, cursor, BatchTwist::Angle(&three)).to_string(),
         "arm 1: lower length is 0; it must be a finite number above 0"
     );
 
-    let arms = Arms::new(bones, cursor, Spin::Angle(&three)).expect("a batch");
+    let arms = ArmBatch::new(bones, cursor, BatchTwist::Angle(&three)).expect("a batch");
     let mut answer = Answer::none(3, true);
     answer.rotations.as_mut().expect("rotations")[1][3].pop();
     let (places, rotations) = answer.room();
-    assert_eq!(arms.solve(places, rotations), Err(len("the lower rotations")));
+    assert_eq!(arms.solve(places, rotations), Err(len(BatchArray::LowerRotations)));
     assert!(answer.elbow[0][0].is_nan(), "nothing is solved then");
 }
 

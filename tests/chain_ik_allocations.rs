@@ -6,7 +6,8 @@ use allocation_counter::measure;
 use common::Random;
 use common::skeletons::{limit, reachable, tree};
 use ik_arm::kinematics::batch::{
-    Arms, Bones, Places, Points, PointsMut, QuaternionsMut, Rotations, Spin,
+    ArmBatch, BatchBones, BatchPositions, BatchRotations, BatchTwist, Points, PointsMut,
+    QuaternionsMut,
 };
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolverOptions};
 use ik_arm::kinematics::skeleton::JointId;
@@ -46,11 +47,12 @@ fn a_batch_allocates_nothing() {
     let turns = || [(); 4].map(|()| vec![0.0; arms]);
     let (mut elbow, mut hand, mut upper, mut lower) = (places(), places(), turns(), turns());
     let counted = measure(|| {
-        let bones = Bones::Same(TwoBone::new(200.0, 300.0).expect("lengths"));
+        let bones = BatchBones::Same(TwoBone::new(200.0, 300.0).expect("lengths"));
         let points = Points { x: &cursor, y: &cursor, z: &cursor };
-        let arms = Arms::new(bones, points, Spin::Angle(&angle)).expect("a batch");
-        let places = Places { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
-        let rotations = Rotations {
+        let arms = ArmBatch::new(bones, points, BatchTwist::Angle(&angle)).expect("a batch");
+        let places =
+            BatchPositions { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
+        let rotations = BatchRotations {
             upper: QuaternionsMut::of(&mut upper),
             lower: QuaternionsMut::of(&mut lower),
         };

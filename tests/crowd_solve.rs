@@ -1,6 +1,8 @@
 //! A crowd is solved by the batch solver, with and without the feature `parallel`.
 
-use ik_arm::kinematics::batch::{Arms, Bones, Places, Points, PointsMut, Spin};
+use ik_arm::kinematics::batch::{
+    ArmBatch, BatchBones, BatchPositions, BatchTwist, Points, PointsMut,
+};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
 
@@ -15,10 +17,11 @@ fn a_crowd_has_the_bits_of_a_batch() {
     arrays.solve(bones).expect("a batch");
 
     let [x, y, z] = &arrays.cursor;
-    let spin = Spin::Turn { cos: &arrays.cos, sin: &arrays.sin };
-    let arms = Arms::new(Bones::Same(bones), Points { x, y, z }, spin).expect("a batch");
+    let spin = BatchTwist::CosSin { cos: &arrays.cos, sin: &arrays.sin };
+    let arms = ArmBatch::new(BatchBones::Same(bones), Points { x, y, z }, spin).expect("a batch");
     let [mut elbow, mut hand] = [(); 2].map(|()| [(); 3].map(|()| vec![0.0; ARMS as usize]));
-    let places = Places { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
+    let places =
+        BatchPositions { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
     arms.solve(places, None).expect("room");
 
     let bits = |of: &[Vec<f32>; 3]| {

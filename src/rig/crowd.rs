@@ -7,7 +7,9 @@ use std::time::Instant;
 use glam::Vec3;
 use multiversion::multiversion;
 
-use crate::kinematics::batch::{Arms, BatchError, Bones, Places, Points, PointsMut, Spin};
+use crate::kinematics::batch::{
+    ArmBatch, BatchBones, BatchError, BatchPositions, BatchTwist, Points, PointsMut,
+};
 use crate::kinematics::two_bone::TwoBone;
 
 /// Parameters of a crowd at a time.
@@ -83,7 +85,7 @@ pub struct CrowdArrays {
 }
 
 impl CrowdArrays {
-    /// Resizes to the crowd's number of arms and places the shoulders. Returns whether anything changed.
+    /// Resizes to the crowd's number of arms and positions the shoulders. Returns whether anything changed.
     ///
     /// Shoulders are arranged like the seeds of a sunflower (H. Vogel, *A Better Way to Construct the
     /// Sunflower Head*, 1979), so that adding arms moves no other.
@@ -121,7 +123,7 @@ impl CrowdArrays {
         self.len() == 0
     }
 
-    /// Sets every cursor and spin to where it is at the crowd's time.
+    /// Sets every cursor and twist to its value at the crowd's time.
     pub fn set_targets(&mut self, crowd: &Crowd) {
         let time = (crowd.time / Crowd::PERIOD).rem_euclid(1.0);
         let Self { cursor: [x, y, z], cos, sin, .. } = self;
@@ -135,13 +137,17 @@ impl CrowdArrays {
     /// [`BatchError::Len`] if the public arrays were resized to different lengths.
     pub fn solve(&mut self, bones: TwoBone) -> Result<Duration, BatchError> {
         let Self { cursor: [x, y, z], cos, sin, elbow, hand, .. } = self;
-        let arms = Arms::new(Bones::Same(bones), Points { x, y, z }, Spin::Turn { cos, sin })?;
-        let places = Places { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
+        let arms = ArmBatch::new(
+            BatchBones::Same(bones),
+            Points { x, y, z },
+            BatchTwist::CosSin { cos, sin },
+        )?;
+        let positions = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
         let start = Instant::now();
         #[cfg(feature = "parallel")]
-        arms.solve_on_all_cores(places, None)?;
+        arms.solve_on_all_cores(positions, None)?;
         #[cfg(not(feature = "parallel"))]
-        arms.solve(places, None)?;
+        arms.solve(positions, None)?;
         Ok(start.elapsed())
     }
 }
@@ -153,12 +159,12 @@ impl CrowdArrays {
     "x86_64+avx2",
     "aarch64+neon"
 ))]
-fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], spin: [&mut [f32]; 2]) {
+fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], twist: [&mut [f32]; 2]) {
     const BLOCK: usize = 256;
     let arms = cursor[0].len();
     let mut block = [[0.0_f32; BLOCK]; 5];
     let [x, y, z] = cursor;
-    let [cos, sin] = spin;
+    let [cos, sin] = twist;
     let mut arrays = [x, y, z, cos, sin];
     for from in (0..arms).step_by(BLOCK) {
         for (arm, of) in (from as u32..).zip(0..BLOCK) {
@@ -167,7 +173,7 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], spin: [&mut [f32]; 2])
             block[0][of] = x * reach;
             block[1][of] = y * reach;
             block[2][of] = z * reach;
-            let turn = own.spin(time);
+            let turn = own.twist(time);
             block[3][of] = sine(turn + 0.25);
             block[4][of] = sine(turn);
         }
@@ -214,7 +220,7 @@ impl Own {
 
     /// ψ in turns.
     #[inline(always)]
-    fn spin(self, time: f32) -> f32 {
+    fn twist(self, time: f32) -> f32 {
         self.phases[3] + time * self.rounds
     }
 }

@@ -1,32 +1,52 @@
-//! A batch shared out among threads.
+//! Division of a batch among threads.
 
+use super::arm_batch::ArmBatch;
+use super::array::{PointsMut, QuaternionsMut};
+use super::error::BatchError;
 use super::kernel::BLOCK;
-use super::{Arms, Places, PointsMut, QuaternionsMut, Rotations};
+use super::output::{BatchPositions, BatchRotations};
 
-/// Many blocks, so that handing them out costs little beside solving them.
-const SHARE: usize = 8 * BLOCK;
+/// Most arms of a task: many blocks, so that a task costs little beside solving them.
+const TASK: usize = 8 * BLOCK;
 
-pub(super) fn share_out(
-    arms: Arms<'_>,
-    mut places: Places<'_>,
-    mut rotations: Option<Rotations<'_>>,
+impl ArmBatch<'_> {
+    /// As [`Self::solve`], on the threads of [`rayon`], with the same bits.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::solve`].
+    pub fn solve_on_all_cores(
+        &self,
+        positions: BatchPositions<'_>,
+        rotations: Option<BatchRotations<'_>>,
+    ) -> Result<(), BatchError> {
+        self.check_outputs(&positions, rotations.as_ref())?;
+        solve_tasks(*self, positions, rotations);
+        Ok(())
+    }
+}
+
+fn solve_tasks(
+    arms: ArmBatch<'_>,
+    mut positions: BatchPositions<'_>,
+    mut rotations: Option<BatchRotations<'_>>,
 ) {
-    if arms.len() <= SHARE {
-        arms.solve_into(&mut places, rotations.as_mut());
+    if arms.len() <= TASK {
+        arms.solve_into(&mut positions, rotations.as_mut());
         return;
     }
     let middle = (arms.len() / 2).next_multiple_of(BLOCK);
     let first = arms.part(0..middle);
     let second = arms.part(middle..arms.len());
-    let (first_places, second_places) = places.split_at(middle);
+    let (first_positions, second_positions) = positions.split_at(middle);
     let (first_rotations, second_rotations) = rotations.map(|of| of.split_at(middle)).unzip();
     rayon::join(
-        || share_out(first, first_places, first_rotations),
-        || share_out(second, second_places, second_rotations),
+        || solve_tasks(first, first_positions, first_rotations),
+        || solve_tasks(second, second_positions, second_rotations),
     );
 }
 
-impl Places<'_> {
+impl BatchPositions<'_> {
     fn split_at(self, middle: usize) -> (Self, Self) {
         let (elbow, second_elbow) = self.elbow.split_at(middle);
         let (hand, second_hand) = self.hand.split_at(middle);
@@ -34,7 +54,7 @@ impl Places<'_> {
     }
 }
 
-impl Rotations<'_> {
+impl BatchRotations<'_> {
     fn split_at(self, middle: usize) -> (Self, Self) {
         let (upper, second_upper) = self.upper.split_at(middle);
         let (lower, second_lower) = self.lower.split_at(middle);

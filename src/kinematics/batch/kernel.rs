@@ -1,54 +1,54 @@
-//! Many arms at once, in plain code over slices that the compiler turns into instructions on
-//! vectors: for the widest that are common, and at run time the widest that the machine has.
+//! The closed form for many arms: plain code over slices that the compiler vectorises for common
+//! instruction sets; the widest that the machine has is chosen at run time.
 //!
-//! Nothing here may depend on how wide they are: no fused multiply-add, no sum in another order, no
-//! approximate reciprocal. So every machine and every chunk of a batch gives the same bits.
+//! No result depends on the vector width: no fused multiply-add, no reordered sum, no approximate
+//! reciprocal. So every machine and every part of a batch gives the same bits.
 
 use glam::{Mat3, Vec3};
 use multiversion::multiversion;
 
 use crate::kinematics::two_bone::{ClosedForm, Pointer, ScaledBones, TwoBone};
 
-/// How many arms are placed before they are handed over.
+/// Number of arms that are solved before they are copied to the outputs.
 ///
-/// They are first put where they stay in the cache, and then copied: a copy of whole pages does not
-/// read what it overwrites, which stores from the middle of a computation do.
+/// A block stays in the cache. A copy of whole pages does not read what it overwrites; stores from the
+/// middle of a computation do.
 pub(super) const BLOCK: usize = 2048;
 
-/// One number of each arm in a block, on a boundary of the widest vectors.
+/// One number of each arm in a block, aligned to the widest vectors.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Lane(pub [f32; BLOCK]);
+pub(super) struct BlockArray(pub [f32; BLOCK]);
 
-impl Lane {
+impl BlockArray {
     pub const ZERO: Self = Self([0.0; BLOCK]);
 }
 
-/// Up to so many times as long as the other, a bone leaves it long enough beside rounding that their
-/// directions are of unit length to 1e-6 as they are.
-const ALIKE: f32 = 8.0;
+/// Largest ratio of bone lengths at which the bones' directions have unit length to 1e-6 without
+/// normalization.
+const MAX_RATIO: f32 = 8.0;
 
-/// What is kept of arms that were placed.
+/// Results of a block of arms.
 pub(super) trait Block {
-    /// Says whether the arm was plain enough for what is kept of it, or `ANY` has seen to it.
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool;
+    /// Stores an arm's results. Returns whether they are correct without `ANY`.
+    fn keep<const ANY: bool>(&mut self, arm: usize, solved: &ClosedForm, hand: Vec3) -> bool;
 }
 
-/// Elbows and hands of a block: x, y, z each.
-pub(super) struct Places {
-    pub elbow: [Lane; 3],
-    pub hand: [Lane; 3],
+/// Elbows and hands of a block: x, y and z of each.
+pub(super) struct PositionBlock {
+    pub elbow: [BlockArray; 3],
+    pub hand: [BlockArray; 3],
 }
 
-/// Those, and the rotations of the upper and lower limbs: x, y, z, w each.
-pub(super) struct PlacesAndRotations {
-    pub places: Places,
-    pub upper: [Lane; 4],
-    pub lower: [Lane; 4],
+/// Positions and limb rotations of a block: x, y, z and w of each rotation.
+pub(super) struct PoseBlock {
+    pub positions: PositionBlock,
+    pub upper: [BlockArray; 4],
+    pub lower: [BlockArray; 4],
 }
 
-/// Places arms: with `ANY` of any finite numbers, without of plain ones. Says whether all were plain;
-/// if not, and they had to be, what it keeps is not right.
+/// Solves arms: with `ANY` for all finite numbers, without for normal ones. Returns whether all were
+/// normal; without `ANY` the results are wrong otherwise.
 ///
 /// With `SAME` all arms have the first bones. All slices are as long as the cursors' x, at most a
 /// block.
@@ -57,72 +57,75 @@ pub(super) struct PlacesAndRotations {
     "x86_64+avx2",
     "aarch64+neon",
 ))]
-pub(super) fn place<const ANY: bool, const SAME: bool, B: Block>(
+pub(super) fn solve<const ANY: bool, const SAME: bool, B: Block>(
     bones: [&[f32]; 2],
     cursor: [&[f32]; 3],
-    spin: [&[f32]; 2],
+    twist: [&[f32]; 2],
     block: &mut B,
 ) -> bool {
     let arms = cursor[0].len().min(BLOCK);
     let [upper, lower] = bones.map(|of| &of[..if SAME { 1 } else { arms }]);
     let [x, y, z] = cursor.map(|of| &of[..arms]);
-    let [cos, sin] = spin.map(|of| &of[..arms]);
+    let [cos, sin] = twist.map(|of| &of[..arms]);
     let mut are_normal = true;
     for arm in 0..arms {
         let of = if SAME { 0 } else { arm };
         let bones = TwoBone { upper: upper[of], lower: lower[of] };
         let cursor = Vec3::new(x[arm], y[arm], z[arm]);
-        let placed = ClosedForm::new::<ANY>(bones, cursor, cos[arm], sin[arm], Pointer::default());
-        are_normal &= placed.is_normal & block.keep::<ANY>(arm, &placed, placed.hand_or(cursor));
+        let solved = ClosedForm::new::<ANY>(bones, cursor, cos[arm], sin[arm], Pointer::default());
+        are_normal &= solved.is_normal & block.keep::<ANY>(arm, &solved, solved.hand_or(cursor));
     }
     are_normal
 }
 
-impl Places {
-    pub const ZERO: Self = Self { elbow: [Lane::ZERO; 3], hand: [Lane::ZERO; 3] };
+impl PositionBlock {
+    pub const ZERO: Self = Self { elbow: [BlockArray::ZERO; 3], hand: [BlockArray::ZERO; 3] };
 }
 
-impl PlacesAndRotations {
-    pub const ZERO: Self =
-        Self { places: Places::ZERO, upper: [Lane::ZERO; 4], lower: [Lane::ZERO; 4] };
+impl PoseBlock {
+    pub const ZERO: Self = Self {
+        positions: PositionBlock::ZERO,
+        upper: [BlockArray::ZERO; 4],
+        lower: [BlockArray::ZERO; 4],
+    };
 }
 
-impl Block for Places {
+impl Block for PositionBlock {
     #[inline(always)]
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool {
-        put(&mut self.elbow, arm, placed.elbow.to_array());
+    fn keep<const ANY: bool>(&mut self, arm: usize, solved: &ClosedForm, hand: Vec3) -> bool {
+        put(&mut self.elbow, arm, solved.elbow.to_array());
         put(&mut self.hand, arm, hand.to_array());
         true
     }
 }
 
-impl Block for PlacesAndRotations {
+impl Block for PoseBlock {
     #[inline(always)]
-    fn keep<const ANY: bool>(&mut self, arm: usize, placed: &ClosedForm, hand: Vec3) -> bool {
-        self.places.keep::<ANY>(arm, placed, hand);
-        let ScaledBones { upper, lower, .. } = placed.scaled;
-        let are_alike = (upper <= ALIKE * lower) & (lower <= ALIKE * upper);
-        let [of_upper, of_lower] = rotations(placed, ANY && !are_alike);
+    fn keep<const ANY: bool>(&mut self, arm: usize, solved: &ClosedForm, hand: Vec3) -> bool {
+        self.positions.keep::<ANY>(arm, solved, hand);
+        let ScaledBones { upper, lower, .. } = solved.scaled;
+        let are_similar = (upper <= MAX_RATIO * lower) & (lower <= MAX_RATIO * upper);
+        let [of_upper, of_lower] = rotations(solved, ANY && !are_similar);
         put(&mut self.upper, arm, of_upper);
         put(&mut self.lower, arm, of_lower);
-        are_alike
+        are_similar
     }
 }
 
 #[inline(always)]
-fn put<const N: usize>(lanes: &mut [Lane; N], arm: usize, values: [f32; N]) {
+fn put<const N: usize>(arrays: &mut [BlockArray; N], arm: usize, values: [f32; N]) {
     for i in 0..N {
-        lanes[i].0[arm] = values[i];
+        arrays[i].0[arm] = values[i];
     }
 }
 
 /// The rotations of the upper and the lower limb, as quaternions: +x along the limb, +z the hinge.
 #[inline(always)]
-fn rotations(placed: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
-    let ClosedForm { pointer, outward, distance, along, out, scaled, .. } = *placed;
+fn rotations(solved: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
+    let ClosedForm { pointer, outward, distance, along, out, scaled, .. } = *solved;
     let hinge = pointer.direction.cross(outward);
     let limb = |ahead: f32, aside: f32| {
-        let (cos, sin) = if is_uneven { turn(ahead, aside) } else { (ahead, aside) };
+        let (cos, sin) = if is_uneven { unit_angle(ahead, aside) } else { (ahead, aside) };
         quaternion(Mat3::from_cols(
             pointer.direction * cos + outward * sin,
             outward * cos - pointer.direction * sin,
@@ -136,10 +139,10 @@ fn rotations(placed: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
     ]
 }
 
-/// Cosine and sine of an angle from what they should be: of a limb that is a millionth of the other
-/// little is left of them. One that is nothing beside the other goes along the Pointer.
+/// Normalizes a cosine and sine, which lose digits for a limb that is much shorter than the other. A
+/// limb whose direction is lost points along the Pointer.
 #[inline(always)]
-fn turn(cos: f32, sin: f32) -> (f32, f32) {
+fn unit_angle(cos: f32, sin: f32) -> (f32, f32) {
     let square = cos * cos + sin * sin;
     let per_length = 1.0 / square.sqrt();
     if (square > 0.0) & (square < f32::INFINITY) {
