@@ -37,7 +37,7 @@ fn whole(criterion: &mut Criterion) {
     for joints in [2, 10, 30, 100] {
         let cases = cases(joints);
         for method in METHODS {
-            let options = SolverOptions { method, ..SolverOptions::default() };
+            let options = SolverOptions::new(method);
             let mut next = cases.iter().cycle();
             group.bench_function(BenchmarkId::new(method.name(), joints), |bencher| {
                 bencher.iter_batched_ref(
@@ -61,8 +61,7 @@ fn iteration(criterion: &mut Criterion) {
         let (skeleton, [mut target]) = cases(joints).swap_remove(0);
         target.point *= 0.5;
         for method in METHODS {
-            let options =
-                SolverOptions { method, tolerance: Some(0.0), ..SolverOptions::default() };
+            let options = SolverOptions::new(method).with_tolerance(0.0);
             let Ok(solve) = ChainSolver::new(&skeleton, &[target], &options) else { continue };
             group.bench_function(BenchmarkId::new(method.name(), joints), |bencher| {
                 bencher.iter_batched_ref(

@@ -89,7 +89,7 @@ fn outcome(
     method: Method,
     (mut skeleton, targets): (Skeleton, Vec<TipTarget>),
 ) -> Result<Outcome, Box<dyn std::error::Error>> {
-    let options = SolverOptions { method, ..SolverOptions::default() };
+    let options = SolverOptions::new(method);
     let start = Instant::now();
     let report = solve(&mut skeleton, &targets, &options)?;
     let microseconds = start.elapsed().as_secs_f64() * 1e6;

@@ -26,8 +26,7 @@ fn iterations_after_the_first_allocate_nothing() {
                     .expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &tips);
-            let options =
-                SolverOptions { method, tolerance: Some(0.0), ..SolverOptions::default() };
+            let options = SolverOptions::new(method).with_tolerance(0.0);
             let mut solve = ChainSolver::new(&skeleton, &targets, &options).expect("solve");
             solve.step();
             let counted = measure(|| {

@@ -272,8 +272,8 @@ fn an_invalid_value_is_named_with_the_rule() {
     for (fields, expected) in [
         (
             joints(&format!("{a},\n{{\"name\":\"b\",\"parent\":1}}")),
-            "line 4, column 22: skeleton.joints[1].parent: parent 1 of joint 1 does not stand before \
-             it",
+            "line 4, column 22: skeleton.joints[1].parent: the parent of joint 1 must precede it, \
+             got 1",
         ),
         (
             joints(&format!("{a},\n{a}")),
@@ -285,18 +285,18 @@ fn an_invalid_value_is_named_with_the_rule() {
         ),
         (
             joints("{\"name\":\"a\",\"radius\":-1}"),
-            "line 3, column 22: skeleton.joints[0].radius: radius of joint 0 is -1; it must be a \
-             finite number, 0 or more",
+            "line 3, column 22: skeleton.joints[0].radius: the radius of joint 0 must be finite \
+             and 0 or more, got -1",
         ),
         (
             joints("{\"name\":\"a\",\"frame\":[2,0,0,0,1,0,0,0,1]}"),
-            "line 3, column 21: skeleton.joints[0].frame: the frame of joint 0 must be three unit \
-             vectors at right angles, right-handed",
+            "line 3, column 21: skeleton.joints[0].frame: the frame of joint 0 must be a \
+             right-handed orthonormal basis",
         ),
         (
             joints(limit),
-            "line 4, column 15: skeleton.joints[0].limits.y: the limit of joint 0 about y is 1 to 0; \
-             it must be finite numbers, the lower one first",
+            "line 4, column 15: skeleton.joints[0].limits.y: the limit of joint 0 about y must be \
+             finite, the lower bound first, got 1 to 0",
         ),
         (
             aimed("{\"joint\":1,\"home\":[0,0,0]}"),

@@ -97,11 +97,9 @@ examples! {
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
     RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
     SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
-    SetSolver: [EditAction::SetSolver(SolverOptions {
-        method: Method::Fabrik,
-        damping: 0.3,
-        ..SolverOptions::default()
-    })];
+    SetSolver: [EditAction::SetSolver(
+        SolverOptions::new(Method::Fabrik).with_damping(0.3),
+    )];
     SetIterationsPerFrame: [EditAction::SetIterationsPerFrame(17)];
     StepSolver: [EditAction::StepSolver];
     ResetSolver: [EditAction::ResetSolver];

@@ -102,9 +102,9 @@ fn posing() -> impl Strategy<Value = Action> {
         ),
         1 => (0..6_usize, numbers(), any::<bool>()).prop_map(|(method, damping, free)| {
             let root = if free { Root::Free } else { Root::Fixed };
-            Action::from(EditAction::SetSolver(SolverOptions {
-                method: Method::ALL[method], damping, root, ..SolverOptions::default()
-            }))
+            Action::from(EditAction::SetSolver(
+                SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
+            ))
         }),
         1 => any::<bool>().prop_map(|on| Action::from(EditAction::SetFollowPath(on.then_some(FollowPath {
             radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0

@@ -7,7 +7,9 @@ use std::f32::consts::FRAC_PI_2;
 use common::Random;
 use common::skeletons::{forest, limit, transform};
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton, SkeletonError};
+use ik_arm::kinematics::skeleton::{
+    Joint, JointField, JointId, Limit, RotationAxis, Skeleton, SkeletonError,
+};
 
 /// T(offset) · A R_z R_y R_x Aᵀ of every joint from the root down, the transform in front, in f64;
 /// the last R left out for the transform to the base.
@@ -257,9 +259,9 @@ fn what_no_skeleton_can_have_is_refused() {
     );
     let value = Vec3::new(0.0, f32::INFINITY, 0.0);
     for (field, joint) in [
-        ("offset", Joint { offset: value, ..child() }),
-        ("axis", Joint { axis: value, ..child() }),
-        ("rotation", Joint { rotation: value, ..child() }),
+        (JointField::Offset, Joint { offset: value, ..child() }),
+        (JointField::Axis, Joint { axis: value, ..child() }),
+        (JointField::Rotation, Joint { rotation: value, ..child() }),
     ] {
         assert_eq!(added(joint), SkeletonError::NotFinite { joint: second, field, value });
     }
@@ -273,7 +275,7 @@ fn what_no_skeleton_can_have_is_refused() {
     let limit = Limit { min: 1.0, max: 0.5 };
     assert_eq!(
         added(Joint { limits: [None, Some(limit), None], ..child() }),
-        SkeletonError::Limit { joint: second, axis: 'y', min: 1.0, max: 0.5 }
+        SkeletonError::Limit { joint: second, axis: RotationAxis::Y, min: 1.0, max: 0.5 }
     );
     let flat = Affine3A::from_translation(value);
     assert_eq!(one.clone().set_transform(flat), Err(SkeletonError::Transform));

@@ -21,7 +21,7 @@ pub fn chain(data: &[u8]) {
         let _ = jacobian(&skeleton, JointId::new(joint));
     }
     for method in Method::ALL {
-        solve(&skeleton, &targets, &SolverOptions { method, ..options }, bits.finite_vector());
+        solve(&skeleton, &targets, &options.with_method(method), bits.finite_vector());
     }
 }
 
@@ -96,16 +96,20 @@ fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<TipTarget> {
 
 fn options(bits: &mut Bits<'_>) -> SolverOptions {
     const MOST: u8 = 40;
-    let usual = SolverOptions::default();
+    let mut options = SolverOptions::default();
     let any = bits.byte();
-    SolverOptions {
-        iterations: Some(u32::from(bits.byte() % MOST)),
-        tolerance: (any & 1 == 1).then(|| bits.number()),
-        damping: if any & 2 == 0 { usual.damping } else { bits.number() },
-        step: if any & 4 == 0 { usual.step } else { bits.number() },
-        root: if any & 24 == 24 { Root::Free } else { Root::Fixed },
-        ..usual
+    options.iterations = Some(u32::from(bits.byte() % MOST));
+    options.tolerance = (any & 1 == 1).then(|| bits.number());
+    if any & 2 != 0 {
+        options.damping = bits.number();
     }
+    if any & 4 != 0 {
+        options.step = bits.number();
+    }
+    if any & 24 == 24 {
+        options.root = Root::Free;
+    }
+    options
 }
 
 fn solve(before: &Skeleton, targets: &[TipTarget], options: &SolverOptions, elsewhere: Vec3) {

@@ -124,14 +124,14 @@ fn rotate(rig: &mut SkeletonRig, joint: JointId, rotation: Vec3) {
     let Some(before) = rig.skeleton.joint(joint) else { return };
     let rotation = before.clamped(rotation);
     if !is_identical(before.rotation, rotation) {
-        rig.skeleton_mut().turn(joint, |joint| joint.rotation = rotation);
+        rig.skeleton_mut().write_local(joint, |joint| joint.rotation = rotation);
     }
 }
 
 fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
     let Some(before) = rig.skeleton.joint(joint) else { return };
     if !is_identical(before.offset, offset) {
-        rig.skeleton_mut().turn(joint, |joint| joint.offset = offset);
+        rig.skeleton_mut().write_local(joint, |joint| joint.offset = offset);
     }
 }
 

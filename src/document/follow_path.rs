@@ -40,7 +40,7 @@ impl FollowPath {
     pub fn pose(&self, skeleton: &Skeleton, time: f64) -> Skeleton {
         let mut posed = skeleton.clone();
         for (joint, offset, rotation) in self.chain(skeleton, time) {
-            posed.turn(joint, |joint| (joint.offset, joint.rotation) = (offset, rotation));
+            posed.write_local(joint, |joint| (joint.offset, joint.rotation) = (offset, rotation));
         }
         posed
     }

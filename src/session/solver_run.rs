@@ -73,12 +73,6 @@ impl SolverRun {
         Report { iterations: self.before + report.iterations, ..report }
     }
 
-    /// Whether it has made all the iterations that it may make, and is not there.
-    pub fn is_spent(&self) -> bool {
-        let report = self.solve.report();
-        self.solve.is_over() && !report.converged && !report.resting
-    }
-
     pub fn history(&self) -> &ResidualHistory {
         &self.history
     }

@@ -1,6 +1,8 @@
+use core::fmt;
+
 use super::session::Session;
 use super::solver_run::SolverRun;
-use crate::kinematics::chain_ik::{Report, SolveError};
+use crate::kinematics::chain_ik::{Report, SolveError, Status};
 
 /// How the pose that is shown stands to its targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,27 +14,22 @@ pub struct SolverStatus {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
-    /// Every tip is within the tolerance of its target, whoever brought it there.
-    Converged,
-    Running,
-    /// Further iterations would change nothing.
-    Stalled,
-    /// The iterations are used up.
-    OutOfIterations,
-    Paused,
     /// No run led to this pose: there was none, or something was changed since.
     NotSolved,
+    Running,
+    Paused,
+    /// The run has ended, or all tips are within the tolerance without a run.
+    Ended(Status),
 }
 
-impl SolverState {
-    pub fn describe(self) -> &'static str {
+/// In words, such as "running" or "converged".
+impl fmt::Display for SolverState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Converged => "converged",
-            Self::Running => "running",
-            Self::Stalled => "stalled",
-            Self::OutOfIterations => "out of iterations",
-            Self::Paused => "paused",
-            Self::NotSolved => "not solved yet",
+            Self::NotSolved => f.pad("not solved yet"),
+            Self::Running => f.pad("running"),
+            Self::Paused => f.pad("paused"),
+            Self::Ended(status) => status.fmt(f),
         }
     }
 }
@@ -51,9 +48,8 @@ impl Session {
         let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
         let state = match current {
             _ if self.is_running() => SolverState::Running,
-            _ if report.converged => SolverState::Converged,
-            Some(_) if report.resting => SolverState::Stalled,
-            Some(run) if run.is_spent() => SolverState::OutOfIterations,
+            _ if report.converged() => SolverState::Ended(report.status),
+            Some(_) if report.status != Status::Iterating => SolverState::Ended(report.status),
             Some(_) if report.iterations > 0 => SolverState::Paused,
             _ => SolverState::NotSolved,
         };

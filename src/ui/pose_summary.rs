@@ -75,11 +75,10 @@ fn describe_skeleton(session: &Session) -> String {
     let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
     if let Some(SolverStatus { state, report }) = session.solver_status() {
         line.push(match report.iterations {
-            0 => state.describe().to_owned(),
+            0 => state.to_string(),
             made => format!(
-                "{}: {} after {}",
+                "{}: {state} after {}",
                 labels::method(report.method),
-                state.describe(),
                 count(made as usize, "iteration")
             ),
         });

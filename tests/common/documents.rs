@@ -32,14 +32,12 @@ pub fn document(random: &mut Random) -> Document {
             rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
         }
     }
-    rig.solver = SolverOptions {
-        method: random.one_of(&Method::ALL),
-        iterations: random.coin().then(|| 1 + random.below(1 << 31) as u32),
-        tolerance: random.coin().then(|| random.positive()),
-        damping: random.positive(),
-        step: random.positive(),
-        root: random.one_of(&[Root::Fixed, Root::Free]),
-    };
+    rig.solver.method = random.one_of(&Method::ALL);
+    rig.solver.iterations = random.coin().then(|| 1 + random.below(1 << 31) as u32);
+    rig.solver.tolerance = random.coin().then(|| random.positive());
+    rig.solver.damping = random.positive();
+    rig.solver.step = random.positive();
+    rig.solver.root = random.one_of(&[Root::Fixed, Root::Free]);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
     rig.follow_path = random.coin().then(|| FollowPath {
         radius: random.finite(),

@@ -265,7 +265,7 @@ fn two_bones_in_a_mirror_follow_their_target() {
     for time in times(&document) {
         let goals = document.skeleton_rig.targets_at(time);
         let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton_rig.solver);
-        assert!(report.expect("it can be solved").converged, "at {time}");
+        assert!(report.expect("it can be solved").converged(), "at {time}");
         let at = points(&skeleton);
         within("the hand", at[2].distance(target.at(time).as_dvec3()), 2e-6 * length);
         if let Some(before) = before {

@@ -108,7 +108,7 @@ fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
     let method = Method::TransposeFixed;
-    bench.apply([EditAction::SetSolver(SolverOptions { method, ..SolverOptions::default() })]);
+    bench.apply([EditAction::SetSolver(SolverOptions::new(method))]);
     let first = bench.session().document().clone();
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(0.05);

@@ -13,6 +13,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use ik_arm::kinematics::chain_ik::Status;
 use ik_arm::kinematics::skeleton::JointId;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -267,7 +268,7 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     assert_eq!(status(&bench).state, SolverState::NotSolved);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
-    assert_eq!(status(&bench).state, SolverState::Converged);
+    assert_eq!(status(&bench).state, SolverState::Ended(Status::Converged));
     assert!(bench.says("converged after"), "the status line says so");
 
     bench.apply([EditAction::SetRotation { joint: JointId::new(2), rotation: Vec3::splat(0.7) }]);
@@ -277,7 +278,11 @@ fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
     assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
 
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(status(&bench).state, SolverState::Converged, "it is the solved pose again");
+    assert_eq!(
+        status(&bench).state,
+        SolverState::Ended(Status::Converged),
+        "it is the solved pose again"
+    );
     let mut target = bench.session().skeleton_rig().targets[0];
     target.home += Vec3::splat(0.5);
     bench.apply([EditAction::SetTarget(target)]);

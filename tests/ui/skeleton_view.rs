@@ -271,7 +271,7 @@ fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
     bench.wait(2.0);
     assert!(!bench.session().is_running(), "it rests when it is there");
     let report = bench.session().solver_run().expect("it ran").report();
-    assert!(report.converged && report.iterations > 0, "{report:?}");
+    assert!(report.converged() && report.iterations > 0, "{report:?}");
     bench.settle();
 }
 

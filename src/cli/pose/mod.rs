@@ -136,7 +136,7 @@ fn solve(
 
 /// Replaces joint indices by those of the file.
 fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
-    use SolveError::{Flat, NoJoint, Option, Point, TwoBone, TwoTargets, Weight};
+    use SolveError::{NoJoint, Point, TwoBone, TwoTargets, Weight};
     match &mut error {
         NoJoint(joint)
         | TwoTargets(joint)
@@ -145,7 +145,7 @@ fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
         | TwoBone { joint, .. } => {
             *joint = order.iter().position(|other| other == joint).map_or(*joint, JointId::new);
         }
-        Option { .. } | Flat => {}
+        _ => {}
     }
     error
 }

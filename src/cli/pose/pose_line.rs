@@ -89,7 +89,7 @@ impl<'a> PoseLine<'a> {
             solver: report.method.name(),
             iterations: report.iterations,
             error: report.error,
-            converged: report.converged,
+            converged: report.converged(),
         });
         Ok(Self { joints, targets, report })
     }

@@ -86,7 +86,7 @@ fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -
         SkeletonError::Parent { joint, .. } => at(joint.index()).key("parent"),
         SkeletonError::Radius { joint, .. } => at(joint.index()).key("radius"),
         SkeletonError::Frame { joint } => at(joint.index()).key("frame"),
-        SkeletonError::NotFinite { joint, field, .. } => at(joint.index()).key(field),
+        SkeletonError::NotFinite { joint, field, .. } => at(joint.index()).key(&field.to_string()),
         SkeletonError::Limit { joint, axis, .. } => {
             at(joint.index()).key("limits").key(&axis.to_string())
         }

@@ -1,37 +1,37 @@
-//! The turn about a point that brings points nearest to others.
+//! Rotations about a point that bring points nearest to others.
 
 use glam::{Quat, Vec3, Vec3A};
 
 use crate::kinematics::skeleton::Limit;
 use crate::kinematics::{normalize, rotation_between};
 
-/// A point to be turned, and where it is to come; both from the point that is turned about.
+/// A point to be rotated and its destination, both relative to the centre of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pair {
-    pub arm: Vec3A,
-    pub goal: Vec3A,
+pub(super) struct PointPair {
+    pub from: Vec3A,
+    pub to: Vec3A,
     pub weight: f32,
 }
 
-/// The best turn about the axis that the pairs' moments ask for. For one pair it is exact.
-pub(super) fn align(pairs: &[Pair]) -> Quat {
+/// The best rotation about the axis of the total moment Σ w from × to; exact for a single pair.
+pub(super) fn align(pairs: &[PointPair]) -> Quat {
     if let [pair] = pairs {
-        return rotation_between(pair.arm, pair.goal);
+        return rotation_between(pair.from, pair.to);
     }
-    let moment: Vec3A = pairs.iter().map(|pair| pair.weight * pair.arm.cross(pair.goal)).sum();
+    let moment: Vec3A = pairs.iter().map(|pair| pair.weight * pair.from.cross(pair.to)).sum();
     let Some(axis) = normalize(moment) else { return Quat::IDENTITY };
     Quat::from_axis_angle(axis.into(), best_angle(axis, pairs))
 }
 
-/// Turns angle by angle, x first, each as far as its limits let it. Nothing gets worse. The turn of
-/// the whole; the pairs' arms are turned with it.
+/// Optimizes angle after angle within its limits, x first, which never increases the weighted squared
+/// distance. Rotates the pairs' points and returns the whole rotation.
 ///
-/// `axes` are what the angles turn about, before.
+/// `axes` are the axes of the angles before the first rotation.
 pub(super) fn align_within(
     limits: &[Option<Limit>; 3],
     axes: [Vec3A; 3],
     angles: &mut Vec3,
-    pairs: &mut [Pair],
+    pairs: &mut [PointPair],
 ) -> Quat {
     let mut whole = Quat::IDENTITY;
     for (index, axis) in axes.into_iter().enumerate() {
@@ -39,7 +39,7 @@ pub(super) fn align_within(
         let by = match limits[index] {
             Some(Limit { min, max }) => {
                 let from = angles[index];
-                let to = (from + allowed(best, min - from, max - from)).clamp(min, max);
+                let to = (from + best_within(best, min - from, max - from)).clamp(min, max);
                 angles[index] = to;
                 to - from
             }
@@ -49,38 +49,37 @@ pub(super) fn align_within(
             }
         };
         if by != 0.0 {
-            let turn = Quat::from_axis_angle(axis.into(), by);
+            let rotation = Quat::from_axis_angle(axis.into(), by);
             for pair in &mut *pairs {
-                pair.arm = turn * pair.arm;
+                pair.from = rotation * pair.from;
             }
-            whole = turn * whole;
+            whole = rotation * whole;
         }
     }
     whole
 }
 
-/// a cos θ + b sin θ is what Σ w arm·goal becomes when the arms turn by θ, less what does not
-/// change.
-fn best_angle(axis: Vec3A, pairs: &[Pair]) -> f32 {
+/// The angle that maximizes Σ w from·to, which is a cos θ + b sin θ up to a constant.
+fn best_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
     let (mut a, mut b) = (0.0, 0.0);
-    for Pair { arm, goal, weight } in pairs {
-        a += weight * (arm.dot(*goal) - axis.dot(*arm) * axis.dot(*goal));
-        b += weight * axis.dot(arm.cross(*goal));
+    for PointPair { from, to, weight } in pairs {
+        a += weight * (from.dot(*to) - axis.dot(*from) * axis.dot(*to));
+        b += weight * axis.dot(from.cross(*to));
     }
     if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
 }
 
-/// Of −`least` … `most` around 0, what is nearest to `best` on the circle.
-fn allowed(best: f32, least: f32, most: f32) -> f32 {
+/// The angle of a range around 0 that is nearest to `best` on the circle; 0 if no other is nearer.
+fn best_within(best: f32, least: f32, most: f32) -> f32 {
     use core::f32::consts::TAU;
-    // What rounding of the angle gains or loses.
-    const NOTHING: f32 = 1e-7;
-    for turned in [best, best - TAU, best + TAU] {
-        if (least..=most).contains(&turned) {
-            return turned;
+    // Gain or loss by rounding of the angle.
+    const ROUNDING: f32 = 1e-7;
+    for angle in [best, best - TAU, best + TAU] {
+        if (least..=most).contains(&angle) {
+            return angle;
         }
     }
     let gain = |angle: f32| (angle - best).cos();
     let end = if gain(least) >= gain(most) { least } else { most };
-    if gain(end) > gain(0.0) + NOTHING { end } else { 0.0 }
+    if gain(end) > gain(0.0) + ROUNDING { end } else { 0.0 }
 }

@@ -1,14 +1,14 @@
-//! Cyclic coordinate descent: from the tips to the roots, each joint turns as if it were the only
+//! Cyclic coordinate descent: from the tips to the roots, each joint rotates as if it were the only
 //! one.
 //!
-//! With r the arms from the joint's base to the tips it carries and t those to their targets, one
-//! tip is turned exactly onto the line to its target; several by the best angle about Σ w r × t.
-//! The best angle about a unit axis a has tan θ = Σ w a·(r × t) / Σ w (r·t − (a·r)(a·t)). A joint
-//! with limits is taken as three hinges, x, y and z, each with its best angle within limits. No turn
-//! makes anything worse.
+//! Let r be the vectors from the joint's base to the tips below it and t those to their targets. One
+//! tip is rotated exactly onto the line to its target; several by the best angle about Σ w r × t. The
+//! best angle about a unit axis a has tan θ = Σ w a·(r × t) / Σ w (r·t − (a·r)(a·t)). A joint with
+//! limits is treated as three hinges, x, y and z, each with its best angle within the limits. No
+//! rotation increases the cost.
 //!
-//! A sweep turns only the tips; joints follow in one pass from the roots, so that an iteration costs
-//! as much as there are joints.
+//! A sweep moves only the tips. The joints are updated in one pass from the roots, so that the time of
+//! an iteration is linear in the number of joints.
 //!
 //! # Source
 //!
@@ -17,116 +17,119 @@
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use super::align::{Pair, align, align_within};
+use super::align::{PointPair, align, align_within};
 use super::configuration::Configuration;
 use super::problem::Problem;
-use crate::kinematics::skeleton::EulerAngles;
+use crate::kinematics::skeleton::JointAngles;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Ccd {
-    /// From bodies' parents' spaces to their own, without E.
+    /// Rotations from the spaces of links to those of their parents, without E.
     mounts: Vec<Quat>,
-    /// By which each body turned in this sweep; then with what is above it.
-    turns: Vec<Quat>,
-    pairs: Vec<Pair>,
+    /// Rotation of each link in this sweep; after the sweep, including its parents'.
+    rotations: Vec<Quat>,
+    pairs: Vec<PointPair>,
 }
 
 impl Ccd {
-    pub fn new(rig: &Problem) -> Self {
+    pub fn new(problem: &Problem) -> Self {
         Self {
-            mounts: rig.bodies.iter().map(|body| Quat::from_mat3a(&body.mount)).collect(),
-            turns: vec![Quat::IDENTITY; rig.bodies.len()],
-            pairs: Vec::with_capacity(rig.goals.len()),
+            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            rotations: vec![Quat::IDENTITY; problem.links.len()],
+            pairs: Vec::with_capacity(problem.effectors.len()),
         }
     }
 
-    pub fn iterate(&mut self, rig: &Problem, pose: &mut Configuration) {
-        for index in (0..rig.bodies.len()).rev() {
-            self.turns[index] = self.turn(rig, pose, index);
+    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) {
+        for index in (0..problem.links.len()).rev() {
+            self.rotations[index] = self.rotate(problem, config, index);
         }
-        self.follow(rig, pose);
-        if rig.free {
-            move_roots(rig, pose);
+        self.update(problem, config);
+        if problem.free_roots {
+            move_roots(problem, config);
         }
     }
 
-    /// Turns one body, and the tips it carries.
-    fn turn(&mut self, rig: &Problem, pose: &mut Configuration, index: usize) -> Quat {
-        let (body, base) = (&rig.bodies[index], pose.bases[index]);
-        let below = &rig.below[body.below.0..body.below.1];
+    /// Rotates the tips below one link and returns the rotation.
+    fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) -> Quat {
+        let (link, base) = (&problem.links[index], config.bases[index]);
+        let below = problem.below(link);
         self.pairs.clear();
-        self.pairs.extend(below.iter().map(|goal| Pair {
-            arm: pose.tips[*goal] - base,
-            goal: rig.goals[*goal].point - base,
-            weight: rig.goals[*goal].weight,
+        self.pairs.extend(below.iter().map(|effector| PointPair {
+            from: config.tips[*effector] - base,
+            to: problem.effectors[*effector].target - base,
+            weight: problem.effectors[*effector].weight,
         }));
-        let turn = if body.is_limited() {
-            let above = body.parent.map_or(Quat::IDENTITY, |parent| pose.turned[parent]);
-            let axes = Mat3A::from_quat(above * self.mounts[index])
-                * EulerAngles(pose.angles[index]).axes();
+        let rotation = if link.is_limited() {
+            let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+            let axes = Mat3A::from_quat(parent * self.mounts[index])
+                * JointAngles(config.angles[index]).axes();
             let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-            align_within(&body.limits, axes, &mut pose.angles[index], &mut self.pairs)
+            align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs)
         } else {
-            let turn = align(&self.pairs);
-            self.pairs.iter_mut().for_each(|pair| pair.arm = turn * pair.arm);
-            turn
+            let rotation = align(&self.pairs);
+            self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+            rotation
         };
-        for (goal, pair) in below.iter().zip(&self.pairs) {
-            pose.tips[*goal] = base + pair.arm;
+        for (effector, pair) in below.iter().zip(&self.pairs) {
+            config.tips[*effector] = base + pair.from;
         }
-        turn
+        rotation
     }
 
-    /// Everything else from the turns: each body's own first, then those above it.
-    fn follow(&mut self, rig: &Problem, pose: &mut Configuration) {
-        for (index, body) in rig.bodies.iter().enumerate() {
-            if let Some(parent) = body.parent {
-                self.turns[index] = self.turns[parent] * self.turns[index];
+    /// Updates the configuration by the sweep's rotations.
+    fn update(&mut self, problem: &Problem, config: &mut Configuration) {
+        for (index, link) in problem.links.iter().enumerate() {
+            if let Some(parent) = link.parent {
+                self.rotations[index] = self.rotations[parent] * self.rotations[index];
             }
-            pose.turned[index] = if body.is_limited() {
-                let above = body.parent.map_or(Quat::IDENTITY, |parent| pose.turned[parent]);
-                let own = Quat::from_mat3a(&EulerAngles(pose.angles[index]).matrix());
-                (above * self.mounts[index] * own).normalize()
+            config.orientations[index] = if link.is_limited() {
+                let parent =
+                    link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+                let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+                (parent * self.mounts[index] * own).normalize()
             } else {
-                (self.turns[index] * pose.turned[index]).normalize()
+                (self.rotations[index] * config.orientations[index]).normalize()
             };
         }
-        place(rig, pose);
+        update_points(problem, config);
     }
 }
 
-/// Bases and tips from how bodies are turned.
-pub(super) fn place(rig: &Problem, pose: &mut Configuration) {
-    for (index, body) in rig.bodies.iter().enumerate() {
-        pose.bases[index] = match body.parent {
-            Some(parent) => pose.bases[parent] + pose.turned[parent] * body.pivot,
-            None => pose.shift[body.tree] + body.pivot,
+/// Updates bases and tips from orientations.
+fn update_points(problem: &Problem, config: &mut Configuration) {
+    for (index, link) in problem.links.iter().enumerate() {
+        config.bases[index] = match link.parent {
+            Some(parent) => config.bases[parent] + config.orientations[parent] * link.pivot,
+            None => config.shifts[link.tree] + link.pivot,
         };
     }
-    for (goal, tip) in rig.goals.iter().zip(&mut pose.tips) {
-        *tip = match goal.body {
-            Some(body) => pose.bases[body] + pose.turned[body] * goal.tip,
-            None => pose.shift[goal.tree] + goal.tip,
+    for (effector, tip) in problem.effectors.iter().zip(&mut config.tips) {
+        *tip = match effector.link {
+            Some(link) => config.bases[link] + config.orientations[link] * effector.tip,
+            None => config.shifts[effector.tree] + effector.tip,
         };
     }
 }
 
-/// Each tree by what its tips are short of their targets in the mean, as far as numbers go.
-pub(super) fn move_roots(rig: &Problem, pose: &mut Configuration) {
-    for tree in 0..rig.trees.len() {
+/// Shifts each tree by the mean vector from its tips to their targets, unless that overflows.
+pub(super) fn move_roots(problem: &Problem, config: &mut Configuration) {
+    for tree in 0..problem.trees.len() {
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
-        for (goal, tip) in rig.goals.iter().zip(&pose.tips).filter(|(goal, _)| goal.tree == tree) {
-            sum += goal.weight * (goal.point - *tip);
-            weights += goal.weight;
+        for (effector, tip) in
+            problem.effectors.iter().zip(&config.tips).filter(|(effector, _)| effector.tree == tree)
+        {
+            sum += effector.weight * (effector.target - *tip);
+            weights += effector.weight;
         }
         let by = sum / weights;
-        if !rig.can_go(tree, pose.shift[tree] + by) {
+        if !problem.can_shift(tree, config.shifts[tree] + by) {
             continue;
         }
-        pose.shift[tree] += by;
-        let bases = rig.bodies.iter().zip(&mut pose.bases);
-        bases.filter(|(body, _)| body.tree == tree).for_each(|(_, base)| *base += by);
-        let tips = rig.goals.iter().zip(&mut pose.tips);
-        tips.filter(|(goal, _)| goal.tree == tree).for_each(|(_, tip)| *tip += by);
+        config.shifts[tree] += by;
+        let bases = problem.links.iter().zip(&mut config.bases);
+        bases.filter(|(link, _)| link.tree == tree).for_each(|(_, base)| *base += by);
+        let tips = problem.effectors.iter().zip(&mut config.tips);
+        tips.filter(|(effector, _)| effector.tree == tree).for_each(|(_, tip)| *tip += by);
     }
 }

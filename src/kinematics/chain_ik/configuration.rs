@@ -1,127 +1,131 @@
-//! Where the bodies of a rig are.
-
 use glam::{Mat3A, Quat, Vec3, Vec3A};
 
-use super::problem::{Goal, Problem};
-use crate::kinematics::skeleton::EulerAngles;
+use super::problem::{EndEffector, Problem};
+use crate::kinematics::skeleton::JointAngles;
 
-/// Angles, and what follows from them.
+/// Angles of all links, shifts of all trees, and the positions that follow from them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Configuration {
     pub angles: Vec<Vec3>,
-    /// How far each tree has moved.
-    pub shift: Vec<Vec3A>,
-    /// G: from a body's space to skeleton space.
+    /// Translation of each tree from its origin.
+    pub shifts: Vec<Vec3A>,
+    /// G, the rotation from a link's space to skeleton space.
     pub frames: Vec<Mat3A>,
-    /// What each body's angles turn about, in skeleton space, as columns.
+    /// Rotation axes of each link's angles, in skeleton space, as columns.
     pub axes: Vec<Mat3A>,
-    /// G again, for methods that turn bodies without angles; then frames and axes are old.
-    pub turned: Vec<Quat>,
-    /// Where each body turns.
+    /// G for methods that use orientations instead of angles; frames and axes are stale then.
+    pub orientations: Vec<Quat>,
+    /// Pivot of each link.
     pub bases: Vec<Vec3A>,
-    /// Of the goals.
+    /// Tip of each end effector.
     pub tips: Vec<Vec3A>,
 }
 
 impl Configuration {
-    pub fn new(rig: &Problem) -> Self {
-        let bodies = rig.bodies.len();
-        let mut pose = Self {
-            angles: rig.bodies.iter().map(|body| body.start).collect(),
-            shift: vec![Vec3A::ZERO; rig.trees.len()],
-            frames: vec![Mat3A::IDENTITY; bodies],
-            axes: vec![Mat3A::IDENTITY; bodies],
-            turned: Vec::new(),
-            bases: vec![Vec3A::ZERO; bodies],
-            tips: vec![Vec3A::ZERO; rig.goals.len()],
+    pub fn new(problem: &Problem) -> Self {
+        let links = problem.links.len();
+        let mut config = Self {
+            angles: problem.links.iter().map(|link| link.start).collect(),
+            shifts: vec![Vec3A::ZERO; problem.trees.len()],
+            frames: vec![Mat3A::IDENTITY; links],
+            axes: vec![Mat3A::IDENTITY; links],
+            orientations: Vec::new(),
+            bases: vec![Vec3A::ZERO; links],
+            tips: vec![Vec3A::ZERO; problem.effectors.len()],
         };
-        pose.forward(rig);
-        pose
+        config.forward(problem);
+        config
     }
 
-    /// Everything else from angles and shift.
-    pub fn forward(&mut self, rig: &Problem) {
-        for (index, body) in rig.bodies.iter().enumerate() {
-            let (above, base) = match body.parent {
+    /// Forward kinematics: updates frames, axes, bases and tips from angles and shifts.
+    pub fn forward(&mut self, problem: &Problem) {
+        for (index, link) in problem.links.iter().enumerate() {
+            let (parent, base) = match link.parent {
                 Some(parent) => {
-                    let above = self.frames[parent];
-                    (above, self.bases[parent] + above * body.pivot)
+                    let frame = self.frames[parent];
+                    (frame, self.bases[parent] + frame * link.pivot)
                 }
-                None => (Mat3A::IDENTITY, self.shift[body.tree] + body.pivot),
+                None => (Mat3A::IDENTITY, self.shifts[link.tree] + link.pivot),
             };
-            let (turn, axes) = EulerAngles(self.angles[index]).matrix_and_axes();
-            let mounted = above * body.mount;
+            let (rotation, axes) = JointAngles(self.angles[index]).matrix_and_axes();
+            let mounted = parent * link.mount;
             self.bases[index] = base;
             self.axes[index] = mounted * axes;
-            self.frames[index] = mounted * turn;
+            self.frames[index] = mounted * rotation;
         }
-        for (goal, tip) in rig.goals.iter().zip(&mut self.tips) {
-            *tip = match goal.body {
-                Some(body) => self.bases[body] + self.frames[body] * goal.tip,
-                None => self.shift[goal.tree] + goal.tip,
+        for (effector, tip) in problem.effectors.iter().zip(&mut self.tips) {
+            *tip = match effector.link {
+                Some(link) => self.bases[link] + self.frames[link] * effector.tip,
+                None => self.shifts[effector.tree] + effector.tip,
             };
         }
     }
 
-    /// Turns from frames.
-    pub fn turn(&mut self) {
-        self.turned.clear();
-        self.turned.extend(self.frames.iter().map(Quat::from_mat3a));
+    /// Sets orientations from frames.
+    pub fn set_orientations(&mut self) {
+        self.orientations.clear();
+        self.orientations.extend(self.frames.iter().map(Quat::from_mat3a));
     }
 
     /// f = Σ ½ w |tip − target|².
-    pub fn cost(&self, rig: &Problem) -> f64 {
-        let costs = rig.goals.iter().zip(&self.tips).map(|(goal, tip)| {
-            let missing = tip.as_dvec3() - goal.point.as_dvec3();
-            0.5 * f64::from(goal.weight) * missing.length_squared()
+    pub fn cost(&self, problem: &Problem) -> f64 {
+        let costs = problem.effectors.iter().zip(&self.tips).map(|(effector, tip)| {
+            let residual = tip.as_dvec3() - effector.target.as_dvec3();
+            0.5 * f64::from(effector.weight) * residual.length_squared()
         });
         costs.sum()
     }
 
-    /// The largest distance from a tip to its target, in the world.
-    pub fn error(&self, rig: &Problem) -> f64 {
-        let errors = rig.goals.iter().zip(&self.tips).map(|(goal, tip)| rig.error(goal, *tip));
+    /// Largest distance from a tip to its target, in the world.
+    pub fn error(&self, problem: &Problem) -> f64 {
+        let errors = problem
+            .effectors
+            .iter()
+            .zip(&self.tips)
+            .map(|(effector, tip)| problem.error(effector, *tip));
         errors.fold(0.0, f64::max)
     }
 
     /// Root mean square distance from tips to targets.
-    pub fn distance(&self, rig: &Problem) -> f64 {
-        let weights: f64 = rig.goals.iter().map(|goal| f64::from(goal.weight)).sum();
-        (2.0 * self.cost(rig) / weights.max(f64::MIN_POSITIVE)).sqrt()
+    pub fn distance(&self, problem: &Problem) -> f64 {
+        let weights: f64 =
+            problem.effectors.iter().map(|effector| f64::from(effector.weight)).sum();
+        (2.0 * self.cost(problem) / weights.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Mean distance from tips to targets: where one is far, it shows what the others still gain.
-    pub fn mean_distance(&self, rig: &Problem) -> f64 {
-        let of_goal = |(goal, tip): (&Goal, &Vec3A)| {
-            let weight = f64::from(goal.weight);
-            (weight * f64::from(goal.point.distance(*tip)), weight)
+    /// Mean distance from tips to targets. One far target does not hide what the others gain.
+    pub fn mean_distance(&self, problem: &Problem) -> f64 {
+        let of_effector = |(effector, tip): (&EndEffector, &Vec3A)| {
+            let weight = f64::from(effector.weight);
+            (weight * f64::from(effector.target.distance(*tip)), weight)
         };
-        let all = rig.goals.iter().zip(&self.tips).map(of_goal);
-        let (sum, weights) =
-            all.fold((0.0, 0.0), |(sum, weights), (far, weight)| (sum + far, weights + weight));
+        let all = problem.effectors.iter().zip(&self.tips).map(of_effector);
+        let (sum, weights) = all.fold((0.0, 0.0), |(sum, weights), (distance, weight)| {
+            (sum + distance, weights + weight)
+        });
         sum / f64::max(weights, f64::MIN_POSITIVE)
     }
 
-    /// Of all bases and tips.
-    pub fn farthest_move(&self, from: &Self) -> f32 {
+    /// Largest distance of a base or tip from its position in another configuration.
+    pub fn max_displacement(&self, from: &Self) -> f32 {
         let bases = self.bases.iter().zip(&from.bases);
         let both = bases.chain(self.tips.iter().zip(&from.tips));
         both.map(|(here, there)| here.distance_squared(*there)).fold(0.0, f32::max).sqrt()
     }
 
-    /// Whether all is where it is there.
-    pub fn is_like(&self, other: &Self) -> bool {
+    /// Whether angles, orientations and positions are equal.
+    pub fn is_same(&self, other: &Self) -> bool {
         self.angles == other.angles
-            && self.turned == other.turned
+            && self.orientations == other.orientations
             && self.bases == other.bases
             && self.tips == other.tips
     }
 
-    pub fn copy(&mut self, from: &Self) {
+    pub fn copy_from(&mut self, from: &Self) {
         self.angles.clone_from(&from.angles);
-        self.shift.clone_from(&from.shift);
-        self.turned.clone_from(&from.turned);
-        if from.turned.is_empty() {
+        self.shifts.clone_from(&from.shifts);
+        self.orientations.clone_from(&from.orientations);
+        if from.orientations.is_empty() {
             self.frames.clone_from(&from.frames);
             self.axes.clone_from(&from.axes);
         }

@@ -1,9 +1,9 @@
-//! DampedLeastSquares least squares: Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ (target − p).
+//! Damped least squares: Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ (target − p).
 //!
-//! Rows count by √w. λ is a share of the chain's length; where a step would raise the cost it is
-//! raised until one does not, and lowered again afterwards (Levenberg and Marquardt): out of reach
-//! the chain comes to rest. Targets are brought near, to 0.3 of the chain's length from their tips.
-//! Angles that stand at a limit and would go beyond it are left out and the rest solved again.
+//! Rows are weighted by √w. λ is a fraction of the chain's length. It grows while a step would raise the
+//! cost and shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges
+//! too. Residuals are clamped to 0.3 of the chain's length. Angles at a limit that would leave it are
+//! fixed, and the rest is solved again.
 //!
 //! # Sources
 //!
@@ -17,32 +17,32 @@ use super::configuration::Configuration;
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
-/// Of the chain's length: how far a step looks.
-const NEAR: f32 = 0.3;
+/// Largest residual, in chain lengths.
+const MAX_RESIDUAL: f32 = 0.3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DampedLeastSquares {
-    /// λ where nothing goes wrong.
+    /// λ of a first try.
     damping: f32,
-    /// What it is multiplied by now.
+    /// Factor on λ, at least 1.
     raised: f32,
     wrenches: Wrenches,
     step: (Vec<Vec3>, Vec<Vec3A>),
     before: (Vec<Vec3>, Vec<Vec3A>),
-    /// The pose's axes, zero for angles that are left out.
+    /// The configuration's rotation axes, zero for fixed angles.
     axes: Vec<Mat3A>,
-    /// JJᵀ, and room to factor it with the damping.
+    /// JJᵀ, and its factorization with the damping.
     square: DMatrix<f32>,
     factored: DMatrix<f32>,
-    missing: DVector<f32>,
+    residuals: DVector<f32>,
     forces: DVector<f32>,
 }
 
 impl DampedLeastSquares {
-    pub fn new(rig: &Problem, damping: f32) -> Self {
-        let rows = 3 * rig.goals.len();
+    pub fn new(problem: &Problem, damping: f32) -> Self {
+        let rows = 3 * problem.effectors.len();
         Self {
-            damping: damping * rig.length,
+            damping: damping * problem.length,
             raised: 1.0,
             wrenches: Wrenches::default(),
             step: Default::default(),
@@ -50,72 +50,74 @@ impl DampedLeastSquares {
             axes: Vec::new(),
             square: DMatrix::zeros(rows, rows),
             factored: DMatrix::zeros(rows, rows),
-            missing: DVector::zeros(rows),
+            residuals: DVector::zeros(rows),
             forces: DVector::zeros(rows),
         }
     }
 
-    /// Forgets how far the damping was raised.
-    pub fn renew(&mut self) {
+    /// Resets the damping.
+    pub fn restart(&mut self) {
         self.raised = 1.0;
     }
 
-    /// Whether there was a step that lowers the cost.
-    pub fn iterate(&mut self, rig: &Problem, pose: &mut Configuration) -> bool {
-        // λ grows 4-fold each time: the last try moves by less than rounding.
+    /// Makes a step that lowers the cost. Returns whether there is one.
+    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+        // The step of the last try is below rounding.
         const TRIES: u32 = 12;
-        const MORE: f32 = 4.0;
-        self.look(rig, pose);
-        let cost = pose.cost(rig);
+        const GROWTH: f32 = 4.0;
+        self.set_residuals(problem, config);
+        let cost = config.cost(problem);
         for _ in 0..TRIES {
-            if self.solve_within(rig, pose) {
+            if self.solve_within(problem, config) {
                 let (from, by) = (&self.before, &self.step);
-                advance(rig, (&from.0, &from.1), (&by.0, &by.1), 1.0, pose);
-                if pose.cost(rig) < cost {
-                    self.raised = (self.raised / MORE).max(1.0);
+                advance(problem, (&from.0, &from.1), (&by.0, &by.1), 1.0, config);
+                if config.cost(problem) < cost {
+                    self.raised = (self.raised / GROWTH).max(1.0);
                     return true;
                 }
-                advance(rig, (&from.0, &from.1), (&by.0, &by.1), 0.0, pose);
+                advance(problem, (&from.0, &from.1), (&by.0, &by.1), 0.0, config);
             }
-            self.raised *= MORE;
+            self.raised *= GROWTH;
         }
         false
     }
 
-    /// What is missing at every tip, brought near.
-    fn look(&mut self, rig: &Problem, pose: &Configuration) {
-        for (index, goal) in rig.goals.iter().enumerate() {
-            let missing = (goal.point - pose.tips[index]).clamp_length_max(NEAR * rig.length);
-            let row = missing * goal.weight.sqrt();
-            self.missing.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
+    /// Sets the weighted and clamped residuals, and the start of the step.
+    fn set_residuals(&mut self, problem: &Problem, config: &Configuration) {
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let residual = (effector.target - config.tips[index])
+                .clamp_length_max(MAX_RESIDUAL * problem.length);
+            let row = residual * effector.weight.sqrt();
+            self.residuals.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
         }
-        self.before.0.clone_from(&pose.angles);
-        self.before.1.clone_from(&pose.shift);
+        self.before.0.clone_from(&config.angles);
+        self.before.1.clone_from(&config.shifts);
     }
 
-    /// Solves without the angles that would leave their limits. Whether there is a solution.
-    fn solve_within(&mut self, rig: &Problem, pose: &mut Configuration) -> bool {
-        self.axes.clone_from(&pose.axes);
+    /// Solves with the angles fixed that would leave their limits. Returns whether there is a solution.
+    fn solve_within(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+        self.axes.clone_from(&config.axes);
         loop {
-            self.multiply(rig, pose);
-            if !self.solve(rig, pose) {
+            self.multiply(problem, config);
+            if !self.solve(problem, config) {
                 return false;
             }
-            if !self.leave_out(rig) {
+            if !self.fix_angles(problem) {
                 return true;
             }
         }
     }
 
-    /// JJᵀ, joint by joint.
-    fn multiply(&mut self, rig: &Problem, pose: &Configuration) {
+    /// Sets JJᵀ, joint by joint.
+    fn multiply(&mut self, problem: &Problem, config: &Configuration) {
         self.square.fill(0.0);
-        for (index, body) in rig.bodies.iter().enumerate() {
-            let below = &rig.below[body.below.0..body.below.1];
+        for (index, link) in problem.links.iter().enumerate() {
+            let below = problem.below(link);
             let axes = self.axes[index];
-            let base = pose.bases[index];
-            let columns = |goal: usize| {
-                let arm = (pose.tips[goal] - base) * rig.goals[goal].weight.sqrt();
+            let base = config.bases[index];
+            let columns = |effector: usize| {
+                let arm =
+                    (config.tips[effector] - base) * problem.effectors[effector].weight.sqrt();
                 Mat3A::from_cols(
                     axes.x_axis.cross(arm),
                     axes.y_axis.cross(arm),
@@ -129,24 +131,25 @@ impl DampedLeastSquares {
                 }
             }
         }
-        if rig.free {
-            self.add_shifts(rig);
+        if problem.free_roots {
+            self.add_shifts(problem);
         }
     }
 
-    /// Roots that may move have three columns more, as long as the chain.
-    fn add_shifts(&mut self, rig: &Problem) {
-        for (row, one) in rig.goals.iter().enumerate() {
-            for (column, other) in rig.goals[..=row].iter().enumerate() {
+    /// Adds three columns of one chain length for each free root.
+    fn add_shifts(&mut self, problem: &Problem) {
+        for (row, one) in problem.effectors.iter().enumerate() {
+            for (column, other) in problem.effectors[..=row].iter().enumerate() {
                 if one.tree == other.tree {
-                    let lever = rig.length * rig.length * (one.weight * other.weight).sqrt();
+                    let lever =
+                        problem.length * problem.length * (one.weight * other.weight).sqrt();
                     self.add(row, column, Mat3A::from_diagonal(Vec3::splat(lever)));
                 }
             }
         }
     }
 
-    /// Into the lower triangle, which is all that is read.
+    /// Adds to the lower triangle of JJᵀ; the upper one is not read.
     fn add(&mut self, row: usize, column: usize, block: Mat3A) {
         for (j, side) in block.to_cols_array_2d().iter().enumerate() {
             for (i, value) in side.iter().enumerate() {
@@ -155,7 +158,7 @@ impl DampedLeastSquares {
         }
     }
 
-    fn solve(&mut self, rig: &Problem, pose: &Configuration) -> bool {
+    fn solve(&mut self, problem: &Problem, config: &Configuration) -> bool {
         let damping = self.damping * self.raised;
         self.factored.copy_from(&self.square);
         for row in 0..self.factored.nrows() {
@@ -166,22 +169,24 @@ impl DampedLeastSquares {
             self.factored = self.square.clone();
             return false;
         };
-        self.forces.copy_from(&self.missing);
+        self.forces.copy_from(&self.residuals);
         cholesky.solve_mut(&mut self.forces);
         self.factored = cholesky.unpack_dirty();
 
         let forces = self.forces.as_slice();
-        let force =
-            |goal: usize| Vec3A::from_slice(&forces[3 * goal..]) * rig.goals[goal].weight.sqrt();
-        self.wrenches.gather(rig, pose, force, &mut self.step.0, &mut self.step.1);
+        let force = |effector: usize| {
+            Vec3A::from_slice(&forces[3 * effector..]) * problem.effectors[effector].weight.sqrt()
+        };
+        self.wrenches.apply_transpose(problem, config, force, &mut self.step.0, &mut self.step.1);
         true
     }
 
-    /// Whether there was an angle to leave out that was not yet.
-    fn leave_out(&mut self, rig: &Problem) -> bool {
+    /// Fixes angles that would leave their limits. Returns whether there was a new one.
+    fn fix_angles(&mut self, problem: &Problem) -> bool {
         let mut any = false;
-        for (index, body) in rig.bodies.iter().enumerate().filter(|(_, body)| body.is_limited()) {
-            for (angle, limit) in body.limits.iter().enumerate() {
+        for (index, link) in problem.links.iter().enumerate().filter(|(_, link)| link.is_limited())
+        {
+            for (angle, limit) in link.limits.iter().enumerate() {
                 let (from, by) = (self.before.0[index][angle], &mut self.step.0[index][angle]);
                 let axis = self.axes[index].col_mut(angle);
                 if *axis == Vec3A::ZERO {

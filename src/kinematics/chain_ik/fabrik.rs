@@ -1,24 +1,24 @@
-//! Forward and backward reaching: points are pulled to where they are wanted, first from targets to
-//! roots, then back, each time to the right distance from the one before.
+//! Forward and backward reaching: points move towards their destinations, first from targets to roots,
+//! then back, keeping their distance from the point before.
 //!
 //! ```text
-//! inward    base' = wanted + r · unit(base − wanted)      wanted: the target, or the child's base'
-//! outward   point = base + r · unit(wanted − base)        base: of the root, then the parent's point
+//! inward    base' = goal + r · unit(base − goal)      goal: the target, or the child's base'
+//! outward   point = base + r · unit(goal − base)      base: of the root, then the parent's point
 //! ```
 //!
-//! Children that share a point want it at the weighted mean of their bases'. A body with several
-//! points (bones with children not at their tips; locked forks) asks for the mean of what its points
-//! ask, and is turned as a whole, to fit them best.
+//! The goal of a point that several children share is the weighted mean of their bases'. A link with
+//! several points (bones with children away from their tips; locked forks) averages the bases that its
+//! points give, and rotates as a whole, to the best fit.
 //!
-//! With limits every body is turned so on the way back, and limited ones angle by angle as far as
-//! they can. The way in knows no limits: what it asks for may be what they forbid, and the points
-//! would go back and forth. Where that makes nothing better, a sweep of cyclic coordinate descent
-//! takes the iteration's place.
+//! With limits every link rotates as a whole on the outward pass, limited ones angle by angle within
+//! their limits. The inward pass ignores limits and may ask for what they forbid, so that the points
+//! would oscillate. An iteration that does not lower the cost is therefore replaced by a sweep of cyclic
+//! coordinate descent.
 //!
-//! A chain with one target beyond reach is laid out straight towards it.
+//! A chain whose only target is out of reach is laid out straight towards it.
 //!
-//! Bodies with one point and no limits are turned only when asked how: by the least turn from where
-//! they were. A tree whose root is free stays where the inward pass leaves it.
+//! Orientations of links with one point and no limits are computed on demand, by the least rotation. A
+//! tree whose root is free stays where the inward pass leaves it.
 //!
 //! # Source
 //!
@@ -27,290 +27,311 @@
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use super::align::{Pair, align, align_within};
+use super::align::{PointPair, align, align_within};
 use super::ccd::Ccd;
 use super::configuration::Configuration;
-use super::problem::Problem;
-use crate::kinematics::skeleton::EulerAngles;
+use super::problem::{Link, Problem};
+use crate::kinematics::skeleton::JointAngles;
 use crate::kinematics::{normalize, rotation_between};
 
-/// A point of a body, and what is there.
+/// A point of a link, at which bases of children and tips coincide.
 #[derive(Clone, Debug, PartialEq)]
-struct Point {
-    /// In the body's space, and its distance from the base.
-    at: Vec3A,
-    reach: f32,
+struct LinkPoint {
+    /// In the link's space.
+    position: Vec3A,
+    /// Distance from the link's base.
+    radius: f32,
+    /// Sum of the weights of `members`.
     weight: f32,
-    holds: Vec<Held>,
+    members: Vec<PointMember>,
+}
+
+/// A base or tip at a point of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PointMember {
+    kind: MemberKind,
+    /// Sum of the weights of all end effectors below.
+    weight: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Held {
-    what: What,
-    /// Of all goals below.
-    weight: f32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum What {
+enum MemberKind {
+    /// Base of a link.
     Base(usize),
+    /// Tip of an end effector.
     Tip(usize),
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Fabrik {
-    points: Vec<Point>,
-    /// For each body, its range of points.
-    of_body: Vec<(usize, usize)>,
-    /// For each tree, what is fixed to its root.
-    grounds: Vec<Vec<Held>>,
+    points: Vec<LinkPoint>,
+    /// Range of points of each link.
+    ranges: Vec<(usize, usize)>,
+    /// Bases and tips that are fixed to the root of each tree.
+    grounds: Vec<Vec<PointMember>>,
     mounts: Vec<Quat>,
     limited: bool,
-    /// With limits: what to go back to, and on with, where an iteration made nothing better.
+    /// With limits: the configuration before the iteration, and the sweep that replaces it.
     before: Configuration,
     ccd: Ccd,
-    /// Where points are to come, and where bases ask to be.
-    wanted: Vec<Vec3A>,
-    asked: Vec<Vec3A>,
-    /// From bases to points.
+    /// Destination of each point.
+    goals: Vec<Vec3A>,
+    /// Destination of each base.
+    base_goals: Vec<Vec3A>,
+    /// Vector from the base to each point.
     arms: Vec<Vec3A>,
-    pairs: Vec<Pair>,
+    pairs: Vec<PointPair>,
 }
 
 impl Fabrik {
-    pub fn new(rig: &Problem) -> Self {
+    pub fn new(problem: &Problem) -> Self {
         let mut fabrik = Self {
-            grounds: vec![Vec::new(); rig.trees.len()],
-            mounts: rig.bodies.iter().map(|body| Quat::from_mat3a(&body.mount)).collect(),
-            limited: rig.bodies.iter().any(super::problem::Body::is_limited),
-            ccd: Ccd::new(rig),
-            asked: vec![Vec3A::ZERO; rig.bodies.len()],
+            grounds: vec![Vec::new(); problem.trees.len()],
+            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            limited: problem.links.iter().any(Link::is_limited),
+            ccd: Ccd::new(problem),
+            base_goals: vec![Vec3A::ZERO; problem.links.len()],
             ..Self::default()
         };
-        let lists = fabrik.list_points(rig);
+        let lists = fabrik.list_points(problem);
         for points in lists {
             let from = fabrik.points.len();
             fabrik.points.extend(points);
-            fabrik.of_body.push((from, fabrik.points.len()));
+            fabrik.ranges.push((from, fabrik.points.len()));
         }
-        fabrik.wanted = vec![Vec3A::ZERO; fabrik.points.len()];
+        fabrik.goals = vec![Vec3A::ZERO; fabrik.points.len()];
         fabrik.arms = vec![Vec3A::ZERO; fabrik.points.len()];
         fabrik.pairs.reserve(fabrik.points.len());
         fabrik
     }
 
-    fn list_points(&mut self, rig: &Problem) -> Vec<Vec<Point>> {
-        let mut lists: Vec<Vec<Point>> = vec![Vec::new(); rig.bodies.len()];
-        let mut hold = |body: Option<usize>, tree: usize, at: Vec3A, held: Held| match body {
-            Some(body) => hold(&mut lists[body], at, held),
-            None => self.grounds[tree].push(held),
-        };
-        for (index, body) in rig.bodies.iter().enumerate() {
-            let below = &rig.below[body.below.0..body.below.1];
-            let weight = below.iter().map(|goal| rig.goals[*goal].weight).sum();
-            let held = Held { what: What::Base(index), weight };
-            hold(body.parent, body.tree, body.pivot, held);
+    fn list_points(&mut self, problem: &Problem) -> Vec<Vec<LinkPoint>> {
+        let mut lists: Vec<Vec<LinkPoint>> = vec![Vec::new(); problem.links.len()];
+        let mut add =
+            |link: Option<usize>, tree: usize, position: Vec3A, member: PointMember| match link {
+                Some(link) => add_member(&mut lists[link], position, member),
+                None => self.grounds[tree].push(member),
+            };
+        for (index, link) in problem.links.iter().enumerate() {
+            let weights =
+                problem.below(link).iter().map(|effector| problem.effectors[*effector].weight);
+            let member = PointMember { kind: MemberKind::Base(index), weight: weights.sum() };
+            add(link.parent, link.tree, link.pivot, member);
         }
-        for (index, goal) in rig.goals.iter().enumerate() {
-            let held = Held { what: What::Tip(index), weight: goal.weight };
-            hold(goal.body, goal.tree, goal.tip, held);
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let member = PointMember { kind: MemberKind::Tip(index), weight: effector.weight };
+            add(effector.link, effector.tree, effector.tip, member);
         }
         lists
     }
 
-    pub fn iterate(&mut self, rig: &Problem, pose: &mut Configuration) {
+    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) {
         if !self.limited {
-            return self.reach(rig, pose);
+            return self.reach(problem, config);
         }
-        self.before.copy(pose);
-        self.reach(rig, pose);
-        if pose.cost(rig) >= self.before.cost(rig) {
-            pose.copy(&self.before);
-            self.ccd.iterate(rig, pose);
+        self.before.copy_from(config);
+        self.reach(problem, config);
+        if config.cost(problem) >= self.before.cost(problem) {
+            config.copy_from(&self.before);
+            self.ccd.iterate(problem, config);
         }
     }
 
-    fn reach(&mut self, rig: &Problem, pose: &mut Configuration) {
-        if self.is_beyond_reach(rig, pose) {
-            self.wanted.fill(rig.goals[0].point);
+    /// Makes the inward and the outward pass.
+    fn reach(&mut self, problem: &Problem, config: &mut Configuration) {
+        if self.is_out_of_reach(problem, config) {
+            self.goals.fill(problem.effectors[0].target);
         } else {
-            for body in (0..rig.bodies.len()).rev() {
-                self.pull_in(rig, pose, body);
+            for link in (0..problem.links.len()).rev() {
+                self.reach_inward(problem, config, link);
             }
         }
-        if rig.free {
-            self.move_roots(rig, pose);
+        if problem.free_roots {
+            self.move_roots(problem, config);
         }
-        for (index, body) in rig.bodies.iter().enumerate() {
-            if body.parent.is_none() {
-                pose.bases[index] = pose.shift[body.tree] + body.pivot;
+        for (index, link) in problem.links.iter().enumerate() {
+            if link.parent.is_none() {
+                config.bases[index] = config.shifts[link.tree] + link.pivot;
             }
-            self.lay_out(rig, pose, index);
+            self.reach_outward(problem, config, index);
         }
     }
 
     /// Whether a chain can only point at its one target.
-    fn is_beyond_reach(&self, rig: &Problem, pose: &Configuration) -> bool {
-        let ([goal], false, false) = (&rig.goals[..], self.limited, rig.free) else { return false };
-        let bones: f32 = self.points.iter().map(|point| point.reach).sum();
-        goal.body.is_some() && goal.point.distance(pose.bases[0]) >= bones
+    fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
+        let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
+        else {
+            return false;
+        };
+        let length: f32 = self.points.iter().map(|point| point.radius).sum();
+        effector.link.is_some() && effector.target.distance(config.bases[0]) >= length
     }
 
-    /// Where the body's base asks to be, from where its points are wanted.
-    fn pull_in(&mut self, rig: &Problem, pose: &Configuration, body: usize) {
-        let (from, to) = self.of_body[body];
-        let base = pose.bases[body];
+    /// Sets the goals of a link's points and, from them, of its base.
+    fn reach_inward(&mut self, problem: &Problem, config: &Configuration, link: usize) {
+        let (from, to) = self.ranges[link];
+        let base = config.bases[link];
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
         for index in from..to {
             let point = &self.points[index];
-            let wanted = self.wanted(rig, point);
-            self.wanted[index] = wanted;
-            self.arms[index] = point.place(pose) - base;
-            let back = normalize(base - wanted).or_else(|| normalize(-self.arms[index]));
-            sum += point.weight * (wanted + point.reach * back.unwrap_or(Vec3A::ZERO));
+            let goal = self.goal_of(problem, point);
+            self.goals[index] = goal;
+            self.arms[index] = point.position_in(config) - base;
+            let back = normalize(base - goal).or_else(|| normalize(-self.arms[index]));
+            sum += point.weight * (goal + point.radius * back.unwrap_or(Vec3A::ZERO));
             weights += point.weight;
         }
-        self.asked[body] = sum / weights;
+        self.base_goals[link] = sum / weights;
     }
 
-    /// The mean of what a point's holds ask.
-    fn wanted(&self, rig: &Problem, point: &Point) -> Vec3A {
-        if let [held] = point.holds[..] {
-            return self.asks(rig, held.what);
+    /// Weighted mean of the goals of a point's members.
+    fn goal_of(&self, problem: &Problem, point: &LinkPoint) -> Vec3A {
+        if let [member] = point.members[..] {
+            return self.member_goal(problem, member.kind);
         }
+        let goals = point.members.iter();
         let sum: Vec3A =
-            point.holds.iter().map(|held| held.weight * self.asks(rig, held.what)).sum();
+            goals.map(|member| member.weight * self.member_goal(problem, member.kind)).sum();
         sum / point.weight
     }
 
-    fn asks(&self, rig: &Problem, what: What) -> Vec3A {
-        match what {
-            What::Base(body) => self.asked[body],
-            What::Tip(goal) => rig.goals[goal].point,
+    fn member_goal(&self, problem: &Problem, member: MemberKind) -> Vec3A {
+        match member {
+            MemberKind::Base(link) => self.base_goals[link],
+            MemberKind::Tip(effector) => problem.effectors[effector].target,
         }
     }
 
-    /// Each tree by the mean of what is asked of its root, as far as numbers go.
-    fn move_roots(&self, rig: &Problem, pose: &mut Configuration) {
+    /// Shifts each tree by the mean vector from what is fixed to its root to the goals, unless that
+    /// overflows.
+    fn move_roots(&self, problem: &Problem, config: &mut Configuration) {
         for (tree, ground) in self.grounds.iter().enumerate() {
-            let weights: f32 = ground.iter().map(|held| held.weight).sum();
-            let sum: Vec3A = ground
-                .iter()
-                .map(|held| held.weight * (self.asks(rig, held.what) - held.what.place(pose)))
-                .sum();
-            let moved = pose.shift[tree] + sum / weights;
-            if rig.can_go(tree, moved) {
-                pose.shift[tree] = moved;
+            let weights: f32 = ground.iter().map(|member| member.weight).sum();
+            let residual = |member: &PointMember| {
+                self.member_goal(problem, member.kind) - member.kind.position_in(config)
+            };
+            let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
+            let shift = config.shifts[tree] + sum / weights;
+            if problem.can_shift(tree, shift) {
+                config.shifts[tree] = shift;
             }
-            for held in ground {
-                if let What::Tip(goal) = held.what {
-                    pose.tips[goal] = pose.shift[tree] + rig.goals[goal].tip;
+            for member in ground {
+                if let MemberKind::Tip(effector) = member.kind {
+                    config.tips[effector] = config.shifts[tree] + problem.effectors[effector].tip;
                 }
             }
         }
     }
 
-    /// The body's points from its base.
-    fn lay_out(&mut self, rig: &Problem, pose: &mut Configuration, body: usize) {
-        let (from, to) = self.of_body[body];
-        let base = pose.bases[body];
+    /// Places a link's points from its base.
+    fn reach_outward(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
+        let (from, to) = self.ranges[link];
+        let base = config.bases[link];
         if self.limited || to - from > 1 {
-            self.turn(rig, pose, body);
-        } else if let Some(towards) = normalize(self.wanted[from] - base) {
-            self.arms[from] = self.points[from].reach * towards;
+            self.rotate(problem, config, link);
+        } else if let Some(towards) = normalize(self.goals[from] - base) {
+            self.arms[from] = self.points[from].radius * towards;
         }
         for index in from..to {
-            let place = base + self.arms[index];
-            for held in &self.points[index].holds {
-                match held.what {
-                    What::Base(child) => pose.bases[child] = place,
-                    What::Tip(goal) => pose.tips[goal] = place,
+            let position = base + self.arms[index];
+            for member in &self.points[index].members {
+                match member.kind {
+                    MemberKind::Base(child) => config.bases[child] = position,
+                    MemberKind::Tip(effector) => config.tips[effector] = position,
                 }
             }
         }
     }
 
-    /// Turns the body as a whole, so that its points come near where they are wanted.
-    fn turn(&mut self, rig: &Problem, pose: &mut Configuration, index: usize) {
-        // Each turn about several points is the best about one axis only; a few come near the best
-        // of all.
-        const TURNS: usize = 3;
-        let (from, to) = self.of_body[index];
-        let body = &rig.bodies[index];
-        let above = body.parent.map_or(Quat::IDENTITY, |parent| pose.turned[parent]);
-        let mounted = above * self.mounts[index];
+    /// Rotates a link as a whole, so that its points come near their goals.
+    fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
+        // A rotation for several points is the best about one axis only; a few come near the best of
+        // all.
+        const ROTATIONS: usize = 3;
+        let (from, to) = self.ranges[index];
+        let link = &problem.links[index];
+        let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+        let mounted = parent * self.mounts[index];
         let own =
-            |pose: &Configuration| Quat::from_mat3a(&EulerAngles(pose.angles[index]).matrix());
-        if body.is_limited() {
-            pose.turned[index] = (mounted * own(pose)).normalize();
+            |config: &Configuration| Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+        if link.is_limited() {
+            config.orientations[index] = (mounted * own(config)).normalize();
         }
         self.pairs.clear();
         for point in from..to {
-            let Point { at, weight, .. } = self.points[point];
-            let arm = pose.turned[index] * at;
-            self.pairs.push(Pair { arm, goal: self.wanted[point] - pose.bases[index], weight });
+            let LinkPoint { position, weight, .. } = self.points[point];
+            self.pairs.push(PointPair {
+                from: config.orientations[index] * position,
+                to: self.goals[point] - config.bases[index],
+                weight,
+            });
         }
-        for _ in 0..if to - from > 1 || body.is_limited() { TURNS } else { 1 } {
-            if body.is_limited() {
-                let axes = Mat3A::from_quat(mounted) * EulerAngles(pose.angles[index]).axes();
+        for _ in 0..if to - from > 1 || link.is_limited() { ROTATIONS } else { 1 } {
+            if link.is_limited() {
+                let axes = Mat3A::from_quat(mounted) * JointAngles(config.angles[index]).axes();
                 let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-                align_within(&body.limits, axes, &mut pose.angles[index], &mut self.pairs);
+                align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs);
             } else {
-                let turn = align(&self.pairs);
-                self.pairs.iter_mut().for_each(|pair| pair.arm = turn * pair.arm);
-                pose.turned[index] = (turn * pose.turned[index]).normalize();
+                let rotation = align(&self.pairs);
+                self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+                config.orientations[index] = (rotation * config.orientations[index]).normalize();
             }
         }
-        if body.is_limited() {
-            pose.turned[index] = (mounted * own(pose)).normalize();
+        if link.is_limited() {
+            config.orientations[index] = (mounted * own(config)).normalize();
         }
         for point in from..to {
-            self.arms[point] = pose.turned[index] * self.points[point].at;
+            self.arms[point] = config.orientations[index] * self.points[point].position;
         }
     }
 
-    /// How bodies are turned that were only moved: by the least turn from how they were.
-    pub fn settle(&self, pose: &Configuration) -> Vec<Quat> {
-        let mut turned = pose.turned.clone();
+    /// Orientations of all links. Those of links with one point follow from it by the least rotation.
+    pub fn orientations(&self, config: &Configuration) -> Vec<Quat> {
+        let mut orientations = config.orientations.clone();
         if self.limited {
-            return turned;
+            return orientations;
         }
-        for (body, (from, to)) in self.of_body.iter().enumerate() {
+        for ((from, to), (orientation, base)) in
+            self.ranges.iter().zip(orientations.iter_mut().zip(&config.bases))
+        {
             if let [point] = &self.points[*from..*to] {
-                let arm = point.place(pose) - pose.bases[body];
-                turned[body] =
-                    (rotation_between(turned[body] * point.at, arm) * turned[body]).normalize();
+                let arm = point.position_in(config) - *base;
+                let rotation = rotation_between(*orientation * point.position, arm);
+                *orientation = (rotation * *orientation).normalize();
             }
         }
-        turned
+        orientations
     }
 }
 
-fn hold(points: &mut Vec<Point>, at: Vec3A, held: Held) {
-    match points.iter_mut().find(|point| point.at == at) {
+fn add_member(points: &mut Vec<LinkPoint>, position: Vec3A, member: PointMember) {
+    match points.iter_mut().find(|point| point.position == position) {
         Some(point) => {
-            point.weight += held.weight;
-            point.holds.push(held);
+            point.weight += member.weight;
+            point.members.push(member);
         }
-        None => {
-            let holds = vec![held];
-            points.push(Point { at, reach: at.length(), weight: held.weight, holds });
-        }
+        None => points.push(LinkPoint {
+            position,
+            radius: position.length(),
+            weight: member.weight,
+            members: vec![member],
+        }),
     }
 }
 
-impl Point {
-    /// Where it is now.
-    fn place(&self, pose: &Configuration) -> Vec3A {
-        self.holds[0].what.place(pose)
+impl LinkPoint {
+    /// Position in skeleton space.
+    fn position_in(&self, config: &Configuration) -> Vec3A {
+        self.members[0].kind.position_in(config)
     }
 }
 
-impl What {
-    fn place(self, pose: &Configuration) -> Vec3A {
+impl MemberKind {
+    /// Position in skeleton space.
+    fn position_in(self, config: &Configuration) -> Vec3A {
         match self {
-            Self::Base(body) => pose.bases[body],
-            Self::Tip(goal) => pose.tips[goal],
+            Self::Base(link) => config.bases[link],
+            Self::Tip(effector) => config.tips[effector],
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The Jacobian: derivatives of tips by angles.
 //!
 //! The column of the Jacobian J for one Euler angle of a joint with base b, for a tip p, is a × (p −
-//! b), a the unit vector that the angle turns about. What a force F at p does to that angle, Jᵀ F,
-//! is a · ((p − b) × F): the moments of all forces about one point, summed from tips to roots, give
-//! it for all joints in one pass.
+//! b), where the unit vector a is the angle's axis. A force F at p has the component Jᵀ F = a · ((p −
+//! b) × F) along that angle. Summing forces and moments from tips to roots gives it for all joints in
+//! one pass.
 //!
 //! # Source
 //!
@@ -14,7 +14,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::Configuration;
 use super::problem::Problem;
-use crate::kinematics::skeleton::{EulerAngles, JointId, Skeleton};
+use crate::kinematics::skeleton::{JointAngles, JointId, Skeleton, clamp_to_limits};
 
 /// Derivatives of a tip by every joint's angles about x, y and z, in skeleton space; zero for joints
 /// that are not ancestors of the tip.
@@ -28,7 +28,7 @@ pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
     for index in skeleton.ancestors(joint) {
         let Some(above) = skeleton.joint(index) else { continue };
         let parent = above.parent.map_or(Mat3A::IDENTITY, |parent| pose.full(parent).matrix3);
-        let axes = parent * Mat3A::from(above.frame) * EulerAngles(above.rotation).axes();
+        let axes = parent * Mat3A::from(above.frame) * JointAngles(above.rotation).axes();
         let arm = Vec3A::from(pose.tip(joint) - pose.base(index));
         columns[index.index()] =
             [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
@@ -36,72 +36,71 @@ pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
     columns
 }
 
-/// Force and moment (about the tree's origin) of what hangs on each body.
+/// Force and moment (about the tree's origin) on each link, from all end effectors below.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wrenches(Vec<(Vec3A, Vec3A)>);
 
 impl Wrenches {
-    /// Jᵀ F for forces at tips: into `angles` for every body, and into `shift` the sum of forces on
-    /// every tree.
-    pub fn gather(
+    /// Writes Jᵀ F for forces at tips into `angles`, for every link, and the sum of forces on every tree
+    /// into `shifts`.
+    pub fn apply_transpose(
         &mut self,
-        rig: &Problem,
-        pose: &Configuration,
+        problem: &Problem,
+        config: &Configuration,
         force: impl Fn(usize) -> Vec3A,
         angles: &mut Vec<Vec3>,
-        shift: &mut Vec<Vec3A>,
+        shifts: &mut Vec<Vec3A>,
     ) {
         self.0.clear();
-        self.0.resize(rig.bodies.len(), (Vec3A::ZERO, Vec3A::ZERO));
+        self.0.resize(problem.links.len(), (Vec3A::ZERO, Vec3A::ZERO));
         angles.clear();
-        angles.resize(rig.bodies.len(), Vec3::ZERO);
-        shift.clear();
-        shift.resize(rig.trees.len(), Vec3A::ZERO);
+        angles.resize(problem.links.len(), Vec3::ZERO);
+        shifts.clear();
+        shifts.resize(problem.trees.len(), Vec3A::ZERO);
 
-        for (index, goal) in rig.goals.iter().enumerate() {
+        for (index, effector) in problem.effectors.iter().enumerate() {
             let force = force(index);
-            shift[goal.tree] += force;
-            if let Some(body) = goal.body {
-                self.add(body, force, pose.tips[index].cross(force));
+            shifts[effector.tree] += force;
+            if let Some(link) = effector.link {
+                self.add(link, force, config.tips[index].cross(force));
             }
         }
-        for (index, body) in rig.bodies.iter().enumerate().rev() {
+        for (index, link) in problem.links.iter().enumerate().rev() {
             let (force, moment) = self.0[index];
-            let about_base = moment - pose.bases[index].cross(force);
-            angles[index] = (pose.axes[index].transpose() * about_base).into();
-            if let Some(parent) = body.parent {
+            let about_base = moment - config.bases[index].cross(force);
+            angles[index] = (config.axes[index].transpose() * about_base).into();
+            if let Some(parent) = link.parent {
                 self.add(parent, force, moment);
             }
         }
     }
 
-    fn add(&mut self, body: usize, force: Vec3A, moment: Vec3A) {
-        self.0[body].0 += force;
-        self.0[body].1 += moment;
+    fn add(&mut self, link: usize, force: Vec3A, moment: Vec3A) {
+        self.0[link].0 += force;
+        self.0[link].1 += moment;
     }
 }
 
 /// Applies a step within the limits; non-finite components are left unchanged.
 pub(super) fn advance(
-    rig: &Problem,
+    problem: &Problem,
     from: (&[Vec3], &[Vec3A]),
     by: (&[Vec3], &[Vec3A]),
     factor: f32,
-    pose: &mut Configuration,
+    config: &mut Configuration,
 ) {
-    for (index, body) in rig.bodies.iter().enumerate() {
+    for (index, link) in problem.links.iter().enumerate() {
         let (before, angles) = (from.0[index], from.0[index] + factor * by.0[index]);
         let angles = if angles.is_finite() { angles } else { before };
-        pose.angles[index] = crate::kinematics::skeleton::within(&body.limits, angles);
+        config.angles[index] = clamp_to_limits(&link.limits, angles);
     }
-    if rig.free {
-        // A root counts as a joint with an arm as long as the chain, so that lengths and angles
-        // compare.
-        let lever = factor * rig.length * rig.length;
-        for (index, shift) in pose.shift.iter_mut().enumerate() {
+    if problem.free_roots {
+        // One chain length converts the units of angles to those of shifts.
+        let lever = factor * problem.length * problem.length;
+        for (index, shifts) in config.shifts.iter_mut().enumerate() {
             let (before, moved) = (from.1[index], from.1[index] + lever * by.1[index]);
-            *shift = if rig.can_go(index, moved) { moved } else { before };
+            *shifts = if problem.can_shift(index, moved) { moved } else { before };
         }
     }
-    pose.forward(rig);
+    config.forward(problem);
 }

@@ -1,49 +1,53 @@
-//! A small bend for chains that lie on one line with their target: there no joint has a moment, and
-//! every method would stay as it is.
+//! A small bend for chains that lie on one line with their target, where no joint has a moment and no
+//! method can start.
 
 use glam::{Vec3, Vec3A};
 
 use super::configuration::Configuration;
 use super::problem::Problem;
 use crate::kinematics::normalize;
-use crate::kinematics::skeleton::within;
+use crate::kinematics::skeleton::clamp_to_limits;
 
-/// Radians, shared by the joints of a path.
+/// Angle of a bend in radians, distributed over the joints of a path.
 const BEND: f32 = 0.5;
 
-pub(super) fn is_stuck(rig: &Problem, pose: &Configuration) -> bool {
-    (0..rig.goals.len()).any(|goal| stuck(rig, pose, goal, path(rig, goal)).is_some())
+/// Whether any path cannot start.
+pub(super) fn is_stuck(problem: &Problem, config: &Configuration) -> bool {
+    (0..problem.effectors.len())
+        .any(|effector| stuck_line(problem, config, effector, path(problem, effector)).is_some())
 }
 
-/// Bends what is stuck: angles only.
-pub(super) fn bend(rig: &Problem, pose: &mut Configuration) {
-    for goal in 0..rig.goals.len() {
-        let Some(line) = stuck(rig, pose, goal, path(rig, goal)) else { continue };
-        let by = BEND / path(rig, goal).count() as f32;
-        for body in path(rig, goal) {
-            bend_body(rig, pose, body, line, by);
+/// Bends the paths that cannot start. Changes only angles.
+pub(super) fn bend(problem: &Problem, config: &mut Configuration) {
+    for effector in 0..problem.effectors.len() {
+        let Some(line) = stuck_line(problem, config, effector, path(problem, effector)) else {
+            continue;
+        };
+        let by = BEND / path(problem, effector).count() as f32;
+        for link in path(problem, effector) {
+            bend_link(problem, config, link, line, by);
         }
     }
 }
 
-/// From the body that carries a goal's tip to the root.
-fn path(rig: &Problem, goal: usize) -> impl Iterator<Item = usize> + Clone + '_ {
-    std::iter::successors(rig.goals[goal].body, |body| rig.bodies[*body].parent)
+/// Links from an end effector's to the root's.
+fn path(problem: &Problem, effector: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+    std::iter::successors(problem.effectors[effector].link, |link| problem.links[*link].parent)
 }
 
-/// The line that a path and its target lie on, unless the path is stretched towards a target
-/// beyond.
-fn stuck(
-    rig: &Problem,
-    pose: &Configuration,
+/// Direction of the line that a path and its target lie on; `None` if they don't, or if the path is
+/// already stretched towards a target out of reach.
+fn stuck_line(
+    problem: &Problem,
+    config: &Configuration,
     index: usize,
     path: impl Iterator<Item = usize> + Clone,
 ) -> Option<Vec3A> {
-    // In lengths: nearer to a line than this, methods leave it slowly.
+    // Relative distance from the line below which methods leave it slowly.
     const STRAIGHT: f32 = 1e-3;
-    let (goal, tip) = (&rig.goals[index], pose.tips[index]);
-    let base = pose.bases[path.clone().last()?];
-    let points = path.map(|body| pose.bases[body]).chain([tip]).map(|point| point - base);
+    let (effector, tip) = (&problem.effectors[index], config.tips[index]);
+    let base = config.bases[path.clone().last()?];
+    let points = path.map(|link| config.bases[link]).chain([tip]).map(|point| point - base);
     let farthest = points
         .clone()
         .max_by(|one, other| one.length_squared().total_cmp(&other.length_squared()))?;
@@ -52,43 +56,44 @@ fn stuck(
     let is_beside = |point: Vec3A| {
         point.reject_from_normalized(line).length() > STRAIGHT * reach.max(point.length())
     };
-    if points.clone().any(is_beside) || is_beside(goal.point - base) {
+    if points.clone().any(is_beside) || is_beside(effector.target - base) {
         return None;
     }
-    (!is_stretched(rig, index, line, tip, base)).then_some(line)
+    (!is_stretched(problem, index, line, tip, base)).then_some(line)
 }
 
-fn is_stretched(rig: &Problem, index: usize, line: Vec3A, tip: Vec3A, base: Vec3A) -> bool {
-    // In lengths: what a chain as near to its line as counts as straight may be short of.
+/// Whether a path on a line is fully stretched towards its target.
+fn is_stretched(problem: &Problem, index: usize, line: Vec3A, tip: Vec3A, base: Vec3A) -> bool {
+    // Relative shortening of a chain within `STRAIGHT` of its line.
     const STRETCHED: f32 = 1e-3;
-    let goal = &rig.goals[index];
-    let inner = path(rig, index).filter(|body| rig.bodies[*body].parent.is_some());
-    let bones: f32 = inner.map(|body| rig.bodies[body].pivot.length()).sum();
+    let effector = &problem.effectors[index];
+    let inner = path(problem, index).filter(|link| problem.links[*link].parent.is_some());
+    let bones: f32 = inner.map(|link| problem.links[link].pivot.length()).sum();
     let reached = (tip - base).dot(line);
-    let beyond = (goal.point - base).dot(line);
-    reached >= (bones + goal.tip.length()) * (1.0 - STRETCHED) && beyond >= reached
+    let beyond = (effector.target - base).dot(line);
+    reached >= (bones + effector.tip.length()) * (1.0 - STRETCHED) && beyond >= reached
 }
 
-/// Turns a body by the angle that swings the line most: all of them as far as limits let it.
-pub(super) fn bend_body(
-    rig: &Problem,
-    pose: &mut Configuration,
-    body: usize,
+/// Rotates a link by the angle that swings the line most within the limits.
+pub(super) fn bend_link(
+    problem: &Problem,
+    config: &mut Configuration,
+    link: usize,
     line: Vec3A,
     by: f32,
 ) {
-    let (limits, angles) = (&rig.bodies[body].limits, pose.angles[body]);
+    let (limits, angles) = (&problem.links[link].limits, config.angles[link]);
     let mut best = (0.0, angles);
     for (axis, unit) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
-        let swing = pose.axes[body].col(axis).cross(line).length();
+        let swing = config.axes[link].col(axis).cross(line).length();
         for side in [by, -by] {
-            let bent = within(limits, angles + unit * side);
+            let bent = clamp_to_limits(limits, angles + unit * side);
             let swung = swing * (bent - angles).length();
-            // A shade more, so that rounding does not choose.
+            // A margin, so that rounding does not decide between equals.
             if swung > best.0 * 1.01 {
                 best = (swung, bent);
             }
         }
     }
-    pose.angles[body] = best.1;
+    config.angles[link] = best.1;
 }

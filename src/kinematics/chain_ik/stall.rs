@@ -2,91 +2,92 @@ use super::Method;
 use super::configuration::Configuration;
 use super::problem::Problem;
 
-/// Tells when nothing gets better: the pose of the last time that something did.
+/// Detects when iterations have ceased to improve on a reference configuration.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Stall {
-    pub pose: Configuration,
-    /// Root mean square distance from tips to targets, in the rig's lengths.
+pub(super) struct StallDetector {
+    /// The last configuration that was an improvement.
+    pub reference: Configuration,
+    /// Root mean square distance of the reference from the targets, in the problem's units.
     distance: f64,
-    /// Mean distance.
+    /// Mean distance of the reference.
     mean: f64,
-    pub since: u32,
-    /// How many iterations without getting nearer are the end.
+    /// Number of iterations since the reference.
+    pub idle: u32,
+    /// Number of idle iterations of a stall.
     patience: u32,
-    /// How much nearer counts.
+    /// Least improvement of the distance.
     least: f64,
-    /// How much nearer counts while joints still move.
-    unseen: f64,
-    /// How often nothing got nearer and yet joints moved.
+    /// Least improvement while joints still move.
+    least_moving: f64,
+    /// Number of iterations in which joints moved without an improvement.
     drifts: u32,
-    /// Whether the method has begun anew since.
-    pub renewed: bool,
+    /// Whether the method was restarted since the reference.
+    pub restarted: bool,
 }
 
-impl Stall {
-    pub fn new(method: Method, tolerance: f64, pose: &Configuration) -> Self {
+impl StallDetector {
+    pub fn new(method: Method, tolerance: f64, config: &Configuration) -> Self {
         // The fixed step overshoots for longer before it settles.
         let patience = if method == Method::TransposeFixed { 100 } else { 20 };
-        // At this rate the whole budget would not bring the tips nearer by one tolerance.
-        let share = f64::from(patience) / f64::from(method.budget());
-        let seen = f64::from(f32::EPSILON);
-        let (least, unseen) = match method {
-            // Angles are written rounded; from there the last iterations go otherwise, so that
-            // there must be next to nothing left for them. No sweep of CCD makes things worse,
-            // though single precision may have it so.
-            Method::Ccd => (2.0 * seen, -seen),
-            // Where several targets conflict, it comes to rest near where they are nearest.
-            Method::Fabrik => (2.0 * seen, -1e-5),
-            // From the same angles these do the same again.
-            _ => ((share * tolerance).max(seen), f64::INFINITY),
+        // At this rate the whole budget improves by less than one tolerance.
+        let fraction = f64::from(patience) / f64::from(method.budget());
+        let rounding = f64::from(f32::EPSILON);
+        let (least, least_moving) = match method {
+            // Written angles are rounded, and another solve from them takes other steps, so that
+            // almost no improvement may be left. In exact arithmetic no sweep increases the distance.
+            Method::Ccd => (2.0 * rounding, -rounding),
+            // With conflicting targets, FABRIK converges near the minimum, not at it.
+            Method::Fabrik => (2.0 * rounding, -1e-5),
+            // From the same angles these methods repeat the same steps.
+            _ => ((fraction * tolerance).max(rounding), f64::INFINITY),
         };
-        let pose = pose.clone();
         Self {
-            pose,
+            reference: config.clone(),
             distance: 0.0,
             mean: 0.0,
-            since: 0,
+            idle: 0,
             patience,
             least,
-            unseen,
+            least_moving,
             drifts: 0,
-            renewed: false,
+            restarted: false,
         }
     }
 
-    pub fn mark(&mut self, rig: &Problem, pose: &Configuration) {
-        self.pose.copy(pose);
-        self.distance = pose.distance(rig);
-        self.mean = pose.mean_distance(rig);
-        self.since = 0;
+    /// Makes a configuration the reference.
+    pub fn set_reference(&mut self, problem: &Problem, config: &Configuration) {
+        self.reference.copy_from(config);
+        self.distance = config.distance(problem);
+        self.mean = config.mean_distance(problem);
+        self.idle = 0;
         self.drifts = 0;
-        self.renewed = false;
+        self.restarted = false;
     }
 
-    /// Whether it is time to rest.
-    pub fn watch(&mut self, rig: &Problem, pose: &Configuration) -> bool {
-        // More is going to and fro.
+    /// Updates the reference after an iteration. Returns whether the method has stalled.
+    pub fn observe(&mut self, problem: &Problem, config: &Configuration) -> bool {
+        // Longer drifts oscillate.
         const DRIFTS: u32 = 200;
-        let nearer = match self.distance - pose.distance(rig) {
-            // A target out of reach does not hide how near the others come.
-            nearer if nearer >= 0.0 => nearer.max(self.mean - pose.mean_distance(rig)),
+        let nearer = match self.distance - config.distance(problem) {
+            // One target out of reach does not hide improvements of the others.
+            nearer if nearer >= 0.0 => nearer.max(self.mean - config.mean_distance(problem)),
             farther => farther,
         };
         let drifts = if nearer > self.least { 0 } else { self.drifts + u32::from(nearer <= 0.0) };
-        let is_drifting = || nearer > self.unseen && self.is_moving(rig, pose);
+        let is_drifting = || nearer > self.least_moving && self.is_moving(problem, config);
         if nearer > self.least || (drifts <= DRIFTS && is_drifting()) {
-            self.mark(rig, pose);
+            self.set_reference(problem, config);
             self.drifts = drifts;
             return false;
         }
-        self.since += 1;
-        self.since >= self.patience
+        self.idle += 1;
+        self.idle >= self.patience
     }
 
-    /// Whether some joint has come away from the mark: where a valley is flat, chains go far for
-    /// little.
-    fn is_moving(&self, rig: &Problem, pose: &Configuration) -> bool {
+    /// Whether a joint is away from the reference. In a flat valley chains move far for little
+    /// improvement.
+    fn is_moving(&self, problem: &Problem, config: &Configuration) -> bool {
         const STILL: f32 = 1e-5;
-        pose.farthest_move(&self.pose) > STILL * rig.length
+        config.max_displacement(&self.reference) > STILL * problem.length
     }
 }

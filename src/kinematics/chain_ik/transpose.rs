@@ -1,8 +1,8 @@
 //! Gradient descent: θ ← θ − τ Jᵀ W (p − target).
 //!
-//! The fixed step is τ = 1/Σ w r², r the distances from joints to tips in the bind pose: no more
-//! than the reciprocal of the cost's greatest curvature near a solution. The variable one is searched
-//! for: from twice the last good one, halved until the cost falls.
+//! The fixed step is τ = 1/Σ w r², with the distances r from joints to tips in the bind pose: at most
+//! the reciprocal of the cost's greatest curvature near a solution. The line search starts at twice the
+//! last successful step and halves it until the cost falls.
 //!
 //! # Sources
 //!
@@ -17,58 +17,68 @@ use super::problem::Problem;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Transpose {
     searched: bool,
-    /// τ, and what it was at first.
+    /// τ, and its initial value.
     step: f32,
-    first: f32,
+    initial_step: f32,
     wrenches: Wrenches,
-    slope: (Vec<Vec3>, Vec<Vec3A>),
+    gradient: (Vec<Vec3>, Vec<Vec3A>),
     before: (Vec<Vec3>, Vec<Vec3A>),
 }
 
 impl Transpose {
-    pub fn new(rig: &Problem, step: f32, searched: bool) -> Self {
-        let step = if rig.inertia > 0.0 { step / rig.inertia } else { 0.0 };
-        Self { searched, step, first: step, ..Self::default() }
+    pub fn new(problem: &Problem, step: f32, searched: bool) -> Self {
+        let step = if problem.inertia > 0.0 { step / problem.inertia } else { 0.0 };
+        Self { searched, step, initial_step: step, ..Self::default() }
     }
 
-    /// Forgets the last good step. Whether it searches for one.
-    pub fn renew(&mut self) -> bool {
-        self.step = self.first;
+    /// Resets the step. Returns whether the method searches for one.
+    pub fn restart(&mut self) -> bool {
+        self.step = self.initial_step;
         self.searched
     }
 
-    /// Whether there was anything to do.
-    pub fn iterate(&mut self, rig: &Problem, pose: &mut Configuration) -> bool {
+    /// Makes a step. Returns whether it lowers the cost, or `true` for a fixed step.
+    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         let force = |index: usize| {
-            let goal = &rig.goals[index];
-            (goal.point - pose.tips[index]) * goal.weight
+            let effector = &problem.effectors[index];
+            (effector.target - config.tips[index]) * effector.weight
         };
-        self.wrenches.gather(rig, pose, force, &mut self.slope.0, &mut self.slope.1);
-        self.before.0.clone_from(&pose.angles);
-        self.before.1.clone_from(&pose.shift);
-        if self.searched { self.search(rig, pose) } else { self.advance(rig, self.step, pose) }
+        self.wrenches.apply_transpose(
+            problem,
+            config,
+            force,
+            &mut self.gradient.0,
+            &mut self.gradient.1,
+        );
+        self.before.0.clone_from(&config.angles);
+        self.before.1.clone_from(&config.shifts);
+        if self.searched {
+            self.search(problem, config)
+        } else {
+            self.advance(problem, self.step, config)
+        }
     }
 
-    fn search(&mut self, rig: &Problem, pose: &mut Configuration) -> bool {
-        // From twice a step down to where an angle would change by less than its rounding.
+    fn search(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+        // Down to where angles change by less than their rounding.
         const HALVINGS: u32 = 40;
-        let cost = pose.cost(rig);
+        let cost = config.cost(problem);
         let mut step = 2.0 * self.step;
         for _ in 0..HALVINGS {
-            self.advance(rig, step, pose);
-            if pose.cost(rig) < cost {
+            self.advance(problem, step, config);
+            if config.cost(problem) < cost {
                 self.step = step;
                 return true;
             }
             step *= 0.5;
         }
-        self.advance(rig, 0.0, pose);
+        self.advance(problem, 0.0, config);
         false
     }
 
-    fn advance(&self, rig: &Problem, step: f32, pose: &mut Configuration) -> bool {
-        let (before, slope) = (&self.before, &self.slope);
-        advance(rig, (&before.0, &before.1), (&slope.0, &slope.1), step, pose);
+    fn advance(&self, problem: &Problem, step: f32, config: &mut Configuration) -> bool {
+        let (before, gradient) = (&self.before, &self.gradient);
+        advance(problem, (&before.0, &before.1), (&gradient.0, &gradient.1), step, config);
         true
     }
 }

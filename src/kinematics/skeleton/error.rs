@@ -1,7 +1,10 @@
+use core::fmt;
+
 use glam::Vec3;
 use thiserror::Error;
 
-use super::{JointId, Skeleton};
+use super::JointId;
+use super::joint_id::MOST_JOINTS;
 
 /// An invalid skeleton or edit.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -11,11 +14,21 @@ pub enum SkeletonError {
     #[error("there is no joint {0}")]
     NoJoint(JointId),
     /// The parent does not precede the joint.
-    #[error("parent {parent} of joint {joint} does not stand before it")]
-    Parent { joint: JointId, parent: JointId },
+    #[error("the parent of joint {joint} must precede it, got {parent}")]
+    Parent {
+        /// The joint.
+        joint: JointId,
+        /// Its parent.
+        parent: JointId,
+    },
     /// The parent is the joint or one of its descendants.
-    #[error("joint {parent} hangs from joint {joint} and cannot be its parent")]
-    Cycle { joint: JointId, parent: JointId },
+    #[error("the parent of joint {joint} must not be one of its descendants, got {parent}")]
+    Cycle {
+        /// The joint.
+        joint: JointId,
+        /// Its parent.
+        parent: JointId,
+    },
     /// The name is empty.
     #[error("a joint needs a name")]
     NoName,
@@ -23,24 +36,98 @@ pub enum SkeletonError {
     #[error("two joints are called {0:?}; names must differ")]
     Name(String),
     /// A vector is not finite.
-    #[error("{field} of joint {joint} is {value}; it must be finite numbers")]
-    NotFinite { joint: JointId, field: &'static str, value: Vec3 },
+    #[error("the {field} of joint {joint} must be finite, got {value}")]
+    NotFinite {
+        /// The joint.
+        joint: JointId,
+        /// The vector.
+        field: JointField,
+        /// Its value.
+        value: Vec3,
+    },
     /// The radius is negative or not finite.
-    #[error("radius of joint {joint} is {value}; it must be a finite number, 0 or more")]
-    Radius { joint: JointId, value: f32 },
+    #[error("the radius of joint {joint} must be finite and 0 or more, got {value}")]
+    Radius {
+        /// The joint.
+        joint: JointId,
+        /// Its radius.
+        value: f32,
+    },
     /// The frame is not a right-handed orthonormal basis.
-    #[error("the frame of joint {joint} must be three unit vectors at right angles, right-handed")]
-    Frame { joint: JointId },
+    #[error("the frame of joint {joint} must be a right-handed orthonormal basis")]
+    Frame {
+        /// The joint.
+        joint: JointId,
+    },
     /// A limit is not finite, or its bounds are swapped.
     #[error(
-        "the limit of joint {joint} about {axis} is {min} to {max}; it must be finite numbers, the \
-         lower one first"
+        "the limit of joint {joint} about {axis} must be finite, the lower bound first, got {min} \
+         to {max}"
     )]
-    Limit { joint: JointId, axis: char, min: f32, max: f32 },
-    /// There are more than [`Skeleton::MOST_JOINTS`] joints.
-    #[error("a skeleton has at most {} joints", Skeleton::MOST_JOINTS)]
+    Limit {
+        /// The joint.
+        joint: JointId,
+        /// The axis of the angle.
+        axis: RotationAxis,
+        /// The lower bound.
+        min: f32,
+        /// The upper bound.
+        max: f32,
+    },
+    /// There are more than [`Skeleton::MOST_JOINTS`](super::Skeleton::MOST_JOINTS) joints.
+    #[error("a skeleton has at most {MOST_JOINTS} joints")]
     TooMany,
     /// The transform is not finite.
-    #[error("the skeleton's transform must be finite numbers")]
+    #[error("the skeleton's transform must be finite")]
     Transform,
+}
+
+/// A vector of a [`Joint`](super::Joint).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum JointField {
+    /// [`Joint::offset`](super::Joint::offset)
+    Offset,
+    /// [`Joint::axis`](super::Joint::axis)
+    Axis,
+    /// [`Joint::rotation`](super::Joint::rotation)
+    Rotation,
+}
+
+/// The field's name: "offset", "axis" or "rotation".
+impl fmt::Display for JointField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Offset => "offset",
+            Self::Axis => "axis",
+            Self::Rotation => "rotation",
+        })
+    }
+}
+
+/// The axis of an Euler angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotationAxis {
+    /// The frame's x-axis.
+    X,
+    /// The frame's y-axis.
+    Y,
+    /// The frame's z-axis.
+    Z,
+}
+
+impl RotationAxis {
+    /// All axes, in the order of [`Joint::limits`](super::Joint::limits).
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+}
+
+/// "x", "y" or "z".
+impl fmt::Display for RotationAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        })
+    }
 }

@@ -1,6 +1,9 @@
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
-use super::{EulerAngles, JointId, SkeletonError, nearest_angles};
+use super::{
+    JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
+    nearest_angles,
+};
 
 /// A ball joint and its bone.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,15 +29,6 @@ pub struct Joint {
     pub radius: f32,
 }
 
-/// A closed range of an angle, radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
-    /// Lower bound.
-    pub min: f32,
-    /// Upper bound, not below `min`.
-    pub max: f32,
-}
-
 impl Joint {
     /// An unlimited joint at its parent's base, with a radius of a tenth of its bone's length.
     pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
@@ -58,18 +52,18 @@ impl Joint {
 
     /// R by other Euler angles.
     pub(crate) fn rotation_by(&self, angles: Vec3) -> Mat3A {
-        let turned = EulerAngles(angles).matrix();
+        let rotation = JointAngles(angles).matrix();
         if self.frame == Mat3::IDENTITY {
-            return turned;
+            return rotation;
         }
         let frame = Mat3A::from(self.frame);
-        frame * turned * frame.transpose()
+        frame * rotation * frame.transpose()
     }
 
     /// Unit axis about which the angle x, y or z (0, 1, 2) rotates, in the space of the joint's base:
     /// A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
     pub fn rotation_axis(&self, axis: usize) -> Vec3 {
-        (Mat3A::from(self.frame) * EulerAngles(self.rotation).axes()).col(axis).into()
+        (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
     }
 
     /// Transform T(offset) · R from the joint's own space to its parent's.
@@ -91,7 +85,7 @@ impl Joint {
 
     /// `rotation` clamped to the limits.
     pub fn clamped(&self, rotation: Vec3) -> Vec3 {
-        within(&self.limits, rotation)
+        clamp_to_limits(&self.limits, rotation)
     }
 
     /// Widens the limits as far as needed to contain these angles.
@@ -120,7 +114,11 @@ impl Joint {
         if self.name.trim().is_empty() {
             return Err(SkeletonError::NoName);
         }
-        let vectors = [("offset", self.offset), ("axis", self.axis), ("rotation", self.rotation)];
+        let vectors = [
+            (JointField::Offset, self.offset),
+            (JointField::Axis, self.axis),
+            (JointField::Rotation, self.rotation),
+        ];
         for (field, value) in vectors {
             if !value.is_finite() {
                 return Err(SkeletonError::NotFinite { joint, field, value });
@@ -133,7 +131,7 @@ impl Joint {
         if !(squared.abs_diff_eq(Mat3::IDENTITY, ORTHONORMAL) && self.frame.determinant() > 0.0) {
             return Err(SkeletonError::Frame { joint });
         }
-        for (axis, limit) in ['x', 'y', 'z'].into_iter().zip(self.limits) {
+        for (axis, limit) in RotationAxis::ALL.into_iter().zip(self.limits) {
             if let Some(Limit { min, max }) = limit
                 && !(min.is_finite() && max.is_finite() && min <= max)
             {
@@ -142,15 +140,4 @@ impl Joint {
         }
         Ok(())
     }
-}
-
-/// Angles brought within limits.
-pub(crate) fn within(limits: &[Option<Limit>; 3], rotation: Vec3) -> Vec3 {
-    let mut clamped = rotation;
-    for (axis, limit) in limits.iter().enumerate() {
-        if let Some(Limit { min, max }) = limit {
-            clamped[axis] = rotation[axis].clamp(*min, *max);
-        }
-    }
-    clamped
 }

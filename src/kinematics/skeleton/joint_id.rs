@@ -1,5 +1,8 @@
 use core::fmt;
 
+/// Maximum number of joints of a skeleton.
+pub(super) const MOST_JOINTS: usize = 10_000;
+
 /// The index of a joint in its skeleton.
 ///
 /// It means nothing without the skeleton: edits that move joints return a

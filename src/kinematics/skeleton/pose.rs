@@ -6,11 +6,11 @@ use crate::kinematics::Shared;
 /// Transforms of all joints. Overflow is clamped to ±`f32::MAX`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkeletonPose {
-    joints: Vec<Posed>,
+    joints: Vec<PosedJoint>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Posed {
+struct PosedJoint {
     full: Affine3A,
     tip: Vec3,
 }
@@ -44,7 +44,7 @@ impl SkeletonPose {
                 full = Affine3A::from_cols_array(&full.to_cols_array().map(saturated));
                 tip = Vec3::from_array(full.transform_point3(joint.axis).to_array().map(saturated));
             }
-            posed.push(Posed { full, tip });
+            posed.push(PosedJoint { full, tip });
         }
     }
 

@@ -107,14 +107,13 @@ impl Values<'_> {
     pub fn options(&mut self) -> SolverOptions {
         let iterations = self.one_of(&[0, 1, 3, 20, 100, 1000]);
         let tolerance = self.above_0(0.1);
-        SolverOptions {
-            method: self.one_of(&Method::ALL),
-            iterations: self.chance(0.3).then_some(iterations),
-            tolerance: self.chance(0.3).then_some(tolerance),
-            damping: self.above_0(0.2),
-            step: self.above_0(2.0),
-            root: if self.chance(0.2) { Root::Free } else { Root::Fixed },
-        }
+        let mut options = SolverOptions::new(self.one_of(&Method::ALL));
+        options.iterations = self.chance(0.3).then_some(iterations);
+        options.tolerance = self.chance(0.3).then_some(tolerance);
+        options.damping = self.above_0(0.2);
+        options.step = self.above_0(2.0);
+        options.root = if self.chance(0.2) { Root::Free } else { Root::Fixed };
+        options
     }
 
     pub fn iterations_per_frame(&mut self) -> u32 {

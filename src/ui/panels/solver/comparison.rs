@@ -5,7 +5,7 @@ use core::time::Duration;
 use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
 
 use super::can_solve::why_not;
-use crate::kinematics::chain_ik::Method;
+use crate::kinematics::chain_ik::{Method, Report, Status};
 use crate::session::{Actions, ComparedSolver, Session, SolverAction};
 use crate::ui::widgets::{self, format};
 use crate::ui::{labels, style};
@@ -43,7 +43,7 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         let said = format!("{}: {}", short_name(solver.method), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         // Only converged solvers are filled.
-        if solver.report().is_ok_and(|report| report.converged) {
+        if solver.report().is_ok_and(|report| report.converged()) {
             ui.painter().rect_filled(rect, 2.0, colour);
         } else {
             ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside);
@@ -70,10 +70,8 @@ fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Re
 fn status(solver: &ComparedSolver) -> String {
     match solver.report() {
         Err(error) => error.to_string(),
-        Ok(report) if report.converged => "Converged".to_owned(),
-        Ok(report) if report.resting => "Stalled".to_owned(),
-        Ok(_) if solver.is_running() => "Running".to_owned(),
-        Ok(_) => "Out of iterations".to_owned(),
+        Ok(Report { status: Status::Iterating, .. }) => "running".to_owned(),
+        Ok(report) => report.status.to_string(),
     }
 }
 

@@ -182,6 +182,6 @@ fn report(ui: &mut Ui, session: &Session) {
             .on_hover_text("Largest distance from a tip to its target")
     });
     widgets::pair(ui, "Status", |ui| {
-        ui.label(status.map_or("no target", |status| status.state.describe()))
+        ui.label(status.map_or("no target".to_owned(), |status| status.state.to_string()))
     });
 }

@@ -1,17 +1,6 @@
 use glam::{Affine3A, Vec3};
 
-use super::{Joint, JointId, Skeleton, SkeletonError, SkeletonPose};
-
-/// New indices of joints after an edit, by old index.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct JointRemap(Vec<Option<JointId>>);
-
-impl JointRemap {
-    /// The new index of `joint`; `None` if it was removed.
-    pub fn get(&self, joint: JointId) -> Option<JointId> {
-        self.0.get(joint.index()).copied().flatten()
-    }
-}
+use super::{Joint, JointField, JointId, JointRemap, Skeleton, SkeletonError, SkeletonPose};
 
 /// Editing. An edit that fails leaves the skeleton unchanged.
 impl Skeleton {
@@ -65,22 +54,22 @@ impl Skeleton {
         for joint in joints {
             self.known(*joint)?;
         }
-        let mut moved: Vec<Option<JointId>> = Vec::with_capacity(self.joints.len());
+        let mut remap: Vec<Option<JointId>> = Vec::with_capacity(self.joints.len());
         let mut kept = Vec::with_capacity(self.joints.len());
         for (index, mut joint) in std::mem::take(&mut self.joints).into_iter().enumerate() {
-            let parent = joint.parent.map(|parent| moved[parent.index()]);
+            let parent = joint.parent.map(|parent| remap[parent.index()]);
             if joints.contains(&index.into()) || parent == Some(None) {
-                moved.push(None);
+                remap.push(None);
                 continue;
             }
             if joint.parent != parent.flatten() {
                 joint.make_mut().parent = parent.flatten();
             }
-            moved.push(Some(kept.len().into()));
+            remap.push(Some(kept.len().into()));
             kept.push(joint);
         }
         self.joints = kept;
-        Ok(JointRemap(moved))
+        Ok(JointRemap(remap))
     }
 
     /// Removes joints and attaches their children to the next ancestor that stays, or makes them
@@ -88,7 +77,8 @@ impl Skeleton {
     ///
     /// # Errors
     ///
-    /// If a child's place below its new parent would not be finite; the skeleton is unchanged then.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NotFinite`] if the new offset or rotation of a child
+    /// overflows.
     pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         for joint in joints {
             self.known(*joint)?;
@@ -103,7 +93,7 @@ impl Skeleton {
             let parent = before.ancestors(child).skip(1).find(|above| !joints.contains(above));
             let near = before[child].rotation;
             let (offset, rotation) = before.placed_under_in(&pose, child, parent, near);
-            if let Err(error) = check_place(child, offset, rotation) {
+            if let Err(error) = check_finite(child, offset, rotation) {
                 *self = before;
                 return Err(error);
             }
@@ -163,7 +153,7 @@ impl Skeleton {
         }
         let near = self[joint].rotation;
         let (offset, rotation) = self.placed_under(joint, parent, near);
-        check_place(joint, offset, rotation)?;
+        check_finite(joint, offset, rotation)?;
         let moved = self.joints[joint.index()].make_mut();
         (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
         moved.clamp();
@@ -229,9 +219,9 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Writes a solver's angles and offset; ignored if they are not finite, which happens to bones
-    /// from about 1e19 whose squares overflow.
-    pub(crate) fn turn(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
+    /// Writes rotation and offset without checks. Ignored if they are not finite, which happens when
+    /// squares of bones from about 1e19 overflow.
+    pub(crate) fn write_local(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
         let Some(joint) = self.joints.get_mut(joint.index()) else { return };
         let joint = joint.make_mut();
         let (rotation, offset) = (joint.rotation, joint.offset);
@@ -256,12 +246,12 @@ impl Skeleton {
     /// Restores parents-before-children order, otherwise stable.
     fn sort(&mut self) -> JointRemap {
         let mut order = Vec::with_capacity(self.joints.len());
-        let mut moved: Vec<Option<JointId>> = vec![None; self.joints.len()];
+        let mut remap: Vec<Option<JointId>> = vec![None; self.joints.len()];
         while order.len() < self.joints.len() {
             for (index, joint) in self.joints.iter().enumerate() {
-                let is_next = joint.parent.is_none_or(|parent| moved[parent.index()].is_some());
-                if moved[index].is_none() && is_next {
-                    moved[index] = Some(order.len().into());
+                let is_next = joint.parent.is_none_or(|parent| remap[parent.index()].is_some());
+                if remap[index].is_none() && is_next {
+                    remap[index] = Some(order.len().into());
                     order.push(index);
                 }
             }
@@ -269,18 +259,18 @@ impl Skeleton {
         let mut joints: Vec<_> =
             order.into_iter().map(|index| self.joints[index].clone()).collect();
         for joint in &mut joints {
-            let parent = joint.parent.and_then(|parent| moved[parent.index()]);
+            let parent = joint.parent.and_then(|parent| remap[parent.index()]);
             if joint.parent != parent {
                 joint.make_mut().parent = parent;
             }
         }
         self.joints = joints;
-        JointRemap(moved)
+        JointRemap(remap)
     }
 }
 
-fn check_place(joint: JointId, offset: Vec3, rotation: Vec3) -> Result<(), SkeletonError> {
-    for (field, value) in [("offset", offset), ("rotation", rotation)] {
+fn check_finite(joint: JointId, offset: Vec3, rotation: Vec3) -> Result<(), SkeletonError> {
+    for (field, value) in [(JointField::Offset, offset), (JointField::Rotation, rotation)] {
         if !value.is_finite() {
             return Err(SkeletonError::NotFinite { joint, field, value });
         }

@@ -2,22 +2,22 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{Mat3A, Vec3, Vec3A};
 
-/// Angles about x, y and z, applied in this order.
+/// Euler angles about x, y and z, applied in this order, radians.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EulerAngles(pub Vec3);
+pub(crate) struct JointAngles(pub Vec3);
 
-impl EulerAngles {
+impl JointAngles {
     /// R_z · R_y · R_x.
     pub fn matrix(self) -> Mat3A {
         self.matrix_and_axes().0
     }
 
-    /// What each angle turns about, as columns: x about R_z · R_y · e_x, y about R_z · e_y, z about
-    /// e_z.
+    /// Rotation axes of the angles as columns: R_z · R_y · e_x, R_z · e_y and e_z.
     pub fn axes(self) -> Mat3A {
         self.matrix_and_axes().1
     }
 
+    /// [`Self::matrix`] and [`Self::axes`].
     pub fn matrix_and_axes(self) -> (Mat3A, Mat3A) {
         let (sx, cx) = self.0.x.sin_cos();
         let (sy, cy) = self.0.y.sin_cos();
@@ -32,14 +32,14 @@ impl EulerAngles {
     }
 }
 
-/// The angles of a rotation R_z · R_y · R_x that are nearest to given ones: every rotation has two
-/// triples, each up to whole turns. At y = ±90°, where x and z turn about one axis, z stays.
+/// Angles of a rotation R_z · R_y · R_x nearest to given ones. Every rotation has two triples, each up to
+/// whole turns. At y = ±90°, where x and z rotate about one axis, z is kept.
 pub(crate) fn nearest_angles(rotation: Mat3A, near: Vec3) -> Vec3 {
     angle_triples(rotation, near)[0]
 }
 
-/// Both triples of a rotation R_z · R_y · R_x, each brought beside given angles by whole turns; the
-/// nearer one first.
+/// Both triples of a rotation R_z · R_y · R_x, each shifted by whole turns to be nearest to given angles;
+/// the nearer triple first.
 pub(crate) fn angle_triples(rotation: Mat3A, near: Vec3) -> [Vec3; 2] {
     const GIMBAL: f32 = 1e-6;
     let Mat3A { x_axis, y_axis, z_axis } = rotation;
@@ -47,12 +47,12 @@ pub(crate) fn angle_triples(rotation: Mat3A, near: Vec3) -> [Vec3; 2] {
     let y = (-x_axis.z).atan2(cos_y);
     let z = if cos_y > GIMBAL { x_axis.y.atan2(x_axis.x) } else { near.z };
     let (sin_z, cos_z) = z.sin_cos();
-    // R_x is what is left when z is turned back; its sine and cosine are never both small.
+    // Of R_z⁻¹ · R; sine and cosine are never both small.
     let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
 
-    let beside = |angles: Vec3| angles + ((near - angles) / TAU).round() * TAU;
-    let one = beside(Vec3::new(x, y, z));
-    let other = beside(Vec3::new(x + PI, PI - y, z + PI));
+    let unwrapped = |angles: Vec3| angles + ((near - angles) / TAU).round() * TAU;
+    let one = unwrapped(Vec3::new(x, y, z));
+    let other = unwrapped(Vec3::new(x + PI, PI - y, z + PI));
     let is_nearer = one.distance_squared(near) <= other.distance_squared(near);
     if is_nearer { [one, other] } else { [other, one] }
 }
@@ -69,22 +69,22 @@ mod tests {
     }
 
     #[test]
-    fn the_matrix_is_the_product_of_three_turns_x_first() {
+    fn the_matrix_is_the_product_of_three_rotations_x_first() {
         for a in angles() {
             let product = Mat3A::from_rotation_z(a.z)
                 * Mat3A::from_rotation_y(a.y)
                 * Mat3A::from_rotation_x(a.x);
-            assert!(EulerAngles(a).matrix().abs_diff_eq(product, 1e-6), "{a}");
+            assert!(JointAngles(a).matrix().abs_diff_eq(product, 1e-6), "{a}");
         }
     }
 
     #[test]
     fn angles_read_from_a_rotation_make_that_rotation() {
         for a in angles() {
-            let rotation = EulerAngles(a).matrix();
+            let rotation = JointAngles(a).matrix();
             for near in [Vec3::ZERO, a, Vec3::new(40.0, -3.0, 9.0)] {
                 let read = nearest_angles(rotation, near);
-                let made = EulerAngles(read).matrix();
+                let made = JointAngles(read).matrix();
                 assert!(made.abs_diff_eq(rotation, 2e-5), "{a} read as {read} near {near}");
             }
         }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn angles_away_from_the_gimbal_are_found_again_near_themselves() {
         for a in angles().filter(|a| a.y.cos().abs() > 0.1) {
-            let read = nearest_angles(EulerAngles(a).matrix(), a + 0.01);
+            let read = nearest_angles(JointAngles(a).matrix(), a + 0.01);
             assert!(read.distance(a) < 1e-4, "{a} read as {read}");
         }
     }

@@ -1,0 +1,77 @@
+use core::fmt;
+use core::str::FromStr;
+
+use thiserror::Error;
+
+/// Solver method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Jacobian transpose with a fixed step length.
+    TransposeFixed,
+    /// Jacobian transpose with a line search.
+    Transpose,
+    /// Damped least squares (Levenberg–Marquardt).
+    DampedLeastSquares,
+    /// Cyclic coordinate descent.
+    Ccd,
+    /// Forward and backward reaching (FABRIK).
+    #[default]
+    Fabrik,
+    /// Closed form for a target's joint and its parent.
+    TwoBone,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 6] = [
+        Self::TransposeFixed,
+        Self::Transpose,
+        Self::DampedLeastSquares,
+        Self::Ccd,
+        Self::Fabrik,
+        Self::TwoBone,
+    ];
+
+    /// Name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TransposeFixed => "transpose-fixed",
+            Self::Transpose => "transpose",
+            Self::DampedLeastSquares => "dls",
+            Self::Ccd => "ccd",
+            Self::Fabrik => "fabrik",
+            Self::TwoBone => "two-bone",
+        }
+    }
+
+    /// Default maximum number of iterations of [`ChainSolver::run`](super::ChainSolver::run).
+    pub fn budget(self) -> u32 {
+        match self {
+            Self::Fabrik | Self::Ccd => 2_000,
+            Self::TransposeFixed | Self::Transpose | Self::DampedLeastSquares => 500,
+            Self::TwoBone => 1,
+        }
+    }
+}
+
+/// The [name](Method::name).
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Reads a [name](Method::name).
+impl FromStr for Method {
+    type Err = ParseMethodError;
+
+    fn from_str(name: &str) -> Result<Self, ParseMethodError> {
+        let found = Self::ALL.into_iter().find(|method| method.name() == name);
+        found.ok_or_else(|| ParseMethodError(name.to_owned()))
+    }
+}
+
+/// A text that is not the [name](Method::name) of a method.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("must be one of {names}, got {0:?}", names = Method::ALL.map(Method::name).join(", "))]
+pub struct ParseMethodError(String);

@@ -1,0 +1,75 @@
+use super::ccd::Ccd;
+use super::configuration::Configuration;
+use super::damped_least_squares::DampedLeastSquares;
+use super::fabrik::Fabrik;
+use super::problem::Problem;
+use super::transpose::Transpose;
+use super::two_bone::TwoBones;
+use super::{Method, SolveError, SolverOptions};
+use crate::kinematics::skeleton::Skeleton;
+
+/// A method with what it keeps between iterations.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum MethodState {
+    Transpose(Transpose),
+    DampedLeastSquares(DampedLeastSquares),
+    Ccd(Ccd),
+    Fabrik(Fabrik),
+    TwoBone(TwoBones),
+}
+
+impl MethodState {
+    pub fn new(
+        problem: &Problem,
+        skeleton: &Skeleton,
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
+        Ok(match options.method {
+            Method::TransposeFixed => Self::Transpose(Transpose::new(problem, options.step, false)),
+            Method::Transpose => Self::Transpose(Transpose::new(problem, 1.0, true)),
+            Method::DampedLeastSquares => {
+                Self::DampedLeastSquares(DampedLeastSquares::new(problem, options.damping))
+            }
+            Method::Ccd => Self::Ccd(Ccd::new(problem)),
+            Method::Fabrik => Self::Fabrik(Fabrik::new(problem)),
+            Method::TwoBone => Self::TwoBone(TwoBones::new(problem, skeleton)?),
+        })
+    }
+
+    /// Whether the method works on orientations instead of angles.
+    pub fn uses_orientations(&self) -> bool {
+        matches!(self, Self::Ccd(_) | Self::Fabrik(_))
+    }
+
+    /// Resets what was learnt about step lengths. Returns whether the method learns any.
+    pub fn restart(&mut self) -> bool {
+        match self {
+            Self::Transpose(transpose) => transpose.restart(),
+            Self::DampedLeastSquares(damped) => {
+                damped.restart();
+                true
+            }
+            Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
+        }
+    }
+
+    /// Makes one iteration. Returns whether another one could get further.
+    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+        match self {
+            Self::Transpose(transpose) => transpose.iterate(problem, config),
+            Self::DampedLeastSquares(damped) => damped.iterate(problem, config),
+            Self::Ccd(ccd) => {
+                ccd.iterate(problem, config);
+                true
+            }
+            Self::Fabrik(fabrik) => {
+                fabrik.iterate(problem, config);
+                true
+            }
+            Self::TwoBone(limbs) => {
+                limbs.solve(problem, config);
+                false
+            }
+        }
+    }
+}

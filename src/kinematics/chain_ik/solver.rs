@@ -1,0 +1,262 @@
+use glam::{Mat3A, Quat, Vec3};
+
+use super::configuration::Configuration;
+use super::method_state::MethodState;
+use super::problem::{self, Problem};
+use super::stall::StallDetector;
+use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
+use crate::kinematics::skeleton::{Skeleton, nearest_angles};
+
+/// An iterative solve of a skeleton and its targets.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+/// use ik_arm::kinematics::chain_ik::{SolverOptions, ChainSolver, TipTarget};
+///
+/// let mut skeleton = Skeleton::with_root("root");
+/// let upper = skeleton.add(Joint::new("upper", Some(JointId::new(0)), Vec3::Y))?;
+/// let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y) };
+/// let lower = skeleton.add(lower)?;
+///
+/// let target = TipTarget { joint: lower, point: Vec3::new(1.0, 0.5, 0.0), weight: 1.0 };
+/// let mut solver = ChainSolver::new(&skeleton, &[target], &SolverOptions::default())?;
+/// assert!(solver.run().converged());
+/// solver.write(&mut skeleton);
+/// assert!(skeleton.tip(lower).distance(target.point) < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChainSolver {
+    report: Report,
+    max_iterations: u32,
+    /// In the world.
+    tolerance: f64,
+    problem: Problem,
+    config: Configuration,
+    /// The configuration before the first iteration.
+    start: Configuration,
+    state: MethodState,
+    stall: StallDetector,
+}
+
+impl ChainSolver {
+    /// Prepares a solve; no iteration is made.
+    ///
+    /// # Errors
+    ///
+    /// See [`SolveError`].
+    pub fn new(
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
+        options.check()?;
+        let problem = problem::build(skeleton, targets, options)?;
+        let tolerance = options.tolerance.map_or(1e-4 * problem.world_length(), f64::from);
+        let state = MethodState::new(&problem, skeleton, options)?;
+        let mut config = Configuration::new(&problem);
+        if state.uses_orientations() {
+            config.set_orientations();
+        }
+        let stall =
+            StallDetector::new(options.method, problem.from_world_length(tolerance), &config);
+        let report =
+            Report { method: options.method, iterations: 0, error: 0.0, status: Status::Iterating };
+        let max_iterations = options.iterations.unwrap_or(options.method.budget());
+        let start = config.clone();
+        let mut solver =
+            Self { report, max_iterations, tolerance, problem, config, start, state, stall };
+        solver.set_targets(targets);
+        Ok(solver)
+    }
+
+    /// Progress so far.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        self.report
+    }
+
+    /// Makes one iteration, unless the solve has converged or stalled. It ignores the maximum number
+    /// of iterations.
+    pub fn step(&mut self) -> Report {
+        if matches!(self.report.status, Status::Converged | Status::Stalled) {
+            return self.report;
+        }
+        if self.report.iterations == 0 {
+            self.perturb();
+        }
+        let can_go_on = self.state.iterate(&self.problem, &mut self.config);
+        self.report.iterations += 1;
+        self.measure();
+        if !self.report.converged()
+            && (!can_go_on || self.stall.observe(&self.problem, &self.config))
+        {
+            self.restart_or_stall();
+        }
+        self.report
+    }
+
+    /// Iterates until the solve converges, stalls or is out of iterations.
+    pub fn run(&mut self) -> Report {
+        while !self.is_over() {
+            self.step();
+        }
+        self.report
+    }
+
+    /// Whether the solve has converged, stalled or is out of iterations.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.report.status != Status::Iterating
+    }
+
+    /// Moves the targets of the same joints, in the same order and with the same weights, and restarts
+    /// from the current pose with no iterations made.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::NoJoint`] for other joints; [`SolveError::Point`]; [`SolveError::Weight`].
+    pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
+        let effectors = &self.problem.effectors;
+        for (index, effector) in effectors.iter().enumerate() {
+            let joint = targets.get(index).map(|target| target.joint);
+            if joint != Some(effector.joint) {
+                return Err(SolveError::NoJoint(joint.unwrap_or(effector.joint)));
+            }
+        }
+        if let Some(more) = targets.get(effectors.len()) {
+            return Err(SolveError::NoJoint(more.joint));
+        }
+        for target in targets {
+            problem::check_target(target)?;
+        }
+        self.set_targets(targets);
+        Ok(())
+    }
+
+    /// Writes the solved angles, each triple nearest to the present one, and the offsets of free roots
+    /// into the skeleton of the solve.
+    pub fn write(&self, skeleton: &mut Skeleton) {
+        if self.problem.free_roots {
+            for (index, tree) in self.problem.trees.iter().enumerate() {
+                let offset = self.problem.root_offset(index, self.config.shifts[index]);
+                skeleton.write_local(tree.root, |root| root.offset = offset);
+            }
+        } else if self.config.is_same(&self.start) {
+            // The start's own angles, bit for bit, also if others have been written since.
+            for link in &self.problem.links {
+                skeleton.write_local(link.joint, |joint| joint.rotation = link.start);
+            }
+            return;
+        }
+        let near = |link: usize| {
+            let joint = skeleton.joint(self.problem.links[link].joint);
+            joint.map_or(Vec3::ZERO, |joint| joint.rotation)
+        };
+        let angles = self.angles(near);
+        for (link, angles) in self.problem.links.iter().zip(angles) {
+            skeleton.write_local(link.joint, |joint| joint.rotation = angles);
+        }
+    }
+
+    fn set_targets(&mut self, targets: &[TipTarget]) {
+        if self.problem.free_roots {
+            self.problem.approach(targets, &self.config.tips);
+        } else {
+            self.problem.set_targets(targets);
+        }
+        self.report.iterations = 0;
+        self.measure();
+        self.stall.set_reference(&self.problem, &self.config);
+    }
+
+    /// Measures the error and whether it is within the tolerance.
+    fn measure(&mut self) {
+        let error = self.config.error(&self.problem);
+        self.report.error = error.min(f64::from(f32::MAX)) as f32;
+        self.report.status = if error <= self.tolerance {
+            Status::Converged
+        } else if self.report.iterations >= self.max_iterations {
+            Status::OutOfIterations
+        } else {
+            Status::Iterating
+        };
+    }
+
+    /// Bends chains that cannot start because they lie on one line with their target.
+    fn perturb(&mut self) {
+        let is_closed_form = matches!(self.state, MethodState::TwoBone(_));
+        if is_closed_form
+            || self.problem.free_roots
+            || !perturb::is_stuck(&self.problem, &self.config)
+        {
+            return;
+        }
+        let uses_orientations = self.state.uses_orientations();
+        if uses_orientations {
+            self.config.angles = self.angles(|link| self.config.angles[link]);
+            self.config.forward(&self.problem);
+        }
+        perturb::bend(&self.problem, &mut self.config);
+        self.config.forward(&self.problem);
+        if uses_orientations {
+            self.config.set_orientations();
+        }
+    }
+
+    /// Returns to the last configuration that was an improvement and restarts the method from there. If
+    /// that has failed already or the method has nothing to restart, the solve has stalled: another
+    /// solve from there would change nothing.
+    fn restart_or_stall(&mut self) {
+        if matches!(self.state, MethodState::TwoBone(_)) {
+            self.report.status = Status::Stalled;
+            return;
+        }
+        self.config.copy_from(&self.stall.reference);
+        self.measure();
+        if (self.stall.restarted || !self.state.restart()) && !self.report.converged() {
+            self.report.status = Status::Stalled;
+        }
+        self.stall.idle = 0;
+        self.stall.restarted = true;
+    }
+
+    /// Angles of every link, nearest to given ones.
+    fn angles(&self, near: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
+        let from_points;
+        let orientations = match &self.state {
+            MethodState::Fabrik(fabrik) => {
+                from_points = fabrik.orientations(&self.config);
+                &from_points
+            }
+            _ => &self.config.orientations,
+        };
+        let angles_of = |index: usize| {
+            let link = &self.problem.links[index];
+            if link.is_limited() || orientations.is_empty() {
+                return self.config.angles[index];
+            }
+            let parent = link.parent.map_or(Quat::IDENTITY, |parent| orientations[parent]);
+            let mounted = Mat3A::from_quat(parent) * link.mount;
+            nearest_angles(mounted.transpose() * Mat3A::from_quat(orientations[index]), near(index))
+        };
+        (0..self.problem.links.len()).map(angles_of).collect()
+    }
+}
+
+/// Solves a skeleton in place with a new [`ChainSolver`].
+///
+/// # Errors
+///
+/// See [`SolveError`].
+pub fn solve(
+    skeleton: &mut Skeleton,
+    targets: &[TipTarget],
+    options: &SolverOptions,
+) -> Result<Report, SolveError> {
+    let mut solver = ChainSolver::new(skeleton, targets, options)?;
+    let report = solver.run();
+    solver.write(skeleton);
+    Ok(report)
+}

@@ -1,0 +1,14 @@
+use glam::Vec3;
+
+use crate::kinematics::skeleton::JointId;
+
+/// A target for the tip of a joint's bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TipTarget {
+    /// The joint whose tip is to reach the target.
+    pub joint: JointId,
+    /// Position in the world.
+    pub point: Vec3,
+    /// Weight relative to other targets, above 0.
+    pub weight: f32,
+}

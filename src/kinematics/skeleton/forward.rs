@@ -1,0 +1,80 @@
+use glam::{Affine3A, Vec3};
+
+use super::{Joint, JointId, Skeleton, SkeletonPose};
+
+/// Forward kinematics. For several joints use [`Skeleton::pose`], which visits each joint once.
+impl Skeleton {
+    /// Transform from the joint's base, before its rotation R, to the world.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn transform_to_base(&self, joint: JointId) -> Affine3A {
+        let Joint { parent, offset, .. } = &self[joint];
+        let above = parent.map_or(self.transform, |parent| self.full_transform(parent));
+        above * Affine3A::from_translation(*offset)
+    }
+
+    /// Transform from the joint's own space to the world: the skeleton's transform times X.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn full_transform(&self, joint: JointId) -> Affine3A {
+        let mut path: Vec<_> = self.ancestors(joint).collect();
+        path.reverse();
+        path.into_iter().fold(self.transform, |above, joint| above * self[joint].local())
+    }
+
+    /// Position of the bone's base in the world.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn base(&self, joint: JointId) -> Vec3 {
+        self.full_transform(joint).translation.into()
+    }
+
+    /// Position of the bone's tip in the world.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn tip(&self, joint: JointId) -> Vec3 {
+        self.full_transform(joint).transform_point3(self[joint].axis)
+    }
+
+    /// Transforms of all joints in the world.
+    pub fn pose(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local())
+    }
+
+    /// [`Skeleton::pose`] into an existing pose, which allocates only if it is too small.
+    pub fn write_pose(&self, pose: &mut SkeletonPose) {
+        self.write_pose_with(pose, |_, joint| joint.local());
+    }
+
+    /// [`Skeleton::write_pose`] with other local transforms, given by index and joint, parents first.
+    pub(crate) fn write_pose_with(
+        &self,
+        pose: &mut SkeletonPose,
+        local: impl FnMut(usize, &Joint) -> Affine3A,
+    ) {
+        pose.refill(&self.joints, self.transform, local);
+    }
+
+    /// Transforms of all joints in the bind pose, in the world.
+    pub fn bind_pose(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local_in_bind_pose())
+    }
+
+    /// Transforms of all joints in skeleton space.
+    pub fn pose_in_skeleton(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local())
+    }
+
+    /// Transforms of all joints in the bind pose, in skeleton space.
+    pub fn bind_pose_in_skeleton(&self) -> SkeletonPose {
+        SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local_in_bind_pose())
+    }
+}
