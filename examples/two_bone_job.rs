@@ -31,9 +31,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let model = forward(&joints);
     let job = TwoBoneJob::new(model[shoulder], model[elbow], model[hand], target);
-    let correction = TwoBoneJob { pole: Vec3::NEG_Y, ..job }.run()?;
-    joints[shoulder].2 *= correction.start;
-    joints[elbow].2 *= correction.middle;
+    let correction = TwoBoneJob { pole: Some(Vec3::NEG_Y), ..job }.run()?;
+    joints[shoulder].2 *= correction.start_correction;
+    joints[elbow].2 *= correction.middle_correction;
 
     println!("the hand is asked to be at {target}: {:?}", correction.reach);
     for (Joint(name, ..), (before, after)) in joints.iter().zip(model.iter().zip(forward(&joints)))

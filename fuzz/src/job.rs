@@ -1,5 +1,5 @@
 use glam::{Affine3A, DMat3, DQuat, DVec3, Quat, Vec3};
-use ik_arm::kinematics::job::{Correction, TwoBoneJob};
+use ik_arm::kinematics::job::{TwoBoneCorrection, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
 use super::bits::Bits;
@@ -10,8 +10,8 @@ use super::opened::is_readable;
 pub fn job(bits: &mut Bits<'_>) {
     let [start, middle, end] = [(); 3].map(|()| matrix(bits));
     let job = TwoBoneJob {
-        pole: bits.vector(),
-        hinge: bits.vector(),
+        pole: Some(bits.vector()),
+        hinge: Some(bits.vector()),
         twist: bits.number(),
         softness: if bits.coin() { bits.number() } else { bits.part() },
         weight: if bits.coin() { 1.0 } else { bits.number() },
@@ -38,8 +38,9 @@ fn matrix(bits: &mut Bits<'_>) -> Affine3A {
     Affine3A::from_scale_rotation_translation(scale * mirror, rotation, translation)
 }
 
-fn check(job: &TwoBoneJob, correction: Correction) {
-    let Correction { start, middle, reach, hand_error } = correction;
+fn check(job: &TwoBoneJob, correction: TwoBoneCorrection) {
+    let TwoBoneCorrection { start_correction: start, middle_correction: middle, reach, hand_error } =
+        correction;
     for turn in [start, middle] {
         assert!(turn.is_normalized() && turn.w >= 0.0, "{correction:?} of {job:?}");
     }
@@ -69,14 +70,15 @@ struct Twin {
 
 impl Twin {
     /// Nothing where a joint has no inverse, or the hand is farther than numbers go.
-    fn new(job: &TwoBoneJob, correction: Correction) -> Option<Self> {
+    fn new(job: &TwoBoneJob, correction: TwoBoneCorrection) -> Option<Self> {
         let start = job.start.matrix3.as_dmat3();
         let middle = start.inverse() * job.middle.matrix3.as_dmat3();
         let places = [job.start, job.middle, job.end].map(|joint| joint.translation.as_dvec3());
         let upper = start.inverse() * (places[1] - places[0]);
         let lower = start.inverse() * (places[2] - places[1]);
-        let turned: DVec3 = middle * (unit(correction.middle) * (middle.inverse() * lower));
-        let hand = unit(correction.start) * (upper + turned);
+        let turned: DVec3 =
+            middle * (unit(correction.middle_correction) * (middle.inverse() * lower));
+        let hand = unit(correction.start_correction) * (upper + turned);
         let off = hand - start.inverse() * (job.target.as_dvec3() - places[0]);
         hand.is_finite().then(|| Self {
             off: off.length(),

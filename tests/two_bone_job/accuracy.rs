@@ -15,8 +15,8 @@ fn the_hand_is_within_a_millionth_of_the_chain_at_103_000_random_targets() {
         let direction = random.direction().as_dvec3();
         let target = skeleton.point_in_reach(direction, random.within(0.0..1.0).into());
         let job = TwoBoneJob {
-            pole: random.vector(1.0),
-            hinge: if random.chance(0.2) { Vec3::ZERO } else { random.vector(1.0) },
+            pole: Some(random.vector(1.0)),
+            hinge: Some(if random.chance(0.2) { Vec3::ZERO } else { random.vector(1.0) }),
             twist: random.within(-4.0..4.0),
             ..skeleton.job(target)
         };
@@ -38,7 +38,7 @@ fn within_a_hair_of_its_limits_a_hand_that_is_reached_is_there() {
         let share = share + f64::from(random.within(-2e-6..2e-6));
         let direction = random.direction().as_dvec3();
         let target = skeleton.point_in_reach(direction, share);
-        let job = TwoBoneJob { pole: random.vector(1.0), ..skeleton.job(target) };
+        let job = TwoBoneJob { pole: Some(random.vector(1.0)), ..skeleton.job(target) };
         let correction = run(job);
         let [_, _, hand] = skeleton.turned(&correction).points();
         if correction.reach == Reach::Reached {

@@ -3,7 +3,7 @@
 //! The matrices of a job are taken as they are, in f32. The skeleton is posed anew from them in f64.
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
-use ik_arm::kinematics::job::{Correction, TwoBoneJob};
+use ik_arm::kinematics::job::{TwoBoneCorrection, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
 use crate::common::Random;
@@ -36,8 +36,9 @@ impl Twin {
     }
 
     /// The hand after a correction, in start joint space.
-    fn hand_ss(&self, by: &Correction) -> DVec3 {
-        let [start, middle] = [by.start, by.middle].map(|turn| turn.as_dquat().normalize());
+    fn hand_ss(&self, by: &TwoBoneCorrection) -> DVec3 {
+        let [start, middle] =
+            [by.start_correction, by.middle_correction].map(|turn| turn.as_dquat().normalize());
         let elbow = DAffine3::from_quat(start) * self.middle_ss;
         (elbow * DAffine3::from_quat(middle)).transform_point3(self.end_ms)
     }
@@ -81,8 +82,8 @@ fn job(random: &mut Random, start: Mat3, middle: Mat3, share: f64) -> TwoBoneJob
     let at = |point: DVec3| (start.as_dmat3() * point).as_vec3() + place;
     let (elbow, hand) = (u * upper, u * upper + l * lower);
     TwoBoneJob {
-        pole: random.vector(1.0),
-        hinge: if random.chance(0.2) { Vec3::ZERO } else { random.vector(1.0) },
+        pole: Some(random.vector(1.0)),
+        hinge: Some(if random.chance(0.2) { Vec3::ZERO } else { random.vector(1.0) }),
         twist: random.within(-4.0..4.0),
         ..TwoBoneJob::new(
             Affine3A::from_mat3_translation(start, place),
@@ -160,10 +161,19 @@ fn the_rotations_under_a_start_matrix_are_those_under_none() {
         let under = |axes: Mat3| {
             let joint = |point: Vec3| Affine3A::from_mat3_translation(axes, axes * point);
             let job = TwoBoneJob::new(joint(Vec3::ZERO), joint(elbow), joint(hand), axes * target);
-            run(TwoBoneJob { pole: axes * pole, hinge, twist: 0.7, softness: 0.2, ..job })
+            run(TwoBoneJob {
+                pole: Some(axes * pole),
+                hinge: Some(hinge),
+                twist: 0.7,
+                softness: 0.2,
+                ..job
+            })
         };
         let (here, there) = (under(Mat3::IDENTITY), under(start));
-        for (a, b) in [(here.start, there.start), (here.middle, there.middle)] {
+        for (a, b) in [
+            (here.start_correction, there.start_correction),
+            (here.middle_correction, there.middle_correction),
+        ] {
             let off = apart(a.as_dquat(), b.as_dquat());
             assert!(off < 1e-6, "{off:e} apart under {start}");
         }

@@ -1,7 +1,7 @@
 //! What is refused, and what is only just not.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3, Quat, Vec3};
-use ik_arm::kinematics::job::{JobError, TwoBoneJob};
+use ik_arm::kinematics::job::{JobError, JobField, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 
 use crate::common::Random;
@@ -18,7 +18,7 @@ fn a_joint_whose_own_scale_mirrors_one_axis_is_turned_before_it() {
         }
         let direction = random.direction().as_dvec3();
         let target = skeleton.point_in_reach(direction, 0.5);
-        let job = TwoBoneJob { pole: random.vector(1.0), ..skeleton.job(target) };
+        let job = TwoBoneJob { pole: Some(random.vector(1.0)), ..skeleton.job(target) };
         let scales = [skeleton.start.scale, skeleton.middle.scale].map(DVec3::as_vec3);
         is_at(&skeleton, &run(job).before_scales(scales[0], scales[1]), target);
     }
@@ -38,7 +38,10 @@ fn what_cannot_be_done_is_refused_by_name() {
     assert!(TwoBoneJob { middle: sheared(0.0009), ..job }.run().is_ok());
     for middle in [scaled(1.0, 1.0, 1.01), scaled(0.0, 1.0, 1.0), scaled(2.0, -1.0, 2.0)] {
         let error = TwoBoneJob { middle, ..job }.run();
-        assert!(matches!(error, Err(JobError::UnevenAxes { field: "middle", .. })), "{error:?}");
+        assert!(
+            matches!(error, Err(JobError::UnevenAxes { field: JobField::Middle, .. })),
+            "{error:?}"
+        );
     }
     assert_eq!(
         said(TwoBoneJob { middle: scaled(1.0, 2.0, 1.0), ..job }),
@@ -60,12 +63,12 @@ fn what_cannot_be_done_is_refused_by_name() {
         let vector = Vec3::new(0.0, bad, 0.0);
         let joint = Affine3A::from_translation(vector);
         let fields = [
-            ("start", TwoBoneJob { start: joint, ..job }),
-            ("middle", TwoBoneJob { middle: Affine3A::from_scale(vector), ..job }),
-            ("end", TwoBoneJob { end: joint, ..job }),
-            ("target", TwoBoneJob { target: vector, ..job }),
-            ("pole", TwoBoneJob { pole: vector, ..job }),
-            ("hinge", TwoBoneJob { hinge: vector, ..job }),
+            (JobField::Start, TwoBoneJob { start: joint, ..job }),
+            (JobField::Middle, TwoBoneJob { middle: Affine3A::from_scale(vector), ..job }),
+            (JobField::End, TwoBoneJob { end: joint, ..job }),
+            (JobField::Target, TwoBoneJob { target: vector, ..job }),
+            (JobField::Pole, TwoBoneJob { pole: Some(vector), ..job }),
+            (JobField::Hinge, TwoBoneJob { hinge: Some(vector), ..job }),
         ];
         for (field, job) in fields {
             assert_eq!(job.run(), Err(JobError::NotFinite { field }));
@@ -93,7 +96,7 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
         // The middle joint under it, as a skeleton would have it.
         let middle = start * job.middle;
         let error = TwoBoneJob { start, middle, ..job }.run().expect_err("refused");
-        assert_eq!(error, JobError::NotInvertible { field: "start" });
+        assert_eq!(error, JobError::NotInvertible { field: JobField::Start });
         assert_eq!(
             error.to_string(),
             "start has axes in one plane; its matrix must have an inverse, or scale 0"
@@ -103,7 +106,10 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
     let start = Affine3A::from_scale(Vec3::ZERO);
     for middle in [Affine3A::from_scale(Vec3::ZERO), flat, job.middle] {
         let correction = run(TwoBoneJob { start, middle, ..job });
-        assert_eq!((correction.start, correction.middle), (Quat::IDENTITY, Quat::IDENTITY));
+        assert_eq!(
+            (correction.start_correction, correction.middle_correction),
+            (Quat::IDENTITY, Quat::IDENTITY)
+        );
         assert!(correction.hand_error.is_finite());
     }
     // Thin is not flat.
@@ -117,7 +123,8 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
 
 #[test]
 fn the_end_joints_axes_do_not_matter() {
-    let job = TwoBoneJob { pole: Vec3::Y, ..Skeleton::square().job(DVec3::new(0.3, 0.8, 1.1)) };
+    let job =
+        TwoBoneJob { pole: Some(Vec3::Y), ..Skeleton::square().job(DVec3::new(0.3, 0.8, 1.1)) };
     let expected = run(job);
     let nan = Mat3::from_cols(Vec3::NAN, Vec3::INFINITY, Vec3::ZERO);
     for axes in [Mat3::ZERO, Mat3::from_diagonal(Vec3::new(1.0, 2.0, 1.0)), nan] {

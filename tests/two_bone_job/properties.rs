@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
-use ik_arm::kinematics::job::{Correction, TwoBoneJob};
+use ik_arm::kinematics::job::{TwoBoneCorrection, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 use proptest::prelude::*;
 
@@ -33,7 +33,7 @@ proptest! {
         // A target that rounding may take to the start joint's other side says nothing.
         prop_assume!(target.distance(skeleton.points()[0]) > 1e-2 * skeleton.length());
         let job = TwoBoneJob {
-            pole: random.vector(1.0), hinge: random.vector(1.0), ..skeleton.job(target)
+            pole: Some(random.vector(1.0)), hinge: Some(random.vector(1.0)), ..skeleton.job(target)
         };
         let correction = run(job);
         let [_, _, hand] = skeleton.turned(&correction).points();
@@ -62,12 +62,12 @@ proptest! {
         let [shoulder, elbow, hand] = own.points();
         prop_assume!((elbow - shoulder).normalize().cross((hand - elbow).normalize()).length() > 0.2);
         let with = |skeleton: &Skeleton, target, pole: DVec3| TwoBoneJob {
-            pole: pole.as_vec3(), twist: 0.7, softness: 0.2, ..skeleton.job(target)
+            pole: Some(pole.as_vec3()), twist: 0.7, softness: 0.2, ..skeleton.job(target)
         };
         let here = run(with(&own, target, pole.as_dvec3()));
         let pole = parent.transform_vector3(pole.as_dvec3());
         let there = run(with(&placed, parent.transform_point3(target), pole));
-        for (a, b) in [(here.start, there.start), (here.middle, there.middle)] {
+        for (a, b) in [(here.start_correction, there.start_correction), (here.middle_correction, there.middle_correction)] {
             close("rotation", apart(a.as_dquat(), b.as_dquat()), 2e-4)?;
         }
     }
@@ -86,7 +86,7 @@ proptest! {
         let target =
             if random.chance(0.1) { here } else { skeleton.point_in_reach(direction, share) };
         let job = TwoBoneJob {
-            pole: random.vector(1.0), hinge: random.vector(1.0), softness, weight,
+            pole: Some(random.vector(1.0)), hinge: Some(random.vector(1.0)), softness, weight,
             ..skeleton.job(target)
         };
         let correction = run(job);
@@ -115,7 +115,7 @@ proptest! {
         prop_assume!(expected.length() > 0.1);
         let expected = DQuat::from_axis_angle(direction, twist.into()) * expected;
         let hinge = random.vector(1.0);
-        let job = TwoBoneJob { pole, twist, hinge, ..skeleton.job(target) };
+        let job = TwoBoneJob { pole: Some(pole), twist, hinge: Some(hinge), ..skeleton.job(target) };
         let [start, elbow, _] = skeleton.turned(&run(job)).points();
         let out = (elbow - start).reject_from_normalized(direction);
         prop_assume!(out.length() > 1e-2 * skeleton.length());
@@ -159,9 +159,9 @@ proptest! {
         let mut random = Random(seed);
         let skeleton = Skeleton::random(&mut random);
         let target = skeleton.points()[0] + random.vector(1.0).as_dvec3();
-        let job = TwoBoneJob { pole: random.vector(1.0), ..skeleton.job(target) };
+        let job = TwoBoneJob { pole: Some(random.vector(1.0)), ..skeleton.job(target) };
         let (full, part) = (run(job), run(TwoBoneJob { weight, ..job }));
-        for (full, part) in [(full.start, part.start), (full.middle, part.middle)] {
+        for (full, part) in [(full.start_correction, part.start_correction), (full.middle_correction, part.middle_correction)] {
             let (full, part) = (full.as_dquat().normalize(), part.as_dquat().normalize());
             let axis = full.xyz().normalize_or_zero();
             let angle = 2.0 * full.xyz().length().atan2(full.w);
@@ -196,11 +196,11 @@ proptest! {
         let direction = random.direction().as_dvec3();
         let target = skeleton.point_in_reach(direction, share);
         let pole = random.vector(1.0);
-        let job = TwoBoneJob { hinge: Vec3::Z * 5.0, pole, ..skeleton.job(target) };
+        let job = TwoBoneJob { hinge: Some(Vec3::Z * 5.0), pole: Some(pole), ..skeleton.job(target) };
         let correction = run(job);
         let turned = skeleton.turned(&correction);
         close("hand", turned.points()[2].distance(target), EXACT * skeleton.length())?;
-        let sideways = correction.middle.xyz().truncate().length();
+        let sideways = correction.middle_correction.xyz().truncate().length();
         // An f32 matrix says where the normal is to 1e-7 of the bend's sine; in line it is not asked.
         let blur = 3e-7 / f64::from(bent.sin().abs() as f32).max(1e-3);
         close("axis", f64::from(sideways), blur)?;
@@ -226,13 +226,13 @@ proptest! {
         let normal = back.cross(on).normalize();
         let hinge = normal + random.direction().as_dvec3() * 0.9;
         let job = TwoBoneJob {
-            pole: (elbow - start).as_vec3(), hinge: hinge.as_vec3(), ..skeleton.job(hand)
+            pole: Some((elbow - start).as_vec3()), hinge: Some(hinge.as_vec3()), ..skeleton.job(hand)
         };
         let correction = run(job);
         prop_assert_eq!(correction.reach, Reach::Reached);
         let nothing = |turn: Quat| apart(turn.as_dquat(), DQuat::IDENTITY);
-        close("start", nothing(correction.start), 2e-4)?;
-        close("middle", nothing(correction.middle), 2e-4)?;
+        close("start", nothing(correction.start_correction), 2e-4)?;
+        close("middle", nothing(correction.middle_correction), 2e-4)?;
     }
 
     #[test]
@@ -249,12 +249,12 @@ proptest! {
             Affine3A::from_scale_rotation_translation(Vec3::splat(size), axes, vector(at))
         };
         let job = TwoBoneJob {
-            pole: vector(12), hinge: vector(15), twist: numbers[18],
+            pole: Some(vector(12)), hinge: Some(vector(15)), twist: numbers[18],
             softness: numbers[19].abs().fract(), weight: numbers[20].abs().min(1.0),
             ..TwoBoneJob::new(joint(0), joint(3), joint(6), vector(9))
         };
         match job.run() {
-            Ok(Correction { start, middle, hand_error, .. }) => {
+            Ok(TwoBoneCorrection { start_correction: start, middle_correction: middle, hand_error, .. }) => {
                 prop_assert!(start.is_normalized() && middle.is_normalized(), "{start} {middle}");
                 prop_assert!(hand_error.is_finite() && hand_error >= 0.0);
             }

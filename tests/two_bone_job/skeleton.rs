@@ -1,7 +1,7 @@
 //! A skeleton of three joints as other programs have it, posed in f64 from local transforms.
 
 use glam::{Affine3A, DAffine3, DQuat, DVec3, Quat};
-use ik_arm::kinematics::job::{Correction, TwoBoneJob};
+use ik_arm::kinematics::job::{TwoBoneCorrection, TwoBoneJob};
 use ik_arm::kinematics::two_bone::Reach;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -96,13 +96,17 @@ impl Skeleton {
         self.bones().0 + self.bones().1
     }
 
-    pub fn turned(&self, by: &Correction) -> Self {
-        Self { start: self.start.turned(by.start), middle: self.middle.turned(by.middle), ..*self }
+    pub fn turned(&self, by: &TwoBoneCorrection) -> Self {
+        Self {
+            start: self.start.turned(by.start_correction),
+            middle: self.middle.turned(by.middle_correction),
+            ..*self
+        }
     }
 
     /// How far the hand is from a target after a correction, in start joint space and lengths of the
     /// chain there.
-    pub fn off_ss(&self, by: &Correction, target: DVec3) -> f64 {
+    pub fn off_ss(&self, by: &TwoBoneCorrection, target: DVec3) -> f64 {
         let [start, middle, end] = self.joints();
         let to_ss = start.inverse();
         let [elbow, hand] = [middle, end].map(|joint| to_ss.transform_point3(joint.translation));
@@ -152,7 +156,7 @@ pub fn placed(random: &mut Random, far: f32) -> DAffine3 {
     DAffine3::from_scale_rotation_translation(mirror * size, rotation(random), at)
 }
 
-pub fn run(job: TwoBoneJob) -> Correction {
+pub fn run(job: TwoBoneJob) -> TwoBoneCorrection {
     job.run().expect("a job that can be done")
 }
 
@@ -174,7 +178,7 @@ pub fn same_turn(found: Quat, axis: DVec3, angle: f64) {
     assert!(found.w >= 0.0);
 }
 
-pub fn is_at(skeleton: &Skeleton, correction: &Correction, target: DVec3) {
+pub fn is_at(skeleton: &Skeleton, correction: &TwoBoneCorrection, target: DVec3) {
     let [_, _, hand] = skeleton.turned(correction).points();
     assert_eq!(correction.reach, Reach::Reached);
     assert!(hand.distance(target) < EXACT * skeleton.length(), "{hand}, not {target}");

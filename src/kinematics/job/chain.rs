@@ -1,13 +1,13 @@
-use glam::{DMat3, DQuat, DVec3};
+use glam::{Affine3A, DMat3, DQuat, DVec3};
 
-use super::{JobError, TwoBoneJob, error};
+use super::error::{JobError, JobField, check_similarity};
 
 /// The three joints in start joint space, in its own unit.
-pub(super) struct Chain {
-    /// Where the start joint is, in model space.
+pub(super) struct JointChain {
+    /// The start joint, in model space.
     start: DVec3,
-    /// M_s: the start joint's axes in model space. Where they have scale 0, nothing can turn, and
-    /// start joint space is model space.
+    /// M_s: the start joint's axes in model space. Where they have scale 0, no joint can turn, and start
+    /// joint space is model space.
     axes: DMat3,
     /// M_s⁻¹.
     axes_inverse: DMat3,
@@ -16,41 +16,41 @@ pub(super) struct Chain {
     upper_ss: DVec3,
     /// l, from middle to end.
     lower_ss: DVec3,
-    /// M_s⁻¹·M_m: the middle joint's axes; 0 where nothing turns.
+    /// M_s⁻¹·M_m: the middle joint's axes; 0 where no joint can turn.
     middle_ss: DMat3,
-    /// From middle joint space to start joint space, scales and mirrors left out: what an axis is
-    /// turned by. (A turn about an axis is one about the axis's mirror image the other way round.)
+    /// Rotation from middle joint space to start joint space without scale and mirror, for axes. (A
+    /// rotation about an axis is the opposite rotation about the axis's mirror image.)
     pub middle_turn: DQuat,
-    /// An ulp of the joints' largest model space coordinate, or a little more, along the axis where
-    /// it is longest here.
+    /// About an ulp of the joints' largest model space coordinate, along the axis that magnifies it
+    /// most.
     rounding_ss: f64,
 }
 
 /// The two bones in start joint space, in units of the chain's length.
-pub(super) struct Limb {
+pub(super) struct LimbBones {
     pub upper_ss: DVec3,
     pub lower_ss: DVec3,
-    /// What 1 is in start joint space.
+    /// The chain's length in start joint space.
     pub unit: f64,
-    /// Whether both are bones, and the middle joint can turn the lower one.
+    /// Whether both bones have a length and the middle joint can turn the lower one.
     pub is_jointed: bool,
-    /// What the coordinates' rounding makes of each bone.
+    /// Displacement of a joint by the rounding of its coordinates.
     pub rounding: f64,
 }
 
-impl Chain {
+impl JointChain {
     /// Refuses a start joint whose matrix has no inverse (scale 0 is accepted), and a middle joint
     /// whose axes are uneven or skew in start joint space.
-    pub fn new(job: &TwoBoneJob) -> Result<Self, JobError> {
-        let joints = [job.start, job.middle, job.end];
+    pub fn new(joints: [Affine3A; 3]) -> Result<Self, JobError> {
+        let [start_axes, middle_axes, _] = joints.map(|joint| joint.matrix3.as_dmat3());
         let [start, middle, end] = joints.map(|joint| joint.translation.as_dvec3());
-        let start_axes = job.start.matrix3.as_dmat3();
         let can_turn = start_axes != DMat3::ZERO;
         let axes = if can_turn { start_axes } else { DMat3::IDENTITY };
-        let axes_inverse = inverse(axes).ok_or(JobError::NotInvertible { field: "start" })?;
-        let middle_axes = if can_turn { job.middle.matrix3.as_dmat3() } else { DMat3::ZERO };
+        let axes_inverse =
+            inverse(axes).ok_or(JobError::NotInvertible { field: JobField::Start })?;
+        let middle_axes = if can_turn { middle_axes } else { DMat3::ZERO };
         let middle_ss = axes_inverse * middle_axes;
-        error::check_similarity("middle", middle_ss)?;
+        check_similarity(JobField::Middle, middle_ss)?;
         let largest = [start, middle, end].map(|point| point.abs().max_element());
         let largest = largest.into_iter().fold(0.0, f64::max);
         Ok(Self {
@@ -86,8 +86,8 @@ impl Chain {
         (self.axes * vector_ss).length()
     }
 
-    /// Nothing where there is nothing to turn, or nothing that could turn it.
-    pub fn limb(&self) -> Option<Limb> {
+    /// The bones; `None` where there is nothing to turn, or no joint can turn.
+    pub fn limb(&self) -> Option<LimbBones> {
         let unit = self.length_ss();
         let (upper_ss, lower_ss) = (self.upper_ss / unit, self.lower_ss / unit);
         let is_jointed = self.upper_ss != DVec3::ZERO
@@ -95,11 +95,11 @@ impl Chain {
             && self.middle_ss != DMat3::ZERO;
         let can_point = (upper_ss + lower_ss).try_normalize().is_some();
         let rounding = self.rounding_ss / unit;
-        let limb = Limb { upper_ss, lower_ss, unit, is_jointed, rounding };
+        let limb = LimbBones { upper_ss, lower_ss, unit, is_jointed, rounding };
         (self.can_turn && (is_jointed || can_point)).then_some(limb)
     }
 
-    /// The hand after both joints are turned, by their matrices as they are given.
+    /// The hand after both joints are turned, by the given matrices.
     pub fn hand_ss(&self, start: DQuat, middle: DQuat) -> DVec3 {
         let lower_ss = if self.middle_ss == DMat3::ZERO {
             self.lower_ss
@@ -110,20 +110,20 @@ impl Chain {
     }
 }
 
-impl Limb {
+impl LimbBones {
     /// d₁ and d₂.
     pub fn lengths(&self) -> (f64, f64) {
         (self.upper_ss.length(), self.lower_ss.length())
     }
 
-    /// From the start joint, before anything is turned.
+    /// The uncorrected hand, from the start joint.
     pub fn hand_ss(&self) -> DVec3 {
         self.upper_ss + self.lower_ss
     }
 }
 
-/// `None` where the condition number is above a million: then rounding an axis to f32 moves what it
-/// spans by some percent.
+/// The inverse; `None` for a condition number above a million, where rounding an axis to f32 moves
+/// points by some percent.
 fn inverse(axes: DMat3) -> Option<DMat3> {
     const WORST_CONDITION: f64 = 1e6;
     if axes.determinant() == 0.0 {
@@ -138,8 +138,8 @@ fn longest_axis(axes: DMat3) -> f64 {
     axes.x_axis.length().max(axes.y_axis.length()).max(axes.z_axis.length())
 }
 
-/// The rotation that is nearest to axes, without scale and mirror: the polar decomposition by
-/// Newton's iteration, each step of which squares what is uneven or skew.
+/// The nearest rotation to axes, without scale and mirror: the polar decomposition by Newton's
+/// iteration, which converges quadratically.
 fn nearest_turn(axes: DMat3) -> DQuat {
     const STEPS: usize = 3;
     if axes == DMat3::ZERO {
