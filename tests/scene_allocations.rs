@@ -60,7 +60,7 @@ impl Bench {
 }
 
 fn all_layers_but_onion_skins() -> Display {
-    Overlay::all().filter(|layer| *layer != Overlay::OnionSkins).collect()
+    Overlay::all().filter(|overlay| *overlay != Overlay::OnionSkins).collect()
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
     let mut builder = SceneBuilder::default();
     for example in Example::ALL {
         let mut document = example.open().expect("it opens").document;
-        for layers in [document.display, Overlay::all().collect(), Display::from_iter([])] {
-            document.display = layers;
+        for overlays in [document.display, Overlay::all().collect(), Display::from_iter([])] {
+            document.display = overlays;
             for theme in [Theme::Dark, Theme::Light] {
                 let overlays = Overlays::new(&document, 0.3);
                 let anew = Scene::new(&document, &overlays, theme);

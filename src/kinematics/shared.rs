@@ -2,20 +2,20 @@ use core::fmt;
 use core::ops::Deref;
 use std::sync::Arc;
 
-/// A value whose copies share its memory until one of them changes: copy on write.
+/// A value whose clones share its memory until one of them changes (copy on write).
 ///
-/// Cloning takes no memory, and two that share compare equal without a look at the value.
+/// Cloning does not allocate, and clones that still share compare equal without comparing values.
 pub struct Shared<T>(Arc<T>);
 
 impl<T> Shared<T> {
-    /// Whether both are one value in memory, rather than two that may be equal.
+    /// Whether both share one value in memory; two values may still be equal.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
 impl<T: Clone> Shared<T> {
-    /// The value to change; copied first if others share it.
+    /// The value for an edit; copied first if others share it.
     pub fn make_mut(&mut self) -> &mut T {
         Arc::make_mut(&mut self.0)
     }
