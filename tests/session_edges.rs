@@ -78,7 +78,10 @@ fn what_is_about_a_fourth_axis_is_not_done() {
         let mut session = session();
         let before = session.document().clone();
         session.apply(EditAction::SetLimit { joint: JointId::new(0), axis, limit: None });
-        assert_eq!(session.message(), Some(&*format!("A joint has angles 0, 1 and 2, not {axis}")));
+        assert_eq!(
+            session.message(),
+            Some(&*format!("The axis of a joint must be 0, 1 or 2, got {axis}"))
+        );
         let (line, plane) = (PointHandle::Axis(axis), PointHandle::Plane(axis));
         for grip in [
             Grip::Hand(line),

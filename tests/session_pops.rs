@@ -1,4 +1,4 @@
-//! PopSampleKind the session keeps of how the elbow goes, and what it knows against pops.
+//! Recorded elbow speed, pops and their fixes.
 #![cfg(feature = "document")]
 
 use glam::Vec3;

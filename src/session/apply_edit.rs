@@ -4,7 +4,22 @@ use crate::document::{Arm, Camera, Cursor, Display, Document, RigKind, SkeletonR
 
 /// Edits of the document.
 impl Session {
-    pub(super) fn edit_by(&mut self, action: EditAction) {
+    /// Applies an edit as an undo step of its own, or as part of the open transaction.
+    pub(super) fn apply_edit(&mut self, action: EditAction) {
+        let label = action.label();
+        if self.editing.label_transaction(label) {
+            return self.edit(action);
+        }
+        self.end_run();
+        let before = self.editing.state(self.time());
+        self.edit(action);
+        if !self.is_editing() {
+            self.editing.remember(label, before, self.time());
+            self.begin_run();
+        }
+    }
+
+    fn edit(&mut self, action: EditAction) {
         match action {
             EditAction::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
             EditAction::SetRoot(root) => {
@@ -21,7 +36,7 @@ impl Session {
                 self.replace_arm(Arm { soft_reach, ..*self.arm() });
             }
             EditAction::SetInfluence(influence) => self.set_influence(influence),
-            EditAction::SwitchPoseMode(mode) => self.switch_to(mode),
+            EditAction::SwitchPoseMode(mode) => self.switch_pose_mode(mode),
             EditAction::SetShoulder(angles) => self.set_shoulder(angles),
             EditAction::SetBend(bend) => self.set_bend(bend),
             EditAction::SetHandOrientation(angles) => {
@@ -86,7 +101,7 @@ impl Session {
                     Ok(())
                 });
             }
-            EditAction::StepSolver => self.step(),
+            EditAction::StepSolver => self.step_solver(),
             EditAction::ResetSolver => self.reset_solver(),
 
             EditAction::Key(channels) => self.key(&channels),

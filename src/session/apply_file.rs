@@ -29,22 +29,21 @@ impl Session {
         self.files.set_recent(recent);
     }
 
-    /// Opens what an earlier run of the program kept: it is not saved yet.
+    /// Opens the unsaved document of an earlier run of the program.
     pub(super) fn recover(&mut self, document: Document, file: Option<PathBuf>) {
         self.replace_document(document, file);
         self.editing.mark_unsaved();
         self.files.settle_recovery();
-        self.say("The document that was kept is open; save it");
+        self.say("The unsaved document is open; save it");
     }
 
-    /// Whether a file that took its time to open would now take the place of changes that were made
-    /// meanwhile.
-    pub(super) fn came_late(&self, action: &FileAction) -> bool {
+    /// Whether the action opens a file, and the document has changed since the file was asked for.
+    pub(super) fn is_late(&self, action: &FileAction) -> bool {
         let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
         matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
     }
 
-    /// Whether what an earlier run kept has been opened or declined.
+    /// Whether the unsaved document of an earlier run was opened or declined.
     pub fn has_settled_recovery(&self) -> bool {
         self.files.has_settled_recovery()
     }
@@ -65,7 +64,7 @@ impl Session {
         }
     }
 
-    /// Writes to where the document is from, or asks for a place if it is from nowhere.
+    /// Saves to the document's file, or asks for a path if it has none.
     pub(super) fn save(&mut self) -> Effect {
         self.end_glide();
         match self.files.file() {
@@ -74,8 +73,8 @@ impl Session {
         }
     }
 
-    /// Goes on with what waited for it.
-    pub(super) fn saved(&mut self, path: PathBuf) -> Option<Effect> {
+    /// Marks the document as saved and applies the action that waited for it.
+    pub(super) fn finish_save(&mut self, path: PathBuf) -> Option<Effect> {
         self.say(format!("Saved {}", path.display()));
         self.commit_edit();
         self.end_run();
@@ -86,16 +85,16 @@ impl Session {
         self.files.take_after_save().and_then(|then: Box<FileAction>| self.apply_file(*then))
     }
 
-    /// Asks for another place, and says why this one will not do.
-    pub(super) fn not_saved(&mut self, path: &Path, why: &str) {
+    /// Reports the error and asks for another path.
+    pub(super) fn fail_save(&mut self, path: &Path, why: &str) {
         self.fail(format!("not saved: {why}"));
         let (path, problem) = (path.display().to_string(), Some(why.to_owned()));
         self.open_dialog(PathDialog::SaveAs { path, problem }.into());
         self.files.take_after_save();
     }
 
-    /// Keeps the dialog with the path that could not be opened.
-    pub(super) fn not_opened(&mut self, path: &Path, why: &str) {
+    /// Reports the error; an open dialog keeps the path.
+    pub(super) fn fail_open(&mut self, path: &Path, why: &str) {
         self.fail(format!("not opened: {why}"));
         if self
             .shell
@@ -107,13 +106,13 @@ impl Session {
         }
     }
 
-    /// Asks first if the action would lose unsaved changes or end an export.
+    /// Applies an action; asks first if it would lose unsaved changes or end an export.
     pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
         if action == FileAction::Quit && self.is_exporting() {
             self.shell.open_dialog(Dialog::Exporting);
             return None;
         }
-        if self.is_unsaved() && (action.leaves_document() || self.came_late(&action)) {
+        if self.is_unsaved() && (action.leaves_document() || self.is_late(&action)) {
             self.shell.open_dialog(Dialog::Unsaved { then: Box::new(action) });
             return None;
         }
@@ -163,7 +162,7 @@ impl Session {
                 self.shell.set_choosing(false);
                 self.say("No file was chosen");
             }
-            FileAction::NoSystemDialog(dialog) => self.ask_ourselves(dialog),
+            FileAction::NoSystemDialog(dialog) => self.ask_in_program(dialog),
             FileAction::Open { path, skeleton } => {
                 self.shell.set_choosing(false);
                 if !matches!(self.shell.path_dialog(), Some(PathDialog::Open { .. })) {
@@ -173,7 +172,7 @@ impl Session {
                 return Some(Effect::Open { path, skeleton });
             }
             FileAction::Opened { document, file } => self.replace_document(*document, file),
-            FileAction::NotOpened { path, why } => self.not_opened(&path, &why),
+            FileAction::NotOpened { path, why } => self.fail_open(&path, &why),
             FileAction::Save => {
                 self.files.take_after_save();
                 return Some(self.save());
@@ -184,8 +183,8 @@ impl Session {
                 self.end_glide();
                 return Some(Effect::Save(path));
             }
-            FileAction::Saved(path) => return self.saved(path),
-            FileAction::NotSaved { path, why } => self.not_saved(&path, &why),
+            FileAction::Saved(path) => return self.finish_save(path),
+            FileAction::NotSaved { path, why } => self.fail_save(&path, &why),
             FileAction::SaveAnd(then) => {
                 self.shell.take_dialog();
                 self.files.set_after_save(then);
@@ -221,16 +220,16 @@ impl Session {
         let document = Document { rig: RigKind::Skeleton, ..Document::default() };
         self.replace_document(document, None);
         self.select(vec![JointId::new(0)]);
-        // As far away as a rig of a unit or two needs.
+        // Frames a rig of one or two units.
         self.set_camera(self.settled_camera().framing(Vec3::Y * 0.5, 1.0, ASPECT));
     }
 
-    /// What is being exported.
+    /// The running export.
     pub fn export_job(&self) -> Option<&ExportJob> {
         self.files.job()
     }
 
-    /// Asks how to export the document.
+    /// The dialog for an export of the document.
     pub fn export_dialog(&self) -> PathDialog {
         const SIZE: (u32, u32) = (1280, 800);
         let stem = self.files.file().and_then(|file| file.file_stem());
@@ -244,7 +243,7 @@ impl Session {
 
     pub(super) fn export(&mut self, export: Export) -> Option<Effect> {
         if self.files.job().is_some() {
-            self.say("Another export is under way; cancel it or wait");
+            self.say("Another export is running; cancel it or wait");
             return None;
         }
         self.shell.take_dialog();
@@ -252,12 +251,12 @@ impl Session {
         Some(Effect::Export(export))
     }
 
-    /// Whether an export runs that is not told to stop.
+    /// Whether an export runs and is not cancelled.
     pub(super) fn is_exporting(&self) -> bool {
         self.files.job().is_some_and(|job| !job.progress.is_cancelled())
     }
 
-    /// Quits as soon as the export has stopped and left no file.
+    /// Cancels the export and quits.
     pub(super) fn stop_export_and_quit(&mut self) -> Option<Effect> {
         self.shell.take_dialog();
         self.cancel_export();

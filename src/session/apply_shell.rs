@@ -11,22 +11,23 @@ use super::shell_action::ShellAction;
 
 /// Dialogs, messages and preferences.
 impl Session {
+    /// The open dialog.
     pub fn dialog(&self) -> Option<&Dialog> {
         self.shell.dialog()
     }
 
-    /// Whether a dialog, ours or the system's, has the keyboard: nothing behind it answers.
+    /// Whether a modal dialog is open, the program's or the system's.
     pub fn is_asking(&self) -> bool {
         self.shell.is_choosing() || self.shell.dialog().is_some_and(Dialog::is_modal)
     }
 
-    /// Whether the system's file dialog has been asked for and has not answered.
+    /// Whether the system's file dialog is open.
     pub fn is_choosing(&self) -> bool {
         self.shell.is_choosing()
     }
 
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {
-        // What waits for the document to be saved waits for no other question.
+        // A dialog other than those that save ends the wait for the document to be saved.
         let is_saving = match &dialog {
             Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
             Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
@@ -47,17 +48,17 @@ impl Session {
         }
     }
 
-    /// The system has no file dialog: ours asks, or says so where it is open already.
-    pub(super) fn ask_ourselves(&mut self, dialog: PathDialog) {
+    /// Opens the program's dialog where the system has none, or says so if it is open already.
+    pub(super) fn ask_in_program(&mut self, dialog: PathDialog) {
         if self.shell.dialog().is_some() {
             self.shell.set_choosing(false);
-            self.fail("this system has no file dialog: type the path");
+            self.fail("the system has no file dialog: type the path");
         } else {
             self.open_dialog(dialog.into());
         }
     }
 
-    /// The path that is typed into a dialog; a relative one is in the folder that was used last.
+    /// The full path of a typed one: a relative path is in the folder that was used last.
     pub fn full_path(&self, dialog: &PathDialog, typed: &Path) -> PathBuf {
         let in_folder = |folder: &Path| folder.join(typed);
         let full = match dialog {
@@ -65,7 +66,7 @@ impl Session {
                 self.files.export_folder().or(self.files.document_folder()).map(in_folder)
             }
             PathDialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
-            // A path of the command line's folder is meant where there is such a file.
+            // An existing file of the current folder comes first.
             PathDialog::Open { .. } if !typed.exists() => {
                 self.files.document_folder().map(in_folder)
             }

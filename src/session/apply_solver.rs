@@ -30,10 +30,10 @@ impl Session {
         }
     }
 
-    /// The solver that is under way, or a new one at its start.
-    fn solving_or_new(&mut self) -> Option<SolverRun> {
+    /// Takes the solver run, or starts one.
+    fn take_or_new_run(&mut self) -> Option<SolverRun> {
         if self.skeleton_rig().follow_path.is_some() {
-            self.fail("This skeleton follows its head; it has nothing to solve");
+            self.fail("A skeleton that follows a path has nothing to solve");
             return None;
         }
         if self.skeleton_rig().targets_at(self.time()).is_empty() {
@@ -57,7 +57,7 @@ impl Session {
         if !running {
             return self.stop_run();
         }
-        if let Some(mut solver_run) = self.solving_or_new() {
+        if let Some(mut solver_run) = self.take_or_new_run() {
             solver_run.running = true;
             self.solvers.set_run(solver_run);
             self.begin_run();
@@ -69,17 +69,17 @@ impl Session {
         self.end_run();
     }
 
-    /// One iteration, after which the solver waits.
-    pub(super) fn step(&mut self) {
+    /// Makes one iteration and pauses.
+    pub(super) fn step_solver(&mut self) {
         self.solvers.end_comparison();
         self.stop_run();
-        if let Some(solver_run) = self.solving_or_new() {
+        if let Some(solver_run) = self.take_or_new_run() {
             self.solvers.set_run(solver_run);
             self.iterate(1);
         }
     }
 
-    /// Back to where the skeleton was before the first iteration.
+    /// Resets the skeleton to the pose before the first iteration.
     pub(super) fn reset_solver(&mut self) {
         self.solvers.end_comparison();
         self.stop_run();
@@ -95,22 +95,22 @@ impl Session {
                 })
             })
         });
-        self.say("The skeleton is as it was before the solver ran");
+        self.say("Reset to the pose before the solver run");
     }
 
     pub(super) fn start_comparison(&mut self) {
         self.stop_run();
-        if let Some(solver_run) = self.solving_or_new() {
+        if let Some(solver_run) = self.take_or_new_run() {
             self.solvers.set_run(solver_run);
             self.solvers.compare(Comparison::new(self.skeleton_rig(), self.time()));
         }
     }
 
-    /// Lets the solver and the race go on.
+    /// Makes the iterations of a frame of the run and of the comparison.
     pub(super) fn advance_solvers(&mut self) {
         if self.is_running() {
             self.iterate(self.skeleton_rig().iterations_per_frame);
-            self.rest();
+            self.pause_if_done();
         }
         self.solvers.advance_comparison();
     }
@@ -130,12 +130,12 @@ impl Session {
         }
     }
 
-    /// A solver that is done waits, unless its targets move by themselves.
-    fn rest(&mut self) {
-        let goes_on = self.is_playing() && self.has_motion();
-        let is_held = self.drag().is_some();
+    /// Pauses a run that is done, unless its targets move or are dragged.
+    fn pause_if_done(&mut self) {
+        let moves = self.is_playing() && self.has_motion();
+        let is_dragged = self.drag().is_some();
         let is_done = self.solver_run().is_some_and(SolverRun::is_done);
-        if is_done && !goes_on && !is_held {
+        if is_done && !moves && !is_dragged {
             self.stop_run();
         }
     }

@@ -1,13 +1,13 @@
 use core::fmt::Display;
 
+use glam::Vec3;
+
 use super::drag::{Drag, DragKind, Grip};
-use super::edit_action::EditAction;
 use super::point_drag::{Constraint, PointDrag};
 use super::session::Session;
 use super::snapshot::Snapshot;
 use super::transaction_action::TransactionAction;
 use crate::document::{Arm, Channel, Document, Ray};
-use glam::Vec3;
 
 /// Transactions and undo steps.
 impl Session {
@@ -61,20 +61,6 @@ impl Session {
         self.drag()?.point()
     }
 
-    pub(super) fn apply_edit(&mut self, action: EditAction) {
-        let label = action.label();
-        if self.editing.label_transaction(label) {
-            return self.edit_by(action);
-        }
-        self.end_run();
-        let before = self.editing.state(self.time());
-        self.edit_by(action);
-        if !self.is_editing() {
-            self.editing.remember(label, before, self.time());
-            self.begin_run();
-        }
-    }
-
     pub(super) fn apply_transaction(&mut self, action: TransactionAction) {
         match action {
             TransactionAction::Begin => self.begin_edit(None),
@@ -85,7 +71,7 @@ impl Session {
             TransactionAction::Grab { grip, ray, forward } => self.grab(grip, ray, forward),
             TransactionAction::Drag(input) => self.drag_by(|drag| drag.set_input(input)),
             TransactionAction::Constrain(constraint) => {
-                if constraint.is_none_or(Constraint::is_possible) {
+                if constraint.is_none_or(Constraint::has_valid_axis) {
                     self.drag_by(|drag| drag.set_constraint(constraint));
                 }
             }
@@ -210,7 +196,7 @@ impl Session {
     }
 
     fn grab(&mut self, grip: Grip, ray: Ray, forward: Vec3) {
-        if !grip.is_possible() {
+        if !grip.has_valid_axis() {
             return;
         }
         self.view.stop_glide();
@@ -236,9 +222,9 @@ impl Session {
                 self.turn_joint(joint, axis, angle);
             }
             (Grip::Hand(_), DragKind::Point(point)) => {
-                let held = point.point();
+                let dragged = point.point();
                 if point.has_moved() {
-                    self.set_point("hand", held, Arm::set_cursor);
+                    self.set_point("hand", dragged, Arm::set_cursor);
                 } else {
                     self.replace_arm(Arm { cursor, ..*self.arm() });
                 }
@@ -252,8 +238,8 @@ impl Session {
                 self.set_bend(bend);
             }
             (Grip::Pole(_), DragKind::Point(point)) => {
-                let held = point.point();
-                let pole = if point.has_moved() { held } else { pole };
+                let dragged = point.point();
+                let pole = if point.has_moved() { dragged } else { pole };
                 self.set_pole(pole);
             }
             (_, DragKind::Point(point)) => {

@@ -4,7 +4,7 @@ use super::view_drag::ViewDrag;
 use crate::document::{Camera, RigKind};
 use crate::rig::Crowd;
 
-/// The view.
+/// Camera, crowd and panels.
 impl Session {
     /// The camera now.
     pub fn camera(&self) -> &Camera {
@@ -120,7 +120,7 @@ impl Session {
         }
     }
 
-    /// A pause is no time of the crowd.
+    /// Lets the crowd continue from where it paused.
     fn forget_pause(&mut self) {
         if !self.is_playing() {
             self.playback.forget_last_frame();

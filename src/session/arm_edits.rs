@@ -1,17 +1,12 @@
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
-use super::drag::DragKind;
-use super::drag::{Drag, Grip};
-use super::point_drag::{PointDrag, PointHandle};
 use super::pose_mode::PoseMode;
 use super::session::Session;
-use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{Arm, Channel, Document, Ray, TwistReferenceKind};
+use crate::document::{Arm, Channel, Document, TwistReferenceKind};
 use crate::kinematics::angle::wrapped;
-use crate::kinematics::euler;
 use crate::kinematics::two_bone::TwoBone;
 
-/// What actions do to the arm.
+/// Edits of the arm.
 impl Session {
     pub(super) fn set_point(&mut self, name: &str, point: Vec3, set: fn(&mut Arm, Vec3)) {
         if point.is_finite() {
@@ -19,15 +14,15 @@ impl Session {
             set(&mut arm, point);
             self.replace_arm(arm);
         } else {
-            self.fail(format!("The {name} must be at finite numbers, not {point}"));
+            self.fail(format!("The {name} must be finite, got {point}"));
         }
     }
 
-    pub(super) fn set_twist(&mut self, spin: f32) {
-        if spin.is_finite() {
-            self.replace_arm(Arm { twist: wrapped(spin), ..*self.arm() });
+    pub(super) fn set_twist(&mut self, twist: f32) {
+        if twist.is_finite() {
+            self.replace_arm(Arm { twist: wrapped(twist), ..*self.arm() });
         } else {
-            self.fail(format!("The elbow spin must be a finite number, not {spin}"));
+            self.fail(format!("The Socket twist must be finite, got {twist}"));
         }
     }
 
@@ -38,28 +33,28 @@ impl Session {
         }
     }
 
-    /// The elbow stays where it is, at the keys of its spin too.
+    /// Changes the twist reference of the arm and of all keys of the twist; the elbow does not move.
     pub(super) fn set_twist_reference(&mut self, twist_reference: TwistReferenceKind) {
         const SAME: f32 = 1e-4;
-        let was_held = self.is_overridden(Channel::Twist);
+        let was_overridden = self.is_overridden(Channel::Twist);
         self.shell.clear_message();
         self.commit(self.shown().with_twist_reference(twist_reference));
-        // At a key the keys, measured anew, say the same.
-        let spin = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
-        let keyed = spin(&self.document().evaluate(self.time()));
-        let apart = wrapped(keyed - spin(self.shown()) + SAME);
-        if !was_held && apart < 2.0 * SAME && self.document().keys.has(Channel::Twist) {
+        // The converted keys give the same elbow at a key: then there is no unkeyed edit.
+        let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
+        let keyed = twist(&self.document().evaluate(self.time()));
+        let apart = wrapped(keyed - twist(self.shown()) + SAME);
+        if !was_overridden && apart < 2.0 * SAME && self.document().keys.has(Channel::Twist) {
             self.editing.forget_override(Channel::Twist);
             self.shell.clear_message();
             self.refresh();
         }
     }
 
-    pub(super) fn set_influence(&mut self, weight: f32) {
-        if (0.0..=1.0).contains(&weight) {
-            self.replace_arm(Arm { influence: weight, ..*self.arm() });
+    pub(super) fn set_influence(&mut self, influence: f32) {
+        if (0.0..=1.0).contains(&influence) {
+            self.replace_arm(Arm { influence, ..*self.arm() });
         } else {
-            self.fail(format!("The IK weight must be from 0 to 1, not {weight}"));
+            self.fail(format!("The IK influence must be from 0 to 1, got {influence}"));
         }
     }
 
@@ -77,86 +72,29 @@ impl Session {
             arm.fk.bend = bend;
             self.replace_arm(arm);
         } else {
-            self.fail(format!("The elbow's bend must be a finite number, not {bend}"));
+            self.fail(format!("The elbow's bend must be finite, got {bend}"));
         }
     }
 
-    /// The pose stays, unless a soft limit keeps the hand from where it is.
-    pub(super) fn switch_to(&mut self, lead: PoseMode) {
+    /// Switches to FK or IK. The pose does not change, unless the soft limits exclude it.
+    pub(super) fn switch_pose_mode(&mut self, mode: PoseMode) {
         const MOVED: f32 = 1e-3;
         let before = *self.pose();
-        match lead {
+        match mode {
             PoseMode::Hand => self.replace_arm(self.arm().switched_to_ik()),
             PoseMode::Angles => self.replace_arm(self.arm().switched_to_fk()),
         }
         let moved =
             self.pose().elbow.distance(before.elbow).max(self.pose().hand.distance(before.hand));
         if moved > MOVED * self.arm().bones.outer_limit() {
-            self.say("The arm has moved: its soft limits do not let it be there");
+            self.say("The arm moved: its soft limits exclude the pose");
         }
     }
 
-    /// Every change of the arm comes through here: what its next pose goes on from is kept.
+    /// Replaces the arm; its solve state (facing, transported frame, roll) continues from the present arm.
     pub(super) fn replace_arm(&mut self, arm: Arm) {
         self.shell.clear_message();
         let arm = arm.transported_from(self.arm()).with_solve_state();
         self.commit(Document { arm, ..self.shown().clone() });
-    }
-
-    /// The hand is taken where it is seen, or its cursor if that is out of reach and nearer to the
-    /// pointer. A cursor out of reach comes to a hand that is taken, which leaves the pose as it is.
-    pub(super) fn grab_hand(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
-        let (arm, hand) = (*self.arm(), self.pose().hand);
-        if !arm.uses_ik() {
-            return;
-        }
-        let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
-        let is_led = handle == PointHandle::Free && arm.influence == 1.0;
-        let is_at_hand = is_led && aside(hand) < aside(arm.cursor_in_root());
-        let start = if is_at_hand { hand } else { arm.cursor_in_root() };
-        let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), kind: DragKind::Point(drag) }));
-    }
-
-    pub(super) fn grab_pole(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
-        let arm = *self.arm();
-        if arm.twist_reference == TwistReferenceKind::Pole {
-            let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
-            let drag = drag.with_step(self.snap());
-            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), kind: DragKind::Point(drag) }));
-        }
-    }
-
-    pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
-        let fk = self.arm().fk;
-        let start = match grip {
-            Grip::Shoulder(axis) => fk.shoulder[axis],
-            _ => fk.bend,
-        };
-        if let Some(ring) = self.arm_ring(grip) {
-            let kind = DragKind::Turn(TurnDrag::new(ring, start, ray));
-            self.begin_edit(Some(Drag { grip, kind }));
-        }
-    }
-
-    /// What one of the arm's own angles turns about, in the world, while they lead: the shoulder's
-    /// about x, y or z, or the elbow's bend.
-    pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
-        let arm = self.arm();
-        if arm.uses_ik() {
-            return None;
-        }
-        let angles = arm.fk.shoulder;
-        let yaw = Mat3::from_rotation_y(angles.y);
-        let axis = match grip {
-            Grip::Shoulder(1) => Vec3::Y,
-            Grip::Shoulder(2) => yaw.z_axis,
-            Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
-            // A growing bend turns the lower limb the other way about the hinge.
-            Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
-            _ => return None,
-        };
-        let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
-        Some(GripRing { centre, axis })
     }
 }

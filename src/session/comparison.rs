@@ -1,59 +1,63 @@
 use std::time::{Duration, Instant};
 
-use super::solver_run::ResidualHistory;
+use super::residual_history::ResidualHistory;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SolverOptions};
 use crate::kinematics::skeleton::Skeleton;
 
-/// Every solver from the same start to the same targets.
+/// All solvers side by side, from the same pose to the same targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     solvers: Vec<ComparedSolver>,
 }
 
-/// One solver in a race.
+/// One solver of a [`Comparison`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedSolver {
+    /// The solver.
     pub method: Method,
-    /// The skeleton as this solver has it by now.
+    /// The skeleton after the last iteration.
     pub skeleton: Skeleton,
+    /// Error after every iteration.
     pub history: ResidualHistory,
-    /// What the iterations took.
-    pub time: Duration,
-    solve: Result<ChainSolver, SolveError>,
+    /// Time that all iterations took.
+    pub elapsed: Duration,
+    solver: Result<ChainSolver, SolveError>,
 }
 
 impl Comparison {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Self {
-        let goals = rig.targets_at(time);
+        let targets = rig.targets_at(time);
         let solvers = Method::ALL.into_iter().map(|method| {
             let options = SolverOptions { method, iterations: None, ..rig.solver };
-            let solve = ChainSolver::new(&rig.skeleton, &goals, &options);
+            let solver = ChainSolver::new(&rig.skeleton, &targets, &options);
             let mut history = ResidualHistory::default();
-            if let Ok(solve) = &solve {
-                history.push(solve.report().error);
+            if let Ok(solver) = &solver {
+                history.push(solver.report().error);
             }
             ComparedSolver {
                 method,
                 skeleton: Skeleton::clone(&rig.skeleton),
                 history,
-                time: Duration::ZERO,
-                solve,
+                elapsed: Duration::ZERO,
+                solver,
             }
         });
         Self { solvers: solvers.collect() }
     }
 
+    /// The solvers, in the order of [`Method::ALL`].
     pub fn solvers(&self) -> &[ComparedSolver] {
         &self.solvers
     }
 
     /// Whether any solver still runs.
+    /// Whether the solver makes further iterations.
     pub fn is_running(&self) -> bool {
         self.solvers.iter().any(ComparedSolver::is_running)
     }
 
-    /// Whether the joints are still those that it began with, turned or not.
+    /// Whether the skeleton has the joints with which the comparison began, in any pose.
     pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
         let is_like = |solver: &ComparedSolver| {
             let parents = |skeleton: &Skeleton| -> Vec<_> {
@@ -64,23 +68,28 @@ impl Comparison {
         self.solvers.first().is_none_or(is_like)
     }
 
-    /// Lets every solver run on: ever faster, so that the start can be watched and the end comes.
+    /// Makes iterations with every solver: first one a frame, then more and more.
     pub(super) fn advance(&mut self) {
         self.solvers.iter_mut().for_each(ComparedSolver::advance);
     }
 }
 
 impl ComparedSolver {
-    /// A running solver makes this part of the iterations that it has made, and at least one.
+    /// A frame adds one iteration for every so many made before, and at least one.
     const PACE: u32 = 8;
 
-    /// How it stands, or why it does not run.
+    /// State after the last iteration.
+    ///
+    /// # Errors
+    ///
+    /// The solver cannot solver for these targets.
     pub fn report(&self) -> Result<Report, &SolveError> {
-        self.solve.as_ref().map(ChainSolver::report)
+        self.solver.as_ref().map(ChainSolver::report)
     }
 
+    /// Whether the solver makes further iterations.
     pub fn is_running(&self) -> bool {
-        self.solve.as_ref().is_ok_and(|solve| !solve.is_over())
+        self.solver.as_ref().is_ok_and(|solver| !solver.is_over())
     }
 
     fn advance(&mut self) {
@@ -90,13 +99,13 @@ impl ComparedSolver {
             if !self.is_running() {
                 break;
             }
-            if let Ok(solve) = &mut self.solve {
-                self.history.push(solve.step().error);
+            if let Ok(solver) = &mut self.solver {
+                self.history.push(solver.step().error);
             }
         }
-        self.time += started.elapsed();
-        if let Ok(solve) = &self.solve {
-            solve.write(&mut self.skeleton);
+        self.elapsed += started.elapsed();
+        if let Ok(solver) = &self.solver {
+            solver.write(&mut self.skeleton);
         }
     }
 }

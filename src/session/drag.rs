@@ -2,40 +2,40 @@ use super::point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn_drag::TurnDrag;
 use crate::kinematics::skeleton::JointId;
 
-/// What can be taken hold of in the viewport.
+/// A part of a gizmo that can be dragged in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
     /// The arm's hand.
     Hand(PointHandle),
-    /// What the arm's elbow points at.
+    /// The pole, at which the elbow points.
     Pole(PointHandle),
-    /// The ring about which the shoulder's angle x, y or z (0, 1, 2) turns.
+    /// The ring of the shoulder's angle about x, y or z (0, 1, 2).
     Shoulder(usize),
-    /// The ring about which the elbow bends.
+    /// The ring of the elbow's bend.
     Bend,
     /// The target of a joint.
     Target(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
-    /// The ring about which a joint's angle x, y or z (0, 1, 2) turns.
+    /// The ring of a joint's angle about x, y or z (0, 1, 2).
     Ring(JointId, usize),
 }
 
 impl Grip {
-    /// Whether what it says of axes are three.
-    pub(super) fn is_possible(self) -> bool {
+    /// Whether its axis is 0, 1 or 2.
+    pub(super) fn has_valid_axis(self) -> bool {
         match self {
             Self::Hand(handle)
             | Self::Pole(handle)
             | Self::Target(_, handle)
-            | Self::Tip(_, handle) => handle.is_possible(),
+            | Self::Tip(_, handle) => handle.has_valid_axis(),
             Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
             Self::Bend => true,
         }
     }
 }
 
-/// What is held, and where it has been taken.
+/// A drag in the viewport.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
     pub(super) grip: Grip,
@@ -49,11 +49,12 @@ pub(super) enum DragKind {
 }
 
 impl Drag {
+    /// The part that is dragged.
     pub fn grip(&self) -> Grip {
         self.grip
     }
 
-    /// The point that is held, unless it is a ring.
+    /// The drag of a point; `None` for a ring.
     pub fn point(&self) -> Option<&PointDrag> {
         match &self.kind {
             DragKind::Point(drag) => Some(drag),
@@ -61,7 +62,7 @@ impl Drag {
         }
     }
 
-    /// The ring that is held, unless it is a point.
+    /// The drag of a ring; `None` for a point.
     pub fn turn(&self) -> Option<&TurnDrag> {
         match &self.kind {
             DragKind::Turn(drag) => Some(drag),
@@ -69,7 +70,7 @@ impl Drag {
         }
     }
 
-    /// What is typed while it is held.
+    /// The typed offset; empty while the mouse sets it.
     pub fn typed(&self) -> &str {
         match &self.kind {
             DragKind::Point(drag) => drag.typed(),
@@ -91,7 +92,7 @@ impl Drag {
         }
     }
 
-    /// Rings have nothing to be held to.
+    /// Constrains the drag of a point; does nothing to a ring.
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
         if let DragKind::Point(drag) = &mut self.kind {
             drag.set_constraint(constraint);

@@ -183,8 +183,8 @@ impl Editing {
             self.keep_unkeyed_values(&mut after);
         }
         self.overrides.retain(|channel, _| {
-            let goes_along = *channel == Channel::Twist && is_transported(&after);
-            goes_along || after.keys.has(*channel)
+            let is_transported = *channel == Channel::Twist && is_transported(&after);
+            is_transported || after.keys.has(*channel)
         });
         self.document = after;
         self.evaluate(playback.time());
@@ -219,21 +219,21 @@ impl Editing {
             value.is_some() && value != channel.value(&self.shown)
         };
         let channels: Vec<Channel> = if playback.is_auto_key() {
-            // What is shown or not gets keys only where it has some.
+            // Switches are keyed only where they have keys.
             let switches =
                 after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-            // A switch between hand and angles is a pose of both.
+            // A switch between FK and IK keys both.
             let switched = changed(&Channel::Influence);
-            let leads = |channel: &Channel| {
-                let is_leading = Channel::IK.contains(channel) || Channel::FK.contains(channel);
-                switched && is_leading
+            let poses_arm = |channel: &Channel| {
+                let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
+                switched && is_posing
             };
-            // What has begun to shape the rig, and what no longer does.
+            // Channels that shape the rig before or after the edit.
             let all: BTreeSet<Channel> = [&*after, &self.shown]
                 .into_iter()
                 .flat_map(Channel::of_rig)
                 .chain(switches)
-                .filter(|channel| changed(channel) || leads(channel))
+                .filter(|channel| changed(channel) || poses_arm(channel))
                 .collect();
             all.into_iter().collect()
         } else {
@@ -241,9 +241,9 @@ impl Editing {
         };
         if !playback.is_auto_key() && is_transported(after) {
             if after.arm.cursor_in_root() != self.shown.arm.cursor_in_root() {
-                // The elbow has gone along, and comes back with the hand.
-                let spin = Channel::Twist.value(after).unwrap_or_default();
-                self.overrides.insert(Channel::Twist, spin);
+                // The transported twist is restored with the hand.
+                let twist = Channel::Twist.value(after).unwrap_or_default();
+                self.overrides.insert(Channel::Twist, twist);
             } else if changed(&Channel::Twist) {
                 self.overrides.remove(&Channel::Twist);
             }
@@ -280,11 +280,11 @@ impl Editing {
                 after.arm.ik_state.pointer = self.document.arm.ik_state.pointer;
             }
         }
-        let goes_along = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
-        if goes_along || is_keyed(&Channel::Twist) {
-            let rest = self.document.arm.with_twist_reference(after.arm.twist_reference);
-            after.arm.twist = rest.twist;
-            after.arm.ik_state.transported = rest.ik_state.transported;
+        let is_overridden = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
+        if is_overridden || is_keyed(&Channel::Twist) {
+            let unkeyed = self.document.arm.with_twist_reference(after.arm.twist_reference);
+            after.arm.twist = unkeyed.twist;
+            after.arm.ik_state.transported = unkeyed.ik_state.transported;
         }
         if is_keyed(&Channel::HandOrientation) {
             let Arm { hand_orientation, .. } = self.document.arm;

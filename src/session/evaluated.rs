@@ -1,10 +1,10 @@
-use std::cell::OnceCell;
-
 use glam::Vec3;
 
+use super::cached::Cached;
 use super::pops::{CursorMove, Pops};
 use super::transport::TransportPath;
-use crate::document::{Arm, Document};
+use crate::document::{Arm, Document, SkeletonRig};
+use crate::kinematics::chain_ik::{ChainSolver, Report};
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::two_bone::TwoBonePose;
 
@@ -15,8 +15,9 @@ pub(super) struct Evaluated {
     skeleton_pose: SkeletonPose,
     transport_path: TransportPath,
     pops: Pops,
-    /// Computed when it is first shown.
-    trail: OnceCell<Vec<Vec3>>,
+    trail: Cached<Vec<Vec3>>,
+    /// The report of a solver before its first iteration.
+    unsolved_report: Cached<Option<Report>>,
 }
 
 impl Evaluated {
@@ -27,7 +28,8 @@ impl Evaluated {
             skeleton_pose: document.skeleton_rig.skeleton_at(0.0).pose(),
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
-            trail: OnceCell::new(),
+            trail: Cached::default(),
+            unsolved_report: Cached::default(),
         }
     }
 
@@ -47,16 +49,26 @@ impl Evaluated {
         &self.pops
     }
 
-    pub fn trail(&self, walk: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
-        self.trail.get_or_init(walk)
+    pub fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
+        self.trail.get(sample)
+    }
+
+    /// The residual of the evaluated pose; `None` where the solver cannot solve for its targets.
+    pub fn unsolved_report(&self, rig: &SkeletonRig, time: f64) -> Option<Report> {
+        let compute = || {
+            let targets = rig.targets_at(time);
+            Some(ChainSolver::new(&rig.skeleton, &targets, &rig.solver).ok()?.report())
+        };
+        *self.unsolved_report.get(compute)
     }
 
     /// Poses a document at a time.
     pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
         self.pose = shown.arm.pose();
-        self.transport_path.go_on(&shown.arm);
-        self.pops.watch(&shown.arm, self.pose, cause, time);
+        self.transport_path.advance(&shown.arm);
+        self.pops.record(&shown.arm, self.pose, cause, time);
         shown.skeleton_rig.write_pose(time, &mut self.skeleton_pose);
+        self.unsolved_report.clear();
     }
 
     pub fn reset_transport(&mut self, arm: &Arm) {
@@ -69,6 +81,6 @@ impl Evaluated {
 
     /// Lets the trail be computed anew.
     pub fn forget_trail(&mut self) {
-        self.trail.take();
+        self.trail.clear();
     }
 }

@@ -3,24 +3,27 @@ use std::sync::Arc;
 
 use crate::io::Progress;
 
-/// What is asked for of an export; its path's ending says the format.
+/// Settings of an export; the file extension chooses the format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Export {
+    /// The file.
     pub path: PathBuf,
+    /// Frames per second.
     pub frame_rate: u32,
-    /// Of pictures, in pixels.
+    /// Width and height of pictures, in pixels.
     pub size: (u32, u32),
 }
 
-/// An export under way, on a thread of its own.
+/// An export that runs on a thread of its own.
 #[derive(Clone, Debug)]
 pub struct ExportJob {
-    /// Where it goes.
+    /// The file.
     pub path: PathBuf,
+    /// Progress, and the flag that cancels it.
     pub progress: Arc<Progress>,
 }
 
-/// The same job, not one that is as far.
+/// Compares identity, not progress.
 impl PartialEq for ExportJob {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.progress, &other.progress)

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use super::export::ExportJob;
 use super::file_action::FileAction;
 
-/// The document's file, recent files, the running export and the answers that are waited for.
+/// The document's file, recent files, the running export and pending requests.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Files {
     file: Option<PathBuf>,

@@ -12,7 +12,7 @@ pub(super) struct History {
 /// A step to undo with the state before it, or a step to redo with the state after it.
 #[derive(Clone, Debug, PartialEq)]
 struct UndoStep {
-    name: &'static str,
+    label: &'static str,
     state: Snapshot,
     /// Bytes that the state does not share with the step before.
     bytes: usize,
@@ -23,17 +23,17 @@ impl History {
     const MAX_BYTES: usize = 256 << 20;
 
     /// Adds a step with the state before it.
-    pub fn push(&mut self, name: &'static str, before: Snapshot) {
+    pub fn push(&mut self, label: &'static str, before: Snapshot) {
         self.redo.clear();
-        self.push_undo(name, before);
+        self.push_undo(label, before);
         while self.undo.len() > Self::MAX_STEPS || self.bytes() > Self::MAX_BYTES {
             self.drop_oldest();
         }
     }
 
-    fn push_undo(&mut self, name: &'static str, state: Snapshot) {
+    fn push_undo(&mut self, label: &'static str, state: Snapshot) {
         let bytes = state.unshared_bytes(self.undo.back().map(|step| &step.state));
-        self.undo.push_back(UndoStep { name, state, bytes });
+        self.undo.push_back(UndoStep { label, state, bytes });
     }
 
     /// Drops the oldest step; what the next one shared with it is the next one's own.
@@ -46,21 +46,21 @@ impl History {
 
     /// Label of the step that [`Self::undo`] undoes.
     pub fn undo_label(&self) -> Option<&'static str> {
-        self.undo.back().map(|step| step.name)
+        self.undo.back().map(|step| step.label)
     }
 
     /// Label of the step that [`Self::redo`] redoes.
     pub fn redo_label(&self) -> Option<&'static str> {
-        self.redo.last().map(|step| step.name)
+        self.redo.last().map(|step| step.label)
     }
 
     /// Undoes a step from `now`: its label and the state before it.
     pub fn undo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
-            let UndoStep { name, state, .. } = self.undo.pop_back()?;
+            let UndoStep { label, state, .. } = self.undo.pop_back()?;
             if !state.is_restored_in(&now) {
-                self.redo.push(UndoStep { name, state: now, bytes: 0 });
-                return Some((name, state));
+                self.redo.push(UndoStep { label, state: now, bytes: 0 });
+                return Some((label, state));
             }
         }
     }
@@ -68,10 +68,10 @@ impl History {
     /// Redoes a step from `now`: its label and the state after it.
     pub fn redo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
-            let UndoStep { name, state, .. } = self.redo.pop()?;
+            let UndoStep { label, state, .. } = self.redo.pop()?;
             if !state.is_restored_in(&now) {
-                self.push_undo(name, now);
-                return Some((name, state));
+                self.push_undo(label, now);
+                return Some((label, state));
             }
         }
     }

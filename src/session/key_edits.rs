@@ -26,8 +26,8 @@ impl Session {
         !self.selection.clipboard().is_empty()
     }
 
-    /// What K keys: the selected channels, else those of the selected joints, else all that shapes
-    /// the rig; of the arm without a selection what leads it, and what is shown against its keys.
+    /// Channels that K keys: those selected in the timeline, else those of the selected joints, else all
+    /// that shape the rig. Of the arm these are the channels that pose it and those with unkeyed edits.
     pub fn channels_to_key(&self) -> Vec<Channel> {
         let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
         if !self.selection.channels().is_empty() {
@@ -35,9 +35,9 @@ impl Session {
         }
         match self.rig() {
             RigKind::Arm => {
-                // What was said to be shown only until the time changes, too.
-                let held = self.editing.overrides().keys().copied().filter(is_there);
-                let all: BTreeSet<_> = self.leading_channels().into_iter().chain(held).collect();
+                let overridden = self.editing.overrides().keys().copied().filter(is_there);
+                let all: BTreeSet<_> =
+                    self.posing_channels().into_iter().chain(overridden).collect();
                 all.into_iter().collect()
             }
             RigKind::Skeleton if self.selection.joints().is_empty() => self.all_channels(),
@@ -50,15 +50,15 @@ impl Session {
         }
     }
 
-    /// What leads the arm: hand and elbow spin, or the joints' own angles.
-    fn leading_channels(&self) -> Vec<Channel> {
+    /// Channels that pose the arm: hand and Socket twist with IK, else the joint angles.
+    fn posing_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
         let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
         let leading = hand.chain(Channel::FK);
         leading.filter(|channel| channel.shapes(arm)).collect()
     }
 
-    /// All that shapes the rig, and what has keys besides.
+    /// Channels that shape the rig, and those with keys.
     pub fn all_channels(&self) -> Vec<Channel> {
         let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
         let all: BTreeSet<Channel> =
@@ -66,7 +66,7 @@ impl Session {
         all.into_iter().collect()
     }
 
-    /// Keys channels as they are shown.
+    /// Keys channels at the playhead with the values that are shown.
     pub(super) fn key(&mut self, channels: &[Channel]) {
         let time = self.time();
         let overrides = self.editing.overrides().len();
@@ -77,7 +77,7 @@ impl Session {
             (self.editing.overrides().len() < overrides, self.document().keys.clone());
         self.edit_keys(|document| channels.iter().for_each(|channel| document.key(*channel, time)));
         if are_keyed && keys == self.document().keys {
-            // No edit has done it: the keys were there already.
+            // The keys had these values already: nothing was committed.
             self.refresh();
         }
         self.say(match channels {
@@ -113,8 +113,8 @@ impl Session {
         });
     }
 
-    /// Moves keys, as they were before the change under way, by a time. Others that are in the way
-    /// are replaced.
+    /// Moves keys, named by their times before the transaction, by a time in seconds; replaces other keys
+    /// there.
     pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
         let farthest = Timeline::MAX_TIME;
         let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
@@ -132,11 +132,11 @@ impl Session {
         after.remove_all(keys);
         insert(&mut after, &moved);
         self.edit_keys(|document| document.keys = after);
-        // The next move begins there, too.
+        // The next move of this drag starts from the same keys.
         self.editing.restart_keys_from(before);
     }
 
-    /// Where a key goes that is moved: a time that has been on a frame stays on one, bit for bit.
+    /// The new time of a key: exactly on a frame if the old one was.
     fn moved_to(&self, time: f64, by: f64) -> f64 {
         let timeline = self.document().timeline;
         let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
@@ -144,7 +144,7 @@ impl Session {
         if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
     }
 
-    /// They go as text to the clipboard too: without any there, no paste would be heard of.
+    /// Copies the selected keys, as text to the clipboard too: a paste event needs a text there.
     pub(super) fn copy_keys(&mut self) -> Option<Effect> {
         let copied = |(channel, time): &Key| {
             Some((*channel, *time, self.document().keys.track(*channel)?.get(*time)?))
@@ -168,7 +168,7 @@ impl Session {
         Some(Effect::CopyText(text))
     }
 
-    /// Puts the copied keys to where the time is; those whose joints are gone are left out.
+    /// Pastes the copied keys at the playhead, except those of missing joints.
     pub(super) fn paste_keys(&mut self) {
         let pasted: Vec<_> = self
             .selection
@@ -185,7 +185,7 @@ impl Session {
     pub(super) fn set_timeline(&mut self, timeline: Timeline) {
         if !timeline.is_valid() {
             self.fail(format!(
-                "A timeline starts before it ends, within a day of 0, and has 1 to {} frames in a \
+                "A timeline must start before it ends, within a day of 0, and have 1 to {} frames per \
                  second",
                 Timeline::MAX_FRAME_RATE
             ));
@@ -196,7 +196,7 @@ impl Session {
 
     pub(super) fn set_metres(&mut self, metres: Option<f32>) {
         if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
-            self.fail("A unit must be longer than 0 m");
+            self.fail("The length of a unit must be finite and above 0 m");
             return;
         }
         self.edit_keys(|document| document.metres_per_unit = metres);

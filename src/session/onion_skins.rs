@@ -1,14 +1,28 @@
-use super::overlays::OnionSkin;
-use crate::document::{Document, Overlay};
+use crate::document::{Arm, Document, Overlay};
+use crate::kinematics::skeleton::SkeletonPose;
 
-/// The rig some frames before and after, as far as the timeline goes, in the memory that `skins` have.
+/// The rig in a frame before or after the playhead.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OnionSkin {
+    /// The arm.
+    pub arm: Arm,
+    /// The skeleton's pose.
+    pub pose: SkeletonPose,
+    /// Whether the frame is before the playhead.
+    pub past: bool,
+    /// Opacity: 1 nearest to the playhead, less farther away.
+    pub opacity: f32,
+}
+
+/// Writes the rig in frames before and after `time` that are on the timeline; reuses the memory of
+/// `skins`.
 pub(super) fn write_onion_skins(
     document: &Document,
     shown: &Document,
     time: f64,
     skins: &mut Vec<OnionSkin>,
 ) {
-    /// How many there are before and after, and how many frames lie between two.
+    /// Number of onion skins on each side, and frames from one to the next.
     const SKINS: (isize, f64) = (3, 5.0);
     if !shown.display.shows(Overlay::OnionSkins) || !document.is_animated() {
         return skins.clear();

@@ -1,45 +1,62 @@
 use glam::Vec3;
 
-use crate::document::Arm;
+use super::onion_skins::{OnionSkin, write_onion_skins};
+use super::trail::{has_trail, sample_trail};
+use crate::document::Document;
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::rig::Crowd;
 
-/// What a picture shows beside the document.
+/// State that a picture shows in addition to the document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlays {
-    /// In seconds.
+    /// The playhead, in seconds.
     pub time: f64,
-    /// Joints that are selected; the last one is the one that is worked on.
+    /// Selected joints; the last one is the active one.
     pub selection: Vec<JointId>,
-    /// The joint that the pointer is on.
+    /// The joint under the mouse.
     pub hovered: Option<JointId>,
-    /// The skeleton as solvers in a race have it.
+    /// Poses of a comparison of solvers.
     pub ghosts: Vec<SolverGhost>,
-    /// What was carried along with the Pointer, from which transport would measure the elbow.
+    /// The frame transported along the Pointer's path.
     pub transported: Option<TransportedFrame>,
-    /// Where the hand or the selected joint's tip is at every frame, in the world.
+    /// Positions of the hand, or of the active joint's tip, in all frames, in the world.
     pub trail: Vec<Vec3>,
+    /// The rig in nearby frames.
     pub onion_skins: Vec<OnionSkin>,
-    /// What is shown in the rig's place.
+    /// The crowd that is shown instead of the rig.
     pub crowd: Option<Crowd>,
 }
 
-/// The rig as it stands somewhat before or after.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct OnionSkin {
-    pub arm: Arm,
-    pub pose: SkeletonPose,
-    /// Whether it is before.
-    pub past: bool,
-    /// How well it is seen: 1 is nearest in time.
-    pub opacity: f32,
-}
-
-/// A skeleton as a solver has it.
+/// The pose that a solver has reached in a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverGhost {
+    /// The solver.
     pub method: Method,
+    /// Its pose.
     pub pose: SkeletonPose,
+}
+
+impl Overlays {
+    /// Motion trail and onion skins of a document at a time in seconds, where its display shows them.
+    pub fn new(document: &Document, time: f64) -> Self {
+        let shown = document.evaluate(time);
+        let has_trail = has_trail(document, &shown);
+        let mut overlays = Self {
+            time,
+            trail: if has_trail { sample_trail(document, None) } else { Vec::new() },
+            ..Self::default()
+        };
+        write_onion_skins(document, &shown, time, &mut overlays.onion_skins);
+        overlays
+    }
+
+    /// The same at another time, at which the document is evaluated already.
+    #[must_use]
+    pub fn at(mut self, document: &Document, time: f64) -> Self {
+        self.time = time;
+        write_onion_skins(document, document, time, &mut self.onion_skins);
+        self
+    }
 }

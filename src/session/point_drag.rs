@@ -4,20 +4,20 @@ use glam::Vec3;
 
 use crate::document::Ray;
 
-/// Which part of a point's handles is held.
+/// A part of a point's gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointHandle {
-    /// The point itself: it moves in the plane of the picture.
+    /// The point: moves in the plane of the picture.
     Free,
-    /// An arrow: 0, 1, 2 for x, y, z.
+    /// An arrow: moves along x, y or z (0, 1, 2).
     Axis(usize),
-    /// A square: the plane in which coordinate 0, 1 or 2 stays.
+    /// A square: moves in the plane in which coordinate 0, 1 or 2 is constant.
     Plane(usize),
 }
 
 impl PointHandle {
-    /// Whether its axis is one of three.
-    pub(super) fn is_possible(self) -> bool {
+    /// Whether its axis is 0, 1 or 2.
+    pub(super) fn has_valid_axis(self) -> bool {
         match self {
             Self::Free => true,
             Self::Axis(axis) | Self::Plane(axis) => axis < 3,
@@ -25,48 +25,52 @@ impl PointHandle {
     }
 }
 
-/// What a key makes of a drag.
+/// Axis or plane to which a drag is constrained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constraint {
+    /// Along x, y or z (0, 1, 2).
     Axis(usize),
+    /// In the plane in which coordinate 0, 1 or 2 is constant.
     Plane(usize),
 }
 
 impl Constraint {
-    /// Whether its axis is one of three.
-    pub(super) fn is_possible(self) -> bool {
+    /// Whether its axis is 0, 1 or 2.
+    pub(super) fn has_valid_axis(self) -> bool {
         let (Self::Axis(axis) | Self::Plane(axis)) = self;
         axis < 3
     }
 }
 
-/// Where the pointer is now, and the keys that change what that means.
+/// Position of the mouse and modifier keys during a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragInput {
+    /// The ray under the mouse.
     pub ray: Ray,
-    /// A tenth of the way.
+    /// Whether the drag moves a tenth as far.
     pub precise: bool,
-    /// To whole steps.
+    /// Whether the drag moves in whole steps.
     pub snap: bool,
 }
 
-/// A point that is held. Where it goes is computed from where everything was at the press, never
-/// from the last move, so that nothing drifts.
+/// The drag of a point. Its position is computed from the state at the press, never from the last move,
+/// so that nothing drifts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointDrag {
     handle: PointHandle,
     constraint: Option<Constraint>,
-    /// The point at the press, and what it is relative to, in the world.
+    /// The point at the press, relative to `origin`.
     start: Vec3,
+    /// In the world.
     origin: Vec3,
-    /// What snapping goes by.
+    /// Step of snapping.
     step: f32,
     /// Normal of the picture.
     forward: Vec3,
     pressed: Ray,
     now: DragInput,
-    /// Where precision began, so that it goes on from there.
-    slow: Option<PrecisionStart>,
+    /// State when precision was switched on or off last.
+    precision: Option<PrecisionStart>,
     typed: String,
     last: Vec3,
 }
@@ -80,11 +84,11 @@ struct PrecisionStart {
 
 impl PointDrag {
     const PRECISION: f32 = 0.1;
-    /// The step of an arm as long as the seed's.
+    /// Step of snapping for the default arm.
     const SNAP: f32 = 10.0;
     const PRECISE_SNAP: f32 = 0.1;
 
-    /// Takes hold of the point that is at `start` relative to `origin` in the world.
+    /// Begins a drag of the point at `start`, relative to `origin` in the world.
     pub(super) fn new(
         handle: PointHandle,
         start: Vec3,
@@ -102,22 +106,23 @@ impl PointDrag {
             forward,
             pressed: ray,
             now,
-            slow: None,
+            precision: None,
             typed: String::new(),
             last: start,
         }
     }
 
-    /// Snaps to other steps.
+    /// The same drag with another step of snapping.
     pub(super) fn with_step(self, step: f32) -> Self {
         Self { step, ..self }
     }
 
+    /// The part of the gizmo that is dragged.
     pub fn handle(&self) -> PointHandle {
         self.handle
     }
 
-    /// What the drag is held to, by the handle or by a key.
+    /// The constraint from the keyboard, else that of the handle.
     pub fn constraint(&self) -> Option<Constraint> {
         self.constraint.or(match self.handle {
             PointHandle::Free => None,
@@ -126,24 +131,24 @@ impl PointDrag {
         })
     }
 
-    /// The offset as it is typed; empty while the pointer leads.
+    /// The typed offset; empty while the mouse sets it.
     pub fn typed(&self) -> &str {
         &self.typed
     }
 
-    /// Whether the pointer is elsewhere than at the press, or the offset is no longer its alone.
+    /// Whether the mouse has moved, or the offset was typed or set with precision.
     pub(super) fn has_moved(&self) -> bool {
-        !self.typed.is_empty() || self.slow.is_some() || self.now.ray != self.pressed
+        !self.typed.is_empty() || self.precision.is_some() || self.now.ray != self.pressed
     }
 
-    /// How far the point has been moved.
+    /// The offset from the press, finite.
     pub fn moved(&self) -> Vec3 {
         (self.last - self.start).clamp(Vec3::MIN, Vec3::MAX)
     }
 
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
         self.constraint = constraint;
-        self.slow = None;
+        self.precision = None;
     }
 
     pub(super) fn set_typed(&mut self, typed: String) {
@@ -153,13 +158,12 @@ impl PointDrag {
     pub(super) fn set_input(&mut self, input: DragInput) {
         if input.precise != self.now.precise {
             let offset = self.pointed();
-            self.slow = Some(PrecisionStart { on: input.precise, ray: self.now.ray, offset });
+            self.precision = Some(PrecisionStart { on: input.precise, ray: self.now.ray, offset });
         }
         self.now = input;
     }
 
-    /// Where the point is to be, relative to the origin. Coordinates that the drag does not move keep
-    /// every bit.
+    /// The dragged point, relative to the origin. Coordinates that the drag does not move keep every bit.
     pub(super) fn point(&mut self) -> Vec3 {
         let offset = if self.typed.is_empty() {
             self.pointed()
@@ -188,36 +192,40 @@ impl PointDrag {
         }
     }
 
-    /// The offset that the pointer asks for.
+    /// The offset of the mouse from the press, with precision.
     fn pointed(&self) -> Vec3 {
-        let Some(PrecisionStart { on, ray, offset }) = self.slow else {
+        let Some(PrecisionStart { on, ray, offset }) = self.precision else {
             return self.between(self.pressed, self.now.ray).unwrap_or(self.last - self.start);
         };
         let since = self.between(ray, self.now.ray).unwrap_or(Vec3::ZERO);
         offset + since * if on { Self::PRECISION } else { 1.0 }
     }
 
-    /// How far the point goes when the pointer goes from one ray to another; nothing if the pointer
-    /// is where the line or plane it drags along cannot be.
+    /// Offset of the point when the mouse moves from one ray to another; `None` where a ray does not meet
+    /// the line or plane of the drag.
     fn between(&self, from: Ray, to: Ray) -> Option<Vec3> {
-        let held = self.origin + self.start;
+        let at_press = self.origin + self.start;
         let offset = match self.constraint() {
             Some(Constraint::Axis(axis)) => {
                 let axis = Vec3::AXES[axis];
-                axis * (to.nearest_on_line(held, axis)? - from.nearest_on_line(held, axis)?)
+                axis * (to.nearest_on_line(at_press, axis)?
+                    - from.nearest_on_line(at_press, axis)?)
             }
             Some(Constraint::Plane(axis)) => {
                 let normal = Vec3::AXES[axis];
-                to.meets_plane(held, normal)? - from.meets_plane(held, normal)?
+                to.meets_plane(at_press, normal)? - from.meets_plane(at_press, normal)?
             }
-            None => to.meets_plane(held, self.forward)? - from.meets_plane(held, self.forward)?,
+            None => {
+                to.meets_plane(at_press, self.forward)?
+                    - from.meets_plane(at_press, self.forward)?
+            }
         };
         offset.is_finite().then_some(offset)
     }
 }
 
-/// What numbers mean when they are typed while a point is held: the first is for the first
-/// coordinate that the drag moves, and so on.
+/// The offset that typed numbers mean: the first is for the first coordinate that the drag moves, and so
+/// on. `None` for invalid numbers.
 fn offset_of(typed: &str, constraint: Option<Constraint>) -> Option<Vec3> {
     let axes: &[usize] = match constraint {
         None => &[0, 1, 2],
@@ -273,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_free_hand_stays_under_the_pointer() {
+    fn a_free_hand_stays_under_the_mouse() {
         let (mut drag, projection) = drag(PointHandle::Free);
         for at in [Vec2::new(0.1, 0.2), Vec2::new(-0.9, 0.8), Vec2::new(0.99, -0.99)] {
             drag.set_input(input(projection.ray(at)));
@@ -307,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hand_that_comes_back_to_where_it_was_pressed_is_where_it_was() {
+    fn a_mouse_that_returns_to_the_press_restores_the_point() {
         for handle in [PointHandle::Free, PointHandle::Axis(1), PointHandle::Plane(2)] {
             let (mut drag, projection) = drag(handle);
             let pressed = drag.pressed;
@@ -321,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn precision_goes_a_tenth_of_the_way_from_where_it_began() {
+    fn precision_moves_a_tenth_as_far() {
         let (mut drag, projection) = drag(PointHandle::Axis(0));
         let at = projection.project(ROOT + START).expect("in the picture");
         let ray = |x: f32| projection.ray(at + Vec2::new(x, 0.0));
@@ -350,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn a_locked_axis_takes_a_free_drag_along_it() {
+    fn a_constraint_moves_a_free_drag_along_its_axis() {
         let (mut drag, projection) = drag(PointHandle::Free);
         drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
         drag.set_constraint(Some(Constraint::Axis(2)));
@@ -362,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn typed_numbers_are_the_offset_of_what_the_drag_moves() {
+    fn typed_numbers_are_the_offset_of_moved_coordinates() {
         let typed = |handle, text: &str| {
             let (mut drag, projection) = drag(handle);
             drag.set_input(input(projection.ray(Vec2::new(0.3, 0.4))));
@@ -378,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pointer_that_looks_away_from_the_plane_leaves_the_hand() {
+    fn a_ray_that_misses_the_plane_leaves_the_point() {
         let (mut drag, _) = drag(PointHandle::Plane(1));
         let up = Ray { origin: Vec3::new(0.0, 500.0, 0.0), direction: Vec3::Y };
         drag.set_input(input(up));

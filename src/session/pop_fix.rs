@@ -4,20 +4,20 @@ use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::pop::Pop;
 use crate::kinematics::soft_reach::SoftReach;
 
-/// What can be done against a pop.
+/// A change of settings that prevents a pop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PopFix {
-    /// Another reference for the elbow's spin.
+    /// Another twist reference.
     ChangeReference(TwistReferenceKind),
-    /// A softer way into the limits.
+    /// More softness near the limits.
     Soften(SoftReach),
-    /// A smallest elbow angle, with which the arm does not fold up.
+    /// A larger minimum elbow angle, which keeps the arm from folding up.
     KeepOpen(SoftReach),
 }
 
 impl PopFix {
-    /// Nothing where nothing helps: at the shoulder, with what is the remedy already, or where
-    /// something has been done.
+    /// The fix for a pop; `None` if it cannot recur with these settings, at the shoulder, or if every
+    /// fix is in use.
     pub fn new(spike: &Spike, arm: &Arm) -> Option<Self> {
         if !spike.persists(arm) {
             return None;
@@ -36,11 +36,12 @@ impl PopFix {
             Pop::Folded if arm.soft_reach.softness() == 0.0 => {
                 softer(arm.soft_reach).map(Self::Soften)
             }
-            Pop::Folded => opener(arm.soft_reach).map(Self::KeepOpen),
+            Pop::Folded => wider(arm.soft_reach).map(Self::KeepOpen),
             Pop::Shoulder => None,
         }
     }
 
+    /// The edit that applies the fix.
     pub fn action(self) -> EditAction {
         match self {
             Self::ChangeReference(twist_reference) => {
@@ -53,8 +54,8 @@ impl PopFix {
     }
 }
 
-/// A quarter is enough for arms of all proportions to be calm at both limits; twice as much as there
-/// is, up to a half, for who wants it calmer.
+/// Twice the softness, from 0.25, which keeps arms of all proportions calm at both limits, to 0.5;
+/// `None` where that is not more.
 fn softer(soft_reach: SoftReach) -> Option<SoftReach> {
     const ENOUGH: f32 = 0.25;
     const MOST: f32 = 0.5;
@@ -64,8 +65,8 @@ fn softer(soft_reach: SoftReach) -> Option<SoftReach> {
     (softness > soft_reach.softness()).then_some(softer)
 }
 
-/// With an elbow that stays open by 30 degrees, or 30 more.
-fn opener(soft_reach: SoftReach) -> Option<SoftReach> {
+/// A minimum elbow angle 30° larger, up to 90°.
+fn wider(soft_reach: SoftReach) -> Option<SoftReach> {
     const OPEN: f32 = core::f32::consts::FRAC_PI_6;
     const MOST: f32 = core::f32::consts::FRAC_PI_2;
     let angle = soft_reach.min_elbow_angle() + OPEN;

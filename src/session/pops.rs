@@ -5,55 +5,59 @@ use crate::kinematics::ik::Ik;
 use crate::kinematics::pop::{Change, Moment, Pop, Step};
 use crate::kinematics::two_bone::TwoBonePose;
 
-/// How fast the arm's elbow has been beside its cursor, in the last steps that were dragged or
-/// played: not saved, and not undone.
+/// Elbow speed over Cursor speed in the last dragged or played steps. Neither saved nor undone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pops {
     samples: VecDeque<PopSample>,
-    last: PreviousMoment,
+    previous: PreviousMoment,
     run: u32,
 }
 
-/// One step.
+/// One step of the elbow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PopSample {
-    /// Samples of one drag, or of one stretch that was played, have the same number.
+    /// Number of the drag or playback that the sample belongs to.
     pub run: u32,
-    /// PopSampleKind posed the arm.
+    /// The solver's settings in this step.
     pub ik: Ik,
+    /// What changed.
     pub kind: PopSampleKind,
 }
 
+/// What changed the pose in a [`PopSample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PopSampleKind {
-    /// The cursor moved, and nothing else.
+    /// Only the Cursor moved.
     Step(Step),
-    /// Something else changed the pose, once or many times in a row.
+    /// Another input changed, once or several times in a row.
     Change(Change),
 }
 
-/// Steps in a row that popped, for one reason.
+/// Consecutive steps that popped for the same reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spike {
-    /// The place of its highest step among the samples.
+    /// Index of the sample with the highest ratio.
     pub at: usize,
-    /// The ratio of that.
+    /// The highest ratio of elbow speed to Cursor speed.
     pub ratio: f32,
+    /// The cause.
     pub pop: Pop,
-    /// PopSampleKind posed the arm.
+    /// The solver's settings at the pop.
     pub ik: Ik,
 }
 
-/// How the cursor comes to move.
+/// Cause of a move of the Cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CursorMove {
-    /// By a drag, in the viewport or of a slider, that began at a revision.
+    /// A drag in the viewport or of a slider, with the revision at which it began.
     Dragged(u64),
+    /// Playback.
     Played,
-    /// At once: typed, undone, another time chosen.
+    /// A jump: a typed value, an undo step, another time.
     Set,
 }
 
+/// The arm to which the next one is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PreviousMoment {
     moment: Moment,
@@ -62,22 +66,23 @@ struct PreviousMoment {
 }
 
 impl Pops {
+    /// Maximum number of samples.
     const MOST: usize = 600;
 
-    /// None yet of an arm that stands so.
+    /// No samples yet; the first move is compared to this arm.
     pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
-        let last = PreviousMoment { moment: moment(arm, pose), cause: CursorMove::Set, time };
-        Self { samples: VecDeque::new(), last, run: 0 }
+        let previous = PreviousMoment { moment: moment(arm, pose), cause: CursorMove::Set, time };
+        Self { samples: VecDeque::new(), previous, run: 0 }
     }
 
-    /// The last 600, the oldest first.
+    /// The last 600 samples, oldest first.
     pub fn samples(&self) -> impl ExactSizeIterator<Item = &PopSample> + Clone {
         self.samples.iter()
     }
 
-    /// The oldest first.
+    /// The pops, oldest first.
     pub fn spikes(&self) -> Vec<Spike> {
-        // A hand that goes into a limit and comes out again pops once.
+        // A hand that enters a limit and leaves it at once pops once.
         const APART: usize = 4;
         let mut spikes: Vec<(Spike, usize)> = Vec::new();
         for (at, sample) in self.samples.iter().enumerate() {
@@ -100,34 +105,37 @@ impl Pops {
         spikes.into_iter().map(|(spike, _)| spike).collect()
     }
 
-    /// Compares the arm with the last one.
-    pub(super) fn watch(&mut self, arm: &Arm, pose: TwoBonePose, cause: CursorMove, time: f64) {
-        self.go_on(moment(arm, pose), cause, time);
+    /// Records the step from the previous arm to this one.
+    pub(super) fn record(&mut self, arm: &Arm, pose: TwoBonePose, cause: CursorMove, time: f64) {
+        self.record_moment(moment(arm, pose), cause, time);
     }
 
-    fn go_on(&mut self, moment: Moment, cause: CursorMove, time: f64) {
-        let last = &mut self.last;
+    fn record_moment(&mut self, moment: Moment, cause: CursorMove, time: f64) {
+        let previous = &mut self.previous;
         // PopSampleKind is played begins again.
-        let cause =
-            if cause == CursorMove::Played && time < last.time { CursorMove::Set } else { cause };
-        let is_elsewhen = cause == CursorMove::Set && time != last.time;
-        if cause != last.cause || cause == CursorMove::Set {
+        let cause = if cause == CursorMove::Played && time < previous.time {
+            CursorMove::Set
+        } else {
+            cause
+        };
+        let has_jumped_in_time = cause == CursorMove::Set && time != previous.time;
+        if cause != previous.cause || cause == CursorMove::Set {
             self.run = self.run.wrapping_add(1);
         }
-        let before = last.moment;
-        (last.cause, last.time) = (cause, time);
+        let before = previous.moment;
+        (previous.cause, previous.time) = (cause, time);
         match Change::between(&before, &moment) {
-            _ if is_elsewhen => {}
+            _ if has_jumped_in_time => {}
             Some(_) if before.pose == moment.pose => {}
             Some(change) => self.push(moment.ik, PopSampleKind::Change(change)),
             None if cause == CursorMove::Set => {}
             None => match Step::between(&before, &moment) {
                 Some(step) => self.push(moment.ik, PopSampleKind::Step(step)),
-                // Short ones add up.
+                // Steps too short to measure add up.
                 None => return,
             },
         }
-        self.last.moment = moment;
+        self.previous.moment = moment;
     }
 
     fn push(&mut self, ik: Ik, kind: PopSampleKind) {
@@ -163,7 +171,7 @@ impl Spike {
         Self { pop, ..higher }
     }
 
-    /// Whether the same cause of the cursor would pop again: nothing has been done about it.
+    /// Whether the same move of the Cursor would pop again: the settings that caused it are unchanged.
     pub fn persists(self, arm: &Arm) -> bool {
         match self.pop {
             Pop::Singular { .. } => self.ik.reference == arm.reference(),

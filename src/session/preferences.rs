@@ -2,30 +2,36 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Theme;
 
-/// What the user likes: not part of the document, and kept from one start to the next.
+/// Settings of the user, kept from one start of the program to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
+    /// Dark or light.
     pub theme: Theme,
+    /// Mouse buttons that move the camera.
     pub navigation: Navigation,
-    /// Whether the panel on the right is open.
+    /// Whether the panel "Explain" is open.
     pub explain: bool,
-    /// Whether the panel with the keys is open.
+    /// Whether the timeline is open.
     pub timeline: bool,
-    /// Whether it shows the keys as curves.
+    /// Whether the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
-    /// Whether a skeleton follows its target while that is dragged.
+    /// Whether the skeleton is solved while a target is dragged.
     pub follow: bool,
 }
 
-/// Which mouse buttons turn the view, as other programs have it.
+/// Mouse buttons that move the camera, as in other programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Navigation {
+    /// Left or middle button orbits.
     #[default]
     Default,
+    /// The middle button orbits.
     Blender,
+    /// Alt and the left button orbit.
     Maya,
+    /// Scrolling orbits.
     Trackpad,
 }
 
@@ -43,8 +49,10 @@ impl Default for Preferences {
 }
 
 impl Navigation {
+    /// All of them, in the order of the menu.
     pub const ALL: [Self; 4] = [Self::Default, Self::Blender, Self::Maya, Self::Trackpad];
 
+    /// Name in the menu.
     pub fn name(self) -> &'static str {
         match self {
             Self::Default => "Default",
@@ -54,7 +62,7 @@ impl Navigation {
         }
     }
 
-    /// How to turn, move and zoom with it.
+    /// How to orbit, pan and zoom.
     pub fn help(self) -> [&'static str; 3] {
         match self {
             Self::Default => [

@@ -14,8 +14,8 @@ use crate::io;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 
-/// Panels leave the viewport about as high as it is wide; the margin of a framed view covers the
-/// rest.
+/// Width over height of the viewport that cameras are framed for; the margin of a framed view covers
+/// other shapes.
 pub(super) const ASPECT: f32 = 1.0;
 
 /// An open document with its history, and all that is neither saved nor undone. Each part owns its
@@ -105,7 +105,7 @@ impl Session {
         self.evaluated.transport_path()
     }
 
-    /// How fast the elbow has moved in comparison with the Cursor.
+    /// Elbow speed over Cursor speed in the last steps.
     pub fn pops(&self) -> &Pops {
         self.evaluated.pops()
     }

@@ -4,43 +4,19 @@ use super::comparison::Comparison;
 use super::onion_skins::write_onion_skins;
 use super::overlays::{Overlays, SolverGhost};
 use super::session::Session;
-use super::trail::{has_trail, walk};
-use crate::document::Document;
+use super::trail::{has_trail, sample_trail};
 
-impl Overlays {
-    /// What a picture of a document at a time shows beside it, as the document's display has it:
-    /// nothing is selected.
-    pub fn new(document: &Document, time: f64) -> Self {
-        let shown = document.evaluate(time);
-        let has_trail = has_trail(document, &shown);
-        let mut overlays = Self {
-            time,
-            trail: if has_trail { walk(document, None) } else { Vec::new() },
-            ..Self::default()
-        };
-        write_onion_skins(document, &shown, time, &mut overlays.onion_skins);
-        overlays
-    }
-
-    /// The same at another time, at which the document is.
-    #[must_use]
-    pub fn at(mut self, document: &Document, time: f64) -> Self {
-        self.time = time;
-        write_onion_skins(document, document, time, &mut self.onion_skins);
-        self
-    }
-}
-
+/// Overlays of the viewport.
 impl Session {
-    /// What a picture shows beside the document.
+    /// State that the viewport shows in addition to the document.
     pub fn overlays(&self) -> Overlays {
         let mut overlays = Overlays::default();
         self.write_overlays(&mut overlays);
         overlays
     }
 
-    /// [`Session::overlays`] in the memory that another staging has: none is taken anew, except that
-    /// onion skins take a copy of a document with keys.
+    /// Writes [`Session::overlays`] into existing ones. Allocates nothing, except for onion skins, which
+    /// copy a document with keys.
     pub fn write_overlays(&self, overlays: &mut Overlays) {
         overlays.time = self.time();
         overlays.crowd = self.crowd();
@@ -54,10 +30,10 @@ impl Session {
         write_onion_skins(self.document(), self.shown(), self.time(), &mut overlays.onion_skins);
     }
 
-    /// The hand or the tip of the active joint at every frame.
+    /// Positions of the hand or the active joint's tip in all frames; empty unless it is shown.
     fn trail(&self) -> &[Vec3] {
         if has_trail(self.document(), self.shown()) {
-            self.evaluated.trail(|| walk(self.document(), self.selected()))
+            self.evaluated.trail(|| sample_trail(self.document(), self.selected()))
         } else {
             &[]
         }

@@ -1,18 +1,17 @@
 use glam::{Vec3, Vec3A};
 
-use super::drag::DragKind;
-use super::drag::{Drag, Grip};
+use super::drag::{Drag, DragKind, Grip};
 use super::point_drag::{PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
 use crate::document::Ray;
-use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions};
+use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 
-/// Iterations while something is dragged, in every frame: enough for a short way.
+/// Maximum number of iterations per frame of a drag.
 const ITERATIONS_OF_A_DRAG: u32 = 64;
 
-/// What is dragged of a skeleton.
+/// Drags of the skeleton.
 impl Session {
     pub(super) fn grab_target(
         &mut self,
@@ -52,8 +51,8 @@ impl Session {
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), kind: DragKind::Turn(drag) }));
     }
 
-    /// The ring about which a joint's angle x, y or z (0, 1, 2) turns, in the world; `None` where its
-    /// limit leaves no room.
+    /// The ring of a joint's angle about x, y or z (0, 1, 2), in the world; `None` where its limit fixes
+    /// it.
     pub fn ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
         let skeleton = &self.skeleton();
         let limit = skeleton.joint(joint)?.limits.get(axis)?;
@@ -62,13 +61,13 @@ impl Session {
         }
         let world = skeleton.transform_to_base(joint);
         let local = skeleton[joint].rotation_axis(axis);
-        // A mirror turns every rotation around.
+        // A mirrored transform reverses every rotation.
         let sign = world.matrix3.determinant().signum();
         let axis = (Vec3::from(world.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
         Some(GripRing { centre: world.translation.into(), axis })
     }
 
-    /// A tenth of the grid.
+    /// Step of snapping: a tenth of a cell of the grid.
     pub(super) fn snap(&self) -> f32 {
         self.shown().grid_cell() * 0.1
     }
@@ -90,45 +89,40 @@ impl Session {
             && !self.is_running()
             && self.skeleton_rig().follow_path.is_none()
         {
-            let goals = self.skeleton_rig().targets_at(self.time());
+            let targets = self.skeleton_rig().targets_at(self.time());
             let skeleton = self.skeleton().clone();
-            self.solve_drag(skeleton, &goals, self.skeleton_rig().solver);
+            self.solve_drag(skeleton, &targets, self.skeleton_rig().solver);
         }
     }
 
-    /// The tip follows the pointer from the pose at the press; a root that is a point moves.
+    /// Solves from the pose at the press for a tip under the mouse; a root without a bone moves instead.
     fn drag_tip(&mut self, joint: JointId, to: Vec3, moved: Vec3) {
         if !self.is_editing() {
             return;
         }
         let before = self.editing.shown_before().skeleton().clone();
-        let Some(held) = before.joint(joint) else { return };
-        if held.parent.is_none() && held.axis == Vec3::ZERO {
-            let (transform, offset) = (before.transform(), held.offset);
+        let Some(dragged) = before.joint(joint) else { return };
+        if dragged.parent.is_none() && dragged.axis == Vec3::ZERO {
+            let (transform, offset) = (before.transform(), dragged.offset);
             let moved = transform.inverse().transform_vector3(moved);
             self.change_joint(joint, |joint| joint.offset = offset + moved);
             return;
         }
-        let mut goals = self.skeleton_rig().targets_at(self.time());
-        goals.retain(|goal| goal.joint != joint);
-        goals.push(chain_ik::TipTarget { joint, point: to, weight: 1.0 });
+        let mut targets = self.skeleton_rig().targets_at(self.time());
+        targets.retain(|target| target.joint != joint);
+        targets.push(TipTarget { joint, point: to, weight: 1.0 });
         let mut solver = self.skeleton_rig().solver;
         if solver.method == Method::TwoBone {
             solver.method = Method::Fabrik;
         }
-        self.solve_drag(before, &goals, solver);
+        self.solve_drag(before, &targets, solver);
     }
 
-    /// Brings a skeleton to goals, from a pose, and shows it.
-    fn solve_drag(
-        &mut self,
-        mut from: Skeleton,
-        goals: &[chain_ik::TipTarget],
-        solver: SolverOptions,
-    ) {
+    /// Solves a skeleton for targets and commits the pose.
+    fn solve_drag(&mut self, mut from: Skeleton, targets: &[TipTarget], solver: SolverOptions) {
         let options = SolverOptions { iterations: Some(ITERATIONS_OF_A_DRAG), ..solver };
         self.edit_document(|document| {
-            chain_ik::solve(&mut from, goals, &options)?;
+            chain_ik::solve(&mut from, targets, &options)?;
             *document.skeleton_mut() = from;
             Ok::<_, SolveError>(())
         });

@@ -5,9 +5,9 @@ use crate::document::{Channel, Document, FollowPath, RigKind, SkeletonRig, Targe
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Limit, Skeleton, SkeletonError};
 
-/// What actions do to the skeleton.
+/// Edits of the skeleton.
 impl Session {
-    /// Every change of the skeleton comes through here.
+    /// Changes a copy of the skeleton and commits it, or reports the error.
     pub(super) fn edit_skeleton<T>(
         &mut self,
         change: impl FnOnce(&mut SkeletonRig) -> Result<T, SkeletonError>,
@@ -19,8 +19,8 @@ impl Session {
         self.edit_skeleton(|rig| rig.skeleton_mut().change(joint, change));
     }
 
-    /// A joint on the tip of `parent`, with its bone ending at `tip` (world) or going on like the
-    /// parent's; on nothing, a new root that is a point.
+    /// Adds a child at the tip of `parent`; its bone ends at `tip` in the world, else it continues the
+    /// parent's. Without a parent, adds a root without a bone.
     pub(super) fn add_joint(&mut self, parent: Option<JointId>, tip: Option<Vec3>) {
         let added = self.edit_skeleton(|rig| {
             let skeleton = rig.skeleton_mut();
@@ -61,13 +61,13 @@ impl Session {
         self.selected().or(self.skeleton_pose().ids().next_back())
     }
 
-    /// Where the bone of the next joint begins, in the world.
+    /// Base of the bone that the next joint would get, in the world.
     pub fn next_base(&self) -> Vec3 {
         let origin = self.skeleton().transform().translation.into();
         self.next_parent().map_or(origin, |parent| self.skeleton_pose().tip(parent))
     }
 
-    /// Lets the camera zoom out where the selected joint's bone ends outside of the view.
+    /// Zooms out if the tip of the selected joint is outside the picture.
     fn keep_in_view(&mut self) {
         const EDGE: f32 = 0.9;
         let Some(joint) = self.selected() else { return };
@@ -81,7 +81,7 @@ impl Session {
         }
     }
 
-    /// Deletes joints and selects the parent that is left of the last one.
+    /// Deletes joints and selects the last remaining parent.
     pub(super) fn delete_joints(
         &mut self,
         joints: &[JointId],
@@ -117,7 +117,7 @@ impl Session {
         if axis < 3 {
             self.change_joint(joint, |joint| joint.limits[axis] = limit);
         } else {
-            self.fail(format!("A joint has angles 0, 1 and 2, not {axis}"));
+            self.fail(format!("The axis of a joint must be 0, 1 or 2, got {axis}"));
         }
     }
 
@@ -136,7 +136,7 @@ impl Session {
         });
     }
 
-    /// Puts a target where the joint's tip is.
+    /// Adds a target at the tip of a joint.
     pub(super) fn add_target(&mut self, joint: JointId) {
         if joint.index() >= self.skeleton_pose().len()
             || self.skeleton_rig().target(joint).is_some()
@@ -151,17 +151,17 @@ impl Session {
         });
     }
 
-    /// Changes the target of the joint that it names.
+    /// Replaces the target of a joint.
     pub(super) fn set_target(&mut self, target: Target) {
         let (motion, weight) = (target.motion, target.weight);
         let above_0 = |value: f32| value.is_finite() && value > 0.0;
         if !target.home.is_finite() {
             let home = target.home;
-            self.fail(format!("A target must be at finite numbers, not {home}"));
+            self.fail(format!("The position of a target must be finite, got {home}"));
         } else if !above_0(weight) {
-            self.fail(format!("A weight must be a finite number above 0, not {weight}"));
+            self.fail(format!("The weight of a target must be finite and above 0, got {weight}"));
         } else if !(above_0(motion.period) && motion.radius.is_finite()) {
-            self.fail("A target needs a period above 0 and a finite radius");
+            self.fail("The path of a target must have a period above 0 and a finite radius");
         } else if let Some(index) = self.skeleton_rig().target(target.joint) {
             self.edit_skeleton(|rig| {
                 rig.targets[index] = target;
@@ -171,27 +171,27 @@ impl Session {
     }
 
     pub(super) fn set_follow_path(&mut self, follow_path: Option<FollowPath>) {
-        let is_possible = |it: &FollowPath| {
+        let is_valid = |it: &FollowPath| {
             let lengths = it.radius.is_finite() && it.amplitude.is_finite();
             lengths && it.period.is_finite() && it.period > 0.0
         };
-        if follow_path.as_ref().is_none_or(is_possible) {
+        if follow_path.as_ref().is_none_or(is_valid) {
             self.edit_skeleton(|rig| {
                 rig.follow_path = follow_path;
                 Ok(())
             });
         } else {
-            self.fail("A way needs a period above 0 and finite lengths");
+            self.fail("The path to follow must have a period above 0 and finite lengths");
         }
     }
 
     pub(super) fn set_solver(&mut self, solver: SolverOptions) {
         let above_0 = |value: f32| value.is_finite() && value > 0.0;
-        let is_possible = above_0(solver.damping)
+        let is_valid = above_0(solver.damping)
             && above_0(solver.step)
             && solver.tolerance.is_none_or(above_0)
             && solver.iterations.is_none_or(|iterations| iterations > 0);
-        if is_possible {
+        if is_valid {
             self.edit_skeleton(|rig| {
                 rig.solver = solver;
                 Ok(())
@@ -201,7 +201,7 @@ impl Session {
         }
     }
 
-    /// Takes a target away, with its keys.
+    /// Removes a target, with its keys.
     pub(super) fn remove_target(&mut self, joint: JointId) {
         self.edit_document(|document| {
             document.skeleton_rig.targets.retain(|target| target.joint != joint);
@@ -211,7 +211,7 @@ impl Session {
         });
     }
 
-    /// What is not seen waits.
+    /// Shows the arm or the skeleton. A solver run pauses while the skeleton is hidden.
     pub(super) fn show_rig(&mut self, rig: RigKind) {
         if rig == RigKind::Arm {
             self.solvers.end_comparison();
@@ -226,8 +226,8 @@ impl Session {
     }
 }
 
-/// A radius for a child of `parent`: a little less than that of the thickest bone above it, so that one
-/// skeleton's bones look alike, but at most a quarter of its length; `own` is a tenth of that.
+/// Radius of a new child of `parent`: nine tenths of the largest radius above it, so that the bones of a
+/// skeleton look alike, but at most 2.5 times `own`, its radius for its length.
 fn radius_of_next(skeleton: &Skeleton, parent: JointId, own: f32) -> f32 {
     const TAPER: f32 = 0.9;
     const THICKEST: f32 = 2.5;

@@ -1,78 +1,57 @@
 use std::mem;
 
+use super::residual_history::ResidualHistory;
 use crate::document::SkeletonRig;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
-/// A solver at work on the document's skeleton, one or some iterations at a time.
+/// A solver run on the document's skeleton, some iterations per frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
     /// The skeleton before the first iteration.
     start: Shared<Skeleton>,
-    solve: ChainSolver,
+    solver: ChainSolver,
     options: SolverOptions,
-    goals: Vec<TipTarget>,
-    /// The skeleton as the last iteration left it.
+    targets: Vec<TipTarget>,
+    /// The skeleton after the last iteration.
     written: Shared<Skeleton>,
-    /// Iterations before the targets moved last, or somebody else turned a joint.
+    /// Iterations before the solver restarted: the targets moved or a joint was edited.
     before: u32,
     history: ResidualHistory,
     pub(super) running: bool,
 }
 
-/// The error after every iteration, the first ones forgotten when there are too many.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ResidualHistory {
-    forgotten: usize,
-    errors: Vec<f32>,
-}
-
-impl ResidualHistory {
-    const MOST: usize = 4096;
-
-    pub(super) fn push(&mut self, error: f32) {
-        if self.errors.len() >= Self::MOST {
-            let half = Self::MOST / 2;
-            self.errors.drain(..half);
-            self.forgotten += half;
-        }
-        self.errors.push(error);
-    }
-
-    /// Iteration and error.
-    pub fn points(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
-        self.errors.iter().enumerate().map(|(index, error)| (self.forgotten + index, *error))
-    }
-}
-
 impl SolverRun {
     pub(super) fn new(rig: &SkeletonRig, time: f64) -> Result<Self, SolveError> {
-        let goals = rig.targets_at(time);
-        let solve = ChainSolver::new(&rig.skeleton, &goals, &rig.solver)?;
+        let targets = rig.targets_at(time);
+        let solver = ChainSolver::new(&rig.skeleton, &targets, &rig.solver)?;
         let mut history = ResidualHistory::default();
-        history.push(solve.report().error);
+        history.push(solver.report().error);
         Ok(Self {
             start: rig.skeleton.clone(),
             written: rig.skeleton.clone(),
-            solve,
+            solver,
             options: rig.solver,
-            goals,
+            targets,
             before: 0,
             history,
             running: false,
         })
     }
 
+    /// Whether the run is not paused.
     pub fn is_running(&self) -> bool {
         self.running
     }
 
+    /// State and residual after the last iteration.
     pub fn report(&self) -> Report {
-        let report = self.solve.report();
+        let report = self.solver.report();
         Report { iterations: self.before + report.iterations, ..report }
     }
 
+    /// Residual after every iteration.
     pub fn history(&self) -> &ResidualHistory {
         &self.history
     }
@@ -82,63 +61,63 @@ impl SolverRun {
         &self.start
     }
 
-    /// Makes up to `iterations`, and none when there is nothing left to do.
+    /// Makes up to `iterations`; none once the solver is done.
     pub(super) fn advance(
         &mut self,
         rig: &mut SkeletonRig,
         time: f64,
         iterations: u32,
     ) -> Result<(), SolveError> {
-        self.keep_up(rig, time)?;
+        self.follow(rig, time)?;
         for _ in 0..iterations {
-            if self.solve.is_over() {
+            if self.solver.is_over() {
                 break;
             }
-            let report = self.solve.step();
+            let report = self.solver.step();
             self.history.push(report.error);
         }
-        self.solve.write(rig.skeleton_mut());
+        self.solver.write(rig.skeleton_mut());
         self.written = rig.skeleton.clone();
         Ok(())
     }
 
-    /// Whether another iteration would be in vain.
+    /// Whether the solver makes no further iterations.
     pub(super) fn is_done(&self) -> bool {
-        self.solve.is_over()
+        self.solver.is_over()
     }
 
-    /// Whether its last iteration led to this pose, with the targets and options that it has now.
-    pub(super) fn led_to(&self, rig: &SkeletonRig, time: f64) -> bool {
+    /// Whether the last iteration made this pose, with the same targets and options.
+    pub(super) fn made(&self, rig: &SkeletonRig, time: f64) -> bool {
         rig.skeleton == self.written
             && rig.solver == self.options
-            && rig.targets_at(time) == self.goals
+            && rig.targets_at(time) == self.targets
     }
 
-    /// Follows what has changed since the last iteration.
-    fn keep_up(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
-        let goals = rig.targets_at(time);
+    /// Takes over changes of the rig since the last iteration; restarts the solver if necessary.
+    fn follow(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
+        let targets = rig.targets_at(time);
         let is_same = rig.solver == self.options && rig.skeleton == self.written;
-        if !is_same || !only_points_differ(&goals, &self.goals) {
+        if !is_same || !only_points_differ(&targets, &self.targets) {
             let before = self.report().iterations;
-            let anew = Self::new(rig, time)?;
-            let old = mem::replace(self, anew);
+            let restarted = Self::new(rig, time)?;
+            let old = mem::replace(self, restarted);
             self.start = old.start;
             self.history = old.history;
             self.before = before;
             self.running = old.running;
-        } else if goals != self.goals {
+        } else if targets != self.targets {
             self.before = self.report().iterations;
-            self.solve.retarget(&goals)?;
-            self.goals = goals;
+            self.solver.retarget(&targets)?;
+            self.targets = targets;
         }
         Ok(())
     }
 }
 
-/// Whether a solve for some goals can be aimed at others.
-fn only_points_differ(goals: &[TipTarget], others: &[TipTarget]) -> bool {
-    let same = |(goal, other): (&TipTarget, &TipTarget)| {
-        goal.joint == other.joint && goal.weight.to_bits() == other.weight.to_bits()
+/// Whether only the points of the targets differ, so that the solver can be retargeted.
+fn only_points_differ(targets: &[TipTarget], others: &[TipTarget]) -> bool {
+    let same = |(target, other): (&TipTarget, &TipTarget)| {
+        target.joint == other.joint && target.weight.to_bits() == other.weight.to_bits()
     };
-    goals.len() == others.len() && goals.iter().zip(others).all(same)
+    targets.len() == others.len() && targets.iter().zip(others).all(same)
 }

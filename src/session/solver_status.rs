@@ -1,22 +1,25 @@
 use core::fmt;
 
 use super::session::Session;
-use super::solver_run::SolverRun;
-use crate::kinematics::chain_ik::{Report, SolveError, Status};
+use crate::kinematics::chain_ik::{Report, Status};
 
-/// How the pose that is shown stands to its targets.
+/// State and residual of the shown pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverStatus {
+    /// The state.
     pub state: SolverState,
-    /// Of the pose that is shown; its iterations are those of the run that led to it, else 0.
+    /// The residual of the shown pose. Iterations are those of the run that made it, else 0.
     pub report: Report,
 }
 
+/// State of the shown pose in relation to its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
-    /// No run led to this pose: there was none, or something was changed since.
+    /// No run made this pose, or it was edited since.
     NotSolved,
+    /// The solver runs.
     Running,
+    /// The run is paused.
     Paused,
     /// The run has ended, or all tips are within the tolerance without a run.
     Ended(Status),
@@ -35,18 +38,19 @@ impl fmt::Display for SolverState {
 }
 
 impl Session {
-    /// State and residual of the pose that is shown; `None` without an enabled target.
+    /// State and residual of the shown pose; `None` without an enabled target or for a skeleton on a
+    /// path.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         let rig = self.skeleton_rig();
         if rig.follow_path.is_some() || rig.targets_at(self.time()).is_empty() {
             return None;
         }
-        let run = self.solver_run();
-        let current = run.filter(|run| run.led_to(rig, self.time()));
-        let fresh =
-            || -> Result<Report, SolveError> { Ok(SolverRun::new(rig, self.time())?.report()) };
-        let report = current.map_or_else(fresh, |run| Ok(run.report())).ok()?;
-        let state = match current {
+        let run = self.solver_run().filter(|run| run.made(rig, self.time()));
+        let report = match run {
+            Some(run) => run.report(),
+            None => self.evaluated.unsolved_report(rig, self.time())?,
+        };
+        let state = match run {
             _ if self.is_running() => SolverState::Running,
             _ if report.converged() => SolverState::Ended(report.status),
             Some(_) if report.status != Status::Iterating => SolverState::Ended(report.status),

@@ -3,15 +3,16 @@ use glam::Vec3;
 use crate::document::{Document, Overlay, RigKind};
 use crate::kinematics::skeleton::JointId;
 
-/// Whether a document has a trail to show.
+/// Whether a document is animated and shows its motion trail.
 pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
     document.is_animated() && shown.display.shows(Overlay::Trail)
 }
 
-/// Where the hand, or a joint's tip, is at every frame; of a long motion not every frame.
-pub(super) fn walk(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
+/// Positions of the hand, or of a joint's tip, in the world: in every frame, or in fewer of a long motion
+/// or a large skeleton.
+pub(super) fn sample_trail(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
-    /// Joints times points: what a large skeleton may cost.
+    /// Maximum number of joints times points.
     const MOST_POSES: usize = 100_000;
     let timeline = document.timeline;
     let joints = match (document.rig, joint) {

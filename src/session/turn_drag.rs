@@ -5,28 +5,29 @@ use glam::Vec3;
 use super::point_drag::DragInput;
 use crate::document::Ray;
 
-/// A ring that is held: it turns about its axis by the angle that the pointer goes around it,
-/// computed from the press, never from the last move.
+/// The drag of a ring: turns it by the angle of the mouse around its axis. The angle is computed from the
+/// state at the press, never from the last move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurnDrag {
     ring: GripRing,
-    /// The angle at the press, radians.
+    /// Angle at the press, in radians.
     start: f32,
     pressed: Ray,
     now: DragInput,
-    /// Where precision began: the pointer's angle and the offset by then.
-    slow: Option<(f32, f32)>,
-    /// How far the pointer has gone around, whole turns included.
-    pointed: f32,
+    /// Angle of the mouse and offset when precision was switched on or off last.
+    precision: Option<(f32, f32)>,
+    /// Angle of the mouse around the ring since the press, with whole turns.
+    around: f32,
     typed: String,
     last: f32,
 }
 
-/// A circle around a joint, in the world.
+/// A circle around a joint that turns it, in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GripRing {
+    /// Centre.
     pub centre: Vec3,
-    /// Unit vector about which a growing angle turns, right-handed.
+    /// Axis, a unit vector: angles are counterclockwise about it.
     pub axis: Vec3,
 }
 
@@ -42,24 +43,24 @@ impl TurnDrag {
             start,
             pressed: ray,
             now,
-            slow: None,
-            pointed: 0.0,
+            precision: None,
+            around: 0.0,
             typed: String::new(),
             last: start,
         }
     }
 
-    /// The offset in degrees as it is typed; empty while the pointer leads.
+    /// The typed offset in degrees; empty while the mouse sets it.
     pub fn typed(&self) -> &str {
         &self.typed
     }
 
-    /// How far the mouse or the typed number turns the ring, before limits; radians.
+    /// The turn since the press in radians, before limits.
     pub fn turned(&self) -> f32 {
         self.turned_to(self.last)
     }
 
-    /// How far the ring turns from its angle at the press to this one, radians.
+    /// The turn from the press to an angle, in radians.
     pub fn turned_to(&self, angle: f32) -> f32 {
         (angle - self.start).clamp(f32::MIN, f32::MAX)
     }
@@ -70,16 +71,16 @@ impl TurnDrag {
 
     pub(super) fn set_input(&mut self, input: DragInput) {
         if input.precise != self.now.precise {
-            self.slow = Some((self.pointed, self.offset()));
+            self.precision = Some((self.around, self.offset()));
         }
         self.now = input;
         let around = self.ring.angle_between(self.pressed, input.ray);
         if around.is_finite() {
-            self.pointed = around + ((self.pointed - around) / TAU).round() * TAU;
+            self.around = around + ((self.around - around) / TAU).round() * TAU;
         }
     }
 
-    /// The angle that is asked for, radians.
+    /// The dragged angle in radians, before limits.
     pub(super) fn angle(&mut self) -> f32 {
         if !self.typed.is_empty() {
             let degrees = self.typed.parse().ok().filter(|degrees: &f32| degrees.is_finite());
@@ -94,19 +95,19 @@ impl TurnDrag {
     }
 
     fn offset(&self) -> f32 {
-        let Some((pointed, offset)) = self.slow else {
-            return self.pointed;
+        let Some((around, offset)) = self.precision else {
+            return self.around;
         };
-        let part = if self.now.precise { Self::PRECISION } else { 1.0 };
-        offset + (self.pointed - pointed) * part
+        let factor = if self.now.precise { Self::PRECISION } else { 1.0 };
+        offset + (self.around - around) * factor
     }
 }
 
 impl GripRing {
-    /// A ring whose axis is nearer than this (the sine) to lying in the picture is seen edge-on.
+    /// Sine of the angle between axis and picture below which a ring is seen edge-on.
     const EDGE_ON: f32 = 0.1;
 
-    /// How far one goes around the ring from one ray to another, within half a turn either way.
+    /// The angle around the ring from one ray to another, in (−π, π].
     fn angle_between(&self, from: Ray, to: Ray) -> f32 {
         if self.axis.dot(to.direction.normalize_or_zero()).abs() < Self::EDGE_ON {
             return self.rolled(from, to);
@@ -118,8 +119,8 @@ impl GripRing {
         self.axis.dot(from.cross(to)).atan2(from.dot(to))
     }
 
-    /// The turn of a ring that is seen edge-on and rolled by a pointer on its front: the way across
-    /// the picture over the radius at which it was taken.
+    /// The turn of a ring that is seen edge-on: the distance across the picture, along the ring, over the
+    /// radius at the press.
     fn rolled(&self, from: Ray, to: Ray) -> f32 {
         let Some(tangent) = from.direction.cross(self.axis).try_normalize() else {
             return 0.0;
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_turns_by_the_angle_that_the_pointer_goes_around_it_also_past_whole_turns() {
+    fn a_ring_turns_by_the_angle_of_the_mouse_past_whole_turns() {
         for axis in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.6, 0.0, 0.8)] {
             let (ring, projection) = ring(axis);
             let mut drag = TurnDrag::new(ring, 0.25, through(ring, &projection, 60.0, 0.0));
@@ -162,8 +163,8 @@ mod tests {
                 let angle = step as f32 * 0.1;
                 let ray = through(ring, &projection, 60.0, angle);
                 drag.set_input(DragInput { ray, precise: false, snap: false });
-                let asked = drag.angle();
-                assert!((asked - 0.25 - angle).abs() < 1e-3, "{asked} at {angle} about {axis}");
+                let turned = drag.angle();
+                assert!((turned - 0.25 - angle).abs() < 1e-3, "{turned} at {angle} about {axis}");
             }
         }
     }

@@ -2,42 +2,46 @@ use glam::Vec2;
 
 use crate::document::Camera;
 
-/// What a drag does to the view.
+/// How a drag moves the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraMotion {
+    /// Around its target.
     Orbit,
+    /// Parallel to the picture.
     Pan,
+    /// Towards its target.
     Zoom,
 }
 
-/// A view that is held. Places are in the picture's coordinates, −1 to 1.
+/// A drag of the camera. Positions are in the picture, −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDrag {
+    /// How it moves the camera.
     pub motion: CameraMotion,
     pub(super) before: Camera,
     pressed: Vec2,
 }
 
-/// A view on its way to another.
+/// A smooth move of the camera to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glide {
     from: Camera,
     to: Camera,
-    /// Seconds; not known before the first frame of the glide.
+    /// In seconds; `None` before the first frame.
     started: Option<f64>,
 }
 
 impl ViewDrag {
-    /// How far the view turns across half the height of the picture.
+    /// Angle in radians of a drag over half the height of the picture.
     const TURN: f32 = 2.2;
-    /// How much nearer the eye comes across half the height.
+    /// Factor of a drag over half the height of the picture.
     const ZOOM: f32 = 4.0;
 
     pub(super) fn new(motion: CameraMotion, before: Camera, pressed: Vec2) -> Self {
         Self { motion, before, pressed }
     }
 
-    /// The view when the pointer is at `now`.
+    /// The camera for the mouse at `now`.
     pub(super) fn camera(&self, now: Vec2, aspect: f32) -> Camera {
         let moved = now - self.pressed;
         if moved == Vec2::ZERO {
@@ -66,11 +70,11 @@ impl Glide {
         self.to
     }
 
-    /// The view at a time, and whether it has arrived.
+    /// The camera at a time in seconds, and whether the glide has ended.
     pub(super) fn at(&mut self, seconds: f64) -> (Camera, bool) {
         let started = *self.started.get_or_insert(seconds);
-        let part = ((seconds - started) / Self::SECONDS).clamp(0.0, 1.0) as f32;
-        let eased = part * part * (3.0 - 2.0 * part);
-        (self.from.interpolated(self.to, eased), part >= 1.0)
+        let fraction = ((seconds - started) / Self::SECONDS).clamp(0.0, 1.0) as f32;
+        let eased = fraction * fraction * (3.0 - 2.0 * fraction);
+        (self.from.interpolated(self.to, eased), fraction >= 1.0)
     }
 }

@@ -94,7 +94,7 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
     assert!((between - 0.5 * (angles + hand)).abs() < 1e-4);
     assert!(bench.says("Arm · 50 % IK") && bench.says("Between FK and IK"));
     bench.enter("IK influence", "3");
-    assert!(bench.says("The IK weight must be from 0 to 1, not 3"));
+    assert!(bench.says("The IK influence must be from 0 to 1, got 3"));
     assert_eq!(bench.session().arm().influence, 0.5);
 }
 

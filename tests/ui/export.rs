@@ -77,7 +77,7 @@ fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
     assert!(bench.says("Exporting ik-arm.glb") && bench.says("25 %"));
     // A second one waits.
     bench.apply_moving([FileAction::Export(export)]);
-    assert!(bench.says("Another export is under way; cancel it or wait"));
+    assert!(bench.says("Another export is running; cancel it or wait"));
     let cancel = bench.rect(Role::Button, "Cancel").center();
     bench.click_at(cancel);
     assert_eq!(progress.step(31, 120), Err(Cancelled));

@@ -50,22 +50,22 @@ fn its_lines_are_named_and_examples_are_called_that() {
         (
             0.0,
             1.0,
-            ["off", "softness 0.50", "stretch 1.50"],
+            ["off", "soft 0.50", "stretch 1.50"],
             "Soft limits are off; the dashed curves show what they would do",
         ),
         (
             0.3,
             1.0,
-            ["off", "softness 0.30", "stretch 1.50"],
+            ["off", "soft 0.30", "stretch 1.50"],
             "the dotted curve shows what stretch would do",
         ),
         (
             0.0,
             1.2,
-            ["off", "softness 0.50", "stretch 1.20"],
+            ["off", "soft 0.50", "stretch 1.20"],
             "the dashed curve shows what softness would do",
         ),
-        (0.4, 1.3, ["off", "softness 0.40", "stretch 1.30"], "Softness and stretch are on"),
+        (0.4, 1.3, ["off", "soft 0.40", "stretch 1.30"], "Softness and stretch are on"),
     ] {
         let bench = bench(softness, stretch, 300.0);
         for name in names {

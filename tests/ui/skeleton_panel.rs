@@ -285,7 +285,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     assert_eq!(comparison.solvers().len(), Method::ALL.len());
     for solver in comparison.solvers() {
         let report = solver.report().expect("all can run here");
-        assert!(report.iterations > 0 && solver.time.as_nanos() > 0);
+        assert!(report.iterations > 0 && solver.elapsed.as_nanos() > 0);
         let converges = !matches!(solver.method, Method::TwoBone | Method::TransposeFixed);
         assert!(report.converged() || !converges, "{:?}: {report:?}", solver.method);
     }

@@ -349,7 +349,7 @@ fn start_and_end_are_typed_and_what_cannot_be_is_said() {
     for (field, text) in [("Start", "5.1"), ("End", "-3"), ("End", "1e9")] {
         type_into(&mut bench, field, text);
         assert_eq!(bench.session().document().timeline, timeline, "{field} {text}");
-        assert!(bench.says("A timeline starts before it ends"), "{field} {text}");
+        assert!(bench.says("A timeline must start before it ends"), "{field} {text}");
     }
     type_into(&mut bench, "Time", "0.1");
     assert_eq!(bench.session().time(), 0.1);

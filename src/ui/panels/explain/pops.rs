@@ -136,7 +136,7 @@ fn why_none(pop: Pop, arm: &Arm) -> String {
                 false => "No fix: the whole arm must turn around.".to_owned(),
             }
         }
-        _ => "No fix: every remedy is in use.".to_owned(),
+        _ => "No fix: all settings that help are in use.".to_owned(),
     }
 }
 

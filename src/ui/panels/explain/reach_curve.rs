@@ -64,7 +64,7 @@ impl ReachCurve {
         [
             curve("off".to_owned(), with(0.0, 1.0), ui.visuals().text_color(), LineStyle::Solid),
             curve(
-                format!("softness {softer:.2}"),
+                format!("soft {softer:.2}"),
                 with(softer, 1.0),
                 style::colour(palette.accent),
                 LineStyle::Dashed { length: 7.0 },

@@ -54,7 +54,7 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
     });
     let texts = match solver.report() {
         Ok(report) => {
-            [report.iterations.to_string(), format::short(report.error), duration(solver.time)]
+            [report.iterations.to_string(), format::short(report.error), duration(solver.elapsed)]
         }
         Err(_) => ["–", "–", "–"].map(str::to_owned),
     };

@@ -1,0 +1,68 @@
+use glam::{Mat3, Vec3};
+
+use super::drag::{Drag, DragKind, Grip};
+use super::point_drag::{PointDrag, PointHandle};
+use super::session::Session;
+use super::turn_drag::{GripRing, TurnDrag};
+use crate::document::{Ray, TwistReferenceKind};
+use crate::kinematics::euler;
+
+/// Drags of the arm.
+impl Session {
+    /// Begins to drag the Cursor. A free drag starts at the hand where the mouse is nearer to it than to a
+    /// Cursor out of reach; moving the Cursor to the hand does not change the pose.
+    pub(super) fn grab_hand(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
+        let (arm, hand) = (*self.arm(), self.pose().hand);
+        if !arm.uses_ik() {
+            return;
+        }
+        let aside = |point: Vec3| (arm.root + point - ray.origin).cross(ray.direction).length();
+        let is_free = handle == PointHandle::Free && arm.influence == 1.0;
+        let is_at_hand = is_free && aside(hand) < aside(arm.cursor_in_root());
+        let start = if is_at_hand { hand } else { arm.cursor_in_root() };
+        let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
+        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), kind: DragKind::Point(drag) }));
+    }
+
+    pub(super) fn grab_pole(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
+        let arm = *self.arm();
+        if arm.twist_reference == TwistReferenceKind::Pole {
+            let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
+            let drag = drag.with_step(self.snap());
+            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), kind: DragKind::Point(drag) }));
+        }
+    }
+
+    pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
+        let fk = self.arm().fk;
+        let start = match grip {
+            Grip::Shoulder(axis) => fk.shoulder[axis],
+            _ => fk.bend,
+        };
+        if let Some(ring) = self.arm_ring(grip) {
+            let kind = DragKind::Turn(TurnDrag::new(ring, start, ray));
+            self.begin_edit(Some(Drag { grip, kind }));
+        }
+    }
+
+    /// The ring of an FK angle in the world: the shoulder's about x, y or z, or the elbow's bend. `None` for
+    /// an arm that IK poses.
+    pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
+        let arm = self.arm();
+        if arm.uses_ik() {
+            return None;
+        }
+        let angles = arm.fk.shoulder;
+        let yaw = Mat3::from_rotation_y(angles.y);
+        let axis = match grip {
+            Grip::Shoulder(1) => Vec3::Y,
+            Grip::Shoulder(2) => yaw.z_axis,
+            Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+            // A growing bend turns the lower limb the other way about the hinge.
+            Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
+            _ => return None,
+        };
+        let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
+        Some(GripRing { centre, axis })
+    }
+}
