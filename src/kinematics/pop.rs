@@ -133,12 +133,12 @@ impl Change {
     pub fn name(self) -> &'static str {
         match self {
             Self::Lengths => "lengths",
-            Self::TwistReference => "reference",
+            Self::TwistReference => "twist reference",
             Self::Pole => "pole",
-            Self::SoftReach => "softening",
-            Self::Weight => "weight",
+            Self::SoftReach => "soft limits",
+            Self::Weight => "IK influence",
             Self::Angles => "angles",
-            Self::Spin => "spin",
+            Self::Spin => "Socket twist",
             Self::Root => "root",
         }
     }

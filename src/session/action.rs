@@ -7,8 +7,8 @@ use super::solver_action::SolverAction;
 use super::transaction_action::TransactionAction;
 use super::view_action::ViewAction;
 
-/// Everything that can happen to a [`Session`](super::Session), by what it touches. Values are
-/// absolute, so that applying an action twice is harmless.
+/// A change of a [`Session`](super::Session), grouped by the part that it changes. Values are absolute, so
+/// that applying an action twice is harmless.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Changes the document; one undo step, unless it is part of a larger one.
@@ -16,7 +16,7 @@ pub enum Action {
     /// Opens, drags and closes transactions, and moves through the undo history. These have no
     /// label of their own: a step is labelled by the edits in it.
     Transaction(TransactionAction),
-    /// Changes what is selected.
+    /// Changes the selection.
     Select(SelectAction),
     /// Changes the camera, the crowd or the open panels.
     View(ViewAction),

@@ -3,8 +3,8 @@ use super::effect::Effect;
 use super::session::Session;
 
 impl Session {
-    /// Applies an action. What is not possible changes nothing and is reported by
-    /// [`Session::message`]; what would lose unsaved changes is asked about first.
+    /// Applies an action. An invalid one changes nothing and is reported by [`Session::message`]; one that
+    /// would lose unsaved changes opens a dialog first.
     pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
         match action.into() {
             Action::Edit(action) => self.apply_edit(action),

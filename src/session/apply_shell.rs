@@ -90,7 +90,7 @@ impl Session {
         &self.preferences
     }
 
-    /// What just happened or failed; `None` after the next edit.
+    /// The message of the last action; `None` after the next edit.
     pub fn message(&self) -> Option<&str> {
         self.shell.message().map(Message::text)
     }

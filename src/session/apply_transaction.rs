@@ -21,7 +21,7 @@ impl Session {
         self.editing.is_open() || self.editing.has_run()
     }
 
-    /// Whether the document differs from the saved one in more than what is shown of it.
+    /// Whether the document differs from the saved one in more than the display and the cameras.
     pub fn is_unsaved(&self) -> bool {
         self.editing.is_unsaved()
     }

@@ -58,7 +58,7 @@ impl Session {
             Grip::Shoulder(1) => Vec3::Y,
             Grip::Shoulder(2) => yaw.z_axis,
             Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
-            // A growing bend turns the lower limb the other way about the hinge.
+            // A growing bend turns the lower limb clockwise about the hinge.
             Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
             _ => return None,
         };

@@ -24,7 +24,7 @@ pub(super) struct Editing {
     /// Equal for equal documents.
     revision: u64,
     newest_revision: u64,
-    /// Equal for documents that differ only in what is shown of them.
+    /// Equal for documents that differ only in display and cameras.
     content: u64,
     saved_content: u64,
 }
@@ -127,7 +127,7 @@ impl Editing {
         self.history.redo_label()
     }
 
-    /// Whether the document differs from the saved one in more than what is shown of it.
+    /// Whether the document differs from the saved one in more than the display and the cameras.
     pub fn is_unsaved(&self) -> bool {
         let transaction = self.transaction.as_ref().map(|transaction| &transaction.before);
         let before = transaction.or(self.before_run.as_ref());
@@ -385,9 +385,9 @@ impl Editing {
 /// Whether the elbow is transported along a keyed hand and has no keys of its own.
 fn is_transported(document: &Document) -> bool {
     let Document { arm, keys, .. } = document;
-    let leads = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };
+    let posing = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };
     arm.twist_reference == TwistReferenceKind::Transport
-        && keys.has(leads)
+        && keys.has(posing)
         && !keys.has(Channel::Twist)
 }
 

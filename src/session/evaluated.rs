@@ -8,7 +8,7 @@ use crate::kinematics::chain_ik::{ChainSolver, Report};
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::two_bone::TwoBonePose;
 
-/// Poses at the playhead and what is derived from them.
+/// Poses at the playhead and values derived from them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Evaluated {
     pose: TwoBonePose,

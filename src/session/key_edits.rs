@@ -54,8 +54,8 @@ impl Session {
     fn posing_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
         let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
-        let leading = hand.chain(Channel::FK);
-        leading.filter(|channel| channel.shapes(arm)).collect()
+        let posing = hand.chain(Channel::FK);
+        posing.filter(|channel| channel.shapes(arm)).collect()
     }
 
     /// Channels that shape the rig, and those with keys.

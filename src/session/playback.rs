@@ -98,7 +98,7 @@ impl Playback {
         passed
     }
 
-    /// The playhead after `passed` seconds, and whether it goes on playing.
+    /// The playhead after `passed` seconds, and whether it is still playing.
     pub fn played(&self, passed: f64, timeline: &Timeline) -> (f64, bool) {
         let time = self.time + passed * self.speed;
         if time < timeline.end {

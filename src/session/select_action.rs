@@ -2,7 +2,7 @@ use super::key::Key;
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 
-/// Changes what is selected or copied.
+/// Changes the selection or the copied keys.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SelectAction {
     /// Selects these joints and no others; the last one is the active one.

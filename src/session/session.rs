@@ -19,7 +19,7 @@ use crate::kinematics::two_bone::TwoBonePose;
 pub(super) const ASPECT: f32 = 1.0;
 
 /// An open document with its history, and all that is neither saved nor undone. Each part owns its
-/// state; a session passes actions to the parts and what follows from one to the others.
+/// state; a session passes actions to the parts, and changes of one to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub(super) editing: Editing,

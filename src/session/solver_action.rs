@@ -1,12 +1,12 @@
-/// Runs solvers. What a run changes is one undo step.
+/// Runs solvers. All changes of a run are one undo step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolverAction {
     /// Starts or pauses the solver.
     Run(bool),
     /// Stops the solver and restores the pose from before the run.
     Cancel,
-    /// Runs all solvers beside each other from the present pose, or ends that.
+    /// Starts or ends a comparison of all solvers from the present pose.
     Compare(bool),
-    /// Solves, or does not, while a target is dragged.
+    /// Sets whether the skeleton is solved while a target is dragged.
     SetFollow(bool),
 }

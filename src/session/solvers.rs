@@ -22,7 +22,7 @@ impl Solvers {
         self.run.as_ref().is_some_and(SolverRun::is_running)
     }
 
-    /// Whether a run or the comparison goes on.
+    /// Whether a run or the comparison makes iterations.
     pub fn is_busy(&self) -> bool {
         self.is_running() || self.comparison.as_ref().is_some_and(Comparison::is_running)
     }

@@ -26,7 +26,7 @@ pub enum TransactionAction {
         /// Normal of the picture.
         forward: Vec3,
     },
-    /// Moves what is dragged.
+    /// Moves the dragged point or ring.
     Drag(DragInput),
     /// Constrains the drag to an axis or a plane, or frees it.
     Constrain(Option<Constraint>),

@@ -28,16 +28,16 @@ pub fn strokes(events: Vec<Event>) -> Vec<Vec<Event>> {
     parts
 }
 
-/// Moves typed events to `held`, for the dialog that is about to open. Esc stays: it ends the
+/// Moves typed events to `deferred`, for the dialog that is about to open. Esc stays: it ends the
 /// wait.
-pub fn hold_typed(stroke: Vec<Event>, held: &mut Vec<Event>) -> Vec<Event> {
+pub fn hold_typed(stroke: Vec<Event>, deferred: &mut Vec<Event>) -> Vec<Event> {
     let is_typed = |event: &Event| match event {
         Event::Key { key, .. } => *key != Key::Escape,
         Event::Text(_) | Event::Ime(_) | Event::Copy | Event::Cut | Event::Paste(_) => true,
         _ => false,
     };
     let (typed, rest) = stroke.into_iter().partition(is_typed);
-    held.extend::<Vec<_>>(typed);
+    deferred.extend::<Vec<_>>(typed);
     rest
 }
 
@@ -94,10 +94,10 @@ mod tests {
         let escape = key(Key::Escape, true, Modifiers::NONE);
         let moved = Event::PointerMoved(egui::pos2(1.0, 2.0));
         let pressed = key(Key::A, true, Modifiers::NONE);
-        let mut held = vec![Event::Text("b".to_owned())];
+        let mut deferred = vec![Event::Text("b".to_owned())];
         let stroke = vec![pressed.clone(), moved.clone(), text.clone(), escape.clone()];
-        assert_eq!(hold_typed(stroke, &mut held), [moved, escape]);
-        assert_eq!(held[1..], [pressed, text]);
+        assert_eq!(hold_typed(stroke, &mut deferred), [moved, escape]);
+        assert_eq!(deferred[1..], [pressed, text]);
     }
 
     #[test]

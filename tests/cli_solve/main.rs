@@ -164,10 +164,10 @@ fn each_line_is_solved_on_its_own() {
 
 #[test]
 fn a_huge_spin_is_reduced_exactly_before_it_becomes_radians() {
-    let spun = |spin: f32| pose(&format!(r#"{{"hand":[250,120,60],"twist_deg":{spin:e}}}"#));
-    assert_eq!(spun(360.0 * 4096.0 + 90.0).elbow, spun(90.0).elbow);
-    assert_eq!(spun(1e30).elbow, spun(1e30 % 360.0).elbow);
-    assert_eq!(spun(-f32::MAX).elbow, spun(-f32::MAX % 360.0).elbow);
+    let twisted = |twist: f32| pose(&format!(r#"{{"hand":[250,120,60],"twist_deg":{twist:e}}}"#));
+    assert_eq!(twisted(360.0 * 4096.0 + 90.0).elbow, twisted(90.0).elbow);
+    assert_eq!(twisted(1e30).elbow, twisted(1e30 % 360.0).elbow);
+    assert_eq!(twisted(-f32::MAX).elbow, twisted(-f32::MAX % 360.0).elbow);
 }
 
 #[test]
@@ -208,7 +208,7 @@ struct Asked {
     upper: f32,
     lower: f32,
     root: Vec3,
-    spin_deg: f32,
+    twist_deg: f32,
 }
 
 impl Asked {
@@ -216,14 +216,14 @@ impl Asked {
         let [upper, lower] = [(); 2].map(|()| random.power_of_ten(-2.0..4.0) as f32);
         if random.below(8) == 0 {
             let [hand, root] = [(); 2].map(|()| random.finite_vector());
-            return Self { hand, upper, lower, root, spin_deg: random.finite() };
+            return Self { hand, upper, lower, root, twist_deg: random.finite() };
         }
         Self {
             hand: random.vector(0.8) * (upper + lower),
             upper,
             lower,
             root: random.vector(0.8) * 1000.0,
-            spin_deg: random.within(-1000.0..1000.0),
+            twist_deg: random.within(-1000.0..1000.0),
         }
     }
 
@@ -235,7 +235,7 @@ impl Asked {
         };
         let mut point = |v: Vec3| v.to_array().map(&mut number).join(",");
         let (hand, root) = (point(self.hand), point(self.root));
-        let [upper, lower, spin] = [self.upper, self.lower, self.spin_deg].map(number);
+        let [upper, lower, twist] = [self.upper, self.lower, self.twist_deg].map(number);
         // What a line leaves out, said.
         let as_before = [
             "",
@@ -244,13 +244,13 @@ impl Asked {
             r#","min_elbow_angle_deg":0,"reference":"limb","softness":-0.0,"max_stretch":1.0"#,
         ][random.below(4)];
         format!(
-            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"twist_deg":{spin}{as_before}}}"#
+            r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"twist_deg":{twist}{as_before}}}"#
         )
     }
 
     fn check(&self, answer: &Answer) {
         let arm = TwoBone::new(self.upper, self.lower).expect("random lengths are above 0");
-        let pose = arm.solve(self.hand, (self.spin_deg % 360.0).to_radians());
+        let pose = arm.solve(self.hand, (self.twist_deg % 360.0).to_radians());
         let reach = match pose.reach {
             Some(Reach::Reached) | None => "reached",
             Some(Reach::TooFar) => "too_far",

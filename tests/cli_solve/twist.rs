@@ -1,4 +1,4 @@
-//! What the elbow's spin is measured from, and what is carried from line to line.
+//! Twist references, and state that is carried over from line to line.
 
 use std::f64::consts::PI;
 
@@ -87,23 +87,23 @@ fn formulas(at: Vec3) -> [Formula; 3] {
 #[test]
 fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
     let mut random = Random(41);
-    let mut asked = Vec::new();
+    let mut requests = Vec::new();
     let mut lines = Vec::new();
     for _ in 0..1000 {
         let (hand, at) = (hand(&mut random), random.vector(0.8) * 300.0);
-        let spin = random.within(-360.0..360.0);
+        let twist = random.within(-360.0..360.0);
         for formula in formulas(at) {
             let Vec3 { x, y, z } = hand;
             let twist_reference = &formula.twist_reference;
             lines.push(format!(
-                r#"{{"hand":[{x},{y},{z}],"twist_deg":{spin},"reference":{twist_reference}}}"#
+                r#"{{"hand":[{x},{y},{z}],"twist_deg":{twist},"reference":{twist_reference}}}"#
             ));
-            asked.push((hand.as_dvec3(), at.as_dvec3(), f64::from(spin), formula));
+            requests.push((hand.as_dvec3(), at.as_dvec3(), f64::from(twist), formula));
         }
     }
 
     let mut checked = 0;
-    for ((hand, at, spin, formula), answer) in asked.iter().zip(poses(&lines)) {
+    for ((hand, at, twist, formula), answer) in requests.iter().zip(poses(&lines)) {
         let (w, twist_reference) = (hand.normalize(), &formula.twist_reference);
         let gain = (formula.gain)(w, *at);
         if gain > 20.0 {
@@ -115,7 +115,7 @@ fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
         assert!(off < 5e-7 * (1.0 + gain * gain), "{twist_reference}: {printed}, not {gain}");
 
         let e = (formula.outward)(w, *at);
-        let (sin, cos) = spin.to_radians().sin_cos();
+        let (sin, cos) = twist.to_radians().sin_cos();
         let out =
             w * f64::from(answer.along) + (e * cos + w.cross(e) * sin) * f64::from(answer.out);
         let off = answer.elbow.as_dvec3().distance(out);
@@ -151,7 +151,7 @@ fn where_a_reference_is_singular_the_gain_is_null_and_the_elbow_is_the_limbs() {
         (hand, pole(hand * 1e30)),
         (Vec3::new(-400.0, 0.0, 0.0), r#""stereographic""#.to_owned()),
     ] {
-        // What was carried so far is none of its concern.
+        // State of earlier lines has no effect on it.
         let elsewhere = transported(Vec3::new(10.0, -20.0, 300.0));
         let lines = [elsewhere, line(hand, &twist_reference), line(hand, r#""limb""#)];
         let [_, singular, limb] = poses(&lines).try_into().expect("three poses");
@@ -221,14 +221,14 @@ fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
 fn a_transported_elbow_is_spun_from_what_is_carried_without_the_spin() {
     let hands = around(DVec3::new(0.0, 0.6, 0.8), 0.9, 12);
     let lines: Vec<String> = hands.iter().map(|hand| transported(*hand)).collect();
-    let spin = |(step, line): (usize, &String)| {
-        let spin = 25.0 * step as f64;
-        line.replace('}', &format!(r#","twist_deg":{spin}}}"#))
+    let twist = |(step, line): (usize, &String)| {
+        let twist = 25.0 * step as f64;
+        line.replace('}', &format!(r#","twist_deg":{twist}}}"#))
     };
-    let spun: Vec<String> = lines.iter().enumerate().map(spin).collect();
-    for (step, (plain, spun)) in poses(&lines).iter().zip(poses(&spun)).enumerate() {
+    let twisted: Vec<String> = lines.iter().enumerate().map(twist).collect();
+    for (step, (plain, twisted)) in poses(&lines).iter().zip(poses(&twisted)).enumerate() {
         let w = plain.hand.as_dvec3().normalize();
-        let turned = turn(outward(plain), outward(&spun), w);
+        let turned = turn(outward(plain), outward(&twisted), w);
         let off = (turned - (25.0 * step as f64).to_radians() + PI).rem_euclid(2.0 * PI) - PI;
         assert!(off.abs() < 1e-5, "{turned} at {step}");
     }
@@ -327,8 +327,8 @@ fn without_transport_no_line_knows_of_another() {
         backwards.insert(place, &transport);
     }
     let mut found = answers(&solve(backwards.join("\n")));
-    let mut asked = backwards.into_iter();
-    found.retain(|_| asked.next() != Some(&transport));
+    let mut requests = backwards.into_iter();
+    found.retain(|_| requests.next() != Some(&transport));
     found.reverse();
     assert_eq!(found, forwards);
 }

@@ -17,7 +17,7 @@ pub const LARGE: Vec2 = vec2(1280.0, 800.0);
 pub const SMALL: Vec2 = vec2(960.0, 600.0);
 pub const SECONDS_PER_FRAME: f64 = 1.0 / 60.0;
 
-/// What the window keeps.
+/// State of the window.
 pub struct App {
     pub session: Session,
     pub machine: Machine,
@@ -177,7 +177,7 @@ impl Bench {
         self.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.is_zero()
     }
 
-    /// What the window has been asked to do since the last time.
+    /// Effects since the last call.
     pub fn effects(&mut self) -> Vec<Effect> {
         std::mem::take(&mut self.harness.state_mut().effects)
     }

@@ -183,9 +183,9 @@ fn a_copied_pose_has_its_elbow_where_only_the_arms_past_says() {
     // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
     let upwards =
         [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(EditAction::SetHand);
-    let spin = copied(upwards)["twist_deg"].as_f64().expect("a number");
+    let twist = copied(upwards)["twist_deg"].as_f64().expect("a number");
     let elbow = TwoBone::new(200.0, 300.0).expect("lengths");
-    let elbow = elbow.solve(Vec3::Y * 300.0, spin.to_radians() as f32).elbow;
+    let elbow = elbow.solve(Vec3::Y * 300.0, twist.to_radians() as f32).elbow;
     assert!(elbow.z < -100.0 && elbow.x.abs() < 1e-3, "{elbow}");
 }
 

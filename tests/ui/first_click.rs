@@ -43,7 +43,7 @@ fn the_skeleton_switch_of_a_new_window_shows_the_human_framed() {
     let view = bench.session().camera().orbited(0.5, 0.1);
     bench.apply([ViewAction::SetCamera(view)]);
     bench.click(Role::Button, "Arm");
-    assert_eq!(*bench.session().camera(), arm_view, "the arm is seen as it was");
+    assert_eq!(*bench.session().camera(), arm_view, "the arm keeps its camera");
     bench.click(Role::Button, "Skeleton");
     assert_eq!(*bench.session().camera(), view, "and so is the Human");
 }

@@ -1,5 +1,5 @@
 //! The panels and the viewport as a person uses them: widgets are pressed by their names, the
-//! hand is dragged where it is seen, and the session is asked what became of it.
+//! hand is dragged where it is seen, and the session is checked.
 #![cfg(feature = "app")]
 
 mod accessibility;

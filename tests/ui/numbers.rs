@@ -102,8 +102,8 @@ fn the_socket_twist_wraps() {
         [("370", 10.0), ("-10", 350.0), ("725", 5.0), ("360", 0.0), ("90°", 90.0), ("-360", 0.0)]
     {
         bench.enter("Socket twist", typed);
-        let spin = value(bench.session().arm(), "Socket twist");
-        assert!((spin - shown).abs() < 1e-3, "{typed} gives {spin}");
+        let twist = value(bench.session().arm(), "Socket twist");
+        assert!((twist - shown).abs() < 1e-3, "{typed} gives {twist}");
         assert!((0.0..TAU).contains(&bench.session().arm().twist));
     }
     bench.focus(Role::Slider, "Socket twist");

@@ -139,7 +139,7 @@ fn one_remedy_is_offered_once() {
 fn other_changes_are_told_apart_from_pops() {
     let mut bench = from_the_front();
     bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
-    assert!(bench.says("Dotted lines, not pops: lengths, spin changed"));
+    assert!(bench.says("Dotted lines, not pops: lengths, Socket twist changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
 

@@ -212,7 +212,7 @@ fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
     bench.apply([TransactionAction::Undo]);
     assert!(bench.session().is_unsaved(), "only the globe is back");
     bench.apply([TransactionAction::Undo]);
-    assert!(!bench.session().is_unsaved(), "the spin is back");
+    assert!(!bench.session().is_unsaved(), "the twist is restored");
     bench.apply([TransactionAction::Redo, TransactionAction::Redo]);
     assert!(bench.session().is_unsaved());
     assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);

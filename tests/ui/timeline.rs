@@ -184,9 +184,9 @@ fn the_diamonds_on_top_select_and_move_all_keys_at_their_time() {
     assert_eq!(bench.session().selected_keys(), both);
     bench.drag_and_drop(PointerButton::Primary, at, at - vec2(70.0, 0.0));
     bench.settle();
-    let (hand, spin) = (times(&bench, Channel::Hand), times(&bench, Channel::Twist));
-    assert!(hand[0] < 0.8 && hand[0] == spin[0], "{hand:?} {spin:?}");
-    assert_eq!((hand[1], spin[1]), (2.0, 4.0));
+    let (hand, twist) = (times(&bench, Channel::Hand), times(&bench, Channel::Twist));
+    assert!(hand[0] < 0.8 && hand[0] == twist[0], "{hand:?} {twist:?}");
+    assert_eq!((hand[1], twist[1]), (2.0, 4.0));
 }
 
 #[test]

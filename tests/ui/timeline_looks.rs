@@ -15,11 +15,11 @@ use crate::looks::has_tooltip;
 
 /// An arm that is keyed at three times, in the middle of it.
 pub fn animated() -> Vec<Action> {
-    let keyed = |time, hand, spin: f32| {
+    let keyed = |time, hand, twist: f32| {
         [
             Action::from(PlaybackAction::SetTime(time)),
             EditAction::SetHand(hand).into(),
-            EditAction::SetTwist(spin.to_radians()).into(),
+            EditAction::SetTwist(twist.to_radians()).into(),
             EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
         ]
     };

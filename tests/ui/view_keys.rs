@@ -1,4 +1,4 @@
-//! Views asked for by key or name, and how they glide there.
+//! Axis views by key and by name, and the glide of the camera.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, pos2};

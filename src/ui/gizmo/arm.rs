@@ -45,7 +45,7 @@ impl ArmGizmo {
         of_hand.or_else(of_pole).or_else(|| RotateRing::at(&self.rings, mouse))
     }
 
-    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
+    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
         let of_hand = |grip: Option<Grip>| match grip {
             Some(Grip::Hand(handle)) => Some(handle),
             _ => None,
@@ -54,16 +54,16 @@ impl ArmGizmo {
             Some(Grip::Pole(handle)) => Some(handle),
             _ => None,
         };
-        paint(self.pole.as_ref(), painter, ui, [pointed, held].map(of_pole), held);
-        paint(self.hand.as_ref(), painter, ui, [pointed, held].map(of_hand), held);
+        paint(self.pole.as_ref(), painter, ui, [pointed, dragged].map(of_pole), dragged);
+        paint(self.hand.as_ref(), painter, ui, [pointed, dragged].map(of_hand), dragged);
         let palette = style::palette(ui);
         for ring in &self.rings {
             let colour = style::colour(match ring.grip {
                 Grip::Shoulder(axis) => palette.axes[axis.min(2)],
                 _ => palette.accent,
             });
-            let stands_out = held.or(pointed) == Some(ring.grip);
-            ring.paint(painter, look(colour, stands_out, held.is_some()), stands_out);
+            let stands_out = dragged.or(pointed) == Some(ring.grip);
+            ring.paint(painter, look(colour, stands_out, dragged.is_some()), stands_out);
         }
     }
 }
@@ -74,9 +74,9 @@ fn paint(
     painter: &Painter,
     ui: &Ui,
     [pointed, own]: [Option<PointHandle>; 2],
-    held: Option<Grip>,
+    dragged: Option<Grip>,
 ) {
-    if let Some(handles) = handles.filter(|_| held.is_none() || own.is_some()) {
+    if let Some(handles) = handles.filter(|_| dragged.is_none() || own.is_some()) {
         handles.paint(painter, ui, pointed, own);
     }
 }

@@ -52,10 +52,10 @@ impl Gizmo {
     }
 
     /// Draws the handles and highlights the hovered or dragged one.
-    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
+    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
         match self {
-            Self::Arm(arm) => arm.paint(painter, ui, pointed, held),
-            Self::Skeleton(figure) => figure.paint(painter, ui, pointed, held),
+            Self::Arm(arm) => arm.paint(painter, ui, pointed, dragged),
+            Self::Skeleton(figure) => figure.paint(painter, ui, pointed, dragged),
             Self::None => {}
         }
     }

@@ -93,11 +93,11 @@ impl SkeletonGizmo {
         hits.min_by(|(_, a), (_, b)| a.depth.total_cmp(&b.depth)).map(|(joint, _)| joint.into())
     }
 
-    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, held: Option<Grip>) {
+    pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
         let stand_out =
-            |grip: Grip| held == Some(grip) || (held.is_none() && pointed == Some(grip));
-        let faded = |grip: Grip, colour: Color32| match held {
-            Some(held) if held != grip => colour.gamma_multiply(0.25),
+            |grip: Grip| dragged == Some(grip) || (dragged.is_none() && pointed == Some(grip));
+        let faded = |grip: Grip, colour: Color32| match dragged {
+            Some(dragged) if dragged != grip => colour.gamma_multiply(0.25),
             _ if stand_out(grip) => bright(colour),
             _ => colour,
         };
@@ -126,9 +126,9 @@ impl SkeletonGizmo {
                 Some(Grip::Target(of, handle)) if of == *joint => Some(handle),
                 _ => None,
             };
-            let others_held = held.is_some() && of_target(held).is_none();
-            if !others_held {
-                handles.paint(painter, ui, of_target(pointed), of_target(held));
+            let others_dragged = dragged.is_some() && of_target(dragged).is_none();
+            if !others_dragged {
+                handles.paint(painter, ui, of_target(pointed), of_target(dragged));
             }
         }
     }

@@ -69,11 +69,11 @@ impl TranslateHandles {
         painter: &Painter,
         ui: &Ui,
         pointed: Option<PointHandle>,
-        held: Option<PointHandle>,
+        dragged: Option<PointHandle>,
     ) {
         let axes = style::palette(ui).axes.map(style::colour);
-        let look = |handle: PointHandle, colour: Color32| match (held, pointed) {
-            (Some(held), _) if held == handle => bright(colour),
+        let look = |handle: PointHandle, colour: Color32| match (dragged, pointed) {
+            (Some(dragged), _) if dragged == handle => bright(colour),
             (Some(_), _) => colour.gamma_multiply(0.25),
             (None, Some(pointed)) if pointed == handle => bright(colour),
             _ => colour,

@@ -90,7 +90,7 @@ pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut
     const PAN: f32 = 0.1;
     const ZOOM: f32 = 1.15;
     let camera = session.settled_camera();
-    let asked = ui.input(|input| {
+    let moved = ui.input(|input| {
         if input.modifiers.command {
             return camera;
         }
@@ -106,8 +106,8 @@ pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut
         };
         if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
     });
-    if asked != camera && session.drag().is_none() {
-        actions.push(ViewAction::SetCamera(asked));
+    if moved != camera && session.drag().is_none() {
+        actions.push(ViewAction::SetCamera(moved));
     }
 }
 
@@ -119,13 +119,13 @@ fn drag(ui: &Ui, session: &Session, actions: &mut Actions) {
     ui.input(|input| {
         for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
             if input.key_pressed(key) {
-                let asked = if input.modifiers.shift {
+                let constraint = if input.modifiers.shift {
                     Constraint::Plane(axis)
                 } else {
                     Constraint::Axis(axis)
                 };
-                let released = drag.point().and_then(PointDrag::constraint) == Some(asked);
-                actions.push(TransactionAction::Constrain((!released).then_some(asked)));
+                let released = drag.point().and_then(PointDrag::constraint) == Some(constraint);
+                actions.push(TransactionAction::Constrain((!released).then_some(constraint)));
             }
         }
         for event in &input.events {

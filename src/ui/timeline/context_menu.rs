@@ -23,7 +23,7 @@ pub(in crate::ui) fn of_rows(
     body: &Response,
     actions: &mut Actions,
 ) {
-    let id = Id::unique("asked in the timeline");
+    let id = Id::unique("timeline menu target");
     let session = sheet.session;
     if body.secondary_clicked()
         && let Some(at) = ui.input(|input| input.pointer.interact_pos())

@@ -44,8 +44,8 @@ pub(in crate::ui) fn get(ui: &Ui) -> Option<TimelineDrag> {
     ui.data(|data| data.get_temp(id()))
 }
 
-pub(in crate::ui) fn set(ui: &Ui, held: TimelineDrag) {
-    ui.data_mut(|data| data.insert_temp(id(), held));
+pub(in crate::ui) fn set(ui: &Ui, drag: TimelineDrag) {
+    ui.data_mut(|data| data.insert_temp(id(), drag));
 }
 
 pub(in crate::ui) fn clear(ui: &Ui) {
@@ -116,5 +116,5 @@ pub(in crate::ui) fn span(session: &Session) -> (f64, f64) {
 }
 
 fn id() -> Id {
-    Id::unique("held in the timeline")
+    Id::unique("timeline drag")
 }

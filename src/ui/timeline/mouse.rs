@@ -104,8 +104,9 @@ pub(in crate::ui) fn press(
             PointerButton::Extra1 | PointerButton::Extra2 => {}
         }
     }
-    let asked = body.double_clicked().then(|| ui.input(|input| input.pointer.interact_pos()));
-    if let Some(at) = asked.flatten()
+    let double_click =
+        body.double_clicked().then(|| ui.input(|input| input.pointer.interact_pos()));
+    if let Some(at) = double_click.flatten()
         && sheet.key(at).is_none()
         && let Some(row) = sheet.row(at)
     {

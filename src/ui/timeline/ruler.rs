@@ -54,7 +54,7 @@ pub(in crate::ui) fn ui(
         drag::grab_playhead(ui, session, actions);
     }
     drag::follow_playhead(ui, session, scale, actions);
-    asked(ui, session, actions);
+    step_by_accesskit(ui, session, actions);
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     response.on_hover_text(
         "Drag to scrub, Ctrl off the frame grid. Wheel zooms, middle drag pans, double-click shows all",
@@ -70,11 +70,11 @@ pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
 }
 
 /// Handles requests of screen readers.
-fn asked(ui: &Ui, session: &Session, actions: &mut Actions) {
+fn step_by_accesskit(ui: &Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let frames = ui.input(|input| {
-        let asked = |action| input.num_accesskit_action_requests(id(), action) as f64;
-        asked(accesskit::Action::Increment) - asked(accesskit::Action::Decrement)
+        let count = |action| input.num_accesskit_action_requests(id(), action) as f64;
+        count(accesskit::Action::Increment) - count(accesskit::Action::Decrement)
     });
     if frames != 0.0 {
         let time = timeline.snapped(session.time()) + frames / f64::from(timeline.frame_rate);

@@ -135,13 +135,13 @@ impl TimeScale {
     fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
         let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
         let span = self.to - self.from;
-        let asked = (span / factor).clamp(least, 4.0 * Timeline::MAX_TIME);
-        if !asked.is_finite() {
+        let new_span = (span / factor).clamp(least, 4.0 * Timeline::MAX_TIME);
+        if !new_span.is_finite() {
             return;
         }
         let fixed = self.time(x);
-        self.from = fixed - (fixed - self.from) * asked / span;
-        self.to = self.from + asked;
+        self.from = fixed - (fixed - self.from) * new_span / span;
+        self.to = self.from + new_span;
     }
 
     /// Moves the range to a time outside it.

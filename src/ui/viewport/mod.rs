@@ -57,12 +57,12 @@ pub(in crate::ui) fn ui(
         keys(ui, &response, session, actions);
         return rect;
     };
-    let held = press(ui, &response, session, &screen, &gizmo, actions);
-    follow(ui, held, &screen, mouse, actions);
+    let drag = press(ui, &response, session, &screen, &gizmo, actions);
+    follow(ui, drag, &screen, mouse, actions);
     if response.contains_pointer() {
         wheel(ui, session, &screen, mouse, actions);
     }
-    if over && matches!(held, ViewportDrag::Nothing) {
+    if over && matches!(drag, ViewportDrag::Nothing) {
         point(session, gizmo.joint_at(mouse), actions);
     }
     if has_joints(session) && response.clicked() && !on_view_axes {
@@ -182,7 +182,7 @@ fn press(
     gizmo: &Gizmo,
     actions: &mut Actions,
 ) -> ViewportDrag {
-    let mut held = match (session.drag(), session.view_drag()) {
+    let mut drag = match (session.drag(), session.view_drag()) {
         (Some(_), _) => ViewportDrag::Grip,
         (None, Some(_)) => ViewportDrag::View,
         (None, None) => ViewportDrag::Nothing,
@@ -199,7 +199,7 @@ fn press(
             continue;
         }
         response.request_focus();
-        if session.is_editing() || !matches!(held, ViewportDrag::Nothing) {
+        if session.is_editing() || !matches!(drag, ViewportDrag::Nothing) {
             continue;
         }
         let on_view_axes = view_axes::covers(screen.rect, pos);
@@ -214,26 +214,26 @@ fn press(
         if let Some(grip) = grip {
             let (ray, forward) = (screen.ray(pos), screen.projection.forward);
             actions.push(TransactionAction::Grab { grip, ray, forward });
-            held = ViewportDrag::Grip;
+            drag = ViewportDrag::Grip;
         } else if let Some(motion) = motion {
             actions.push(ViewAction::Grab(motion, screen.normalised(pos)));
-            held = ViewportDrag::View;
+            drag = ViewportDrag::View;
         }
     }
-    held
+    drag
 }
 
 /// Updates the drag and ends it at the release.
 fn follow(
     ui: &Ui,
-    held: ViewportDrag,
+    drag: ViewportDrag,
     screen: &ScreenProjection,
     mouse: Pos2,
     actions: &mut Actions,
 ) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
     let released = !down || ui.input(|input| input.pointer.any_released());
-    let (moved, dropped): (Action, Action) = match held {
+    let (moved, dropped): (Action, Action) = match drag {
         ViewportDrag::Nothing => return,
         ViewportDrag::Grip => {
             let ray = screen.ray(mouse);

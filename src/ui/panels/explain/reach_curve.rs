@@ -127,9 +127,9 @@ impl ReachCurve {
     fn line(&self, arm: &Arm, most: f64) -> Line<'static> {
         let outer = outer(arm);
         let point = |step| {
-            let asked = most * f64::from(step) / f64::from(POINTS);
-            let actual = self.soft_reach.extent(arm.bones, (asked * outer) as f32).distance;
-            [asked, f64::from(actual) / outer]
+            let cursor = most * f64::from(step) / f64::from(POINTS);
+            let actual = self.soft_reach.extent(arm.bones, (cursor * outer) as f32).distance;
+            [cursor, f64::from(actual) / outer]
         };
         let points: PlotPoints<'_> = (0..=POINTS).map(point).collect();
         Line::new(&self.name, points).color(self.colour).width(self.width()).style(self.style)
@@ -145,9 +145,9 @@ struct ReachMarker {
 impl ReachMarker {
     /// A Cursor beyond the plot is an arrow at the edge.
     fn new(arm: &Arm, most: f64) -> Self {
-        let asked = arm.cursor_in_root().length().min(f32::MAX);
-        let part = f64::from(asked) / outer(arm);
-        let actual = f64::from(arm.soft_reach.extent(arm.bones, asked).distance) / outer(arm);
+        let cursor = arm.cursor_in_root().length().min(f32::MAX);
+        let part = f64::from(cursor) / outer(arm);
+        let actual = f64::from(arm.soft_reach.extent(arm.bones, cursor).distance) / outer(arm);
         let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };
         Self { at: [part.min(most - 0.04), actual.min(most - 0.14)], shape }
     }
@@ -179,10 +179,10 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
 }
 
 /// Hand distance and slope for a Cursor distance.
-fn reading(arm: &Arm, asked: f32) -> String {
-    let asked = asked.min(f32::MAX);
-    let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, asked);
-    format!("Cursor at {asked:.1}: hand at {distance:.1}, slope {slope:.2}")
+fn reading(arm: &Arm, cursor: f32) -> String {
+    let cursor = cursor.min(f32::MAX);
+    let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, cursor);
+    format!("Cursor at {cursor:.1}: hand at {distance:.1}, slope {slope:.2}")
 }
 
 /// A sentence on which curves are examples.

@@ -14,7 +14,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let arm = session.arm();
     let (inner, outer) = arm.reach();
     let digits = format::decimals_of_cell(arm.grid_cell());
-    let (what, asked) = match arm.uses_ik() {
+    let (what, distance) = match arm.uses_ik() {
         true => ("Cursor", arm.cursor_in_root().length()),
         false => ("Hand", session.pose().distance),
     };
@@ -32,7 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     painter.rect_filled(bar, 4.0, visuals.widgets.inactive.bg_fill);
     let within = egui::Rect::from_x_y_ranges(place(inner)..=place(outer), bar.top()..=bar.bottom());
     painter.rect_filled(within, 2.0, accent.gamma_multiply(0.55));
-    let cursor = place(asked);
+    let cursor = place(distance);
     painter.circle_filled(egui::pos2(cursor, bar.center().y), 6.0, visuals.strong_text_color());
     painter.circle_filled(egui::pos2(cursor, bar.center().y), 3.0, visuals.panel_fill);
     let font = egui::FontId::proportional(12.0);
@@ -46,8 +46,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
         written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));
     }
     written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.digits$}"));
-    let [asked, inner, outer] = [asked, inner, outer].map(|it| arm.format_length(it));
-    let summary = format!("{what} at {asked}; the hand reaches from {inner} to {outer}");
+    let [distance, inner, outer] = [distance, inner, outer].map(|it| arm.format_length(it));
+    let summary = format!("{what} at {distance}; the hand reaches from {inner} to {outer}");
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))
     });

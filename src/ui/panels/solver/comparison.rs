@@ -1,4 +1,4 @@
-//! The race: iterations, error and time of every solver.
+//! The comparison ("race") of all solvers: iterations, error and time of every solver.
 
 use core::time::Duration;
 

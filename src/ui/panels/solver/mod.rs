@@ -1,4 +1,4 @@
-//! The solver of the skeleton: method, settings, status, convergence and race.
+//! The solver of the skeleton: method, settings, status, convergence and comparison.
 
 mod can_solve;
 mod comparison;
@@ -19,7 +19,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             method(ui, session, actions);
             settings(ui, session, actions);
             buttons(ui, session, actions);
-            // The race shows its own table.
+            // The comparison shows its own table.
             if session.comparison().is_none() {
                 report(ui, session);
             }
