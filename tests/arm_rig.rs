@@ -8,23 +8,23 @@ use common::strategies::{
 };
 use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
 use ik_arm::kinematics::two_bone::TwoBonePose;
-use ik_arm::rig::{ArmRig, Cone, Part};
+use ik_arm::rig::{ArmPart, ArmRig, TaperedCylinder};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
 /// The hierarchy of Palmieri's report, written out in f64.
-const PARENTS: [(Part, Option<Part>); 11] = [
-    (Part::Root, None),
-    (Part::Limb, Some(Part::Root)),
-    (Part::Socket, Some(Part::Limb)),
-    (Part::UpperLimb, Some(Part::Socket)),
-    (Part::LowerLimb, Some(Part::Socket)),
-    (Part::Elbow, Some(Part::Socket)),
-    (Part::Hand, Some(Part::Socket)),
-    (Part::Pointer, Some(Part::Limb)),
-    (Part::Cursor, Some(Part::Root)),
-    (Part::InnerLimit, Some(Part::Root)),
-    (Part::OuterLimit, Some(Part::Root)),
+const PARENTS: [(ArmPart, Option<ArmPart>); 11] = [
+    (ArmPart::Root, None),
+    (ArmPart::Limb, Some(ArmPart::Root)),
+    (ArmPart::Socket, Some(ArmPart::Limb)),
+    (ArmPart::UpperLimb, Some(ArmPart::Socket)),
+    (ArmPart::LowerLimb, Some(ArmPart::Socket)),
+    (ArmPart::Elbow, Some(ArmPart::Socket)),
+    (ArmPart::Hand, Some(ArmPart::Socket)),
+    (ArmPart::Pointer, Some(ArmPart::Limb)),
+    (ArmPart::Cursor, Some(ArmPart::Root)),
+    (ArmPart::InnerLimit, Some(ArmPart::Root)),
+    (ArmPart::OuterLimit, Some(ArmPart::Root)),
 ];
 
 /// A posed arm that stands somewhere in the world.
@@ -50,7 +50,7 @@ impl Standing {
     }
 
     /// The point so far along a part's +x, in the world.
-    fn point(&self, part: Part, x: f32) -> DVec3 {
+    fn point(&self, part: ArmPart, x: f32) -> DVec3 {
         at(self.rig.world(part), x)
     }
 }
@@ -93,7 +93,7 @@ fn largest_entry(matrix: DMat3) -> f64 {
 
 #[test]
 fn parts_are_in_the_order_of_the_enum_and_parents_come_before_children() {
-    assert_eq!(Part::ALL, PARENTS.map(|(part, _)| part));
+    assert_eq!(ArmPart::ALL, PARENTS.map(|(part, _)| part));
     for (index, (part, parent)) in PARENTS.into_iter().enumerate() {
         assert_eq!(part as usize, index);
         assert_eq!(part.parent(), parent);
@@ -106,7 +106,7 @@ proptest! {
 
     #[test]
     fn elbow_and_hand_are_where_the_solver_says(arm in standing()) {
-        for (part, solved) in [(Part::Elbow, arm.pose.elbow), (Part::Hand, arm.pose.hand)] {
+        for (part, solved) in [(ArmPart::Elbow, arm.pose.elbow), (ArmPart::Hand, arm.pose.hand)] {
             let origin = arm.rig.origin(part).as_dvec3();
             within("joint", origin.distance(arm.in_world(solved)), arm.bound())?;
         }
@@ -116,17 +116,17 @@ proptest! {
     fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in standing()) {
         let (upper, lower) = (arm.rig.upper(), arm.rig.lower());
         for (what, end, joint) in [
-            ("shoulder end", arm.point(Part::UpperLimb, 0.0), Vec3::ZERO),
-            ("upper elbow end", arm.point(Part::UpperLimb, upper.length), arm.pose.elbow),
-            ("lower elbow end", arm.point(Part::LowerLimb, 0.0), arm.pose.elbow),
-            ("hand end", arm.point(Part::LowerLimb, lower.length), arm.pose.hand),
+            ("shoulder end", arm.point(ArmPart::UpperLimb, 0.0), Vec3::ZERO),
+            ("upper elbow end", arm.point(ArmPart::UpperLimb, upper.length), arm.pose.elbow),
+            ("lower elbow end", arm.point(ArmPart::LowerLimb, 0.0), arm.pose.elbow),
+            ("hand end", arm.point(ArmPart::LowerLimb, lower.length), arm.pose.hand),
         ] {
             within(what, end.distance(arm.in_world(joint)), arm.bound())?;
         }
         let (bones, bound) = (bones(arm.case.arm), EXACT * limits(arm.case.arm).1);
         within("upper length", (f64::from(upper.length) - bones.0).abs(), bound)?;
         within("lower length", (f64::from(lower.length) - bones.1).abs(), bound)?;
-        for part in [Part::UpperLimb, Part::LowerLimb] {
+        for part in [ArmPart::UpperLimb, ArmPart::LowerLimb] {
             prop_assert_eq!(arm.rig.local(part).matrix3.z_axis, glam::Vec3A::Z, "not a hinge");
         }
     }
@@ -137,28 +137,28 @@ proptest! {
         let length = limits(case.arm).1;
         within("length", (f64::from(rig.pointer().length) - length).abs(), U * length)?;
 
-        let start = arm.point(Part::Pointer, 0.0);
+        let start = arm.point(ArmPart::Pointer, 0.0);
         prop_assert_eq!(start, root.as_dvec3());
-        let along = (arm.point(Part::Pointer, rig.pointer().length) - start).normalize();
+        let along = (arm.point(ArmPart::Pointer, rig.pointer().length) - start).normalize();
         let cursor = arm.in_world(case.cursor);
         let reach = length.max(case.cursor.as_dvec3().length());
         let cursor_bound = world_bound(reach, &[root.as_dvec3(), cursor]);
         for (point, bound) in [
             (arm.in_world(pose.hand), arm.bound()),
-            (rig.origin(Part::Cursor).as_dvec3(), cursor_bound),
+            (rig.origin(ArmPart::Cursor).as_dvec3(), cursor_bound),
         ] {
             let ahead = (point - start).dot(along);
             prop_assert!(ahead >= -bound, "the pointer points away");
             within("distance from the line", point.distance(start + along * ahead), bound)?;
         }
-        within("cursor", rig.origin(Part::Cursor).as_dvec3().distance(cursor), cursor_bound)?;
+        within("cursor", rig.origin(ArmPart::Cursor).as_dvec3().distance(cursor), cursor_bound)?;
     }
 
     #[test]
     fn the_limit_spheres_are_about_the_shoulder(arm in standing()) {
         for (part, radius, limit) in [
-            (Part::InnerLimit, arm.rig.inner_limit(), limits(arm.case.arm).0),
-            (Part::OuterLimit, arm.rig.outer_limit(), limits(arm.case.arm).1),
+            (ArmPart::InnerLimit, arm.rig.inner_limit(), limits(arm.case.arm).0),
+            (ArmPart::OuterLimit, arm.rig.outer_limit(), limits(arm.case.arm).1),
         ] {
             prop_assert_eq!(arm.rig.world(part), Affine3A::from_translation(arm.root));
             prop_assert_eq!(radius, limit as f32);
@@ -168,8 +168,8 @@ proptest! {
     #[test]
     fn limb_and_socket_turn_by_the_papers_angles(arm in standing()) {
         let turns = [
-            (Part::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
-            (Part::Socket, DMat3::from_rotation_x(arm.case.spin.into())),
+            (ArmPart::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
+            (ArmPart::Socket, DMat3::from_rotation_x(arm.case.spin.into())),
         ];
         for (part, turn) in turns {
             let local = arm.rig.local(part);
@@ -208,8 +208,8 @@ proptest! {
         let tip = (base.as_dvec3() + direction * length).as_vec3();
         let (flat_base, flat_tip) = (base.with_z(0.0), tip.with_z(0.0));
         for (base, tip, (placed, cone)) in [
-            (base, tip, Cone::between(base, tip, 3.0, 2.0)),
-            (flat_base, flat_tip, Cone::in_xy_plane(flat_base, flat_tip, 3.0, 2.0)),
+            (base, tip, TaperedCylinder::between(base, tip, 3.0, 2.0)),
+            (flat_base, flat_tip, TaperedCylinder::in_xy_plane(flat_base, flat_tip, 3.0, 2.0)),
         ] {
             is_rotation(placed, 1)?;
             prop_assert_eq!(at(placed, 0.0), base.as_dvec3());
@@ -224,7 +224,7 @@ proptest! {
 #[test]
 fn a_cone_without_a_length_keeps_x() {
     let here = Vec3::new(1.0, 2.0, 3.0);
-    let (placed, cone) = Cone::between(here, here, 3.0, 2.0);
+    let (placed, cone) = TaperedCylinder::between(here, here, 3.0, 2.0);
     assert_eq!(cone.length, 0.0);
     assert_eq!(at(placed, 1.0), (here + Vec3::X).as_dvec3());
     is_rotation(placed, 1).unwrap();

@@ -833,3 +833,16 @@ fn bones_whose_squares_are_no_numbers_are_turned_by_numbers_or_not_at_all() {
         }
     }
 }
+
+#[test]
+fn methods_and_states_have_one_name_in_serde_and_on_the_command_line() {
+    for method in Method::ALL {
+        let json = serde_json::to_string(&SolverOptions::new(method)).expect("finite numbers");
+        assert!(json.contains(&format!("\"method\":\"{method}\"")), "{json}");
+        let read: SolverOptions = serde_json::from_str(&json).expect("the same");
+        assert_eq!(read, SolverOptions::new(method));
+    }
+    let error = serde_json::from_str::<Method>("\"newton\"").expect_err("no method");
+    assert!(error.to_string().starts_with("must be one of transpose-fixed, "), "{error}");
+    assert_eq!(Status::OutOfIterations.to_string(), "out of iterations");
+}

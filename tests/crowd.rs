@@ -8,14 +8,14 @@ use glam::{DVec3, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{CrowdSolver, Gpu, PictureRenderer};
-use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
+use ik_arm::rig::{Crowd, CrowdArrays, Processor};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Session, ViewAction};
 use image::RgbaImage;
 
 fn crowd(arms: u32) -> Crowd {
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");
-    Crowd { arms, bones, time: 3.25, solved_by: SolvedBy::Cpu }
+    Crowd { arms, bones, time: 3.25, processor: Processor::Cpu }
 }
 
 fn arrays(crowd: &Crowd) -> CrowdArrays {
@@ -152,7 +152,7 @@ fn solved_here_or_on_the_device_a_crowd_looks_the_same() {
     let gpu = Gpu::headless().expect("a device");
     let mut picture = picture(&gpu);
     let here = draw(&mut picture, &crowd(500), near());
-    let there = Crowd { solved_by: SolvedBy::Gpu, ..crowd(500) };
+    let there = Crowd { processor: Processor::Gpu, ..crowd(500) };
     let there = draw(&mut picture, &there, near());
     let differing = here
         .pixels()

@@ -4,13 +4,13 @@ use ik_arm::kinematics::batch::{
     ArmBatch, BatchBones, BatchPositions, BatchTwist, Points, PointsMut,
 };
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::rig::{Crowd, CrowdArrays, SolvedBy};
+use ik_arm::rig::{Crowd, CrowdArrays, Processor};
 
 #[test]
 fn a_crowd_has_the_bits_of_a_batch() {
     const ARMS: u32 = 5_000;
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");
-    let crowd = Crowd { arms: ARMS, bones, time: 3.25, solved_by: SolvedBy::Cpu };
+    let crowd = Crowd { arms: ARMS, bones, time: 3.25, processor: Processor::Cpu };
     let mut arrays = CrowdArrays::default();
     arrays.resize(&crowd);
     arrays.set_targets(&crowd);

@@ -12,7 +12,7 @@ use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme}
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;
-use ik_arm::rig::Cone;
+use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
@@ -296,7 +296,8 @@ fn stripes_that_are_straight_and_that_wind() {
 fn stripes_wind_right_handed_from_base_to_tip() {
     const SIDE: u32 = 400;
     const STRIPES: f32 = 5.0;
-    let (transform, shape) = Cone::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
+    let (transform, shape) =
+        TaperedCylinder::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
     for winding in [270_f32, -270.0, 500.0].map(f32::to_radians) {
         // Turned so that its +y is the world's, whatever +y the cone was given.
         let transform = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..transform };

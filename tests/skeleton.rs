@@ -282,3 +282,17 @@ fn what_no_skeleton_can_have_is_refused() {
     let many = (0..=Skeleton::MOST_JOINTS).map(|index| Joint { name: index.to_string(), ..root() });
     assert_eq!(Skeleton::from_joints(many.collect()), Err(SkeletonError::TooMany));
 }
+
+#[test]
+fn skeletons_round_trip_through_serde_and_invalid_ones_are_refused() {
+    let mut skeleton = Skeleton::with_root("root");
+    let limits = [Some(Limit { min: -1.0, max: 0.5 }), None, None];
+    let child = Joint { limits, ..Joint::new("child", Some(JointId::new(0)), Vec3::Y) };
+    skeleton.add(child).expect("a joint");
+    let json = serde_json::to_string(&skeleton).expect("finite numbers");
+    assert_eq!(serde_json::from_str::<Skeleton>(&json).expect("the same"), skeleton);
+
+    let invalid = json.replace("\"parent\":0", "\"parent\":1");
+    let error = serde_json::from_str::<Skeleton>(&invalid).expect_err("its own parent");
+    assert!(error.to_string().contains("must precede it"), "{error}");
+}

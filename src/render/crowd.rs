@@ -3,7 +3,7 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::compute::{self, BindingKind};
 use super::{CrowdError, CrowdSolver, Gpu, pipeline};
-use crate::rig::{Crowd, CrowdArrays, CrowdTimes, SolvedBy};
+use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
 
 pub(super) const CULL: &str = concat!(
@@ -254,12 +254,12 @@ impl CrowdRenderer {
 
     fn solve(&mut self, gpu: &Gpu, crowd: &Crowd) -> Result<CrowdTimes, CrowdError> {
         self.arrays.set_targets(crowd);
-        let solve = match crowd.solved_by {
-            SolvedBy::Gpu => self
+        let solve = match crowd.processor {
+            Processor::Gpu => self
                 .solver
                 .solve(gpu, crowd.bones, &self.arrays)
                 .map_err(|error| CrowdError::Device(error.to_string()))?,
-            SolvedBy::Cpu => {
+            Processor::Cpu => {
                 // All arrays have one length, so that there is no error.
                 let time = self.arrays.solve(crowd.bones).unwrap_or_default();
                 self.solver.upload_poses(gpu, &self.arrays);

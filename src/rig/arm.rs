@@ -1,6 +1,6 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
-use super::Cone;
+use super::TaperedCylinder;
 use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 
 /// A part of the arm, parents before children.
@@ -19,21 +19,33 @@ use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 ///  └ OuterLimit        sphere of radius d₁ + d₂
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ArmPart {
+    /// The shoulder; the root of the hierarchy.
     Root,
+    /// The frame that points at the hand.
     Limb,
+    /// The frame rotated by the twist.
     Socket,
+    /// Upper limb, from shoulder to elbow.
     UpperLimb,
+    /// Lower limb, from elbow to hand.
     LowerLimb,
+    /// Elbow joint.
     Elbow,
+    /// Hand.
     Hand,
+    /// Axis from the shoulder through the hand.
     Pointer,
+    /// Target of the hand.
     Cursor,
+    /// Sphere that the hand cannot enter.
     InnerLimit,
+    /// Sphere that the hand cannot leave.
     OuterLimit,
 }
 
-impl Part {
+impl ArmPart {
+    /// All parts, parents before children.
     pub const ALL: [Self; 11] = [
         Self::Root,
         Self::Limb,
@@ -64,10 +76,10 @@ impl Part {
 /// World transforms are products down the hierarchy, independent of the solver's own points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmRig {
-    local: [Affine3A; Part::ALL.len()],
-    upper: Cone,
-    lower: Cone,
-    pointer: Cone,
+    local: [Affine3A; ArmPart::ALL.len()],
+    upper: TaperedCylinder,
+    lower: TaperedCylinder,
+    pointer: TaperedCylinder,
     inner_limit: f32,
     outer_limit: f32,
 }
@@ -88,26 +100,28 @@ impl ArmRig {
             (Self::BASE_RADIUS * thickness, Self::TIP_RADIUS * thickness);
         let elbow = Vec3::new(pose.along, pose.out, 0.0);
         let hand = Vec3::new(pose.distance, 0.0, 0.0);
-        let (upper_limb, upper) = Cone::in_xy_plane(Vec3::ZERO, elbow, base_radius, tip_radius);
-        let (lower_limb, lower) = Cone::in_xy_plane(elbow, hand, base_radius, tip_radius);
+        let (upper_limb, upper) =
+            TaperedCylinder::in_xy_plane(Vec3::ZERO, elbow, base_radius, tip_radius);
+        let (lower_limb, lower) =
+            TaperedCylinder::in_xy_plane(elbow, hand, base_radius, tip_radius);
         let pointer_radius = Self::POINTER_RADIUS * thickness;
 
-        let local = Part::ALL.map(|part| match part {
-            Part::Root => Affine3A::from_translation(root),
-            Part::Limb => Affine3A::from_mat3(pose.pointer.limb_frame()),
-            Part::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(pose.twist).into()),
-            Part::UpperLimb => upper_limb,
-            Part::LowerLimb => lower_limb,
-            Part::Elbow => Affine3A::from_translation(elbow),
-            Part::Hand => Affine3A::from_translation(hand),
-            Part::Cursor => Affine3A::from_translation(cursor),
-            Part::Pointer | Part::InnerLimit | Part::OuterLimit => Affine3A::IDENTITY,
+        let local = ArmPart::ALL.map(|part| match part {
+            ArmPart::Root => Affine3A::from_translation(root),
+            ArmPart::Limb => Affine3A::from_mat3(pose.pointer.limb_frame()),
+            ArmPart::Socket => Affine3A::from_mat3(Mat3A::from_rotation_x(pose.twist).into()),
+            ArmPart::UpperLimb => upper_limb,
+            ArmPart::LowerLimb => lower_limb,
+            ArmPart::Elbow => Affine3A::from_translation(elbow),
+            ArmPart::Hand => Affine3A::from_translation(hand),
+            ArmPart::Cursor => Affine3A::from_translation(cursor),
+            ArmPart::Pointer | ArmPart::InnerLimit | ArmPart::OuterLimit => Affine3A::IDENTITY,
         });
         Self {
             local,
             upper,
             lower,
-            pointer: Cone {
+            pointer: TaperedCylinder {
                 length: arm.outer_limit(),
                 base_radius: pointer_radius,
                 tip_radius: pointer_radius,
@@ -124,12 +138,12 @@ impl ArmRig {
     }
 
     /// The part's transform in its parent.
-    pub fn local(&self, part: Part) -> Affine3A {
+    pub fn local(&self, part: ArmPart) -> Affine3A {
         self.local[part as usize]
     }
 
     /// The part's transform in the world.
-    pub fn world(&self, part: Part) -> Affine3A {
+    pub fn world(&self, part: ArmPart) -> Affine3A {
         match part.parent() {
             Some(parent) => self.world(parent) * self.local(part),
             None => self.local(part),
@@ -137,22 +151,22 @@ impl ArmRig {
     }
 
     /// Position of the part's origin in the world.
-    pub fn origin(&self, part: Part) -> Vec3 {
+    pub fn origin(&self, part: ArmPart) -> Vec3 {
         self.world(part).translation.into()
     }
 
     /// The upper limb's shape, along its own +x.
-    pub fn upper(&self) -> Cone {
+    pub fn upper(&self) -> TaperedCylinder {
         self.upper
     }
 
     /// The lower limb's shape, along its own +x.
-    pub fn lower(&self) -> Cone {
+    pub fn lower(&self) -> TaperedCylinder {
         self.lower
     }
 
     /// The Pointer's shape, along the Limb's +x.
-    pub fn pointer(&self) -> Cone {
+    pub fn pointer(&self) -> TaperedCylinder {
         self.pointer
     }
 

@@ -21,17 +21,17 @@ pub struct Crowd {
     pub bones: TwoBone,
     /// Time in seconds, periodic in [`Crowd::PERIOD`].
     pub time: f32,
-    /// The processor that solves it.
-    pub solved_by: SolvedBy,
+    /// Processor that solves the crowd.
+    pub processor: Processor,
 }
 
 /// Processor that solves a crowd.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SolvedBy {
-    /// By [`batch`](crate::kinematics::batch), on all cores.
+pub enum Processor {
+    /// The CPU, by [`batch`](crate::kinematics::batch) on all cores.
     #[default]
     Cpu,
-    /// By the same mathematics in a shader.
+    /// The GPU, by the same mathematics in a shader.
     Gpu,
 }
 
@@ -61,6 +61,7 @@ impl Crowd {
 /// Time taken to solve a crowd.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrowdTimes {
+    /// Number of arms.
     pub arms: u32,
     /// Time of the solver alone, from cursors to elbows and hands.
     pub solve: Duration,
@@ -96,19 +97,19 @@ impl CrowdArrays {
         if self.len() == arms && self.spread == spread {
             return false;
         }
-        let known = if self.spread == spread { self.len() } else { 0 };
+        let unchanged = if self.spread == spread { self.len() } else { 0 };
         self.spread = spread;
         let Self { shoulder: [x, z], cursor, cos, sin, elbow, hand, .. } = self;
         for of in cursor.iter_mut().chain([cos, sin]).chain(elbow).chain(hand) {
             of.resize(arms, 0.0);
         }
-        x.truncate(known);
-        z.truncate(known);
+        x.truncate(unchanged);
+        z.truncate(unchanged);
         for arm in x.len()..arms {
-            let far = spread * (arm as f32).sqrt();
+            let radius = spread * (arm as f32).sqrt();
             let (sin, cos) = (arm as f64 * GOLDEN).sin_cos();
-            x.push(far * cos as f32);
-            z.push(far * sin as f32);
+            x.push(radius * cos as f32);
+            z.push(radius * sin as f32);
         }
         true
     }
@@ -168,12 +169,12 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], twist: [&mut [f32]; 2]
     let mut arrays = [x, y, z, cos, sin];
     for from in (0..arms).step_by(BLOCK) {
         for (arm, of) in (from as u32..).zip(0..BLOCK) {
-            let own = Own::of(arm);
-            let [x, y, z] = own.cursor(time);
+            let motion = ArmMotion::of(arm);
+            let [x, y, z] = motion.cursor(time);
             block[0][of] = x * reach;
             block[1][of] = y * reach;
             block[2][of] = z * reach;
-            let turn = own.twist(time);
+            let turn = motion.twist(time);
             block[3][of] = sine(turn + 0.25);
             block[4][of] = sine(turn);
         }
@@ -186,24 +187,24 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], twist: [&mut [f32]; 2]
 
 /// One arm's parameters as fractions of a turn, hashed from its index.
 #[derive(Clone, Copy)]
-struct Own {
+struct ArmMotion {
     phases: [f32; 4],
     /// Rounds per period, 1 or 2 in either direction.
     rounds: f32,
 }
 
-impl Own {
+impl ArmMotion {
     #[inline(always)]
     fn of(arm: u32) -> Self {
-        // Mixed well (C. Wellons, *Prospecting for Hash Functions*, 2018).
+        // A hash with low bias (C. Wellons, *Prospecting for Hash Functions*, 2018).
         let mut mixed = arm.wrapping_add(0x9e37_79b9);
         mixed = (mixed ^ (mixed >> 16)).wrapping_mul(0x7feb_352d);
         mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x846c_a68b);
         mixed ^= mixed >> 16;
         let phase = |byte: u32| ((mixed >> (8 * byte)) & 0xff) as f32 / 256.0;
         let rounds = if mixed & 1 == 0 { 1.0 } else { 2.0 };
-        let way = if mixed & 2 == 0 { 1.0 } else { -1.0 };
-        Self { phases: [phase(0), phase(1), phase(2), phase(3)], rounds: rounds * way }
+        let direction = if mixed & 2 == 0 { 1.0 } else { -1.0 };
+        Self { phases: [phase(0), phase(1), phase(2), phase(3)], rounds: rounds * direction }
     }
 
     /// In lengths of the arm.

@@ -2,9 +2,9 @@
 //! arms.
 
 mod arm;
-mod cone;
 mod crowd;
+mod tapered_cylinder;
 
-pub use arm::{ArmRig, Part};
-pub use cone::Cone;
-pub use crowd::{Crowd, CrowdArrays, CrowdTimes, SolvedBy};
+pub use arm::{ArmPart, ArmRig};
+pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
+pub use tapered_cylinder::TaperedCylinder;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::label::TextRange;
 use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Solid, SphereShell};
 use crate::document::{Camera, Display, Theme};
-use crate::rig::{Cone, Crowd};
+use crate::rig::{Crowd, TaperedCylinder};
 
 /// Everything in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +104,7 @@ impl Scene {
         tip_radius: f32,
         colour: Colour,
     ) {
-        let (transform, shape) = Cone::between(base, tip, base_radius, tip_radius);
+        let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
         self.solids.push(Solid { transform, shape, colour, stripes: None });
     }
 

@@ -1,7 +1,7 @@
 use glam::{Affine3A, Vec3};
 
 use super::Colour;
-use crate::rig::Cone;
+use crate::rig::TaperedCylinder;
 
 /// A tapered cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Solid {
     /// Rigid transform from its space, in which it lies along +x, to the world.
     pub transform: Affine3A,
     /// Length and radii.
-    pub shape: Cone,
+    pub shape: TaperedCylinder,
     /// Colour of the surface.
     pub colour: Colour,
     /// Winding of darker stripes along the side from base to tip, in radians, right-handed about the

@@ -97,7 +97,7 @@ impl Session {
                 }
             }
             ViewAction::SetCrowdSize(arms) => self.view.set_crowd_size(arms),
-            ViewAction::SetCrowdSolver(solved_by) => self.view.set_crowd_solver(solved_by),
+            ViewAction::SetCrowdSolver(processor) => self.view.set_crowd_solver(processor),
             ViewAction::AnimateCrowd(animated) => {
                 self.view.animate_crowd(animated);
                 self.forget_pause();

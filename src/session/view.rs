@@ -3,7 +3,7 @@ use glam::Vec2;
 use super::view_drag::{CameraMotion, Glide, ViewDrag};
 use crate::document::Camera;
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::{Crowd, SolvedBy};
+use crate::rig::{Crowd, Processor};
 
 /// The drag and the glide of the camera, and the crowd that is shown instead of the rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub(super) struct View {
     glide: Option<Glide>,
     crowd_shown: bool,
     crowd_size: u32,
-    crowd_solver: SolvedBy,
+    crowd_solver: Processor,
     crowd_animated: bool,
     /// In seconds.
     crowd_time: f64,
@@ -25,7 +25,7 @@ impl Default for View {
             glide: None,
             crowd_shown: false,
             crowd_size: 1_000,
-            crowd_solver: SolvedBy::Cpu,
+            crowd_solver: Processor::Cpu,
             crowd_animated: true,
             crowd_time: 0.0,
         }
@@ -79,8 +79,8 @@ impl View {
     }
 
     pub fn crowd(&self, bones: TwoBone) -> Option<Crowd> {
-        let Self { crowd_size: arms, crowd_solver: solved_by, crowd_time, .. } = *self;
-        self.crowd_shown.then_some(Crowd { arms, bones, time: crowd_time as f32, solved_by })
+        let Self { crowd_size: arms, crowd_solver: processor, crowd_time, .. } = *self;
+        self.crowd_shown.then_some(Crowd { arms, bones, time: crowd_time as f32, processor })
     }
 
     pub fn is_crowd_animated(&self) -> bool {
@@ -101,8 +101,8 @@ impl View {
         self.crowd_size = arms.clamp(1, Crowd::MOST);
     }
 
-    pub fn set_crowd_solver(&mut self, solved_by: SolvedBy) {
-        self.crowd_solver = solved_by;
+    pub fn set_crowd_solver(&mut self, processor: Processor) {
+        self.crowd_solver = processor;
     }
 
     pub fn animate_crowd(&mut self, animated: bool) {

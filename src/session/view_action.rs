@@ -2,7 +2,7 @@ use glam::Vec2;
 
 use super::view_drag::CameraMotion;
 use crate::document::Camera;
-use crate::rig::SolvedBy;
+use crate::rig::Processor;
 
 /// Changes the camera, the crowd or the open panels. The camera is saved, but not undone.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub enum ViewAction {
     /// Sets the number of arms, from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).
     SetCrowdSize(u32),
     /// Solves the crowd on the CPU or on the GPU.
-    SetCrowdSolver(SolvedBy),
+    SetCrowdSolver(Processor),
     /// Animates or pauses the crowd's targets.
     AnimateCrowd(bool),
     /// Measures the holonomy from the present direction of the Pointer.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use ik_arm::document::{Document, Theme};
 use ik_arm::io::{Example, Group};
-use ik_arm::rig::Cone;
+use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 
@@ -46,7 +46,7 @@ fn grid_cells_scale_with_the_rig() {
 /// All numbers of a scene except texts and colours.
 fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
     let solids = scene.solids.iter().chain(&scene.guide_solids).flat_map(|solid| {
-        let Cone { length, base_radius, tip_radius } = solid.shape;
+        let TaperedCylinder { length, base_radius, tip_radius } = solid.shape;
         let shape = [length, base_radius, tip_radius];
         solid.transform.to_cols_array().into_iter().chain(shape)
     });

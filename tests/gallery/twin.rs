@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Arm, TwistReferenceKind};
-use ik_arm::rig::Part;
+use ik_arm::rig::ArmPart;
 
 use crate::EXACT;
 
@@ -76,7 +76,7 @@ pub fn check(arm: &Arm) {
     check_limbs(arm, [DVec3::ZERO, elbow, hand], EXACT * length);
 
     let rig = arm.rig(&pose);
-    let parts = [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
+    let parts = [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
     let largest = parts.iter().map(|at| at.abs().max_element()).fold(0.0, f32::max);
     let coarse = 2.0 * f64::from(largest.next_up() - largest);
     let [root, elbow, hand] = parts.map(Vec3::as_dvec3);

@@ -4,7 +4,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::rig::Part;
+use ik_arm::rig::ArmPart;
 
 use crate::common::Random;
 use crate::documents::{all, example, glb, keyed_arm};
@@ -28,7 +28,8 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
         }
         RigKind::Arm => {
             let rig = document.arm.rig(&document.arm.pose());
-            let parts = [("upper", Part::Root), ("lower", Part::Elbow), ("hand", Part::Hand)];
+            let parts =
+                [("upper", ArmPart::Root), ("lower", ArmPart::Elbow), ("hand", ArmPart::Hand)];
             parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()
         }
     };

@@ -1,7 +1,7 @@
 //! All kinds of actions. A new action does not compile without its line here.
 
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
-use ik_arm::rig::SolvedBy;
+use ik_arm::rig::Processor;
 use ik_arm::session::{
     Action, EditAction, FileAction, Navigation, PlaybackAction, PoseMode, SelectAction,
     ShellAction, SolverAction, TransactionAction, ViewAction,
@@ -161,7 +161,7 @@ kinds! {
         ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
         ShowCrowd: Look 1, |v| ViewAction::ShowCrowd(v.coin());
         SetCrowdSize: Look 1, |v| ViewAction::SetCrowdSize(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));
-        SetCrowdSolver: Look 1, |v| ViewAction::SetCrowdSolver(v.one_of(&[SolvedBy::Cpu, SolvedBy::Gpu]));
+        SetCrowdSolver: Look 1, |v| ViewAction::SetCrowdSolver(v.one_of(&[Processor::Cpu, Processor::Gpu]));
         AnimateCrowd: Look 1, |v| ViewAction::AnimateCrowd(v.coin());
         ShowGraphEditor: Look 1, |v| ViewAction::ShowGraphEditor(v.coin());
     }

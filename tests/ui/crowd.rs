@@ -5,7 +5,7 @@ use std::time::Duration;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use ik_arm::document::Document;
-use ik_arm::rig::{Crowd, CrowdTimes, SolvedBy};
+use ik_arm::rig::{Crowd, CrowdTimes, Processor};
 use ik_arm::session::ViewAction;
 use ik_arm::ui::FrameTime;
 
@@ -50,9 +50,9 @@ fn the_slider_goes_from_one_arm_to_a_million_by_tens() {
 fn what_solves_it_and_whether_it_moves_are_chosen() {
     let mut bench = shown();
     bench.click(Role::RadioButton, "GPU");
-    assert_eq!(crowd(&bench).solved_by, SolvedBy::Gpu);
+    assert_eq!(crowd(&bench).processor, Processor::Gpu);
     bench.click(Role::RadioButton, "CPU");
-    assert_eq!(crowd(&bench).solved_by, SolvedBy::Cpu);
+    assert_eq!(crowd(&bench).processor, Processor::Cpu);
     assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
     bench.apply_moving([ViewAction::AnimateCrowd(true)]);
     for _ in 0..3 {

@@ -7,7 +7,7 @@ use crate::cli::argument::{
     TimeArgument,
 };
 use crate::document::{AxisView, Camera};
-use crate::rig::{Crowd, SolvedBy};
+use crate::rig::{Crowd, Processor};
 
 #[derive(clap::Args)]
 #[command(after_help = "Without FILE the arm is drawn, posed by --hand, --twist and the lengths:
@@ -99,7 +99,7 @@ pub enum ViewName {
     Perspective,
 }
 
-impl From<CrowdSolverName> for SolvedBy {
+impl From<CrowdSolverName> for Processor {
     fn from(name: CrowdSolverName) -> Self {
         match name {
             CrowdSolverName::Cpu => Self::Cpu,

@@ -18,7 +18,7 @@ pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
         arms,
         bones: TwoBone::new(args.upper.0, args.lower.0)?,
         time: (args.time.0 % f64::from(Crowd::PERIOD)) as f32,
-        solved_by: args.solve.into(),
+        processor: args.solve.into(),
     };
     let document = document(args, &crowd);
     let theme = args.theme.into();

@@ -9,7 +9,7 @@ use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath}
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
-use crate::kinematics::chain_ik::{Method, ParseMethodError, Root, SolverOptions};
+use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::skeleton::JointId;
 
 #[derive(Serialize, Deserialize)]
@@ -30,20 +30,13 @@ struct TargetMotionFields {
 
 #[derive(Serialize, Deserialize)]
 pub struct SolverFields {
-    method: Option<String>,
+    method: Option<Method>,
     iterations: Option<Whole>,
     tolerance: Option<JsonNumber>,
     damping: Option<JsonNumber>,
     step: Option<JsonNumber>,
-    root: Option<RootFields>,
+    root: Option<Root>,
     iterations_per_frame: Option<Whole>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum RootFields {
-    Fixed,
-    Free,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -120,15 +113,12 @@ impl SolverFields {
     pub fn new(rig: &SkeletonRig) -> Self {
         let solver = rig.solver;
         Self {
-            method: Some(solver.method.name().to_owned()),
+            method: Some(solver.method),
             iterations: solver.iterations.map(Whole),
             tolerance: solver.tolerance.map(JsonNumber),
             damping: Some(JsonNumber(solver.damping)),
             step: Some(JsonNumber(solver.step)),
-            root: Some(match solver.root {
-                Root::Fixed => RootFields::Fixed,
-                Root::Free => RootFields::Free,
-            }),
+            root: Some(solver.root),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
         }
     }
@@ -144,18 +134,12 @@ impl SolverFields {
         }
         let tolerance = self.tolerance.map(|JsonNumber(number)| above_0(at("tolerance"), number));
         rig.solver = SolverOptions {
-            method: match &self.method {
-                Some(name) => method(at("method"), name)?,
-                None => default.method,
-            },
+            method: self.method.unwrap_or(default.method),
             iterations,
             tolerance: tolerance.transpose()?,
             damping: positive("damping", self.damping, default.damping)?,
             step: positive("step", self.step, default.step)?,
-            root: match self.root {
-                Some(RootFields::Free) => Root::Free,
-                Some(RootFields::Fixed) | None => Root::Fixed,
-            },
+            root: self.root.unwrap_or(default.root),
         };
         if let Some(count) = self.iterations_per_frame {
             rig.iterations_per_frame = from_1_to(
@@ -166,10 +150,6 @@ impl SolverFields {
         }
         Ok(())
     }
-}
-
-fn method(at: JsonPath, name: &str) -> Result<Method, FieldError> {
-    name.parse().map_err(|error: ParseMethodError| FieldError::new(at, error.to_string()))
 }
 
 impl FollowPathFields {

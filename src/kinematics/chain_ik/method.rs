@@ -5,6 +5,11 @@ use thiserror::Error;
 
 /// Solver method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "String", into = "&'static str")
+)]
 pub enum Method {
     /// Jacobian transpose with a fixed step length.
     TransposeFixed,
@@ -68,6 +73,22 @@ impl FromStr for Method {
     fn from_str(name: &str) -> Result<Self, ParseMethodError> {
         let found = Self::ALL.into_iter().find(|method| method.name() == name);
         found.ok_or_else(|| ParseMethodError(name.to_owned()))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<String> for Method {
+    type Error = ParseMethodError;
+
+    fn try_from(name: String) -> Result<Self, ParseMethodError> {
+        name.parse()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Method> for &'static str {
+    fn from(method: Method) -> Self {
+        method.name()
     }
 }
 

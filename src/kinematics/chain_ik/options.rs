@@ -10,6 +10,7 @@ use super::{Method, OptionField, SolveError};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct SolverOptions {
     /// The method.
     pub method: Method,
@@ -102,6 +103,11 @@ impl SolverOptions {
 
 /// Mobility of roots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Root {
     /// Roots keep their offsets.
     #[default]

@@ -4,6 +4,7 @@ use super::Method;
 
 /// Progress of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// The method.
     pub method: Method,
@@ -24,6 +25,11 @@ impl Report {
 
 /// State of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Status {
     /// The error is above the tolerance, and iterations are left.
     Iterating,

@@ -4,6 +4,7 @@ use crate::kinematics::skeleton::JointId;
 
 /// A target for the tip of a joint's bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TipTarget {
     /// The joint whose tip is to reach the target.
     pub joint: JointId,

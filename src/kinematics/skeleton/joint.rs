@@ -7,6 +7,7 @@ use super::{
 
 /// A ball joint and its bone.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
     /// Unique within the skeleton.
     pub name: String,

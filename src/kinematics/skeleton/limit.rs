@@ -2,6 +2,7 @@ use glam::Vec3;
 
 /// A closed range of an angle, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limit {
     /// Lower bound.
     pub min: f32,

@@ -32,6 +32,8 @@ mod joint_id;
 mod joint_remap;
 mod limit;
 mod pose;
+#[cfg(feature = "serde")]
+mod serialize;
 mod tree;
 
 pub use error::{JointField, RotationAxis, SkeletonError};

@@ -3,7 +3,7 @@ use glam::{Affine3A, Vec3};
 use super::shadow::above_ground;
 use crate::document::{Arm, Display, Overlay, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
-use crate::rig::{ArmRig, Cone, Part};
+use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Solid, SphereShell};
 
 /// Radii and sizes on an arm of thickness 1. The balls of the joints are as large as the limbs' ends, so that
@@ -57,19 +57,20 @@ fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>)
     let palette = scene.palette;
     scene.solids.extend([
         Solid {
-            transform: rig.world(Part::UpperLimb),
+            transform: rig.world(ArmPart::UpperLimb),
             shape: rig.upper(),
             colour: palette.upper,
             stripes: None,
         },
         Solid {
-            transform: rig.world(Part::LowerLimb),
+            transform: rig.world(ArmPart::LowerLimb),
             shape: rig.lower(),
             colour: palette.lower,
             stripes: roll,
         },
     ]);
-    let joints = [(Part::Root, SHOULDER_BALL), (Part::Elbow, ELBOW_BALL), (Part::Hand, HAND_BALL)];
+    let joints =
+        [(ArmPart::Root, SHOULDER_BALL), (ArmPart::Elbow, ELBOW_BALL), (ArmPart::Hand, HAND_BALL)];
     scene.balls.extend(joints.map(|(part, radius)| Ball {
         centre: rig.origin(part),
         radius: radius * thickness,
@@ -92,7 +93,7 @@ fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
 fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
     let colour = scene.palette.accent;
     let head = cursor + PIN * thickness;
-    let (transform, shape) = Cone::between(cursor, head, 0.0, PIN_RADIUS * thickness);
+    let (transform, shape) = TaperedCylinder::between(cursor, head, 0.0, PIN_RADIUS * thickness);
     scene.guide_solids.push(Solid { transform, shape, colour, stripes: None });
     scene.guide_balls.push(Ball { centre: head, radius: PIN_HEAD * thickness, colour });
 }
@@ -102,7 +103,7 @@ fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display
     let (radius, colour) =
         (POLE_BALL * thickness, scene.palette.twist_reference(TwistReferenceKind::Pole));
     scene.guide_balls.push(Ball { centre: pole, radius, colour });
-    scene.lines.push(Line { from: rig.origin(Part::Elbow), to: pole, colour, dashed: true });
+    scene.lines.push(Line { from: rig.origin(ArmPart::Elbow), to: pole, colour, dashed: true });
     if display.shows(Overlay::Labels) {
         let label = Label::new(pole, radius, LabelSide::Above, colour);
         scene.add_label(label, format_args!("Pole"));
@@ -113,15 +114,15 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
     let colour = scene.palette.guide;
     if display.shows(Overlay::Pointer) {
         scene.guide_solids.push(Solid {
-            transform: rig.world(Part::Pointer),
+            transform: rig.world(ArmPart::Pointer),
             shape: rig.pointer(),
             colour,
             stripes: None,
         });
     }
     for (overlay, part, radius) in [
-        (Overlay::InnerLimit, Part::InnerLimit, rig.inner_limit()),
-        (Overlay::OuterLimit, Part::OuterLimit, rig.outer_limit()),
+        (Overlay::InnerLimit, ArmPart::InnerLimit, rig.inner_limit()),
+        (Overlay::OuterLimit, ArmPart::OuterLimit, rig.outer_limit()),
     ] {
         if display.shows(overlay) && radius > 0.0 {
             scene.shells.push(SphereShell { centre: rig.origin(part), radius, colour });
@@ -131,7 +132,7 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
 
 /// Adds a line from the hand to a Cursor out of reach, labelled with its length.
 fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
-    let (hand, cursor) = (rig.origin(Part::Hand), arm.cursor_in_world());
+    let (hand, cursor) = (rig.origin(ArmPart::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     let label = Label::new(cursor, CURSOR_BALL * thickness, LabelSide::Above, colour);
@@ -143,11 +144,11 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
 fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: bool) {
     let colour = scene.palette.text;
     let named = [
-        (Part::Root, SHOULDER_BALL, LabelSide::Below, "Root"),
-        (Part::Elbow, ELBOW_BALL, LabelSide::Above, "Elbow"),
-        (Part::Hand, HAND_BALL, LabelSide::Below, "Hand"),
+        (ArmPart::Root, SHOULDER_BALL, LabelSide::Below, "Root"),
+        (ArmPart::Elbow, ELBOW_BALL, LabelSide::Above, "Elbow"),
+        (ArmPart::Hand, HAND_BALL, LabelSide::Below, "Hand"),
     ];
-    let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == Part::Elbow));
+    let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == ArmPart::Elbow));
     for (part, radius, side, name) in named {
         let label = Label::new(rig.origin(part), radius * thickness, side, colour);
         scene.add_label(label, format_args!("{name}"));
@@ -155,7 +156,8 @@ fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: b
 }
 
 fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
-    let [root, elbow, hand] = [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
+    let [root, elbow, hand] =
+        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
     let limbs = [
         (root, SHOULDER_BALL, elbow, rig.upper().tip_radius / thickness),
         (elbow, rig.lower().base_radius / thickness, hand, HAND_BALL),

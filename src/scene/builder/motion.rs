@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use crate::document::{Document, RigKind};
-use crate::rig::Part;
+use crate::rig::ArmPart;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
 
@@ -43,7 +43,7 @@ fn add_skin(scene: &mut Scene, skin: &OnionSkin, rig: RigKind, colour: Colour, r
         RigKind::Arm => {
             let rig = skin.arm.rig(&skin.arm.pose());
             let [root, elbow, hand] =
-                [Part::Root, Part::Elbow, Part::Hand].map(|part| rig.origin(part));
+                [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
             add(root, elbow);
             add(elbow, hand);
         }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 
-use crate::rig::{Crowd, SolvedBy};
+use crate::rig::{Crowd, Processor};
 use crate::session::{Actions, Session, ViewAction};
 use crate::ui::machine::Machine;
 use crate::ui::widgets::format::grouped;
@@ -59,15 +59,15 @@ fn count(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
 
 fn solver(ui: &mut Ui, crowd: &Crowd, actions: &mut Actions) {
     let solvers = [
-        (SolvedBy::Cpu, "CPU", "Solve in batches on all CPU cores"),
-        (SolvedBy::Gpu, "GPU", "Solve in a shader on the GPU"),
+        (Processor::Cpu, "CPU", "Solve in batches on all CPU cores"),
+        (Processor::Gpu, "GPU", "Solve in a shader on the GPU"),
     ];
     ui.horizontal(|ui| {
         ui.label("Solver");
-        for (solved_by, name, tooltip) in solvers {
-            let button = ui.radio(crowd.solved_by == solved_by, name);
+        for (processor, name, tooltip) in solvers {
+            let button = ui.radio(crowd.processor == processor, name);
             if button.on_hover_text(tooltip).clicked() {
-                actions.push(ViewAction::SetCrowdSolver(solved_by));
+                actions.push(ViewAction::SetCrowdSolver(processor));
             }
         }
     });

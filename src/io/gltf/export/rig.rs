@@ -6,7 +6,7 @@ use crate::io::gltf::frame::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::{ArmRig, Cone, Part};
+use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 
 /// The shown rig, arm or skeleton, as bones in the world, in metres.
 ///
@@ -104,7 +104,7 @@ impl GltfRig {
         let Document { arm, keys, .. } = &self.document;
         let rig = arm.rig(&arm.pose());
         let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
-        let radii = |limb: Cone| {
+        let radii = |limb: TaperedCylinder| {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
         };
         vec![
@@ -200,10 +200,10 @@ fn posed_arm(document: &Document) -> Vec<BonePlacement> {
     let arm = &document.arm;
     let pose = arm.pose();
     let rig: ArmRig = arm.rig(&pose);
-    let socket = rig.local(Part::Limb) * rig.local(Part::Socket);
+    let socket = rig.local(ArmPart::Limb) * rig.local(ArmPart::Socket);
     let turn = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
     let bones = arm.bones.stretched(pose.stretch);
-    limbs(arm, bones, [turn(Part::UpperLimb), turn(Part::LowerLimb)])
+    limbs(arm, bones, [turn(ArmPart::UpperLimb), turn(ArmPart::LowerLimb)])
 }
 
 /// Placements of the limbs by their rotations. A limb is along x and bends about z.

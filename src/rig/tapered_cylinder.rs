@@ -2,10 +2,10 @@ use glam::{Affine3A, Mat3, Vec3};
 
 /// A tapered cylinder along +x from the origin.
 ///
-/// [`Cone::between`] builds its rotation from a basis, without an arc cosine, and is exact in every
+/// [`TaperedCylinder::between`] builds its rotation from a basis, without an arc cosine, and is exact in every
 /// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone {
+pub struct TaperedCylinder {
     /// Length along +x.
     pub length: f32,
     /// Radius at the origin.
@@ -14,7 +14,7 @@ pub struct Cone {
     pub tip_radius: f32,
 }
 
-impl Cone {
+impl TaperedCylinder {
     /// The cone from `base` to `tip`, with the transform that places it: a rotation whose +x points at
     /// the tip, with any roll, and a translation to the base. Coinciding ends keep +x.
     pub fn between(base: Vec3, tip: Vec3, base_radius: f32, tip_radius: f32) -> (Affine3A, Self) {
