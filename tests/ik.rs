@@ -75,7 +75,7 @@ proptest! {
         let (l, sigma) = (limits(bones).1, f64::from(pose.stretch));
         let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
         let asked = cursor.as_dvec3();
-        let extent = soft_reach.extent(bones, asked.length() as f32);
+        let extent = soft_reach.hand_distance(bones, asked.length() as f32);
         prop_assert!(hand.distance(asked.normalize() * f64::from(extent.distance)) < 1e-6 * l);
         for (limb, rest) in [(elbow.length(), bones.upper()), ((hand - elbow).length(), bones.lower())]
         {

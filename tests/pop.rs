@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::{Ik, IkState};
-use ik_arm::kinematics::pop::{Change, Moment, Pop, Step};
+use ik_arm::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
@@ -28,30 +28,30 @@ fn arm(reference: TwistReference, softness: f32) -> Ik {
 }
 
 /// Moments of a drag: each pose continues from the one before.
-fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Moment> {
+fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<PosedArm> {
     let mut state = IkState::default();
     let poses = cursors.into_iter().map(|cursor| {
         let solved = ik.solve(cursor, 0.0, state);
         state = solved.state();
-        Moment {
+        PosedArm {
             pose: solved.pose,
             cursor,
             ik,
-            spin: 0.0,
+            twist: 0.0,
             pinned_root: None,
-            weight: 1.0,
+            influence: 1.0,
             fk: Fk::default(),
         }
     });
     poses.collect()
 }
 
-fn steps(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Step> {
+fn steps(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<ElbowStep> {
     let moments = moments(ik, cursors);
-    moments.windows(2).filter_map(|pair| Step::between(&pair[0], &pair[1])).collect()
+    moments.windows(2).filter_map(|pair| ElbowStep::between(&pair[0], &pair[1])).collect()
 }
 
-fn pops(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<Pop> {
+fn pops(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<PopCause> {
     steps(ik, cursors).into_iter().filter_map(|step| step.pop).collect()
 }
 
@@ -71,7 +71,7 @@ fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
     let pops = pops(arm(TwistReference::Limb, 0.0), over_the_top());
     assert!(!pops.is_empty());
     let nearest = pops.iter().map(|pop| match pop {
-        Pop::Singular { nearest } => f64::from(*nearest),
+        PopCause::Singular { nearest } => f64::from(*nearest),
         other => panic!("{other:?}"),
     });
     let nearest = nearest.fold(f64::INFINITY, f64::min);
@@ -94,10 +94,10 @@ fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
         let at = pole * side * 0.9 + pole.cross(aside).normalize() * 15.0;
         let pass = line(at - aside * 120.0, at + aside * 120.0, 50);
         let pops = pops(arm(TwistReference::Pole(pole), 0.0), pass.clone());
-        let is_near = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.5);
+        let is_near = |pop: &Pop| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.5);
         assert!(!pops.is_empty() && pops.iter().all(is_near), "{side}: {pops:?}");
         let nearest = pops.iter().map(|pop| match pop {
-            Pop::Singular { nearest } => *nearest,
+            PopCause::Singular { nearest } => *nearest,
             _ => f32::INFINITY,
         });
         let expected = (15.0 / (0.9 * pole.length())).atan();
@@ -110,7 +110,7 @@ fn the_map_pops_only_behind_and_transport_not_even_there() {
     let behind = line(Vec3::new(-300.0, 60.0, 8.0), Vec3::new(-300.0, -60.0, 8.0), 40);
     let pops_of = |reference| pops(arm(reference, 0.0), behind.clone());
     let on_map = pops_of(map());
-    let is_singular = |pop: &Pop| matches!(pop, Pop::Singular { nearest } if *nearest < 0.15);
+    let is_singular = |pop: &Pop| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.15);
     assert!(!on_map.is_empty() && on_map.iter().all(is_singular), "{on_map:?}");
     assert_eq!(pops_of(TwistReference::Transport), []);
     assert_eq!(pops_of(TwistReference::Limb), []);
@@ -120,7 +120,7 @@ fn the_map_pops_only_behind_and_transport_not_even_there() {
 fn a_hand_that_runs_into_the_outer_limit_pops_unless_it_is_soft() {
     let out = line(Vec3::new(420.0, 30.0, 0.0), Vec3::new(560.0, 40.0, 0.0), 28);
     let hard = pops(arm(map(), 0.0), out.clone());
-    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == Pop::Straight), "{hard:?}");
+    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == PopCause::Straight), "{hard:?}");
     assert_eq!(pops(arm(map(), 0.25), out), []);
 }
 
@@ -128,7 +128,7 @@ fn a_hand_that_runs_into_the_outer_limit_pops_unless_it_is_soft() {
 fn a_hand_that_runs_into_the_inner_limit_pops_unless_it_is_soft() {
     let in_and_out = line(Vec3::new(170.0, 20.0, 0.0), Vec3::new(88.0, 10.0, 0.0), 28);
     let hard = pops(arm(map(), 0.0), in_and_out.clone());
-    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == Pop::Folded), "{hard:?}");
+    assert!(hard.len() >= 2 && hard.iter().all(|pop| *pop == PopCause::Folded), "{hard:?}");
     assert_eq!(pops(arm(map(), 0.25), in_and_out), []);
 }
 
@@ -137,8 +137,8 @@ fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
     let past = line(Vec3::new(95.0, 4.0, 7.0), Vec3::new(-95.0, 4.0, 7.0), 14);
     for softness in [0.0, 0.2, 0.9] {
         let pops = pops(arm(TwistReference::Transport, softness), past.clone());
-        assert!(pops.contains(&Pop::Shoulder), "{softness}: {pops:?}");
-        let is_turn = |pop: &Pop| matches!(pop, Pop::Shoulder);
+        assert!(pops.contains(&PopCause::Shoulder), "{softness}: {pops:?}");
+        let is_turn = |pop: &Pop| matches!(pop, PopCause::Shoulder);
         assert!(pops.iter().all(is_turn), "{softness}: {pops:?}");
     }
 }
@@ -165,35 +165,35 @@ fn a_step_too_short_to_tell_from_rounding_is_none() {
 fn every_change_that_is_not_the_cursors_has_its_own_name() {
     let ik = arm(TwistReference::Pole(Vec3::Y), 0.0);
     let moment = moments(ik, [Vec3::new(300.0, 50.0, 0.0)])[0];
-    let before = Moment { pinned_root: Some(Vec3::ZERO), weight: 0.5, ..moment };
-    let with = |ik: Ik| Moment { ik, ..before };
+    let before = PosedArm { pinned_root: Some(Vec3::ZERO), influence: 0.5, ..moment };
+    let with = |ik: Ik| PosedArm { ik, ..before };
     let bones = TwoBone::new(200.0, 301.0).expect("lengths");
     let fk = Fk { bend: 1.25, ..before.fk };
     let changed = [
-        (Change::Lengths, with(Ik { bones, ..ik })),
-        (Change::TwistReference, with(Ik { reference: TwistReference::Limb, ..ik })),
-        (Change::Pole, with(Ik { reference: TwistReference::Pole(Vec3::X), ..ik })),
-        (Change::SoftReach, with(Ik { soft_reach: soft(0.1), ..ik })),
-        (Change::Weight, Moment { weight: 0.25, ..before }),
-        (Change::Angles, Moment { fk, ..before }),
-        (Change::Spin, Moment { spin: 0.1, ..before }),
-        (Change::Root, Moment { pinned_root: Some(Vec3::Y), ..before }),
+        (InputChange::Lengths, with(Ik { bones, ..ik })),
+        (InputChange::TwistReference, with(Ik { reference: TwistReference::Limb, ..ik })),
+        (InputChange::Pole, with(Ik { reference: TwistReference::Pole(Vec3::X), ..ik })),
+        (InputChange::SoftReach, with(Ik { soft_reach: soft(0.1), ..ik })),
+        (InputChange::Influence, PosedArm { influence: 0.25, ..before }),
+        (InputChange::Angles, PosedArm { fk, ..before }),
+        (InputChange::Twist, PosedArm { twist: 0.1, ..before }),
+        (InputChange::Root, PosedArm { pinned_root: Some(Vec3::Y), ..before }),
     ];
-    assert_eq!(changed.map(|(change, _)| change), Change::ALL);
+    assert_eq!(changed.map(|(change, _)| change), InputChange::ALL);
     for (change, after) in changed {
-        assert_eq!(Change::between(&before, &after), Some(change));
+        assert_eq!(InputChange::between(&before, &after), Some(change));
     }
-    assert_eq!(Change::between(&before, &before), None);
+    assert_eq!(InputChange::between(&before, &before), None);
 }
 
 #[test]
 fn what_does_not_pose_the_arm_is_no_change() {
     let before = moments(arm(TwistReference::Limb, 0.0), [Vec3::X])[0];
-    let elsewhere = Moment { cursor: Vec3::Y, ..before };
-    let pinned = Moment { pinned_root: Some(Vec3::Y), ..before };
-    let turned = Moment { fk: Fk { bend: 2.0, ..before.fk }, ..before };
+    let elsewhere = PosedArm { cursor: Vec3::Y, ..before };
+    let pinned = PosedArm { pinned_root: Some(Vec3::Y), ..before };
+    let turned = PosedArm { fk: Fk { bend: 2.0, ..before.fk }, ..before };
     for after in [elsewhere, pinned, turned] {
-        assert_eq!(Change::between(&before, &after), None);
+        assert_eq!(InputChange::between(&before, &after), None);
     }
 }
 
@@ -262,7 +262,7 @@ proptest! {
         reference in references(), softness in 0.0..0.9_f32, from in cursors(), to in cursors()
     ) {
         let moments = moments(arm(reference, softness), [from, to]);
-        let step = Step::between(&moments[0], &moments[1]);
+        let step = ElbowStep::between(&moments[0], &moments[1]);
         prop_assume!(step.is_some());
         let step = step.expect("long enough");
         let moved = moments[1].pose.elbow - moments[0].pose.elbow;

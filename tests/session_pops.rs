@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
-use ik_arm::kinematics::pop::{Change, Pop};
+use ik_arm::kinematics::pop::{InputChange, PopCause};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     EditAction, FileAction, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
@@ -41,7 +41,7 @@ fn standing(session: &Session) -> Vec<Spike> {
     session.pops().spikes().into_iter().filter(stands).collect()
 }
 
-fn changes(session: &Session) -> Vec<Change> {
+fn changes(session: &Session) -> Vec<InputChange> {
     let change = |what| match what {
         PopSampleKind::Change(change) => Some(change),
         PopSampleKind::Step(_) => None,
@@ -108,11 +108,11 @@ fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     };
     let soft = |softness| SoftReach::new(softness, 1.2, 0.3).expect("soft");
     for (from, to) in [(0.1, 0.25), (0.2, 0.4), (0.3, 0.5)] {
-        assert_eq!(spike(Pop::Straight, soft(from)), Some(PopFix::Soften(soft(to))), "{from}");
+        assert_eq!(spike(PopCause::Straight, soft(from)), Some(PopFix::Soften(soft(to))), "{from}");
     }
-    assert_eq!(spike(Pop::Straight, soft(0.5)), None);
+    assert_eq!(spike(PopCause::Straight, soft(0.5)), None);
     let open = SoftReach::new(0.2, 1.0, 1.5).expect("soft");
-    assert_eq!(spike(Pop::Folded, open), None);
+    assert_eq!(spike(PopCause::Folded, open), None);
 }
 
 #[test]
@@ -120,8 +120,8 @@ fn nothing_helps_a_cursor_that_passes_the_shoulder() {
     let mut session = Session::default();
     past_the_shoulder(&mut session);
     let spikes = standing(&session);
-    assert!(spikes.iter().any(|spike| spike.pop == Pop::Shoulder), "{spikes:?}");
-    for spike in spikes.iter().filter(|spike| spike.pop == Pop::Shoulder) {
+    assert!(spikes.iter().any(|spike| spike.pop == PopCause::Shoulder), "{spikes:?}");
+    for spike in spikes.iter().filter(|spike| spike.pop == PopCause::Shoulder) {
         assert_eq!(PopFix::new(spike, session.arm()), None);
     }
 }
@@ -178,7 +178,10 @@ fn what_is_played_is_measured_and_its_beginning_again_is_no_step() {
     assert_eq!(runs.len(), 2);
     let spikes = session.pops().spikes();
     assert_eq!(spikes.len(), 2, "{spikes:?}");
-    assert!(spikes.iter().all(|spike| matches!(spike.pop, Pop::Singular { .. })), "{spikes:?}");
+    assert!(
+        spikes.iter().all(|spike| matches!(spike.pop, PopCause::Singular { .. })),
+        "{spikes:?}"
+    );
 }
 
 #[test]
@@ -186,13 +189,13 @@ fn a_spin_that_is_played_is_marked_once_and_apart() {
     let mut session = keyed(&[Channel::Hand, Channel::Twist]);
     let before = changes(&session).len();
     play(&mut session, 10.0..10.9);
-    assert_eq!(changes(&session)[before..], [Change::Spin]);
+    assert_eq!(changes(&session)[before..], [InputChange::Twist]);
     assert_eq!(session.pops().spikes(), []);
 }
 
 #[test]
 fn the_root_of_a_pinned_arm_is_marked_and_that_of_another_is_nothing() {
-    for (pinned, marked) in [(false, vec![]), (true, vec![Change::Root])] {
+    for (pinned, marked) in [(false, vec![]), (true, vec![InputChange::Root])] {
         let mut session = Session::default();
         session.apply(EditAction::PinHand(pinned));
         session.apply(TransactionAction::Begin);

@@ -3,7 +3,7 @@
 mod common;
 
 use common::strategies::{arms_of, config};
-use ik_arm::kinematics::soft_reach::{Extent, SoftReach};
+use ik_arm::kinematics::soft_reach::{HandDistance, SoftReach};
 use ik_arm::kinematics::two_bone::TwoBone;
 use proptest::prelude::*;
 
@@ -83,7 +83,7 @@ proptest! {
         let soft_reach = SoftReach::new(softness, 1.0, angle).expect("possible");
         let twin = Twin::new(soft_reach, arm);
         let d = (twin.most * part) as f32;
-        let found = soft_reach.extent(arm, d).distance;
+        let found = soft_reach.hand_distance(arm, d).distance;
         let expected = twin.distance(f64::from(d));
         prop_assert!(is_near(found, expected, twin.most), "{found}, not {expected}");
     }
@@ -99,7 +99,7 @@ proptest! {
         // Not on the corner at the longest stretch.
         prop_assume!((after - 2.0 * here + before).abs() < 1e-3 * step);
         let expected = (after - before) / (2.0 * step);
-        let found = f64::from(soft_reach.extent(arm, d as f32).slope);
+        let found = f64::from(soft_reach.hand_distance(arm, d as f32).slope);
         prop_assert!((found - expected).abs() < 2e-3, "{found}, not {expected}");
     }
 
@@ -116,8 +116,8 @@ proptest! {
             let [before, after] = [(d - step) as f32, (d + step) as f32];
             prop_assume!(before > 0.0);
             let run = f64::from(after) - f64::from(before);
-            let [low, high] = [before, after].map(|d| f64::from(soft_reach.extent(arm, d).distance));
-            let slope = f64::from(soft_reach.extent(arm, d as f32).slope);
+            let [low, high] = [before, after].map(|d| f64::from(soft_reach.hand_distance(arm, d).distance));
+            let slope = f64::from(soft_reach.hand_distance(arm, d as f32).slope);
             let grown = (high - low) / run;
             prop_assert!((slope - grown).abs() < 0.01, "{slope}, not {grown}");
             let [low, high] = [before, after].map(|d| twin.distance(f64::from(d)));
@@ -132,7 +132,7 @@ proptest! {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
         let (inner, outer, w) = (twin.inner(), twin.outer(), twin.width);
-        let slope = |d: f64| f64::from(soft_reach.extent(arm, d as f32).slope);
+        let slope = |d: f64| f64::from(soft_reach.hand_distance(arm, d as f32).slope);
         // f32 is off by an ulp of L where the joins are: of w that is little where s is not tiny.
         let off = 1e-2;
         for beside in [-1e-4, 1e-4] {
@@ -145,7 +145,7 @@ proptest! {
             prop_assert!((slope(inner - w) - (-1.0_f64).exp()).abs() < off);
         }
         let between = (inner + (outer - inner) * (0.01 + 0.98 * part)) as f32;
-        prop_assert_eq!(soft_reach.extent(arm, between).distance.to_bits(), between.to_bits());
+        prop_assert_eq!(soft_reach.hand_distance(arm, between).distance.to_bits(), between.to_bits());
     }
 
     #[test]
@@ -155,7 +155,7 @@ proptest! {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
         let (near, far) = ((a.min(b) * twin.most) as f32, (a.max(b) * twin.most) as f32);
-        let [d1, d2] = [near, far].map(|d| soft_reach.extent(arm, d).distance);
+        let [d1, d2] = [near, far].map(|d| soft_reach.hand_distance(arm, d).distance);
         prop_assert!(d1 <= d2);
         let grown = twin.distance(f64::from(far)) - twin.distance(f64::from(near));
         if grown > 1e-6 * twin.most {
@@ -182,7 +182,7 @@ proptest! {
         // Of a narrower zone even that is less than f32 can tell from L.
         prop_assume!(twin.width > 0.02 * twin.most);
         let d = (twin.outer() + twin.width * widths) as f32;
-        let extent = soft(softness).extent(arm, d);
+        let extent = soft(softness).hand_distance(arm, d);
         prop_assert!(f64::from(extent.distance) < twin.most);
         // The gap to straight falls by e with each width, and so does the slope.
         let fallen = (-(f64::from(d) - twin.outer()) / twin.width).exp().min(1.0);
@@ -198,7 +198,7 @@ proptest! {
         let soft_reach = SoftReach::new(softness, max_stretch, 0.0).expect("possible");
         let twin = Twin::new(soft_reach, arm);
         let d = (twin.inner() + part * (twin.most - twin.least)) as f32;
-        let Extent { distance, stretch, .. } = soft_reach.extent(arm, d);
+        let HandDistance { distance, stretch, .. } = soft_reach.hand_distance(arm, d);
         let longest = twin.most * twin.max_stretch;
         let expected = twin.stretch(f64::from(d));
         prop_assert!((f64::from(stretch) - expected).abs() < 1e-6, "{stretch}, not {expected}");
@@ -218,7 +218,7 @@ proptest! {
         let least = soft_reach.least_distance(arm);
         prop_assert!(is_near(least, twin.least, twin.most), "{least}, not {}", twin.least);
         let d = (part * twin.most) as f32;
-        let distance = soft_reach.extent(arm, d).distance;
+        let distance = soft_reach.hand_distance(arm, d).distance;
         let (a, b) = (f64::from(arm.upper()), f64::from(arm.lower()));
         let elbow = |distance: f64| {
             ((a * a + b * b - distance * distance) / (2.0 * a * b)).clamp(-1.0, 1.0).acos()
@@ -234,7 +234,7 @@ proptest! {
     #[test]
     fn without_softening_it_is_the_solvers_own_clamp(arm in arms_of(1.0..1000.0), part in 0.0..3.0_f32) {
         let d = arm.outer_limit() * part;
-        let extent = SoftReach::default().extent(arm, d);
+        let extent = SoftReach::default().hand_distance(arm, d);
         let clamped = d.clamp(arm.inner_limit(), arm.outer_limit());
         prop_assert_eq!((extent.distance.to_bits(), extent.stretch), (clamped.to_bits(), 1.0));
         let moves = arm.inner_limit() < d && d < arm.outer_limit();
@@ -280,7 +280,7 @@ fn huge_and_tiny_arms_have_the_curve_as_far_as_numbers_go() {
         let arm = TwoBone::new(length, length).expect("lengths");
         let twin = Twin::new(soft_reach, arm);
         for d in [0.0, 1e-45, 1.0, length / 2.0, length, f32::MAX] {
-            let Extent { distance, stretch, slope } = soft_reach.extent(arm, d);
+            let HandDistance { distance, stretch, slope } = soft_reach.hand_distance(arm, d);
             let expected = twin.distance(f64::from(d)).min(f64::from(f32::MAX));
             // Subnormal numbers are 1.4e-45 apart.
             let off = (f64::from(distance) - expected).abs();

@@ -22,6 +22,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use super::euler;
 use super::ik::{length, reach};
+use super::saturate::{saturate, saturate_vector};
 use super::twist::angle_from_limb;
 use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 
@@ -169,8 +170,8 @@ impl ArmRotations {
             heading: heading(direction).unwrap_or(last.heading),
         };
         TwoBonePose {
-            elbow: saturated(axes.x_axis * upper),
-            hand: saturated(direction * distance),
+            elbow: saturate_vector(axes.x_axis * upper),
+            hand: saturate_vector(direction * distance),
             reach: None,
             distance: saturate(distance),
             along: saturate(upper * cos),
@@ -187,12 +188,4 @@ fn heading(direction: DVec3) -> Option<Vec2> {
     const VERTICAL: f64 = 1e-7;
     let flat = DVec2::new(direction.x, direction.z);
     (flat.length() > VERTICAL).then(|| flat.normalize().as_vec2())
-}
-
-fn saturated(v: DVec3) -> Vec3 {
-    v.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
-}
-
-fn saturate(value: f64) -> f32 {
-    value.min(f64::from(f32::MAX)) as f32
 }

@@ -109,7 +109,7 @@ impl Ik {
             _ => twist + angle_from_limb(pointer, outward),
         };
         let wanted = length(cursor);
-        let extent = self.soft_reach.extent(self.bones, wanted.min(f32::MAX));
+        let extent = self.soft_reach.hand_distance(self.bones, wanted.min(f32::MAX));
         let pose = if self.soft_reach.is_hard() {
             self.bones.solve_from(cursor, twist, last.pointer)
         } else {

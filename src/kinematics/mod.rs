@@ -11,6 +11,7 @@ pub mod job;
 mod normalize;
 pub mod pop;
 mod rotation_between;
+mod saturate;
 mod shared;
 pub mod skeleton;
 pub mod soft_reach;
@@ -22,3 +23,5 @@ pub use shared::Shared;
 
 pub(crate) use normalize::normalize;
 pub(crate) use rotation_between::rotation_between;
+#[cfg(feature = "app")]
+pub(crate) use saturate::saturate_vector;

@@ -38,52 +38,78 @@ use super::two_bone::TwoBonePose;
 
 /// A solved arm with all inputs of its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PosedArm {
+    /// The pose.
     pub pose: TwoBonePose,
+    /// The cursor in Root space.
     pub cursor: Vec3,
+    /// Bones, twist reference and soft limits.
     pub ik: Ik,
     /// ψ.
-    pub spin: f32,
+    pub twist: f32,
     /// Position of the shoulder in the world for a cursor pinned to the world; `None` for a cursor in
     /// Root space, which moves with the shoulder.
     pub pinned_root: Option<Vec3>,
     /// Influence of IK: 1 for the solved pose, 0 for the FK angles.
-    pub weight: f32,
+    pub influence: f32,
+    /// FK angles.
     pub fk: Fk,
 }
 
 /// The input other than the cursor that changed in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Change {
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum InputChange {
+    /// Bone lengths.
     Lengths,
+    /// Kind of the twist reference, or its map.
     TwistReference,
+    /// Direction of the pole.
     Pole,
+    /// Soft limits.
     SoftReach,
-    Weight,
+    /// Influence of IK.
+    Influence,
+    /// FK angles.
     Angles,
-    Spin,
+    /// Twist ψ.
+    Twist,
+    /// Position of the shoulder.
     Root,
 }
 
 /// The elbow's displacement in a step of the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ElbowStep {
     /// The elbow's displacement divided by the cursor's.
     pub ratio: f32,
     /// Ratio above which the step is a spike.
     pub limit: f32,
+    /// Part of the displacement by the rotation of the Pointer.
     pub turn: Vec3,
+    /// Part in the plane of the arm.
     pub bend: Vec3,
+    /// Part about the Pointer, by the twist reference.
     pub swing: Vec3,
     /// Cause of the spike; `None` for other steps.
-    pub pop: Option<Pop>,
+    pub pop: Option<PopCause>,
 }
 
 /// Cause of a pop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pop {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum PopCause {
     /// The Pointer passed a singular direction of the twist reference at the angle `nearest`, radians.
-    Singular { nearest: f32 },
+    Singular {
+        /// Least angle from the direction, radians.
+        nearest: f32,
+    },
     /// The arm became or ceased to be straight.
     Straight,
     /// The arm became or ceased to be folded.
@@ -92,25 +118,26 @@ pub enum Pop {
     Shoulder,
 }
 
-impl Change {
+impl InputChange {
+    /// All changes, in order of precedence.
     pub const ALL: [Self; 8] = [
         Self::Lengths,
         Self::TwistReference,
         Self::Pole,
         Self::SoftReach,
-        Self::Weight,
+        Self::Influence,
         Self::Angles,
-        Self::Spin,
+        Self::Twist,
         Self::Root,
     ];
 
     /// The first change in the order above; `None` without one. Inputs without effect are ignored: the
     /// FK angles at influence 1, and the shoulder's position unless the cursor is pinned to the world.
-    pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
+    pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
         Self::ALL.into_iter().find(|change| change.is_between(before, after))
     }
 
-    fn is_between(self, before: &Moment, after: &Moment) -> bool {
+    fn is_between(self, before: &PosedArm, after: &PosedArm) -> bool {
         let references = (before.ik.reference, after.ik.reference);
         match self {
             Self::Lengths => before.ik.bones != after.ik.bones,
@@ -120,9 +147,9 @@ impl Change {
             },
             Self::Pole => references.0 != references.1,
             Self::SoftReach => before.ik.soft_reach != after.ik.soft_reach,
-            Self::Weight => before.weight != after.weight,
-            Self::Angles => after.weight < 1.0 && before.fk != after.fk,
-            Self::Spin => before.spin != after.spin,
+            Self::Influence => before.influence != after.influence,
+            Self::Angles => after.influence < 1.0 && before.fk != after.fk,
+            Self::Twist => before.twist != after.twist,
             Self::Root => match (before.pinned_root, after.pinned_root) {
                 (Some(one), Some(other)) => one != other,
                 _ => false,
@@ -130,30 +157,31 @@ impl Change {
         }
     }
 
+    /// Name of the input, in lower case.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lengths => "lengths",
             Self::TwistReference => "twist reference",
             Self::Pole => "pole",
             Self::SoftReach => "soft limits",
-            Self::Weight => "IK influence",
+            Self::Influence => "IK influence",
             Self::Angles => "angles",
-            Self::Spin => "Socket twist",
+            Self::Twist => "Socket twist",
             Self::Root => "root",
         }
     }
 }
 
-impl Step {
+impl ElbowStep {
     /// Shortest step of the cursor, as a fraction of L, that is distinct from f32 rounding of the elbow
     /// of a nearly straight or folded arm. Shorter steps can be accumulated.
     pub const LEAST: f32 = 1e-3;
     /// Factor over the expected displacement (see the module).
     const SPIKE: f64 = 2.0;
 
-    /// The step between two poses without a [`Change`]; `None` for a cursor step shorter than
+    /// The step between two poses without a [`InputChange`]; `None` for a cursor step shorter than
     /// [`Self::LEAST`].
-    pub fn between(before: &Moment, after: &Moment) -> Option<Self> {
+    pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
         let went = (after.cursor.as_dvec3() - before.cursor.as_dvec3()).length();
         let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
         if went < f64::from(Self::LEAST) * sum {
@@ -165,13 +193,13 @@ impl Step {
         let pop = (ratio > limit).then(|| {
             let [turned, bent, swung] = [turn, bend, swing].map(DVec3::length);
             if swung >= turned.max(bent) {
-                Pop::Singular { nearest: nearest_to_singular(before, after) as f32 }
+                PopCause::Singular { nearest: nearest_to_singular(before, after) as f32 }
             } else if turned >= bent {
-                Pop::Shoulder
+                PopCause::Shoulder
             } else if is_far_out(before, after, sum) {
-                Pop::Straight
+                PopCause::Straight
             } else {
-                Pop::Folded
+                PopCause::Folded
             }
         });
         let [turn, bend, swing] = [turn, bend, swing].map(DVec3::as_vec3);
@@ -196,7 +224,7 @@ fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     ]
 }
 
-fn calm(before: &Moment, after: &Moment, sum: f64) -> f64 {
+fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
     const NEAR_SHOULDER: f64 = 0.2;
     let stretch = f64::from(before.pose.stretch.max(after.pose.stretch));
     let distance = f64::from(before.pose.distance.min(after.pose.distance));
@@ -205,28 +233,28 @@ fn calm(before: &Moment, after: &Moment, sum: f64) -> f64 {
 }
 
 /// Whether the hand is nearer to the outer limit than to the inner one.
-fn is_far_out(before: &Moment, after: &Moment, sum: f64) -> bool {
+fn is_far_out(before: &PosedArm, after: &PosedArm, sum: f64) -> bool {
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
 /// Least angle between the Pointer and a singular direction of the twist reference.
-fn nearest_to_singular(before: &Moment, after: &Moment) -> f64 {
+fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {
-        direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_way(it, from, to))
+        direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_arc(it, from, to))
     };
     match after.ik.reference {
         TwistReference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
         TwistReference::Pole(pole) => nearest(pole).min(nearest(-pole)),
         TwistReference::Stereographic(map) => nearest(map.singular()),
-        // Without a past it is as on the map.
+        // Without a previous frame it begins at the stereographic direction.
         TwistReference::Transport => nearest(Stereographic::default().singular()),
     }
 }
 
-/// Least angle between the shorter arc between two directions and a third direction, radians.
-fn nearest_on_way(point: DVec3, from: DVec3, to: DVec3) -> f64 {
+/// Least angle from a direction to the shorter arc between two others, radians.
+fn nearest_on_arc(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     let at_ends = from.angle_between(point).min(to.angle_between(point));
     let Some(normal) = from.cross(to).try_normalize() else {
         return at_ends;

@@ -32,8 +32,11 @@
 //!
 //! A. Nicholas, *Creating a Soft IK Setup*, 2012 (the outer curve); Autodesk Softimage, *Soft IK*.
 
+use core::fmt;
+
 use thiserror::Error;
 
+use super::saturate::saturate;
 use super::two_bone::TwoBone;
 
 /// Behaviour of the hand near its limits; hard limits by default.
@@ -53,23 +56,45 @@ pub struct SoftReach {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{field} is {value}; it must be {range}")]
 pub struct SoftReachError {
-    /// `"softness"`, `"max_stretch"` or `"min_elbow_angle"`.
-    pub field: &'static str,
+    /// The field.
+    pub field: SoftReachField,
     /// The refused value.
     pub value: f32,
     /// The valid range.
     pub range: &'static str,
 }
 
+/// A field of [`SoftReach`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SoftReachField {
+    /// Softness s.
+    Softness,
+    /// Maximum stretch.
+    MaxStretch,
+    /// Minimum elbow angle φ_min.
+    MinElbowAngle,
+}
+
 /// Distance of the hand, with stretch and slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct HandDistance {
     /// D, from the shoulder to the hand.
     pub distance: f32,
     /// σ, the factor by which the limbs are lengthened.
     pub stretch: f32,
     /// dD/dd, the hand's radial speed per radial speed of the cursor.
     pub slope: f32,
+}
+
+impl fmt::Display for SoftReachField {
+    /// The field's name.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Softness => "softness",
+            Self::MaxStretch => "max_stretch",
+            Self::MinElbowAngle => "min_elbow_angle",
+        })
+    }
 }
 
 impl Default for SoftReach {
@@ -92,13 +117,17 @@ impl SoftReach {
     ) -> Result<Self, SoftReachError> {
         let refused = |field, value, range| Err(SoftReachError { field, value, range });
         if !(0.0..1.0).contains(&softness) {
-            return refused("softness", softness, "from 0 to less than 1");
+            return refused(SoftReachField::Softness, softness, "from 0 to less than 1");
         }
         if !(max_stretch.is_finite() && max_stretch >= 1.0) {
-            return refused("max_stretch", max_stretch, "a finite number, 1 or more");
+            return refused(SoftReachField::MaxStretch, max_stretch, "a finite number, 1 or more");
         }
         if !(0.0..core::f32::consts::PI).contains(&min_elbow_angle) {
-            return refused("min_elbow_angle", min_elbow_angle, "from 0 to less than 180°");
+            return refused(
+                SoftReachField::MinElbowAngle,
+                min_elbow_angle,
+                "from 0 to less than 180°",
+            );
         }
         Ok(Self { softness, max_stretch, min_elbow_angle })
     }
@@ -125,51 +154,52 @@ impl SoftReach {
 
     /// d_min, the hand's minimum distance from the shoulder.
     pub fn least_distance(self, bones: TwoBone) -> f32 {
-        Limits::new(self, bones).least as f32
+        SoftLimits::new(self, bones).least as f32
     }
 
-    /// Distance of the cursor for a distance of the hand: the inverse of [`Self::extent`]. The hand
+    /// Distance of the cursor for a distance of the hand: the inverse of [`Self::hand_distance`]. The hand
     /// approaches a soft limit asymptotically: at the limit or beyond, the result is 17 soft zones
     /// away, which is exact to f32. Where stretch begins, the cursor is at the hand.
+    #[must_use]
     pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
-        let limits = Limits::new(self, bones);
+        let limits = SoftLimits::new(self, bones);
         let (d, longest) = (f64::from(distance), f64::from(self.max_stretch));
         if d <= limits.outer_join() {
-            return saturated(limits.harden(d).max(0.0));
+            return saturate(limits.harden(d).max(0.0));
         }
         let is_stretched_to_it = longest > 1.0 && d <= longest * limits.soften(d).0;
-        if is_stretched_to_it { distance } else { saturated(limits.harden(d / longest).max(d)) }
+        if is_stretched_to_it { distance } else { saturate(limits.harden(d / longest).max(d)) }
     }
 
     /// Distance of the hand for a distance of the cursor from the shoulder (finite, 0 or more).
-    pub fn extent(self, bones: TwoBone, cursor_distance: f32) -> Extent {
-        let limits = Limits::new(self, bones);
+    #[must_use]
+    pub fn hand_distance(self, bones: TwoBone, cursor_distance: f32) -> HandDistance {
+        let limits = SoftLimits::new(self, bones);
         let d = f64::from(cursor_distance);
         let (distance, slope) = limits.soften(d);
         let longest = f64::from(self.max_stretch);
         let stretch =
             if d > limits.outer_join() { (d / distance).clamp(1.0, longest) } else { 1.0 };
-        // Stretched to the cursor it goes with it; at the longest it lags as it would unstretched.
+        // Stretched to the cursor, the hand follows it; at the maximum it lags as without stretch.
         let slope = if 1.0 < stretch && stretch < longest { 1.0 } else { slope * stretch };
-        Extent {
-            distance: saturated(distance * stretch),
+        HandDistance {
+            distance: saturate(distance * stretch),
             stretch: stretch as f32,
             slope: slope as f32,
         }
     }
 }
 
-/// What an arm's distances are measured by, in f64: where the curve is nearly flat, differences of
-/// f32 would be coarse.
+/// Limits and soft zones of an arm, in f64: where the curve is nearly flat, f32 differences are coarse.
 #[derive(Clone, Copy)]
-struct Limits {
+struct SoftLimits {
     least: f64,
     most: f64,
-    /// w, how wide the soft zones are; 0 where nothing is soft.
+    /// Width w of the soft zones; 0 for hard limits.
     width: f64,
 }
 
-impl Limits {
+impl SoftLimits {
     fn new(soft_reach: SoftReach, bones: TwoBone) -> Self {
         let (upper, lower) = (f64::from(bones.upper()), f64::from(bones.lower()));
         let (least, most) = ((upper - lower).abs(), upper + lower);
@@ -190,7 +220,7 @@ impl Limits {
         self.least + self.width
     }
 
-    /// d' and its slope.
+    /// d' for d, with its slope.
     fn soften(self, d: f64) -> (f64, f64) {
         let Self { least, most, width } = self;
         if width == 0.0 {
@@ -208,7 +238,7 @@ impl Limits {
         }
     }
 
-    /// The d that gives a d'.
+    /// d for d', the inverse of [`Self::soften`].
     fn harden(self, softened: f64) -> f64 {
         const ZONES: f64 = 17.0;
         let Self { least, most, width } = self;
@@ -222,10 +252,6 @@ impl Limits {
             softened
         }
     }
-}
-
-fn saturated(value: f64) -> f32 {
-    value.min(f64::from(f32::MAX)) as f32
 }
 
 /// Soft limits before they are checked.

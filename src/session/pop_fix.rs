@@ -1,7 +1,7 @@
 use super::edit_action::EditAction;
 use super::pops::Spike;
 use crate::document::{Arm, TwistReferenceKind};
-use crate::kinematics::pop::Pop;
+use crate::kinematics::pop::PopCause;
 use crate::kinematics::soft_reach::SoftReach;
 
 /// A change of settings that prevents a pop.
@@ -23,7 +23,7 @@ impl PopFix {
             return None;
         }
         match spike.pop {
-            Pop::Singular { .. } => match arm.twist_reference {
+            PopCause::Singular { .. } => match arm.twist_reference {
                 TwistReferenceKind::Limb | TwistReferenceKind::Pole => {
                     Some(Self::ChangeReference(TwistReferenceKind::Stereographic))
                 }
@@ -32,12 +32,12 @@ impl PopFix {
                 }
                 TwistReferenceKind::Transport => None,
             },
-            Pop::Straight => softer(arm.soft_reach).map(Self::Soften),
-            Pop::Folded if arm.soft_reach.softness() == 0.0 => {
+            PopCause::Straight => softer(arm.soft_reach).map(Self::Soften),
+            PopCause::Folded if arm.soft_reach.softness() == 0.0 => {
                 softer(arm.soft_reach).map(Self::Soften)
             }
-            Pop::Folded => wider(arm.soft_reach).map(Self::KeepOpen),
-            Pop::Shoulder => None,
+            PopCause::Folded => wider(arm.soft_reach).map(Self::KeepOpen),
+            PopCause::Shoulder => None,
         }
     }
 

@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use crate::document::Arm;
 use crate::kinematics::ik::Ik;
-use crate::kinematics::pop::{Change, Moment, Pop, Step};
+use crate::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
 use crate::kinematics::two_bone::TwoBonePose;
 
 /// Elbow speed over Cursor speed in the last dragged or played steps. Neither saved nor undone.
@@ -28,9 +28,9 @@ pub struct PopSample {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PopSampleKind {
     /// Only the Cursor moved.
-    Step(Step),
+    Step(ElbowStep),
     /// Another input changed, once or several times in a row.
-    Change(Change),
+    Change(InputChange),
 }
 
 /// Consecutive steps that popped for the same reason.
@@ -41,7 +41,7 @@ pub struct Spike {
     /// The highest ratio of elbow speed to Cursor speed.
     pub ratio: f32,
     /// The cause.
-    pub pop: Pop,
+    pub pop: PopCause,
     /// The solver's settings at the pop.
     pub ik: Ik,
 }
@@ -60,7 +60,7 @@ pub(super) enum CursorMove {
 /// The arm to which the next one is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PreviousMoment {
-    moment: Moment,
+    moment: PosedArm,
     cause: CursorMove,
     time: f64,
 }
@@ -86,7 +86,7 @@ impl Pops {
         const APART: usize = 4;
         let mut spikes: Vec<(Spike, usize)> = Vec::new();
         for (at, sample) in self.samples.iter().enumerate() {
-            let PopSampleKind::Step(Step { ratio, pop: Some(pop), .. }) = sample.kind else {
+            let PopSampleKind::Step(ElbowStep { ratio, pop: Some(pop), .. }) = sample.kind else {
                 continue;
             };
             let spike = Spike { at, ratio, pop, ik: sample.ik };
@@ -110,7 +110,7 @@ impl Pops {
         self.record_moment(moment(arm, pose), cause, time);
     }
 
-    fn record_moment(&mut self, moment: Moment, cause: CursorMove, time: f64) {
+    fn record_moment(&mut self, moment: PosedArm, cause: CursorMove, time: f64) {
         let previous = &mut self.previous;
         // PopSampleKind is played begins again.
         let cause = if cause == CursorMove::Played && time < previous.time {
@@ -124,12 +124,12 @@ impl Pops {
         }
         let before = previous.moment;
         (previous.cause, previous.time) = (cause, time);
-        match Change::between(&before, &moment) {
+        match InputChange::between(&before, &moment) {
             _ if has_jumped_in_time => {}
             Some(_) if before.pose == moment.pose => {}
             Some(change) => self.push(moment.ik, PopSampleKind::Change(change)),
             None if cause == CursorMove::Set => {}
-            None => match Step::between(&before, &moment) {
+            None => match ElbowStep::between(&before, &moment) {
                 Some(step) => self.push(moment.ik, PopSampleKind::Step(step)),
                 // Steps too short to measure add up.
                 None => return,
@@ -163,8 +163,8 @@ impl Spike {
     fn joined(self, other: Self) -> Self {
         let higher = if other.ratio > self.ratio { other } else { self };
         let pop = match (self.pop, other.pop) {
-            (Pop::Singular { nearest: one }, Pop::Singular { nearest: other }) => {
-                Pop::Singular { nearest: one.min(other) }
+            (PopCause::Singular { nearest: one }, PopCause::Singular { nearest: other }) => {
+                PopCause::Singular { nearest: one.min(other) }
             }
             (pop, _) => pop,
         };
@@ -174,20 +174,20 @@ impl Spike {
     /// Whether the same move of the Cursor would pop again: the settings that caused it are unchanged.
     pub fn persists(self, arm: &Arm) -> bool {
         match self.pop {
-            Pop::Singular { .. } => self.ik.reference == arm.reference(),
+            PopCause::Singular { .. } => self.ik.reference == arm.reference(),
             _ => self.ik.soft_reach == arm.soft_reach && self.ik.bones == arm.bones,
         }
     }
 }
 
-fn moment(arm: &Arm, pose: TwoBonePose) -> Moment {
-    Moment {
+fn moment(arm: &Arm, pose: TwoBonePose) -> PosedArm {
+    PosedArm {
         pose,
         cursor: arm.cursor_in_root(),
         ik: arm.ik(),
-        spin: arm.twist,
+        twist: arm.twist,
         pinned_root: arm.is_pinned().then_some(arm.root),
-        weight: arm.influence,
+        influence: arm.influence,
         fk: arm.fk,
     }
 }

@@ -3,6 +3,7 @@ use serde::Serialize;
 
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
+use crate::kinematics::saturate_vector;
 use crate::kinematics::skeleton::{JointId, is_within_numbers};
 
 /// Output of the command: one line of JSON.
@@ -98,5 +99,5 @@ impl<'a> PoseLine<'a> {
 /// Converts in f64, so that 90 degrees in the file print as 90; overflow is clamped to ±f32::MAX.
 fn degrees(radians: Vec3) -> Vec3 {
     let degrees = radians.as_dvec3() * 1_f64.to_degrees();
-    degrees.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
+    saturate_vector(degrees)
 }

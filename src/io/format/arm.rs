@@ -11,7 +11,7 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
 use crate::kinematics::fk::Fk;
-use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::{Pointer, TwoBone};
 
@@ -220,11 +220,11 @@ impl SoftReachFields {
         );
         soft_reach.map_err(|error| {
             let range = match error.field {
-                "min_elbow_angle" => format!("from 0 to less than {PI}"),
+                SoftReachField::MinElbowAngle => format!("from 0 to less than {PI}"),
                 _ => error.range.to_owned(),
             };
             let reason = format!("must be {range}, got {}", error.value);
-            FieldError::new(at.clone().key(error.field), reason)
+            FieldError::new(at.clone().key(&error.field.to_string()), reason)
         })
     }
 }

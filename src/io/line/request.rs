@@ -12,7 +12,7 @@ use super::previous::PreviousLine;
 use super::reference::ReferenceField;
 use crate::io::value::{JsonNumber, JsonPoint};
 use crate::kinematics::ik::{Ik, IkSolution, IkState};
-use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
+use crate::kinematics::soft_reach::{SoftReach, SoftReachError, SoftReachField};
 use crate::kinematics::two_bone::TwoBone;
 
 #[derive(Deserialize)]
@@ -72,10 +72,15 @@ impl Request {
         SoftReach::new(self.softness.0, self.max_stretch.0, degrees.to_radians()).map_err(|error| {
             let SoftReachError { field, value, range } = error;
             match field {
-                "min_elbow_angle" => {
+                SoftReachField::MinElbowAngle => {
                     LineError::SoftReach { field: "min_elbow_angle_deg", value: degrees, range }
                 }
-                _ => LineError::SoftReach { field, value, range },
+                SoftReachField::Softness => {
+                    LineError::SoftReach { field: "softness", value, range }
+                }
+                SoftReachField::MaxStretch => {
+                    LineError::SoftReach { field: "max_stretch", value, range }
+                }
             }
         })
     }

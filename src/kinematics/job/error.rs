@@ -3,6 +3,8 @@ use core::fmt;
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
+use crate::kinematics::saturate::saturate;
+
 /// An invalid [`TwoBoneJob`](super::TwoBoneJob).
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -103,7 +105,7 @@ pub(super) fn check_similarity(field: JobField, axes: DMat3) -> Result<(), JobEr
     let longest = lengths.into_iter().fold(0.0, f64::max);
     let shortest = lengths.into_iter().fold(longest, f64::min);
     if longest - shortest > DIFFERENT * longest {
-        let lengths = lengths.map(|length| length.min(f32::MAX.into()) as f32);
+        let lengths = lengths.map(saturate);
         return Err(JobError::UnevenAxes { field, lengths });
     }
     let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize_or_zero);

@@ -3,6 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::LimbBones;
+use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::TwoBone;
 
@@ -27,8 +28,8 @@ pub(super) fn soften(limb: &LimbBones, target: f64, soft_reach: SoftReach) -> f6
     let Ok(bones) = TwoBone::new(upper as f32, lower as f32) else {
         return hard;
     };
-    let wanted = target.min(f64::from(f32::MAX)) as f32;
-    let softened = soft_reach.extent(bones, wanted).distance;
+    let wanted = saturate(target);
+    let softened = soft_reach.hand_distance(bones, wanted).distance;
     if softened == wanted {
         return hard;
     }

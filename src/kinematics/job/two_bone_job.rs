@@ -4,6 +4,7 @@ use super::chain::JointChain;
 use super::correction::TwoBoneCorrection;
 use super::error::{JobError, JobField};
 use super::stages;
+use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::Reach;
 
@@ -119,7 +120,7 @@ impl TwoBoneJob {
         } else {
             Reach::TooFar
         };
-        let hand_error = chain.length_in_model(off_ss).min(f32::MAX.into()) as f32;
+        let hand_error = saturate(chain.length_in_model(off_ss));
         TwoBoneCorrection { start_correction: start, middle_correction: middle, reach, hand_error }
     }
 

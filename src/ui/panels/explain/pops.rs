@@ -7,7 +7,7 @@ use egui_plot::{
 };
 
 use crate::document::{Arm, TwistReferenceKind};
-use crate::kinematics::pop::{Change, Pop};
+use crate::kinematics::pop::{InputChange, PopCause};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TwistReference;
 use crate::session::{Actions, PopFix, PopSample, PopSampleKind, Pops, Session, Spike};
@@ -34,14 +34,14 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for spike in spikes.iter().rev().take(LISTED) {
         list(ui, session.arm(), spike, &mut offered, actions);
     }
-    let changes = Change::ALL.into_iter().filter(|change| is_marked(session.pops(), *change));
-    let changes: Vec<_> = changes.map(Change::name).collect();
+    let changes = InputChange::ALL.into_iter().filter(|change| is_marked(session.pops(), *change));
+    let changes: Vec<_> = changes.map(InputChange::name).collect();
     if !changes.is_empty() {
         ui.weak(format!("Dotted lines, not pops: {} changed", changes.join(", ")));
     }
 }
 
-fn is_marked(pops: &Pops, change: Change) -> bool {
+fn is_marked(pops: &Pops, change: InputChange) -> bool {
     pops.samples().any(|sample| sample.kind == PopSampleKind::Change(change))
 }
 
@@ -68,19 +68,19 @@ fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, action
     }
 }
 
-fn name(pop: Pop) -> &'static str {
+fn name(pop: PopCause) -> &'static str {
     match pop {
-        Pop::Singular { .. } => "Pole",
-        Pop::Straight => "Straight",
-        Pop::Folded => "Inner limit",
-        Pop::Shoulder => "Shoulder",
+        PopCause::Singular { .. } => "Pole",
+        PopCause::Straight => "Straight",
+        PopCause::Folded => "Inner limit",
+        PopCause::Shoulder => "Shoulder",
     }
 }
 
 fn describe(spike: &Spike) -> String {
     let times = if spike.ratio < 1e3 { format!("{:.1}×", spike.ratio) } else { ">999×".into() };
     match spike.pop {
-        Pop::Singular { nearest } => {
+        PopCause::Singular { nearest } => {
             let pole = match spike.ik.reference {
                 TwistReference::Limb => "the vertical",
                 TwistReference::Pole(_) => "the pole",
@@ -91,9 +91,9 @@ fn describe(spike: &Spike) -> String {
             let degrees = nearest.to_degrees();
             format!("the Pointer passed within {degrees:.1}° of {pole} ({times})")
         }
-        Pop::Straight => format!("the arm reached its outer limit ({times})"),
-        Pop::Folded => format!("the arm folded up ({times})"),
-        Pop::Shoulder => format!("the Cursor passed the shoulder ({times})"),
+        PopCause::Straight => format!("the arm reached its outer limit ({times})"),
+        PopCause::Folded => format!("the arm folded up ({times})"),
+        PopCause::Shoulder => format!("the Cursor passed the shoulder ({times})"),
     }
 }
 
@@ -124,9 +124,9 @@ fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
     }
 }
 
-fn why_none(pop: Pop, arm: &Arm) -> String {
+fn why_none(pop: PopCause, arm: &Arm) -> String {
     match pop {
-        Pop::Shoulder => {
+        PopCause::Shoulder => {
             let least = arm.soft_reach.least_distance(arm.bones);
             match least > 1e-3 * arm.bones.outer_limit() {
                 true => format!(

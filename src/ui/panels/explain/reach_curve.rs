@@ -7,7 +7,7 @@ use egui_plot::{
 };
 
 use crate::document::Arm;
-use crate::kinematics::soft_reach::{Extent, SoftReach};
+use crate::kinematics::soft_reach::{HandDistance, SoftReach};
 use crate::session::Session;
 use crate::ui::style;
 use crate::ui::widgets::{format, plot};
@@ -128,7 +128,7 @@ impl ReachCurve {
         let outer = outer(arm);
         let point = |step| {
             let cursor = most * f64::from(step) / f64::from(POINTS);
-            let actual = self.soft_reach.extent(arm.bones, (cursor * outer) as f32).distance;
+            let actual = self.soft_reach.hand_distance(arm.bones, (cursor * outer) as f32).distance;
             [cursor, f64::from(actual) / outer]
         };
         let points: PlotPoints<'_> = (0..=POINTS).map(point).collect();
@@ -147,7 +147,8 @@ impl ReachMarker {
     fn new(arm: &Arm, most: f64) -> Self {
         let cursor = arm.cursor_in_root().length().min(f32::MAX);
         let part = f64::from(cursor) / outer(arm);
-        let actual = f64::from(arm.soft_reach.extent(arm.bones, cursor).distance) / outer(arm);
+        let actual =
+            f64::from(arm.soft_reach.hand_distance(arm.bones, cursor).distance) / outer(arm);
         let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };
         Self { at: [part.min(most - 0.04), actual.min(most - 0.14)], shape }
     }
@@ -181,7 +182,7 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
 /// Hand distance and slope for a Cursor distance.
 fn reading(arm: &Arm, cursor: f32) -> String {
     let cursor = cursor.min(f32::MAX);
-    let Extent { distance, slope, .. } = arm.soft_reach.extent(arm.bones, cursor);
+    let HandDistance { distance, slope, .. } = arm.soft_reach.hand_distance(arm.bones, cursor);
     format!("Cursor at {cursor:.1}: hand at {distance:.1}, slope {slope:.2}")
 }
 
