@@ -94,7 +94,8 @@ fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
         let at = pole * side * 0.9 + pole.cross(aside).normalize() * 15.0;
         let pass = line(at - aside * 120.0, at + aside * 120.0, 50);
         let pops = pops(arm(TwistReference::Pole(pole), 0.0), pass.clone());
-        let is_near = |pop: &Pop| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.5);
+        let is_near =
+            |pop: &PopCause| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.5);
         assert!(!pops.is_empty() && pops.iter().all(is_near), "{side}: {pops:?}");
         let nearest = pops.iter().map(|pop| match pop {
             PopCause::Singular { nearest } => *nearest,
@@ -110,7 +111,8 @@ fn the_map_pops_only_behind_and_transport_not_even_there() {
     let behind = line(Vec3::new(-300.0, 60.0, 8.0), Vec3::new(-300.0, -60.0, 8.0), 40);
     let pops_of = |reference| pops(arm(reference, 0.0), behind.clone());
     let on_map = pops_of(map());
-    let is_singular = |pop: &Pop| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.15);
+    let is_singular =
+        |pop: &PopCause| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.15);
     assert!(!on_map.is_empty() && on_map.iter().all(is_singular), "{on_map:?}");
     assert_eq!(pops_of(TwistReference::Transport), []);
     assert_eq!(pops_of(TwistReference::Limb), []);
@@ -138,7 +140,7 @@ fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
     for softness in [0.0, 0.2, 0.9] {
         let pops = pops(arm(TwistReference::Transport, softness), past.clone());
         assert!(pops.contains(&PopCause::Shoulder), "{softness}: {pops:?}");
-        let is_turn = |pop: &Pop| matches!(pop, PopCause::Shoulder);
+        let is_turn = |pop: &PopCause| matches!(pop, PopCause::Shoulder);
         assert!(pops.iter().all(is_turn), "{softness}: {pops:?}");
     }
 }
