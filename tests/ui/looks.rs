@@ -44,7 +44,7 @@ fn every_control_has_a_tooltip_that_can_be_read() {
         }
         assert!(has_tooltip(&mut bench, Role::SpinButton, "Hand x value"));
         for name in
-            ["Yaw theta z", "Distance D", "Upper d 1", "Sum L", "Along h e", "Elbow angle phi"]
+            ["Yaw theta z", "Distance D", "Level h c", "Sum L", "Along h e", "Elbow angle phi"]
         {
             assert!(has_tooltip(&mut bench, Role::Label, name), "{name}");
         }
@@ -112,10 +112,10 @@ fn nothing_moves_when_a_number_changes_its_width() {
         bench.type_text("12345678901234567890");
         assert_eq!(places(&bench), before, "while typing");
         bench.key(Key::Escape);
-        let labels = ["Yaw theta z", "Upper d 1", "Elbow angle phi"]
+        let labels = ["Yaw theta z", "Level h c", "Elbow angle phi"]
             .map(|name| bench.rect(Role::Label, name).top());
         let fresh = Bench::new();
-        let expected = ["Yaw theta z", "Upper d 1", "Elbow angle phi"]
+        let expected = ["Yaw theta z", "Level h c", "Elbow angle phi"]
             .map(|name| fresh.rect(Role::Label, name).top());
         assert_eq!(labels, expected, "{hand}");
     }
