@@ -36,7 +36,7 @@ fn bends() -> impl Strategy<Value = f32> {
 }
 
 fn poles() -> impl Strategy<Value = Vec3> {
-    uniform_directions().prop_map(|pole| pole.as_vec3())
+    uniform_directions().prop_map(glam::DVec3::as_vec3)
 }
 
 /// Elbow and hand by matrices, in f64.

@@ -8,6 +8,7 @@ mod globe;
 mod label;
 mod palette;
 mod planes;
+#[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod scene;
 mod shapes;
 

@@ -41,7 +41,7 @@ impl Session {
             EditAction::SetBend(bend) => self.set_bend(bend),
             EditAction::SetHandOrientation(angles) => {
                 self.set_point("hand angles", angles, |arm, angles| {
-                    arm.hand_orientation.angles = angles
+                    arm.hand_orientation.angles = angles;
                 });
             }
             EditAction::SetHandSpace(space) => {

@@ -43,6 +43,7 @@ mod preferences;
 mod residual_history;
 mod select_action;
 mod selection;
+#[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod session;
 mod session_overlays;
 mod shell;

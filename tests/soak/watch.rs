@@ -150,7 +150,7 @@ impl Watch {
             action,
             Action::Playback(PlaybackAction::Advance(_)) | Action::Edit(EditAction::StepSolver)
         ) {
-            let [was, is] = [&before.document, document].map(|it| it.skeleton());
+            let [was, is] = [&before.document, document].map(ik_arm::document::Document::skeleton);
             posed::locked(was, is)?;
         }
         let takes_back = matches!(

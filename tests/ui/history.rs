@@ -168,7 +168,7 @@ fn what_would_lose_changes_is_asked_about() {
         match leaving {
             FileAction::Quit => assert_eq!(bench.effects(), [Effect::Quit]),
             FileAction::Open { .. } => {
-                assert!(matches!(bench.effects()[..], [Effect::Open { .. }]))
+                assert!(matches!(bench.effects()[..], [Effect::Open { .. }]));
             }
             _ => assert_ne!(bench.session().document(), &document),
         }

@@ -60,7 +60,7 @@ impl ChainSolver {
             config.set_orientations();
         }
         let stall =
-            StallDetector::new(options.method, problem.from_world_length(tolerance), &config);
+            StallDetector::new(options.method, problem.length_from_world(tolerance), &config);
         let report =
             Report { method: options.method, iterations: 0, error: 0.0, status: Status::Iterating };
         let max_iterations = options.iterations.unwrap_or(options.method.budget());

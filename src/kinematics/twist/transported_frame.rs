@@ -19,7 +19,7 @@ impl TransportedFrame {
     #[must_use]
     pub fn new(pointer: Pointer) -> Self {
         let outward = Stereographic::default().outward(unit(pointer.direction));
-        let outward = outward.map_or(pointer.limb_frame().y_axis, |outward| outward.as_vec3());
+        let outward = outward.map_or(pointer.limb_frame().y_axis, glam::DVec3::as_vec3);
         Self { direction: pointer.direction, outward }
     }
 

@@ -53,7 +53,7 @@ pub(in crate::ui) fn ui(
         Dialog::About => about(ui, machine, actions),
         Dialog::Shortcuts => shortcuts(ui, session, actions),
         Dialog::Recover { document, file } => {
-            unsaved::recover(ui, document, file.as_deref(), actions)
+            unsaved::recover(ui, document, file.as_deref(), actions);
         }
         Dialog::Unsaved { then } => unsaved::unsaved(ui, session, then, actions),
         Dialog::Exporting => unsaved::quit_during_export(ui, session, actions),
@@ -62,7 +62,7 @@ pub(in crate::ui) fn ui(
             path::ask_path(ui, session, &path::SAVE_PICTURE, (path, None), is_new, actions);
         }
         Dialog::Path(PathDialog::Export(export)) => {
-            export::ui(ui, session, export, is_new, actions)
+            export::ui(ui, session, export, is_new, actions);
         }
         Dialog::Path(PathDialog::Open { path, problem }) => {
             path::ask_path(ui, session, &path::OPEN, (path, problem.as_deref()), is_new, actions);
@@ -79,7 +79,7 @@ pub(in crate::ui) fn ui(
         }
         Dialog::ChooseSkeleton { path, names } => joints::choose_skeleton(ui, path, names, actions),
         Dialog::Rename { joint, name } => {
-            joints::rename(ui, session, *joint, name, is_new, actions)
+            joints::rename(ui, session, *joint, name, is_new, actions);
         }
         Dialog::DeleteJoints { joints } => joints::delete_joints(ui, session, joints, actions),
         Dialog::Statistics => {}

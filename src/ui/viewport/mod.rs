@@ -75,8 +75,7 @@ pub(in crate::ui) fn ui(
             None => ViewAction::GlideTo(match session.rig() {
                 RigKind::Arm if session.crowd().is_none() => Camera::default(),
                 _ => session.framing_all(),
-            })
-            .into(),
+            }),
         });
     }
     show_cursor(ui, session, pointed.or(held_grip));

@@ -92,7 +92,7 @@ impl Values<'_> {
         let motion =
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
-        Target { joint: joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
+        Target { joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {

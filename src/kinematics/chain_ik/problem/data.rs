@@ -83,7 +83,7 @@ impl Problem {
     }
 
     /// Converts a length from the world's units to the problem's, by the transform's mean scale.
-    pub fn from_world_length(&self, length: f64) -> f64 {
+    pub fn length_from_world(&self, length: f64) -> f64 {
         length / self.scale() * self.unit
     }
 

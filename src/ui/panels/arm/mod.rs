@@ -37,7 +37,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));
     widgets::folded_section(ui, "Hand orientation", |ui| {
-        hand_orientation::ui(ui, session, actions)
+        hand_orientation::ui(ui, session, actions);
     });
 }
 
