@@ -6,14 +6,38 @@ use thiserror::Error;
 /// The reason why a file cannot be opened.
 #[derive(Debug, Error)]
 pub enum OpenError {
+    /// The system cannot read the file.
     #[error("{file} cannot be read: {source}")]
-    Read { file: String, source: io::Error },
+    Read {
+        /// Name of the file.
+        file: String,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// The file is larger than [`OpenError::MAX_BYTES`].
     #[error("{file} is larger than {} MB, the largest size that is read", OpenError::MAX_BYTES >> 20)]
-    TooLarge { file: String },
+    TooLarge {
+        /// Name of the file.
+        file: String,
+    },
+    /// The content is invalid.
     #[error("{file}, {remark}")]
-    Content { file: String, remark: Remark },
+    Content {
+        /// Name of the file.
+        file: String,
+        /// Position and reason of the error.
+        remark: Remark,
+    },
+    /// The file has no skeleton of the requested name.
     #[error("{file} has no skeleton called {name:?}; {}", list(names))]
-    NoSkeleton { file: String, name: String, names: Vec<String> },
+    NoSkeleton {
+        /// Name of the file.
+        file: String,
+        /// The requested name.
+        name: String,
+        /// Names of the file's skeletons; empty where skeletons have no names.
+        names: Vec<String>,
+    },
 }
 
 impl OpenError {
@@ -50,8 +74,10 @@ impl fmt::Display for Remark {
 /// The reason why a document cannot be saved.
 #[derive(Debug, Error)]
 pub enum SaveError {
+    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The document cannot be serialized as JSON.
     #[error("the document cannot be written: {0}")]
     Value(#[from] serde_json::Error),
 }
@@ -59,10 +85,22 @@ pub enum SaveError {
 /// The reason why a file cannot be written.
 #[derive(Debug, Error)]
 pub enum WriteError {
+    /// The file's folder does not exist.
     #[error("{path} could not be written: there is no folder {folder}")]
-    NoFolder { path: String, folder: String },
+    NoFolder {
+        /// Path of the file.
+        path: String,
+        /// Path of the missing folder.
+        folder: String,
+    },
+    /// The system cannot write the file.
     #[error("{path} could not be written: {source}")]
-    Write { path: String, source: io::Error },
+    Write {
+        /// Path of the file.
+        path: String,
+        /// The system's error.
+        source: io::Error,
+    },
 }
 
 fn list(names: &[String]) -> String {

@@ -15,20 +15,34 @@ pub struct Exported {
 /// The reason why a motion cannot be exported.
 #[derive(Debug, Error)]
 pub enum MotionError {
+    /// The export was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The frame rate, in frames per second, is 0 or above [`Timeline::MAX_FRAME_RATE`].
     #[error("frames a second must be from 1 to {max}, got {0}", max = Timeline::MAX_FRAME_RATE)]
     FrameRate(u32),
+    /// The skeleton has no joints.
     #[error("the skeleton has no joint; the file needs at least one")]
     NoJoints,
+    /// A position overflows in the file's unit.
     #[error("{joint:?} is beyond 3.4028235e38; bring it nearer to 0")]
-    TooFar { joint: String },
+    TooFar {
+        /// Name of the joint or point.
+        joint: String,
+    },
+    /// The motion has more than [`MotionError::MOST_NUMBERS`] numbers.
     #[error(
         "{frames} frames of {numbers} numbers each are more than {max} numbers; export a shorter \
          time or fewer frames in a second",
         max = MotionError::MOST_NUMBERS
     )]
-    TooMuch { frames: usize, numbers: usize },
+    TooMuch {
+        /// Number of frames.
+        frames: usize,
+        /// Numbers per frame.
+        numbers: usize,
+    },
+    /// The CSV table cannot be written.
     #[error("the table could not be written: {0}")]
     Table(#[from] csv::Error),
 }

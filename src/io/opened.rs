@@ -5,6 +5,7 @@ use crate::kinematics::skeleton::JointId;
 /// A document read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opened {
+    /// The document.
     pub document: Document,
     /// Oddities in the file that did not keep it from being opened.
     pub warnings: Vec<Remark>,

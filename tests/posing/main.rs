@@ -14,10 +14,12 @@ use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{Action, Session};
 use proptest::prelude::*;
 
+/// Any kind of twist reference.
 pub fn references() -> impl Strategy<Value = TwistReferenceKind> {
     (0..TwistReferenceKind::ALL.len()).prop_map(|index| TwistReferenceKind::ALL[index])
 }
 
+/// New session with actions applied.
 pub fn session(actions: impl IntoIterator<Item = impl Into<Action>>) -> Session {
     let mut session = Session::default();
     for action in actions {
@@ -26,6 +28,7 @@ pub fn session(actions: impl IntoIterator<Item = impl Into<Action>>) -> Session 
     session
 }
 
+/// Bits of the components, for exact comparisons.
 pub fn bits(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
 }

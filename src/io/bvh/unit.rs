@@ -6,6 +6,7 @@ pub enum BvhUnit {
     /// The usual unit of BVH.
     #[default]
     Centimetres,
+    /// Metres.
     Metres,
     /// The unit of the document.
     Scene,

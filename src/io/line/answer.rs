@@ -24,6 +24,11 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// Answer with the solved pose of an arm whose shoulder is at `root` in the world.
+    ///
+    /// # Errors
+    ///
+    /// Fails with [`LineError::OutOfWorld`] if the elbow or the hand overflows in the world.
     pub fn new(
         root: Vec3,
         reference: TwistReference,

@@ -10,22 +10,64 @@ use crate::kinematics::two_bone::LengthError;
 /// The reason why a line has no pose. `place` is empty, or a field, a colon and a space.
 #[derive(Debug, Error)]
 pub enum LineError {
+    /// The line is longer than [`LineError::MAX_LENGTH`].
     #[error("the line must be at most {} KiB long", LineError::MAX_LENGTH >> 10)]
     TooLong,
+    /// The line is not UTF-8.
     #[error("byte {at} is {byte:#04x}, which is not UTF-8 there; JSON is written in UTF-8")]
-    NotUtf8 { at: usize, byte: u8 },
+    NotUtf8 {
+        /// Position of the first invalid byte in the line, from 1.
+        at: usize,
+        /// The invalid byte.
+        byte: u8,
+    },
+    /// The line is not JSON.
     #[error("{place}not JSON: {reason} (byte {at})")]
-    NotJson { place: String, reason: String, at: usize },
+    NotJson {
+        /// Field, colon and space; or empty.
+        place: String,
+        /// The parser's message.
+        reason: String,
+        /// Number of bytes read when the parser found the error.
+        at: usize,
+    },
+    /// The line is JSON but not a request: a field is missing, unknown or invalid.
     #[error("{place}{reason}")]
-    NotARequest { place: String, reason: String },
+    NotARequest {
+        /// Field, colon and space; or empty.
+        place: String,
+        /// The rule that is broken.
+        reason: String,
+    },
+    /// A number overflows.
     #[error("{place}must be between -3.4028235e38 and 3.4028235e38, got {number}")]
-    OutOfRange { place: String, number: String },
+    OutOfRange {
+        /// Field, colon and space; or empty.
+        place: String,
+        /// The number as the line has it.
+        number: String,
+    },
+    /// A bone length is not finite or not above 0.
     #[error("{}: must be finite and above 0, got {}", .0.bone, .0.value)]
     Length(#[from] LengthError),
+    /// A soft limit is outside its range.
     #[error("{field}: must be {range}, got {value}")]
-    SoftReach { field: &'static str, value: f32, range: &'static str },
+    SoftReach {
+        /// Name of the field.
+        field: &'static str,
+        /// The refused value, in the field's unit.
+        value: f32,
+        /// Description of the valid range.
+        range: &'static str,
+    },
+    /// The elbow or the hand overflows in world space.
     #[error("root: {:?} puts the {joint} beyond 3.4028235e38; bring it nearer to 0", .root.to_array())]
-    OutOfWorld { joint: &'static str, root: Vec3 },
+    OutOfWorld {
+        /// `elbow` or `hand`.
+        joint: &'static str,
+        /// Position of the Root in world space.
+        root: Vec3,
+    },
 }
 
 /// Fields of earlier versions, and what they are called now.

@@ -5,29 +5,41 @@ use crate::io::progress::Cancelled;
 /// The reason why a document has no glTF.
 #[derive(Debug, Error)]
 pub enum GlbError {
+    /// The skeleton has no joints.
     #[error("the skeleton has no joints; add one before it is exported")]
     NoJoints,
+    /// The position of a joint overflows in metres.
     #[error(
         "joint {joint:?} is farther than 3.4028235e38 m from the origin{}; bring it nearer, or make \
          metres_per_unit smaller",
         at(*time)
     )]
     TooFar {
+        /// Name of the joint.
         joint: String,
         /// In seconds; `None` in the bind pose.
         time: Option<f64>,
     },
+    /// The motion has more than [`GlbError::MAX_FRAMES`] frames or [`GlbError::MAX_SAMPLES`] samples.
     #[error(
         "{frames} frames of {joints} joints are too many for a file; at most {} joints in {} frames \
          are possible: ask for fewer frames in a second, or for a shorter time",
         GlbError::MAX_SAMPLES / joints,
         GlbError::MAX_FRAMES.min(GlbError::MAX_SAMPLES / joints)
     )]
-    TooLong { frames: usize, joints: usize },
+    TooLong {
+        /// Number of frames.
+        frames: usize,
+        /// Number of joints.
+        joints: usize,
+    },
+    /// The export was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The binary file cannot be assembled.
     #[error("the file cannot be written: {0}")]
     Write(#[from] ::gltf::Error),
+    /// The JSON chunk cannot be serialized.
     #[error("the file cannot be written: {0}")]
     Json(#[from] serde_json::Error),
 }
