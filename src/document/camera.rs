@@ -1,51 +1,57 @@
-use core::f32::consts::{FRAC_PI_2, PI, TAU};
+use core::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::projection::Projection;
+use crate::kinematics::angle;
 
 /// An orbit camera with a level horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Point in the middle of the picture, in the world.
+    /// Point in the world that is in the middle of the picture; the camera orbits around it.
     pub target: Vec3,
-    /// Radians about +y; 0 looks along −z from the front, π/2 along −x from the right.
+    /// Angle of the eye about +y in radians. At 0 the camera is in front and looks along −z, at π/2
+    /// it is on the right and looks along −x.
     pub yaw: f32,
-    /// Radians above the horizon, within ±π/2.
+    /// Angle of the eye above the horizon in radians, from −π/2 to π/2.
     pub pitch: f32,
-    /// Distance from eye to target. An orthographic picture is as wide as a perspective one at the target.
+    /// Distance from the eye to the target. At the target, an orthographic picture is as wide as a
+    /// perspective one.
     pub distance: f32,
     /// Whether the projection is orthographic rather than perspective.
     pub orthographic: bool,
 }
 
-/// The six views along an axis.
+/// A view along one of the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisView {
-    /// Along −z.
+    /// From the front, along −z.
     Front,
-    /// Along +z.
+    /// From the back, along +z.
     Back,
-    /// Along −x.
+    /// From the right, along −x.
     Right,
-    /// Along +x.
+    /// From the left, along +x.
     Left,
-    /// Along −y.
+    /// From the top, along −y.
     Top,
-    /// Along +y.
+    /// From the bottom, along +y.
     Bottom,
 }
 
 impl Camera {
     /// Vertical field of view of a perspective picture, in radians.
     pub const FIELD_OF_VIEW: f32 = 40.0 * PI / 180.0;
-    /// Near plane of a perspective picture, as a fraction of the distance to the target.
+    /// Distance from the eye to the near plane of a perspective picture, as a fraction of
+    /// `distance`.
     const NEAR: f32 = 0.01;
     /// Minimum and maximum distance from eye to target.
     const DISTANCES: (f32, f32) = (1e-4, 1e8);
-    /// Depth of an orthographic picture before and behind the target, as a multiple of the distance.
+    /// Depth that an orthographic picture shows before and behind the target, as a multiple of
+    /// `distance`.
     const ORTHOGRAPHIC_DEPTH: f32 = 200.0;
-    /// Margin of a framed sphere, as a factor of its radius.
+    /// Factor by which the radius of a framed sphere is enlarged to leave a margin around the
+    /// sphere.
     const MARGIN: f32 = 1.2;
 
     /// Whether all numbers are finite, the pitch is within ±π/2 and the distance is above 0.
@@ -55,7 +61,7 @@ impl Camera {
         looks && is_upright && self.distance.is_finite() && self.distance > 0.0
     }
 
-    /// Projection for a picture with this aspect, width / height.
+    /// Projection for a picture with aspect ratio `aspect`, its width / height.
     pub fn projection(&self, aspect: f32) -> Projection {
         let (back, right, up) = self.basis();
         let half_height = (Self::FIELD_OF_VIEW / 2.0).tan();
@@ -85,7 +91,8 @@ impl Camera {
         }
     }
 
-    /// Unit vectors from the target to the eye, the right and the top of the picture.
+    /// Unit vectors in the world from the target towards the eye, the right and the top of the
+    /// picture.
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
@@ -94,18 +101,19 @@ impl Camera {
         (back, right, back.cross(right))
     }
 
-    /// Orbits around the target by angles in radians; the result is a perspective camera.
+    /// Orbits around the target by angles in radians. The result is a perspective camera.
     #[must_use]
     pub fn orbited(self, yaw: f32, pitch: f32) -> Self {
         Self {
-            yaw: (self.yaw + yaw).rem_euclid(TAU),
+            yaw: angle::wrapped(self.yaw + yaw),
             pitch: (self.pitch + pitch).clamp(-FRAC_PI_2, FRAC_PI_2),
             orthographic: false,
             ..self
         }
     }
 
-    /// Pans so that a point at the target's depth moves from `from` to `to` in the picture.
+    /// Pans so that a point at the target's depth moves in the picture from `from` to `to`, both in
+    /// the picture coordinates of [`Projection`].
     #[must_use]
     pub fn panned(self, from: Vec2, to: Vec2, aspect: f32) -> Self {
         let (across, upwards) = self.half_extent(aspect);
@@ -113,7 +121,8 @@ impl Camera {
         Self { target: self.target + across * moved.x + upwards * moved.y, ..self }
     }
 
-    /// Zooms to `factor` times the distance; the point at `at` in the picture stays there.
+    /// Multiplies the distance by `factor`. The point at the target's depth that the picture shows
+    /// at `at`, in the picture coordinates of [`Projection`], stays there.
     #[must_use]
     pub fn zoomed(self, factor: f32, at: Vec2, aspect: f32) -> Self {
         let (nearest, farthest) = Self::DISTANCES;
@@ -123,7 +132,7 @@ impl Camera {
         Self { target: self.target + (across * at.x + upwards * at.y) * approach, distance, ..self }
     }
 
-    /// Frames a sphere from the same direction.
+    /// Centres a sphere and fits it into the picture. The direction of view stays.
     #[must_use]
     pub fn framing(self, centre: Vec3, radius: f32, aspect: f32) -> Self {
         let half_angle = (Self::FIELD_OF_VIEW / 2.0).tan() * aspect.min(1.0);
@@ -146,23 +155,24 @@ impl Camera {
         Self { yaw, pitch, orthographic: true, ..self }
     }
 
-    /// Interpolates to another camera by a fraction, on the shorter arc.
+    /// Interpolates to the camera `end`; the yaw takes the shorter way around. A `fraction` of 0 is
+    /// this camera, 1 and above is `end`.
     #[must_use]
     pub fn interpolated(self, end: Self, fraction: f32) -> Self {
         if fraction >= 1.0 {
             return end;
         }
-        let turn = (end.yaw - self.yaw + PI).rem_euclid(TAU) - PI;
+        let yaw = angle::nearest(end.yaw, self.yaw);
         Self {
             target: self.target.lerp(end.target, fraction),
-            yaw: self.yaw + turn * fraction,
+            yaw: self.yaw + (yaw - self.yaw) * fraction,
             pitch: self.pitch + (end.pitch - self.pitch) * fraction,
             distance: self.distance * (end.distance / self.distance).powf(fraction),
             orthographic: self.orthographic && end.orthographic,
         }
     }
 
-    /// Vectors from the target to the right and the upper edge of the picture.
+    /// Vectors in the world from the target to the right and to the upper edge of the picture.
     fn half_extent(&self, aspect: f32) -> (Vec3, Vec3) {
         let (_, right, up) = self.basis();
         let half_height = (Self::FIELD_OF_VIEW / 2.0).tan() * self.distance;

@@ -1,16 +1,15 @@
-use core::f32::consts::TAU;
-
 use glam::Vec3;
 
 use super::arm::Arm;
 use super::channel::Channel;
 use super::document::Document;
 use super::rig_kind::RigKind;
+use crate::kinematics::angle;
 
-/// The document in time.
+/// Keys applied to the document.
 impl Document {
-    /// The document at a time, in seconds: every keyed channel has its interpolated value. A
-    /// [`FollowPath`](super::FollowPath) is evaluated by
+    /// The document at a time in seconds: every keyed channel has its interpolated value. A
+    /// [`FollowPath`](super::FollowPath) is evaluated separately, by
     /// [`SkeletonRig::skeleton_at`](super::SkeletonRig::skeleton_at).
     #[must_use]
     pub fn evaluate(&self, time: f64) -> Self {
@@ -19,14 +18,14 @@ impl Document {
         evaluated
     }
 
-    /// The arm at a time: [`Document::evaluate`] without the skeleton.
+    /// The arm at a time in seconds: [`Document::evaluate`] without the skeleton.
     pub(super) fn arm_at(&self, time: f64) -> Arm {
         let mut evaluated = self.clone();
         evaluated.apply_keys_of(time, |channel| channel.rig() == Some(RigKind::Arm));
         evaluated.arm
     }
 
-    /// Sets every keyed channel to its interpolated value at a time.
+    /// Sets every keyed channel to its interpolated value at a time in seconds.
     pub(crate) fn apply_keys(&mut self, time: f64) {
         self.apply_keys_of(time, |_| true);
     }
@@ -34,7 +33,7 @@ impl Document {
     fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
         let keys = self.keys.clone();
         if [Channel::Hand, Channel::Pin, Channel::Root].into_iter().any(|it| keys.has(it)) {
-            // Playing never transports.
+            // A pose by keys depends on its time alone, so no frame is transported to it.
             self.arm.end_transport();
         }
         for channel in keys.tracks().map(|(channel, _)| channel).filter(|it| includes(*it)) {
@@ -44,14 +43,15 @@ impl Document {
         }
     }
 
-    /// Whether the pose of the shown rig changes in time.
+    /// Whether the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
         let follows = self.rig == RigKind::Skeleton && self.skeleton_rig.follow_path.is_some();
         follows || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
     }
 
-    /// Keys the present value of a channel at a time. The twist is unwrapped to be near the keys that it
-    /// has.
+    /// Adds a key with the present value of a channel at a time in seconds. A twist is first
+    /// unwrapped to be nearest to the value that its existing keys have at that time. Does nothing
+    /// if the channel has no value.
     pub fn key(&mut self, channel: Channel, time: f64) {
         let Some(mut value) = channel.value(self) else {
             return;
@@ -59,7 +59,7 @@ impl Document {
         if channel == Channel::Twist
             && let Some(Vec3 { x: near, .. }) = self.keys.value(channel, time)
         {
-            value.x += ((near - value.x) / TAU).round() * TAU;
+            value.x = angle::nearest(value.x, near);
         }
         self.keys.insert(channel, time, value);
     }

@@ -1,17 +1,16 @@
-use core::f32::consts::TAU;
-
 use glam::Vec3;
 
 use super::channel::Channel;
 use super::document::Document;
 use super::hand_orientation::HandSpace;
+use crate::kinematics::angle;
 use crate::kinematics::spline::Spline;
 use crate::kinematics::twist::TwistReferenceKind;
 
-/// Changes of what angles are measured from, at every key.
+/// Conversions of an angle to another reference, for its present value and all its keys.
 impl Document {
-    /// Changes the kind of the arm's twist reference, and its twist so that the elbow stays where it is,
-    /// at every key of the twist too.
+    /// Changes the kind of the arm's twist reference, and adjusts the present twist and all its
+    /// keys so that the elbow does not move in the present pose or at any key.
     #[must_use]
     pub fn with_twist_reference(&self, kind: TwistReferenceKind) -> Self {
         let mut after = Self { arm: self.arm.with_twist_reference(kind), ..self.clone() };
@@ -24,14 +23,14 @@ impl Document {
             arm.ik_state.transported = None;
             let measured = arm.with_twist_reference(kind).keyed_twist();
             let (old, turned) = (knot.value.x, measured - knot.value.x);
-            shift = turned + ((shift - turned) / TAU).round() * TAU;
+            shift = angle::nearest(turned, shift);
             after.keys.insert(Channel::Twist, knot.time, Vec3::new(old + shift, 0.0, 0.0));
         }
         after
     }
 
-    /// Measures the hand's angles in another space. The hand keeps its orientation, at every key of its
-    /// angles too.
+    /// Converts the hand's present angles and all their keys to another space. The hand keeps its
+    /// orientation in the present pose and at every key.
     #[must_use]
     pub fn with_hand_space(&self, space: HandSpace) -> Self {
         let mut after = self.clone();
@@ -41,7 +40,7 @@ impl Document {
         for knot in track.into_iter().flat_map(Spline::knots) {
             let arm = self.arm_at(knot.time);
             let orientation = arm.hand_orientation;
-            // Unwrapped from key to key.
+            // Each key has the equivalent angles nearest to those of the previous key.
             let near = last.unwrap_or(orientation.angles);
             let angles = orientation.in_space_near(space, &arm.pose(), near).angles;
             last = Some(angles);

@@ -2,11 +2,14 @@
 //! the roll about the bone, which lies along +x. (Skeletons use another order: see
 //! [`skeleton`](super::skeleton).)
 
+use core::array;
 use core::f64::consts::PI;
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// Rotation of angles about x, y and z, radians.
+use super::angle;
+
+/// Rotation matrix of Euler angles about x, y and z, in radians.
 pub fn rotation(angles: Vec3) -> DMat3 {
     let angles = angles.as_dvec3();
     DMat3::from_rotation_y(angles.y)
@@ -14,9 +17,9 @@ pub fn rotation(angles: Vec3) -> DMat3 {
         * DMat3::from_rotation_x(angles.x)
 }
 
-/// Angles of a rotation nearest to the last ones, so that they are continuous beyond ±180°. Straight up
-/// or down, the last yaw is kept. Whole turns beyond one and a half are dropped, which keeps single
-/// precision exact.
+/// Euler angles of a rotation, the equivalent ones nearest to the last angles, so that they are
+/// continuous beyond ±180°. Straight up or down, the last yaw is kept. Last angles beyond 540° are first
+/// reduced by full turns, which keeps f32 exact.
 pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
     let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));
@@ -26,21 +29,23 @@ pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     let untwisted = DMat3::from_rotation_z(-pitch) * DMat3::from_rotation_y(-yaw) * rotation;
     let twist = untwisted.y_axis.z.atan2(untwisted.y_axis.y);
 
-    let near = |angles: DVec3| angles + ((last - angles) / (2.0 * PI)).round() * (2.0 * PI);
+    let near = |angles: DVec3| {
+        DVec3::from_array(array::from_fn(|i| angle::nearest_f64(angles[i], last[i])))
+    };
     let one = near(DVec3::new(twist, yaw, pitch));
-    // Tipped over backwards it is the same.
+    // The same rotation by a pitch beyond 90°.
     let other = near(DVec3::new(twist + PI, yaw + PI, PI - pitch));
     let far = |angles: DVec3| (angles - last).abs().element_sum();
     if far(other) < far(one) - 1e-6 { other.as_vec3() } else { one.as_vec3() }
 }
 
-/// The angle without whole turns, if it is beyond one and a half.
+/// The angle reduced by full turns if it is beyond ±540°.
 pub(super) fn few_turns(angle: f64) -> f64 {
     if angle.abs() > 3.0 * PI { angle % (2.0 * PI) } else { angle }
 }
 
-/// Roll of a rotation about +x, τ = 2·atan2(q·x̂, q_w), radians, nearest to the last one; the last one
-/// for a rotation that reverses +x and has no roll.
+/// Roll of a rotation about +x, τ = 2·atan2(q·x̂, q_w), radians, the equivalent angle nearest to `last`.
+/// A rotation that reverses +x has no roll and gives `last`.
 pub fn roll(rotation: DMat3, last: f32) -> f32 {
     const NONE: f64 = 1e-9;
     let q = glam::DQuat::from_mat3(&rotation);
@@ -48,5 +53,5 @@ pub fn roll(rotation: DMat3, last: f32) -> f32 {
         return last;
     }
     let (roll, last) = (2.0 * q.x.atan2(q.w), f64::from(last));
-    (roll + ((last - roll) / (2.0 * PI)).round() * (2.0 * PI)) as f32
+    angle::nearest_f64(roll, last) as f32
 }

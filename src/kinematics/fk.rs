@@ -1,5 +1,5 @@
-//! Forward kinematics (FK) of the arm: conversion between a pose and joint angles, the shoulder's three
-//! and the elbow's bend, and blending of the two.
+//! Forward kinematics (FK) of the arm: converts between a pose and joint angles (the shoulder's
+//! three angles and the elbow's bend), and blends FK angles with a solved pose.
 //!
 //! ```text
 //! U     = R_y(−θ_z) R_z(θ_y) R_x(ψ_ref + ψ) R_z(θ_e)        the upper limb's rotation, by IK
@@ -12,41 +12,41 @@
 //!
 //! # Accuracy
 //!
-//! From a pose to angles and back, the hand is within 1e-6·L and the elbow within 1e-5·L for
-//! 1° ≤ φ ≤ 179°; nearer to straight or folded within 5e-4·L, because there a hand in f32 does not
-//! determine the elbow better.
+//! After a conversion from a pose to angles and back, the hand is within 1e-6·L, and the elbow
+//! within 1e-5·L for 1° ≤ φ ≤ 179°. For a straighter or more folded arm the elbow is within 5e-4·L,
+//! because there an f32 hand does not determine it better.
 
 use core::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
-use super::euler;
 use super::ik::{length, reach};
 use super::saturate::{saturate, saturate_vector};
 use super::twist::angle_from_limb;
 use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
+use super::{angle, euler};
 
 /// Joint angles of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fk {
-    /// Shoulder angles about x, y and z, unwrapped: see [`euler`].
+    /// Shoulder angles about x, y and z in radians, not wrapped to one turn: see [`euler`].
     pub shoulder: Vec3,
-    /// Elbow bend β, unwrapped.
+    /// Elbow bend β in radians, not wrapped to one turn; 0 for a straight arm.
     pub bend: f32,
     /// Factor by which the limbs are lengthened.
     pub stretch: f32,
 }
 
 impl Default for Fk {
-    /// Straight along +x.
+    /// A straight arm along +x, without stretch.
     fn default() -> Self {
         Self { shoulder: Vec3::ZERO, bend: 0.0, stretch: 1.0 }
     }
 }
 
 impl Fk {
-    /// Angles of a pose, the equivalent ones nearest to `last`.
+    /// Joint angles of a pose: of all equivalent angles, those nearest to `last`.
     #[must_use]
     pub fn matching(pose: &TwoBonePose, last: Self) -> Self {
         let turned = ArmRotations::of_pose(pose);
@@ -58,33 +58,33 @@ impl Fk {
         } else {
             (turned.upper, turned.bend)
         };
-        let turns = ((last_bend - bend) / TAU).round() * TAU;
         Self {
             shoulder: euler::angles(DMat3::from_quat(upper), last.shoulder),
-            bend: (bend + turns) as f32,
+            bend: angle::nearest_f64(bend, last_bend) as f32,
             stretch: pose.stretch,
         }
     }
 
-    /// The pose of the angles; `last` resolves a yaw or direction that the angles leave open.
-    /// Angles have no cursor, so its reach is `None`.
+    /// The pose with these angles, in Root space. Where its Pointer is vertical, it takes the yaw
+    /// of `last`. It has no cursor, so its reach is `None`.
     #[must_use]
     pub fn pose(self, bones: TwoBone, last: Pointer) -> TwoBonePose {
         ArmRotations::of_fk(self).pose(bones, last)
     }
 }
 
-/// Rotations of the upper and the lower limb, with +x along the limb and +z the hinge.
+/// Rotations of the upper and the lower limb in Root space, with +x along the limb and +z along the
+/// elbow's hinge axis.
 pub fn limb_rotations(pose: &TwoBonePose) -> (DMat3, DMat3) {
     let ArmRotations { upper, bend, .. } = ArmRotations::of_pose(pose);
     let upper = DMat3::from_quat(upper);
     (upper, upper * DMat3::from_rotation_z(-bend))
 }
 
-/// Blend of FK angles (`influence` 0) and a solved pose (`influence` 1, to which it is clamped).
-/// Rotation, bend and stretch are interpolated.
+/// Blends FK angles (`influence` 0) with a solved pose (`influence` 1) by interpolating rotation,
+/// bend and stretch. `influence` is clamped to 0 … 1.
 ///
-/// The reach is [`Reach::Reached`] when the hand is within 1e-6·L of the cursor.
+/// The reach of the blend is [`Reach::Reached`] if its hand is within 1e-6·L of the cursor.
 #[must_use]
 pub fn blended(
     fk: Fk,
@@ -108,20 +108,20 @@ pub fn blended(
     TwoBonePose { reach: Some(reach), ..pose }
 }
 
-/// Rotations of the two limbs in f64: the end of a long limb magnifies the rounding of an angle.
+/// The upper limb's rotation and the elbow's bend, in f64 because a long limb magnifies the
+/// rounding of an angle.
 #[derive(Clone, Copy)]
 struct ArmRotations {
-    /// U.
+    /// U, the rotation of the upper limb.
     upper: DQuat,
-    /// β, from 0 to π.
+    /// Bend β, from 0 to π radians.
     bend: f64,
     stretch: f64,
 }
 
 impl ArmRotations {
     fn of_fk(fk: Fk) -> Self {
-        let bend = f64::from(fk.bend) % TAU;
-        let bend = bend - (bend / TAU).round() * TAU;
+        let bend = angle::nearest_f64(f64::from(fk.bend) % TAU, 0.0);
         let upper = DQuat::from_mat3(&euler::rotation(fk.shoulder));
         let upper = if bend < 0.0 { upper * DQuat::from_rotation_x(PI) } else { upper };
         Self { upper, bend: bend.abs(), stretch: f64::from(fk.stretch) }
@@ -156,7 +156,7 @@ impl ArmRotations {
         let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
         let (sin, _) = self.bend.sin_cos();
         let half = (0.5 * self.bend).cos();
-        // d₁ + d₂ cos β, which cancels where equal bones are folded.
+        // d₁ + d₂ cos β, in a form that does not cancel where equal bones are folded.
         let ahead = (upper - lower) + 2.0 * lower * half * half;
         let aside = lower * sin;
         let (distance, at_shoulder) = (ahead.hypot(aside), aside.atan2(ahead));
@@ -183,7 +183,7 @@ impl ArmRotations {
     }
 }
 
-/// Heading of a direction; `None` for a vertical one, to within rounding.
+/// Cosine and sine of a direction's yaw; `None` if the direction is vertical to within rounding.
 fn heading(direction: DVec3) -> Option<Vec2> {
     const VERTICAL: f64 = 1e-7;
     let flat = DVec2::new(direction.x, direction.z);

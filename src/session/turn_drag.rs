@@ -1,12 +1,13 @@
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::PI;
 
 use glam::Vec3;
 
 use super::point_drag::DragInput;
 use crate::document::Ray;
+use crate::kinematics::angle;
 
-/// The drag of a ring: turns it by the angle of the mouse around its axis. The angle is computed from the
-/// state at the press, never from the last move.
+/// The drag of a ring, which changes an angle by the mouse's turn about the ring's axis. The angle
+/// is computed from the state at the press, never from its previous value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurnDrag {
     ring: GripRing,
@@ -14,15 +15,16 @@ pub struct TurnDrag {
     start: f32,
     pressed: Ray,
     now: DragInput,
-    /// Angle of the mouse and offset when precision was switched on or off last.
+    /// Turn of the mouse and offset of the angle, in radians, when precision was last switched on
+    /// or off; `None` if it never was.
     precision: Option<(f32, f32)>,
-    /// Angle of the mouse around the ring since the press, with whole turns.
+    /// Turn of the mouse around the ring since the press, in radians, including whole turns.
     around: f32,
     typed: String,
     last: f32,
 }
 
-/// A circle around a joint that turns it, in the world.
+/// A circle around a joint, in world space; dragging it turns the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GripRing {
     /// Centre.
@@ -50,17 +52,18 @@ impl TurnDrag {
         }
     }
 
-    /// The typed offset in degrees; empty while the mouse sets it.
+    /// The offset as typed, in degrees; empty while the mouse sets the offset.
     pub fn typed(&self) -> &str {
         &self.typed
     }
 
-    /// The turn since the press in radians, before limits.
+    /// Angle in radians by which the ring was turned since the press, not clamped to the joint's
+    /// limits.
     pub fn turned(&self) -> f32 {
         self.turned_to(self.last)
     }
 
-    /// The turn from the press to an angle, in radians.
+    /// Angle in radians from the angle at the press to `angle`.
     pub fn turned_to(&self, angle: f32) -> f32 {
         (angle - self.start).clamp(f32::MIN, f32::MAX)
     }
@@ -76,11 +79,11 @@ impl TurnDrag {
         self.now = input;
         let around = self.ring.angle_between(self.pressed, input.ray);
         if around.is_finite() {
-            self.around = around + ((self.around - around) / TAU).round() * TAU;
+            self.around = angle::nearest(around, self.around);
         }
     }
 
-    /// The dragged angle in radians, before limits.
+    /// Computes the dragged angle in radians, not clamped to the joint's limits.
     pub(super) fn angle(&mut self) -> f32 {
         if !self.typed.is_empty() {
             let degrees = self.typed.parse().ok().filter(|degrees: &f32| degrees.is_finite());
@@ -104,10 +107,10 @@ impl TurnDrag {
 }
 
 impl GripRing {
-    /// Sine of the angle between axis and picture below which a ring is seen edge-on.
+    /// Sine of the angle between the axis and the picture; below it, a ring counts as seen edge-on.
     const EDGE_ON: f32 = 0.1;
 
-    /// The angle around the ring from one ray to another, in (−π, π].
+    /// The angle around the ring from one ray to another, in radians in (−π, π].
     fn angle_between(&self, from: Ray, to: Ray) -> f32 {
         if self.axis.dot(to.direction.normalize_or_zero()).abs() < Self::EDGE_ON {
             return self.rolled(from, to);
@@ -119,8 +122,8 @@ impl GripRing {
         self.axis.dot(from.cross(to)).atan2(from.dot(to))
     }
 
-    /// The turn of a ring that is seen edge-on: the distance across the picture, along the ring, over the
-    /// radius at the press.
+    /// The turn in radians of a ring that is seen edge-on: the ratio of the distance that the mouse
+    /// moves along the ring to the mouse's distance from the centre at the press.
     fn rolled(&self, from: Ray, to: Ray) -> f32 {
         let Some(tangent) = from.direction.cross(self.axis).try_normalize() else {
             return 0.0;
@@ -146,7 +149,7 @@ mod tests {
         (GripRing { centre: Vec3::new(10.0, 20.0, -5.0), axis }, Camera::default().projection(1.6))
     }
 
-    /// A ray through the point of the ring at an angle.
+    /// A ray from the camera through the point at `angle` on the ring.
     fn through(ring: GripRing, projection: &Projection, radius: f32, angle: f32) -> Ray {
         let (u, v) = ring.axis.any_orthonormal_pair();
         let (u, v) = if u.cross(v).dot(ring.axis) > 0.0 { (u, v) } else { (v, u) };

@@ -1,13 +1,16 @@
-use core::f64::consts::{PI, TAU};
+use core::array;
+use core::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-/// The angles about x, y and z of a rotation R_z · R_y · R_x, in radians, that are nearest to given
-/// ones: every rotation has two triples, each up to whole turns. At y = ±90°, where x and z turn
-/// about one axis, z stays.
+use crate::kinematics::angle;
+
+/// The angles about x, y and z of a rotation R_z · R_y · R_x, in radians, that are nearest to
+/// `near`. Every rotation has two triples of angles, each up to whole turns. At y = ±90°, where x
+/// and z turn about one axis, z is that of `near`.
 ///
-/// [`nearest_angles`](crate::kinematics::skeleton::nearest_angles) in f64, so that errors do not add up
-/// along a long chain.
+/// [`nearest_angles`](crate::kinematics::skeleton::nearest_angles) in f64, so that errors do not
+/// add up along a long chain.
 pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     const GIMBAL: f64 = 1e-9;
     let DMat3 { x_axis, y_axis, z_axis } = rotation;
@@ -17,10 +20,12 @@ pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     let (sin_z, cos_z) = z.sin_cos();
     let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
 
-    let beside = |angles: DVec3| angles + ((near - angles) / TAU).round() * TAU;
-    let one = beside(DVec3::new(x, y, z));
-    let other = beside(DVec3::new(x + PI, PI - y, z + PI));
-    if one.distance_squared(near) <= other.distance_squared(near) { one } else { other }
+    let unwrap = |angles: DVec3| {
+        DVec3::from_array(array::from_fn(|i| angle::nearest_f64(angles[i], near[i])))
+    };
+    let first = unwrap(DVec3::new(x, y, z));
+    let second = unwrap(DVec3::new(x + PI, PI - y, z + PI));
+    if first.distance_squared(near) <= second.distance_squared(near) { first } else { second }
 }
 
 /// R_z · R_y · R_x of angles about x, y and z in radians.

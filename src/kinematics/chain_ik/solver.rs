@@ -5,6 +5,7 @@ use super::method_state::MethodState;
 use super::problem::{self, Problem};
 use super::stall::StallDetector;
 use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
+use crate::kinematics::saturate::saturate;
 use crate::kinematics::skeleton::{Skeleton, nearest_angles};
 
 /// An iterative solve of a skeleton and its targets.
@@ -174,7 +175,7 @@ impl ChainSolver {
     /// Measures the error and whether it is within the tolerance.
     fn measure(&mut self) {
         let error = self.config.error(&self.problem);
-        self.report.error = error.min(f64::from(f32::MAX)) as f32;
+        self.report.error = saturate(error);
         self.report.status = if error <= self.tolerance {
             Status::Converged
         } else if self.report.iterations >= self.max_iterations {

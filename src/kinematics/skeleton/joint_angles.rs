@@ -1,6 +1,9 @@
-use core::f32::consts::{PI, TAU};
+use core::array;
+use core::f32::consts::PI;
 
 use glam::{Mat3A, Vec3, Vec3A};
+
+use crate::kinematics::angle;
 
 /// Euler angles about x, y and z, applied in this order, radians.
 #[derive(Clone, Copy, Debug)]
@@ -32,14 +35,15 @@ impl JointAngles {
     }
 }
 
-/// Angles of a rotation R_z · R_y · R_x nearest to given ones. Every rotation has two triples, each up to
-/// whole turns. At y = ±90°, where x and z rotate about one axis, z is kept.
+/// Euler angles of the rotation R_z · R_y · R_x: of all equivalent triples, the one nearest to
+/// `near`. Every rotation has two triples, and each may change by full turns. At y = ±90°, where x
+/// and z rotate about the same axis, z is that of `near`.
 pub(crate) fn nearest_angles(rotation: Mat3A, near: Vec3) -> Vec3 {
     angle_triples(rotation, near)[0]
 }
 
-/// Both triples of a rotation R_z · R_y · R_x, each shifted by whole turns to be nearest to given angles;
-/// the nearer triple first.
+/// Both Euler triples of the rotation R_z · R_y · R_x, each shifted by full turns to be nearest to
+/// `near`. The nearer triple is first.
 pub(crate) fn angle_triples(rotation: Mat3A, near: Vec3) -> [Vec3; 2] {
     const GIMBAL: f32 = 1e-6;
     let Mat3A { x_axis, y_axis, z_axis } = rotation;
@@ -47,10 +51,11 @@ pub(crate) fn angle_triples(rotation: Mat3A, near: Vec3) -> [Vec3; 2] {
     let y = (-x_axis.z).atan2(cos_y);
     let z = if cos_y > GIMBAL { x_axis.y.atan2(x_axis.x) } else { near.z };
     let (sin_z, cos_z) = z.sin_cos();
-    // Of R_z⁻¹ · R; sine and cosine are never both small.
+    // From R_z⁻¹ · R, where sine and cosine of x are never both small.
     let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
 
-    let unwrapped = |angles: Vec3| angles + ((near - angles) / TAU).round() * TAU;
+    let unwrapped =
+        |angles: Vec3| Vec3::from_array(array::from_fn(|i| angle::nearest(angles[i], near[i])));
     let one = unwrapped(Vec3::new(x, y, z));
     let other = unwrapped(Vec3::new(x + PI, PI - y, z + PI));
     let is_nearer = one.distance_squared(near) <= other.distance_squared(near);
