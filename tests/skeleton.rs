@@ -33,7 +33,7 @@ fn world(transform: Affine3A) -> DMat4 {
     translation * DMat4::from_mat3(transform.matrix3.as_dmat3())
 }
 
-/// Far from the origin and scaled tenfold at most: what single precision keeps of it.
+/// Within rounding of f32, far from the origin and for scales up to ten.
 fn is_near(point: Vec3, expected: DVec3) -> bool {
     point.as_dvec3().distance(expected) <= 1e-5 * (10.0 + expected.length())
 }
@@ -69,7 +69,7 @@ fn forward_kinematics_is_the_product_of_matrices() {
 }
 
 #[test]
-fn turning_a_joint_moves_what_hangs_from_it_and_nothing_else_by_a_bit() {
+fn turning_a_joint_moves_its_subtree_and_nothing_else() {
     let mut random = Random(2);
     for _ in 0..300 {
         let mut skeleton = forest(&mut random, 12);
@@ -81,7 +81,7 @@ fn turning_a_joint_moves_what_hangs_from_it_and_nothing_else_by_a_bit() {
         let after = skeleton.pose();
         assert_eq!(before.base(turned), after.base(turned), "its own base");
         for joint in skeleton.ids() {
-            if skeleton.hangs_from(joint, turned) {
+            if skeleton.is_in_subtree(joint, turned) {
                 assert_ne!(before.full(joint), after.full(joint));
             } else {
                 assert_eq!(before.full(joint), after.full(joint));
@@ -120,7 +120,7 @@ fn each_joint_of_a_chain_of_three_moves_itself_and_those_after_it() {
 }
 
 #[test]
-fn x_is_turned_about_first_in_the_joints_own_frame() {
+fn x_is_the_first_rotation_in_the_joints_own_frame() {
     let mut skeleton = Skeleton::default();
     // The frame's x is the bone's y, its y the bone's z, its z the bone's x.
     let frame = Mat3::from_cols(Vec3::Y, Vec3::Z, Vec3::X);
@@ -149,7 +149,7 @@ fn assert_is_one(skeleton: &Skeleton) {
 }
 
 #[test]
-fn whatever_is_done_leaves_a_skeleton() {
+fn random_edits_leave_a_valid_skeleton() {
     let mut random = Random(4);
     for _ in 0..40 {
         let mut skeleton = forest(&mut random, 6);
@@ -163,7 +163,7 @@ fn whatever_is_done_leaves_a_skeleton() {
     }
 }
 
-/// Whether it was done.
+/// Makes a random edit. Returns whether it was accepted.
 fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
     // Often a joint that is not there, or a name that is.
     let joint = JointId::new(random.below(skeleton.joints().len() + 2));
@@ -180,7 +180,7 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
         5 if random.chance(0.3) => {
             let count = skeleton.joints().len();
             let falling: Vec<_> =
-                skeleton.ids().filter(|other| skeleton.hangs_from(*other, joint)).collect();
+                skeleton.ids().filter(|other| skeleton.is_in_subtree(*other, joint)).collect();
             let names: Vec<_> = skeleton.joints().iter().map(|joint| joint.name.clone()).collect();
             let Ok(moved) = skeleton.remove(&[joint]) else {
                 assert!(joint.index() >= count);
@@ -197,7 +197,7 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
     }
 }
 
-/// What hangs from a joint without limits stays where it is, and so does everything else.
+/// Reparents, and checks that all joints stay except the subtree of a joint with limits.
 fn reparent(skeleton: &mut Skeleton, joint: JointId, parent: Option<JointId>) -> bool {
     let before = skeleton.clone();
     let Ok(moved) = skeleton.reparent(joint, parent) else { return false };
@@ -205,7 +205,7 @@ fn reparent(skeleton: &mut Skeleton, joint: JointId, parent: Option<JointId>) ->
     assert_eq!(skeleton.joints()[now.index()].parent, parent.and_then(|parent| moved.get(parent)));
     for old in before.ids() {
         let new = moved.get(old).expect("all are still there");
-        if before.joints()[joint.index()].is_limited() && before.hangs_from(old, joint) {
+        if before.joints()[joint.index()].is_limited() && before.is_in_subtree(old, joint) {
             continue;
         }
         let (here, there) = (before.tip(old), skeleton.tip(new));
@@ -228,7 +228,7 @@ fn children_on_a_tip_stay_on_it_when_the_bone_changes() {
 }
 
 #[test]
-fn what_no_skeleton_can_have_is_refused() {
+fn invalid_joints_are_refused() {
     let root = || Joint::new("root", None, Vec3::Y);
     let one = Skeleton::from_joints(vec![root()]).expect("one joint");
     let added = |joint: Joint| one.clone().add(joint).expect_err("refused");
@@ -283,6 +283,7 @@ fn what_no_skeleton_can_have_is_refused() {
     assert_eq!(Skeleton::from_joints(many.collect()), Err(SkeletonError::TooMany));
 }
 
+#[cfg(feature = "serde")]
 #[test]
 fn skeletons_round_trip_through_serde_and_invalid_ones_are_refused() {
     let mut skeleton = Skeleton::with_root("root");
