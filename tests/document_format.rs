@@ -1,4 +1,4 @@
-//! The program's own files: what is written is read again, and what cannot be read is said where.
+//! The program's own files: round trips, and errors with their positions.
 #![cfg(feature = "document")]
 
 mod common;
@@ -63,12 +63,12 @@ fn a_document_with_a_number_that_is_not_finite_is_not_written() {
     let mut document = Document::default();
     document.camera.yaw = f32::NAN;
     let error = io::save(&document, &folder.path().join("x.json")).expect_err("refused");
-    assert_eq!(error.to_string(), "the document cannot be written: NaN is not a finite number");
+    assert_eq!(error.to_string(), "the document cannot be written: number must be finite, got NaN");
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }
 
 #[test]
-fn a_file_is_laid_out_for_people() {
+fn a_file_is_formatted_for_human_readers() {
     let json = io::to_json(&Document::default()).expect("written");
     assert!(
         json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 2,\n  \"rig\": \"arm\",\n")
@@ -139,7 +139,7 @@ fn unknown_fields_and_angles_outside_limits_only_warn() {
             format!("line 2, column 10: colour: {unknown}"),
             format!("line 4, column 29: skeleton.joints[0].limits.w: {unknown}"),
             format!("line 5, column 20: camera.fov: {unknown}"),
-            "line 3, column 46: skeleton.joints[0].rotation: is beyond the joint's limits; clamped"
+            "line 3, column 46: skeleton.joints[0].rotation: must be within the joint's limits; clamped"
                 .to_owned(),
         ]
     );
@@ -175,7 +175,7 @@ fn a_file_that_is_no_document_is_refused_with_the_reason() {
         ),
         (
             "{\"format\":\"ik-arm\",\n \"version\": 3, \"rig\": {}}",
-            "line 2, column 13: version: version 3 needs a newer ik-arm; this one reads up to 2",
+            "line 2, column 13: version: must be from 1 to 2, got 3, which needs a newer ik-arm",
         ),
         (
             "{\"format\":\"ik-arm\",\"version\":0}",
@@ -231,7 +231,7 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
         ),
         (
             "\"arm\":{\"root\":[1,2,\n 1e39]}",
-            "line 3, column 2: arm.root[2]: number out of range; it must be between ±3.4028235e38",
+            "line 3, column 2: arm.root[2]: must be within ±3.4028235e38",
         ),
         (
             "\"skeleton\":{\"joints\":[\n[\"a\"]]}",
@@ -277,11 +277,11 @@ fn an_invalid_value_is_named_with_the_rule() {
         ),
         (
             joints(&format!("{a},\n{a}")),
-            "line 4, column 9: skeleton.joints[1].name: two joints are called \"a\"; names must differ",
+            "line 4, column 9: skeleton.joints[1].name: names of joints must be unique, got \"a\" twice",
         ),
         (
             joints("{\"name\": \" \"}"),
-            "line 3, column 10: skeleton.joints[0].name: a joint needs a name",
+            "line 3, column 10: skeleton.joints[0].name: the name of a joint must not be empty",
         ),
         (
             joints("{\"name\":\"a\",\"radius\":-1}"),
@@ -320,12 +320,14 @@ fn an_invalid_value_is_named_with_the_rule() {
         ),
         (
             "\"arm\":{\"facing\":{\"direction\":[1,0,0],\"heading\":[0,1]}}".to_owned(),
-            "line 2, column 48: arm.facing.heading: must be `direction` as seen from above",
+            "line 2, column 48: arm.facing.heading: must be `direction` as seen from above, got \
+             [0, 1]",
         ),
         (
             "\"arm\":{\"twist_reference\":{\"transported\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
                 .to_owned(),
-            "line 2, column 72: arm.twist_reference.transported.outward: must be perpendicular to `direction`",
+            "line 2, column 72: arm.twist_reference.transported.outward: must be perpendicular to \
+             `direction`, got [1, 0, 0]",
         ),
         (
             "\"arm\":{\"soft_reach\":{\"softness\":1}}".to_owned(),
@@ -385,14 +387,14 @@ fn more_joints_than_a_skeleton_can_have_are_refused() {
         with(&format!("\"skeleton\":{{\"joints\":[{}]}}", joints.join(",")))
     };
     assert_eq!(open(&joints(10_000)).order.len(), 10_000);
-    let expected = "line 2, column 22: skeleton.joints: a skeleton has at most 10000 joints";
+    let expected = "line 2, column 22: skeleton.joints: a skeleton must have at most 10000 joints";
     assert_eq!(refusal(&joints(10_001)), format!("test.json, {expected}"));
 }
 
 #[test]
 fn invalid_utf_8_has_its_position() {
     let error = io::read("x.json", &b"{\n \"\xc3\xa9\":\"\xff\"}"[..], None).expect_err("refused");
-    let expected = "byte 0xff is not UTF-8 there; JSON is written in UTF-8";
+    let expected = "text must be UTF-8, got byte 0xff";
     assert_eq!(message(error), format!("x.json, line 2, column 7: {expected}"));
 }
 
@@ -420,12 +422,9 @@ fn a_file_that_cannot_be_read_is_named() {
     let huge = folder.path().join("huge.json");
     fs::File::create(&huge).and_then(|file| file.set_len((64 << 20) + 1)).expect("made");
     let error = io::open(&huge, None).expect_err("refused").to_string();
-    assert_eq!(
-        error,
-        format!("{} is larger than 64 MB, the largest size that is read", huge.display())
-    );
+    assert_eq!(error, format!("{} must be at most 64 MB large", huge.display()));
     let endless = io::read("endless", std::io::repeat(b' '), None).expect_err("refused");
-    assert_eq!(endless.to_string(), "endless is larger than 64 MB, the largest size that is read");
+    assert_eq!(endless.to_string(), "endless must be at most 64 MB large");
 }
 
 #[test]
@@ -594,7 +593,7 @@ fn invalid_keys_are_named() {
     for (keys, reason) in [
         (
             r#"[{"channel":"foot","keys":[]}]"#,
-            "line 2, column 61: channels[0].channel: unknown variant",
+            "line 2, column 61: channels[0].channel: must be the name of a channel, got \"foot\"",
         ),
         (
             r#"[{"channel":"hand","keys":[[0,1,2]]}]"#,
@@ -608,8 +607,8 @@ fn invalid_keys_are_named() {
             r#"[{"channel":"overlay","overlay":"axes","keys":[[0,0.5]]}]"#,
             "switch must be 0 or 1, got 0.5",
         ),
-        (r#"[{"channel":"overlay","keys":[]}]"#, "channels[0]: `overlay` is missing"),
-        (r#"[{"channel":"rotation","keys":[]}]"#, "channels[0]: `joint` is missing"),
+        (r#"[{"channel":"overlay","keys":[]}]"#, "channels[0]: must have `overlay`"),
+        (r#"[{"channel":"rotation","keys":[]}]"#, "channels[0]: must have `joint`"),
         (
             r#"[{"channel":"offset","joint":1,"keys":[]}]"#,
             "channels[0].joint: must be 0, the only joint, got 1",
@@ -620,10 +619,13 @@ fn invalid_keys_are_named() {
         ),
         (
             r#"[{"channel":"hand","keys":[[0,1,2,3]]},{"channel":"hand","keys":[[0,1,2,3]]}]"#,
-            "channels[1]: another entry has the keys of this channel",
+            "channels[1]: channel must have one entry, got a second",
         ),
         (r#"[{"channel":"hand","keys":[[]]}]"#, "channels[0].keys[0]: invalid length 0"),
-        (r#"[{"channel":"hand","keys":[[1e999,0,0,0]]}]"#, "channels[0].keys[0][0]: number out of"),
+        (
+            r#"[{"channel":"hand","keys":[[1e999,0,0,0]]}]"#,
+            "channels[0].keys[0][0]: must be within",
+        ),
     ] {
         let said = refusal(&with(&format!("{skeleton}{keys}")));
         assert!(said.contains(reason), "{keys}: {said}");

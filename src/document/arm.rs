@@ -9,7 +9,7 @@ use crate::kinematics::twist::TwistReferenceKind;
 use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone, TwoBonePose};
 use crate::rig::ArmRig;
 
-/// The arm: what poses it, and the state that its next solve starts from.
+/// The two-bone arm: the values that pose it, and the state from which its next IK solve continues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// The Cursor, the hand's target.
@@ -18,27 +18,28 @@ pub struct Arm {
     pub twist: f32,
     /// Position of the shoulder in the world.
     pub root: Vec3,
-    /// Lengths of the limbs.
+    /// Lengths of the two limbs.
     pub bones: TwoBone,
     /// Kind of the twist reference.
     pub twist_reference: TwistReferenceKind,
-    /// Point in Root space that the elbow turns to with [`TwistReferenceKind::Pole`].
+    /// Point in Root space towards which [`TwistReferenceKind::Pole`] turns the elbow.
     pub pole: Vec3,
-    /// State that the next solve starts from. Without a transported frame,
+    /// State from which the next IK solve continues. If it has no transported frame,
     /// [`TwistReferenceKind::Transport`] starts from the stereographic direction.
     pub ik_state: IkState,
     /// Soft limits and stretch.
     pub soft_reach: SoftReach,
-    /// Influence of IK (hand → joint angles) over FK (joint angles → hand): 0 is FK alone, 1 is IK alone.
+    /// Influence of IK (hand → joint angles) in its blend with FK (joint angles → hand): 0 is FK
+    /// alone, 1 is IK alone.
     pub influence: f32,
-    /// Joint angles of FK.
+    /// Joint angles and stretch of the FK pose.
     pub fk: Fk,
     /// Orientation of the hand.
     pub hand_orientation: HandOrientation,
 }
 
 impl Arm {
-    /// An arm in the default pose.
+    /// An arm with limbs of these lengths, in the default pose.
     ///
     /// # Errors
     ///
@@ -73,7 +74,7 @@ impl Arm {
         self.cursor.in_world(self.root)
     }
 
-    /// Moves the Cursor to a point in Root space; a pinned one stays pinned.
+    /// Moves the Cursor to a point in Root space. A pinned Cursor stays pinned.
     pub fn set_cursor(&mut self, cursor: Vec3) {
         let cursor = Cursor::Root(cursor);
         self.cursor = match self.is_pinned() {
@@ -87,7 +88,7 @@ impl Arm {
         matches!(self.cursor, Cursor::World(_))
     }
 
-    /// Pins the Cursor to the world, or unpins it, and leaves it where it is.
+    /// Pins the Cursor to the world or unpins it. The Cursor does not move.
     #[must_use]
     pub fn with_pinned(self, pinned: bool) -> Self {
         let cursor = match pinned {
@@ -97,7 +98,7 @@ impl Arm {
         if pinned == self.is_pinned() { self } else { Self { cursor, ..self } }
     }
 
-    /// Minimum and maximum distance of the hand from the shoulder with IK.
+    /// Minimum and maximum distance of the hand from the shoulder by IK.
     pub fn reach(&self) -> (f32, f32) {
         let most = self.bones.outer_limit() * self.soft_reach.max_stretch();
         (self.soft_reach.least_distance(self.bones), most.min(f32::MAX))
@@ -113,7 +114,7 @@ impl Arm {
         self.influence > 0.0
     }
 
-    /// Sets the lengths of the limbs; invalid ones change nothing.
+    /// Sets the lengths of the limbs. If one of them is invalid, both stay unchanged.
     pub(super) fn set_lengths(&mut self, upper: f32, lower: f32) {
         self.bones = TwoBone::new(upper, lower).unwrap_or(self.bones);
     }
@@ -130,17 +131,18 @@ impl Arm {
         if cell.is_normal() { cell } else { 1.0 }
     }
 
-    /// A length of the arm as text, to a thousandth of a cell of the grid.
+    /// A length of the arm as text, rounded to a thousandth of a grid cell.
     pub fn format_length(&self, length: f32) -> String {
         format!("{length:.*}", self.length_decimals())
     }
 
-    /// Decimals of a length of the arm as text.
+    /// Number of decimals in [`Self::format_length`], from 0 to 8.
     pub(crate) fn length_decimals(&self) -> usize {
         (3.0 - self.grid_cell().log10().round()).clamp(0.0, 8.0) as usize
     }
 
-    /// Bounding sphere of a pose in the world: centre and radius, at least half the arm's length.
+    /// Centre and radius of a bounding sphere of a pose, in the world. The radius is at least half
+    /// the arm's length.
     pub fn bounds(&self, pose: &TwoBonePose) -> (Vec3, f32) {
         let points = [Vec3::ZERO, pose.elbow, pose.hand];
         let low = points.into_iter().fold(Vec3::MAX, Vec3::min);
@@ -153,7 +155,7 @@ impl Arm {
 }
 
 impl Default for Arm {
-    /// The arm of the paper: 200 and 300 long.
+    /// The arm of E. Palmieri's report (2014): limbs of length 200 and 300.
     fn default() -> Self {
         const LENGTHS: (f32, f32) = (200.0, 300.0);
         Self::new(LENGTHS.0, LENGTHS.1).unwrap_or_else(|_| unreachable!("200 and 300 are lengths"))

@@ -9,14 +9,14 @@ use crate::kinematics::twist::{
 };
 use crate::kinematics::two_bone::{Pointer, TwoBonePose};
 
-/// Solving.
+/// IK solves, and poses made from them.
 impl Arm {
     /// The twist reference.
     pub fn reference(&self) -> TwistReference {
         self.reference_for(self.twist_reference)
     }
 
-    /// The twist reference of another kind, with this arm's pole.
+    /// The twist reference of the given kind; a [`TwistReferenceKind::Pole`] has this arm's pole.
     pub fn reference_for(&self, kind: TwistReferenceKind) -> TwistReference {
         match kind {
             TwistReferenceKind::Limb => TwistReference::Limb,
@@ -28,7 +28,7 @@ impl Arm {
         }
     }
 
-    /// The solver of this arm.
+    /// The IK solver with this arm's bones, twist reference and soft reach.
     pub fn ik(&self) -> Ik {
         Ik { bones: self.bones, reference: self.reference(), soft_reach: self.soft_reach }
     }
@@ -38,8 +38,9 @@ impl Arm {
         self.ik().solve(self.cursor_in_root(), self.twist, self.ik_state)
     }
 
-    /// Pose by IK alone with the same twist measured from another kind of reference, which continues
-    /// from `transported`; the arm's own kind continues from its own.
+    /// Pose by IK alone with the same twist, measured from a reference of the given kind. The solve
+    /// continues from the arm's own state if the kind is the arm's, and otherwise from
+    /// `transported`.
     pub fn pose_with_reference(
         &self,
         kind: TwistReferenceKind,
@@ -63,21 +64,21 @@ impl Arm {
         blended(self.fk, solved, self.influence, self.bones, self.cursor_in_root())
     }
 
-    /// Orientation of the hand in the world, and in Root space, which has the same axes.
+    /// Rotation of the hand in the world and in Root space, which have the same axes.
     pub fn hand_rotation(&self, pose: &TwoBonePose) -> DMat3 {
         self.hand_orientation.rotation(pose)
     }
 
-    /// Roll of the forearm at the hand, in radians.
+    /// Roll of the hand about the forearm in a pose, in radians, whole turns included.
     pub fn roll(&self, pose: &TwoBonePose) -> f32 {
         self.hand_orientation.with_roll_in(pose).roll
     }
 }
 
-/// State between solves.
+/// State that a solve passes on to the next one.
 impl Arm {
-    /// Continues the transport of `previous` if the Cursor has moved since and this arm has no
-    /// transported frame yet.
+    /// Continues the transport of `previous` if both arms use [`TwistReferenceKind::Transport`],
+    /// this arm has no transported frame yet, and the Cursor has moved from `previous` to this arm.
     #[must_use]
     pub fn transported_from(self, previous: &Self) -> Self {
         let is_new = self.twist_reference == TwistReferenceKind::Transport
@@ -92,8 +93,8 @@ impl Arm {
         self
     }
 
-    /// Stores the state that the next solve starts from: pointer, transported frame and forearm roll of
-    /// the present pose.
+    /// Stores the state from which the next solve continues: the Pointer, the transported frame and
+    /// the forearm's roll of the present pose.
     #[must_use]
     pub fn with_solve_state(self) -> Self {
         let solved = self.solve();
@@ -107,7 +108,8 @@ impl Arm {
         Self { ik_state, hand_orientation, ..self }
     }
 
-    /// Changes the kind of the twist reference, and the twist so that the elbow stays where it is.
+    /// Changes the kind of the twist reference, and adjusts the twist so that the elbow does not
+    /// move.
     #[must_use]
     pub fn with_twist_reference(self, kind: TwistReferenceKind) -> Self {
         if kind == self.twist_reference {
@@ -120,14 +122,15 @@ impl Arm {
         Self { twist, ..to }.with_solve_state()
     }
 
-    /// Switches to FK in the present pose.
+    /// Switches to FK, with joint angles that keep the present pose.
     #[must_use]
     pub fn switched_to_fk(self) -> Self {
         let fk = Fk::matching(&self.pose(), self.fk);
         Self { fk, influence: 0.0, ..self }.with_solve_state()
     }
 
-    /// Switches to IK in the present pose.
+    /// Switches to IK, with a Cursor and twist that keep the present pose as far as the soft limits
+    /// allow.
     #[must_use]
     pub fn switched_to_ik(self) -> Self {
         let pose = self.pose();
@@ -144,10 +147,11 @@ impl Arm {
     }
 }
 
-/// The twist in keys. With Transport it is measured from the stereographic direction, so that playing
-/// needs no past.
+/// Conversion of the twist from and to its value in keys. With [`TwistReferenceKind::Transport`]
+/// keys measure the twist from the stereographic direction, so that a pose depends on its time
+/// alone and not on earlier poses.
 impl Arm {
-    /// The twist as keys store it.
+    /// The twist as keys store it, in radians.
     pub(super) fn keyed_twist(&self) -> f32 {
         match self.ik_state.transported {
             Some(transported) if self.twist_reference == TwistReferenceKind::Transport => {
@@ -158,7 +162,7 @@ impl Arm {
         }
     }
 
-    /// Sets the twist as keys store it.
+    /// Sets the twist to a value as keys store it, in radians.
     pub(super) fn set_keyed_twist(&mut self, twist: f32) {
         self.twist = wrapped(twist);
         if self.twist_reference == TwistReferenceKind::Transport {
@@ -166,8 +170,9 @@ impl Arm {
         }
     }
 
-    /// Ends the transport: measures a transported twist from the stereographic direction, where the
-    /// Pointer was last.
+    /// Ends the transport: with [`TwistReferenceKind::Transport`], replaces the twist from the
+    /// transported frame by the twist from the stereographic direction, for the Pointer of that
+    /// frame.
     pub(super) fn end_transport(&mut self) {
         if let Some(transported) = self.ik_state.transported
             && self.twist_reference == TwistReferenceKind::Transport

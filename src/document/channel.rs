@@ -5,10 +5,10 @@ use super::rig_kind::RigKind;
 use crate::kinematics::skeleton::{JointId, JointRemap};
 use crate::kinematics::twist::TwistReferenceKind;
 
-/// A value of a document that keys animate.
+/// A value of a document that keys can animate.
 ///
-/// All values are vectors, so that they are handled alike: a number is in x, with y and z 0, and a
-/// switch is 0 or 1 in x.
+/// Every channel has a vector as its value, so that all channels are handled alike: a number is in
+/// x, with y and z 0, and a switch is 0 or 1 in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
     /// The Cursor in Root space, while it is not pinned.
@@ -24,15 +24,15 @@ pub enum Channel {
     Lower,
     /// The Cursor in the world, while it is pinned.
     Pin,
-    /// The point in Root space that the elbow turns to.
+    /// The pole: the point in Root space towards which the elbow turns.
     Pole,
-    /// Influence of IK over FK, from 0 to 1.
+    /// Influence of IK, from 0 (FK alone) to 1 (IK alone).
     Influence,
-    /// Angles of the shoulder by FK in radians, unwrapped.
+    /// FK angles of the shoulder in radians, unwrapped.
     Shoulder,
-    /// Bend of the elbow by FK in radians, unwrapped.
+    /// FK bend of the elbow in radians, unwrapped.
     Bend,
-    /// Length of the limbs by FK, as a multiple of their length at rest.
+    /// FK stretch: the length of the limbs as a multiple of their unstretched length.
     Stretch,
     /// Angles of the hand in radians, unwrapped.
     HandOrientation,
@@ -40,7 +40,8 @@ pub enum Channel {
     Translation,
     /// Euler angles of a joint in radians, unwrapped.
     Rotation(JointId),
-    /// Offset of a joint from its parent's base.
+    /// Vector from the base of a joint's parent to the joint's base, in the parent's space; from
+    /// the skeleton's origin for a root.
     Offset(JointId),
     /// Position of a joint's target at time 0, in the world.
     Target(JointId),
@@ -100,7 +101,7 @@ impl Channel {
     /// The channels that pose the arm by FK, and the influence of IK.
     pub const FK: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
 
-    /// The kind of its values.
+    /// The kind of the channel's values.
     pub fn quantity(self) -> Quantity {
         match self {
             Self::Hand
@@ -118,12 +119,12 @@ impl Channel {
         }
     }
 
-    /// Whether its values are 0 or 1.
+    /// Whether the channel's values are switches, 0 or 1.
     pub fn is_switch(self) -> bool {
         self.quantity() == Quantity::Switch
     }
 
-    /// Whether it changes the pose of an arm with these settings.
+    /// Whether the channel affects the pose of `arm` with its present settings.
     pub fn shapes(self, arm: &Arm) -> bool {
         match self {
             Self::Hand => !arm.is_pinned(),
@@ -136,7 +137,7 @@ impl Channel {
         }
     }
 
-    /// The rig that it belongs to; `None` for overlays.
+    /// The rig that the channel belongs to; `None` for overlays.
     pub fn rig(self) -> Option<RigKind> {
         match self {
             Self::Hand
@@ -160,12 +161,13 @@ impl Channel {
         }
     }
 
-    /// Whether it changes the pose of a rig; targets do so through a solver only.
+    /// Whether the channel poses a rig directly. Channels of targets do not: they act through a
+    /// solver.
     pub fn poses(self, rig: RigKind) -> bool {
         self.rig() == Some(rig) && !matches!(self, Self::Target(_) | Self::Enabled(_))
     }
 
-    /// The joint that it belongs to.
+    /// The joint that the channel belongs to; `None` if it belongs to no joint.
     pub fn joint(self) -> Option<JointId> {
         match self {
             Self::Rotation(joint)
@@ -176,7 +178,7 @@ impl Channel {
         }
     }
 
-    /// The same channel after joints are renumbered; `None` if its joint is removed.
+    /// The same channel after its joint was renumbered; `None` if its joint was removed.
     #[must_use]
     pub fn remapped(self, remap: &JointRemap) -> Option<Self> {
         Some(match self {

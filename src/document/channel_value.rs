@@ -7,10 +7,10 @@ use super::rig_kind::RigKind;
 use super::skeleton_rig::SkeletonRig;
 use crate::kinematics::skeleton::JointId;
 
-/// Values in a document.
+/// Access to the values of channels in a document.
 impl Channel {
-    /// The channels that shape the shown rig. Of a skeleton: its translation, the offsets of its roots,
-    /// the rotations of its joints and its targets.
+    /// Channels that affect the pose of the shown rig. For a skeleton: its translation, the offsets
+    /// of its roots, the rotations of its joints and its targets.
     pub fn of_rig(document: &Document) -> Vec<Self> {
         if document.rig == RigKind::Arm {
             let shapes = |channel: &Self| channel.shapes(&document.arm);
@@ -26,8 +26,9 @@ impl Channel {
         channels
     }
 
-    /// Its value in a document; `None` where there is no such joint or target, and for that one of
-    /// [`Channel::Hand`] and [`Channel::Pin`] that the Cursor does not use.
+    /// The channel's value in a document. `None` for a joint or target that the document does not
+    /// have, for [`Channel::Hand`] while the Cursor is pinned, and for [`Channel::Pin`] while it is
+    /// not.
     pub fn value(self, document: &Document) -> Option<Vec3> {
         let Document { arm, skeleton_rig: rig, display, .. } = document;
         let number = |value| Vec3::new(value, 0.0, 0.0);
@@ -61,8 +62,8 @@ impl Channel {
         })
     }
 
-    /// Sets its value in a document, clamped to its range. Changes nothing where there is no such joint
-    /// or target, and for NaN.
+    /// Sets the channel's value in a document, clamped to the channel's range. Changes nothing if
+    /// `value` contains NaN or is an invalid length of a limb, or if [`Self::value`] is `None`.
     pub fn set(self, document: &mut Document, value: Vec3) {
         let Document { arm, skeleton_rig: rig, display, .. } = document;
         let value = value.clamp(Vec3::MIN, Vec3::MAX);
@@ -109,13 +110,13 @@ impl Channel {
     }
 }
 
-// A value that stays must not copy the skeleton, which documents share.
+// Documents share the skeleton. Setting an identical value must not copy it.
 
 fn translate(rig: &mut SkeletonRig, translation: Vec3) {
     let mut transform = rig.skeleton.transform();
     if !is_identical(transform.translation.into(), translation) {
         transform.translation = translation.into();
-        // Refused only where it is not finite, which it is.
+        // Only a transform that is not finite is refused; this one is finite.
         let _ = rig.skeleton_mut().set_transform(transform);
     }
 }
@@ -135,7 +136,7 @@ fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
     }
 }
 
-/// Whether two values have the same bits.
+/// Whether two vectors are bit-identical.
 fn is_identical(a: Vec3, b: Vec3) -> bool {
     a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
 }

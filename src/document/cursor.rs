@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-/// The Cursor, the hand's target: a point with the space that it is fixed in.
+/// The Cursor, the hand's target: a point and the space in which it is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cursor {
     /// In Root space: it moves with the shoulder.
@@ -10,7 +10,8 @@ pub enum Cursor {
 }
 
 impl Cursor {
-    /// The Cursor in Root space, for a shoulder at `root` in the world. Overflow is clamped to ±`f32::MAX`.
+    /// The Cursor in Root space, for a shoulder at `root` in the world. Overflow is clamped to
+    /// ±`f32::MAX`.
     pub fn in_root(self, root: Vec3) -> Vec3 {
         match self {
             Self::Root(point) => point,
@@ -18,7 +19,8 @@ impl Cursor {
         }
     }
 
-    /// The Cursor in the world, for a shoulder at `root` in the world. Overflow is clamped to ±`f32::MAX`.
+    /// The Cursor in the world, for a shoulder at `root` in the world. Overflow is clamped to
+    /// ±`f32::MAX`.
     pub fn in_world(self, root: Vec3) -> Vec3 {
         match self {
             Self::Root(point) => clamped(root + point),

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// The colours of the window and the scene.
+/// Colour theme of the window and the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Theme {
@@ -17,11 +17,12 @@ pub enum Theme {
 pub enum Overlay {
     /// The Cursor of the arm, or the targets of the skeleton.
     Cursor,
-    /// The Pointer, the axis from the shoulder through the Cursor, or the path that the skeleton follows.
+    /// The arm's Pointer (the axis from the shoulder through hand and Cursor), or the path that the
+    /// skeleton follows.
     Pointer,
-    /// The sphere that the hand cannot enter.
+    /// The sphere around the shoulder that the hand cannot enter.
     InnerLimit,
-    /// The sphere that the hand cannot leave.
+    /// The sphere around the shoulder that the hand cannot leave.
     OuterLimit,
     /// The grid on the plane z = 0.
     GridXy,
@@ -37,35 +38,62 @@ pub enum Overlay {
     Labels,
     /// The shadow on the ground.
     Shadow,
-    /// The path of the hand or of the selected joint in time.
+    /// The path of the hand or of the selected joint over time.
     Trail,
-    /// The rig at some frames before and after.
+    /// The rig at some frames before and after the current time.
     OnionSkins,
-    /// The Outer Limit, coloured by the speed of the elbow there.
+    /// The Outer Limit, coloured by how fast the elbow swings when the Pointer turns there.
     SingularityGlobe,
-    /// The elbow by every kind of twist reference.
+    /// The arm as every other kind of twist reference would pose it.
     TwistReferences,
     /// The hand of the arm, and stripes along its forearm.
     Hand,
 }
 
 impl Overlay {
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cursor => "cursor",
+            Self::Pointer => "pointer",
+            Self::InnerLimit => "inner_limit",
+            Self::OuterLimit => "outer_limit",
+            Self::GridXy => "grid_xy",
+            Self::GridXz => "grid_xz",
+            Self::GridYz => "grid_yz",
+            Self::Ground => "ground",
+            Self::Axes => "axes",
+            Self::Labels => "labels",
+            Self::Shadow => "shadow",
+            Self::Trail => "trail",
+            Self::OnionSkins => "onion_skins",
+            Self::SingularityGlobe => "singularity_globe",
+            Self::TwistReferences => "twist_references",
+            Self::Hand => "hand",
+        }
+    }
+
+    /// The overlay that has this [`name`](Self::name); `None` if no overlay has it.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().find(|overlay| overlay.name() == name)
+    }
+
     /// All overlays, in the order in which panels list them.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_arm = Self::GUIDES.into_iter().chain(Self::ARM);
         of_arm.chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
-    /// The guides of the arm.
+    /// Guides of the arm: Cursor, Pointer and limits.
     pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
 
-    /// The other overlays of the arm.
+    /// Overlays of the arm besides [`Self::GUIDES`].
     pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];
 
-    /// Overlays of motion in time.
+    /// Overlays that show motion over time.
     pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
 
-    /// Overlays around the rig.
+    /// Overlays of the rig's surroundings.
     pub const SURROUNDINGS: [Self; 7] = [
         Self::GridXy,
         Self::GridXz,
@@ -106,7 +134,7 @@ impl Display {
     }
 }
 
-/// Shows these overlays alone.
+/// Collects overlays into a display that shows exactly these.
 impl FromIterator<Overlay> for Display {
     fn from_iter<T: IntoIterator<Item = Overlay>>(overlays: T) -> Self {
         overlays.into_iter().fold(Self { shown: 0 }, |display, overlay| display.with(overlay, true))
@@ -114,7 +142,8 @@ impl FromIterator<Overlay> for Display {
 }
 
 impl Default for Display {
-    /// The surroundings, Cursor, Pointer, hand and trail; the limits would hide the arm.
+    /// A display of the surroundings, Cursor, Pointer, hand and trail. The limits are hidden, since
+    /// their spheres would cover the arm.
     fn default() -> Self {
         let guides = [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Trail];
         Overlay::SURROUNDINGS.into_iter().chain(guides).collect()

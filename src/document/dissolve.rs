@@ -5,39 +5,41 @@ use super::document::Document;
 use super::keys::Keys;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
 
-/// A child of a dissolved joint.
+/// A joint that stays while its parent is dissolved.
 struct Orphan {
     joint: JointId,
-    /// Its new parent; `None` for a new root.
+    /// New parent of the joint; `None` if the joint becomes a root.
     parent: Option<JointId>,
-    /// The dissolved joints between it and its new parent.
+    /// Dissolved joints between the joint and its new parent, the former parent first.
     dissolved: Vec<JointId>,
 }
 
 impl Document {
-    /// Dissolves joints: deletes them and reparents their children to the nearest ancestor that is left.
-    /// The children keep their positions in the world, at this time and at every key of their own or of
-    /// a dissolved joint above them. Limits that exclude a child's new angles are widened.
+    /// Dissolves joints: deletes them and reparents their children to the nearest ancestor that is
+    /// left. A child without one becomes a root. The children keep their positions in the world,
+    /// now and at the time of every key of their own or of a dissolved joint above them. Limits
+    /// that exclude a child's new angles are widened.
     ///
     /// # Errors
     ///
-    /// If the offset or angles of a child below its new parent overflow.
+    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NotFinite`] if a child's new offset or angles
+    /// overflow.
     pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
-        let before = self.clone();
-        let remap = self.skeleton_mut().dissolve(joints)?;
-        self.remap_joints(&remap);
+        let mut after = self.clone();
+        let remap = after.skeleton_mut().dissolve(joints)?;
+        after.remap_joints(&remap);
 
-        let orphans = orphans(before.skeleton(), joints);
-        let rotation = |orphan: &Orphan| before.skeleton()[orphan.joint].rotation;
+        let orphans = orphans(self.skeleton(), joints);
+        let rotation = |orphan: &Orphan| self.skeleton()[orphan.joint].rotation;
         let mut angles: Vec<Vec3> = orphans.iter().map(rotation).collect();
         let times = |(index, orphan): (usize, &Orphan)| {
-            orphan.key_times(&before.keys).into_iter().map(move |time| (time, index))
+            orphan.key_times(&self.keys).into_iter().map(move |time| (time, index))
         };
         let mut keyed: Vec<(f64, usize)> = orphans.iter().enumerate().flat_map(times).collect();
         keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
         for at_time in keyed.chunk_by(|a, b| a.0 == b.0) {
             let (time, _) = at_time[0];
-            let evaluated = before.evaluate(time);
+            let evaluated = self.evaluate(time);
             let pose = evaluated.skeleton().pose_in_skeleton();
             for (_, index) in at_time {
                 let (orphan, angles) = (&orphans[*index], &mut angles[*index]);
@@ -49,25 +51,27 @@ impl Document {
                     orphan.parent,
                     *angles,
                 );
-                self.keys.insert(Channel::Rotation(joint), time, *angles);
-                if orphan.needs_offset_keys(&before.keys) {
-                    self.keys.insert(Channel::Offset(joint), time, offset);
+                after.keys.insert(Channel::Rotation(joint), time, *angles);
+                if orphan.needs_offset_keys(&self.keys) {
+                    after.keys.insert(Channel::Offset(joint), time, offset);
                 }
-                self.skeleton_mut().change(joint, |joint| joint.widen_limits(*angles))?;
+                after.skeleton_mut().change(joint, |joint| joint.widen_limits(*angles))?;
             }
         }
+        *self = after;
         Ok(remap)
     }
 }
 
 impl Orphan {
-    /// Channels of the dissolved joints above it.
+    /// Rotation and offset channels of the dissolved joints above the orphan.
     fn channels_above(&self) -> impl Iterator<Item = Channel> + '_ {
         let both = |joint: &JointId| [Channel::Rotation(*joint), Channel::Offset(*joint)];
         self.dissolved.iter().flat_map(both)
     }
 
-    /// Times of all keys that move it against its new parent, ascending, each once.
+    /// Times of all keys that move the orphan relative to its new parent, ascending and without
+    /// duplicates.
     fn key_times(&self, keys: &Keys) -> Vec<f64> {
         let own = [Channel::Rotation(self.joint), Channel::Offset(self.joint)];
         let mut times: Vec<f64> = self
@@ -81,7 +85,7 @@ impl Orphan {
         times
     }
 
-    /// Whether its base moves against its new parent.
+    /// Whether keys move the orphan's base relative to its new parent.
     fn needs_offset_keys(&self, keys: &Keys) -> bool {
         self.channels_above().any(|channel| keys.has(channel))
             || keys.has(Channel::Offset(self.joint))

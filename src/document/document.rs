@@ -7,7 +7,7 @@ use super::skeleton_rig::SkeletonRig;
 use super::timeline::Timeline;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
 
-/// All that a file holds.
+/// Everything that a document file stores.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// The rig that is shown and edited; the other one is kept.
@@ -18,22 +18,22 @@ pub struct Document {
     pub skeleton_rig: SkeletonRig,
     /// Keys of both rigs and of the overlays.
     pub keys: Keys,
-    /// The time that is played.
+    /// The time range that is played, and its frame rate.
     pub timeline: Timeline,
     /// The camera of the shown rig.
     pub camera: Camera,
-    /// The camera of the other rig; `None` frames that rig when it is shown.
+    /// The camera of the rig that is not shown; with `None`, that rig is framed when it is shown.
     pub other_rig_camera: Option<Camera>,
     /// The overlays that are shown.
     pub display: Display,
-    /// Length in metres of a unit of the shown rig, for exports; `None` is the rig's default: see
-    /// [`Document::metres_per_unit`].
+    /// Length in metres of one unit of the shown rig, for exports; `None` for the rig's default,
+    /// see [`Document::metres_per_unit`].
     pub metres_per_unit: Option<f32>,
 }
 
 impl Document {
-    /// Length in metres of a unit of the shown rig; by default a millimetre for the arm and a metre for
-    /// a skeleton.
+    /// Length in metres of one unit of the shown rig; by default a millimetre for the arm and a
+    /// metre for a skeleton.
     pub fn metres_per_unit(&self) -> f32 {
         self.metres_per_unit.unwrap_or(match self.rig {
             RigKind::Arm => 0.001,
@@ -46,12 +46,14 @@ impl Document {
         &self.skeleton_rig.skeleton
     }
 
-    /// The joints of the skeleton rig for an edit; copied first if other documents share them.
+    /// The joints of the skeleton rig, for editing. They are copied first if other documents share
+    /// them.
     pub fn skeleton_mut(&mut self) -> &mut Skeleton {
         self.skeleton_rig.skeleton_mut()
     }
 
-    /// Shows a rig through the camera that it had last.
+    /// Shows a rig through the camera that it had when it was last shown, or else through one that
+    /// frames it.
     pub fn show(&mut self, rig: RigKind) {
         if rig == self.rig {
             return;
@@ -77,14 +79,14 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// [`SkeletonError::NoJoint`], and the document is unchanged.
+    /// [`SkeletonError::NoJoint`]; the document is then unchanged.
     pub fn delete(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         let remap = self.skeleton_mut().remove(joints)?;
         self.remap_joints(&remap);
         Ok(remap)
     }
 
-    /// Renumbers the joints that targets and keys belong to; drops those of removed joints.
+    /// Renumbers the joints of targets and keys; drops the targets and keys of removed joints.
     pub fn remap_joints(&mut self, remap: &JointRemap) {
         self.skeleton_rig.remap(remap);
         self.keys.remap(remap);

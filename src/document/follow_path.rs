@@ -5,15 +5,16 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::{follow, rotation_between};
 
-/// A closed path that the chain of a skeleton's first root follows in time, as a snake does.
+/// A closed path that the first chain of a skeleton (its first root, that root's first child, and
+/// so on) follows over time, as a snake does.
 ///
-/// The path is in the skeleton's own space, at the height of the root: a circle around the origin with
-/// waves on it.
+/// The path is in skeleton space, at the height of the root: a circle around the origin with waves
+/// on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowPath {
-    /// Radius of the circle.
+    /// Radius of the circle, in skeleton space.
     pub radius: f32,
-    /// Amplitude of the waves.
+    /// Amplitude of the waves, in skeleton space.
     pub amplitude: f32,
     /// Number of waves on the circle.
     pub waves: u32,
@@ -22,7 +23,8 @@ pub struct FollowPath {
 }
 
 impl FollowPath {
-    /// Point of the path, at height 0, after some turns around the circle.
+    /// Point of the path in skeleton space, at height 0, after `turns` revolutions around the
+    /// circle.
     pub fn point(&self, turns: f64) -> Vec3 {
         let turn = turns.rem_euclid(1.0) * TAU;
         let wave = f64::from(self.amplitude) * (turn * f64::from(self.waves)).sin();
@@ -30,13 +32,13 @@ impl FollowPath {
         Vec3::new((radius * turn.cos()) as f32, 0.0, (-radius * turn.sin()) as f32)
     }
 
-    /// Turns around the circle at a time in seconds.
+    /// Number of revolutions around the circle up to a time in seconds.
     pub fn turns_at(&self, time: f64) -> f64 {
         time / f64::from(self.period)
     }
 
-    /// The skeleton at a time: its first root is on the path, and the chain of first children below it
-    /// lies along the path behind.
+    /// The skeleton at a time in seconds: its first root is on the path, and the chain of first
+    /// children lies along the part of the path behind the root.
     pub fn pose(&self, skeleton: &Skeleton, time: f64) -> Skeleton {
         let mut posed = skeleton.clone();
         for (joint, offset, rotation) in self.chain(skeleton, time) {
@@ -45,7 +47,7 @@ impl FollowPath {
         posed
     }
 
-    /// Writes the transforms of [`FollowPath::pose`] into a pose, in its memory.
+    /// Writes the pose of [`FollowPath::pose`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, skeleton: &Skeleton, time: f64, pose: &mut SkeletonPose) {
         let mut chain = self.chain(skeleton, time).peekable();
         skeleton.write_pose_with(pose, |index, joint| {
@@ -58,7 +60,7 @@ impl FollowPath {
         });
     }
 
-    /// Index, offset and Euler angles of each joint on the path, parents first.
+    /// Index, offset and Euler angles (radians) of each joint of the chain, parents first.
     fn chain(&self, skeleton: &Skeleton, time: f64) -> impl Iterator<Item = (JointId, Vec3, Vec3)> {
         const STRIDES_PER_WAVE: f64 = 64.0;
         let joints = skeleton.joints();
@@ -76,7 +78,7 @@ impl FollowPath {
             let mut rotation = joint.clamped(joint.angles_of(Mat3A::from_quat(turn)));
             let is_root = joint.parent.is_none();
             let mut offset = if is_root { base + Vec3::Y * joint.offset.y } else { joint.offset };
-            // Where a bone is so long that squares of its length overflow, the joint stays.
+            // The squared length of a very long bone overflows; the joint is left unchanged.
             if !(rotation.is_finite() && offset.is_finite()) {
                 (offset, rotation) = (joint.offset, joint.rotation);
             }
@@ -86,14 +88,16 @@ impl FollowPath {
         })
     }
 
-    /// Points in the world whose bounding box contains the path.
+    /// Ends of two perpendicular diameters of the circle that encloses the path, at height 0, in
+    /// the world.
     pub fn corners(&self, skeleton: &Skeleton) -> [Vec3; 4] {
         let far = self.radius.abs() + self.amplitude.abs();
         [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z]
             .map(|side| skeleton.transform().transform_point3(side * far))
     }
 
-    /// Points of the path at a height, in the world, from `from` to `to` turns.
+    /// Points of the path in the world, from `from` to `to` revolutions. `transform` maps skeleton
+    /// space to the world; `height` is the path's height in skeleton space.
     pub fn trail(
         &self,
         transform: Affine3A,
@@ -109,7 +113,7 @@ impl FollowPath {
     }
 }
 
-/// The first root, its first child, and so on.
+/// The first root of a skeleton, that root's first child, and so on.
 fn chain(skeleton: &Skeleton) -> impl Iterator<Item = JointId> {
     let root = skeleton.ids().find(|joint| skeleton[*joint].parent.is_none());
     std::iter::successors(root, |joint| skeleton.children(*joint).next())

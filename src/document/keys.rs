@@ -10,7 +10,8 @@ use crate::kinematics::spline::Spline;
 /// The keys of a document: for every keyed channel a track, the spline through its keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keys {
-    /// No track is empty. An edit copies the map and the tracks that it changes; all others stay shared.
+    /// One track per keyed channel, never empty. An edit copies the map and the tracks that it
+    /// changes; all other tracks stay shared.
     tracks: Shared<Tracks>,
 }
 
@@ -22,7 +23,7 @@ impl Keys {
         self.tracks.is_empty()
     }
 
-    /// All keyed channels with their tracks, in the order of the channels.
+    /// All keyed channels with their tracks, sorted by channel.
     pub fn tracks(&self) -> impl Iterator<Item = (Channel, &Spline<Vec3>)> {
         self.tracks.iter().map(|(channel, track)| (*channel, &**track))
     }
@@ -37,7 +38,7 @@ impl Keys {
         self.tracks.contains_key(&channel)
     }
 
-    /// Bytes that these keys take and `other` does not share.
+    /// Size in bytes of the parts of these keys that are not shared with `other`.
     pub(crate) fn unshared_bytes(&self, other: Option<&Self>) -> usize {
         if other.is_some_and(|other| self.tracks.is_same(&other.tracks)) {
             return 0;
@@ -51,19 +52,20 @@ impl Keys {
         self.tracks.len() * size_of::<(Channel, Shared<Spline<Vec3>>)>() + knots
     }
 
-    /// Number of keys of all channels.
+    /// Total number of keys of all channels.
     pub fn count(&self) -> usize {
         self.tracks.values().map(|track| track.knots().len()).sum()
     }
 
-    /// Adds a key, or replaces the one at that time. A time or value that is not finite changes nothing.
+    /// Adds a key at a time in seconds, or replaces the channel's key at that time. Does nothing if
+    /// the time or the value is not finite.
     pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
         if time.is_finite() && value.is_finite() {
             self.tracks.make_mut().entry(channel).or_default().make_mut().insert(time, value);
         }
     }
 
-    /// Removes a key and returns its value.
+    /// Removes a key and returns its value; `None` if the channel has no key at that time.
     pub fn remove(&mut self, channel: Channel, time: f64) -> Option<Vec3> {
         let value = self.track(channel)?.get(time)?;
         self.remove_all(&[(channel, time)]);
@@ -97,7 +99,8 @@ impl Keys {
         }
     }
 
-    /// Interpolated value of a channel at a time, before the limits of joints; `None` without keys.
+    /// Interpolated value of a channel at a time in seconds, before the limits of joints are
+    /// applied; `None` without keys.
     pub fn value(&self, channel: Channel, time: f64) -> Option<Vec3> {
         let track = self.track(channel)?;
         match channel.quantity() {
@@ -108,7 +111,7 @@ impl Keys {
         }
     }
 
-    /// The times of all keys, ascending, each once.
+    /// The times of all keys in seconds, ascending and without duplicates.
     pub fn times(&self) -> Vec<f64> {
         let knots = self.tracks.values().flat_map(|track| track.knots());
         let mut times: Vec<f64> = knots.map(|knot| knot.time).collect();
@@ -117,7 +120,7 @@ impl Keys {
         times
     }
 
-    /// Renumbers the joints that keys belong to; drops the keys of removed joints.
+    /// Renumbers the joints of channels; drops the keys of removed joints.
     pub fn remap(&mut self, remap: &JointRemap) {
         let remapped = |(channel, track): (&Channel, &Shared<Spline<Vec3>>)| {
             Some((channel.remapped(remap)?, track.clone()))
@@ -126,8 +129,8 @@ impl Keys {
     }
 }
 
-/// Minimum of a keyed length, a thousandth of its longest key: a spline overshoots, and a bone needs a
-/// length above 0.
+/// Minimum interpolated value of a keyed length: a thousandth of the longest key. A spline can
+/// overshoot to 0 and below, but a bone must have a length above 0.
 fn min_length(track: &Spline<Vec3>) -> f32 {
     const FRACTION: f32 = 1e-3;
     let longest = track.knots().iter().map(|knot| knot.value.x).fold(0.0, f32::max);

@@ -1,17 +1,18 @@
-//! The document, all that a file holds: the arm, the skeleton with its targets, their keys, the
-//! timeline, the cameras and what is displayed.
+//! The document, everything that a document file stores: the arm, the skeleton with its targets,
+//! their keys, the timeline, the cameras and the set of visible overlays.
 //!
-//! A pose is a function of the document and the time alone: [`Document::evaluate`]. State that a solve
-//! continues from (the last Pointer, the transported frame, the forearm's roll) is therefore part of the
-//! document too.
+//! A pose is a function of the document and the time alone: [`Document::evaluate`]. State from
+//! which a solve continues (the previous Pointer, the transported frame, the forearm's roll) is
+//! therefore part of the document too.
 //!
-//! What is large is [`Shared`](crate::kinematics::Shared): a clone of a document takes little memory, and an edit copies what it
-//! changes.
+//! Large parts are [`Shared`](crate::kinematics::Shared): clones of a document share them, and an
+//! edit copies only the parts that it changes.
 
 mod arm;
 mod arm_solve;
 mod camera;
 mod channel;
+mod channel_name;
 mod channel_value;
 mod cursor;
 mod display;
@@ -33,6 +34,7 @@ pub use crate::kinematics::twist::TwistReferenceKind;
 pub use arm::Arm;
 pub use camera::{AxisView, Camera};
 pub use channel::{Channel, Quantity};
+pub use channel_name::UnknownChannel;
 pub use cursor::Cursor;
 pub use display::{Display, Overlay, Theme};
 pub use document::Document;

@@ -1,20 +1,24 @@
 use glam::{Mat4, Vec2, Vec3};
 
-/// Projection of a camera for the aspect of a picture: maps points of the world into the picture and
-/// back.
+/// Projection of a camera for the aspect ratio of a picture: maps points of the world into the
+/// picture and back.
 ///
-/// Picture coordinates are normalised: x from −1 (left) to 1 (right), y from −1 (bottom) to 1.
+/// Picture coordinates are normalised: x from −1 (left) to 1 (right), y from −1 (bottom) to 1
+/// (top).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
-    /// From the world to clip space; depth is 1 at the near plane and 0 at infinity.
+    /// Matrix from the world to clip space. Depth is 1 at the near plane, and 0 at infinity in
+    /// perspective or at the far plane of an orthographic picture.
     pub clip_from_world: Mat4,
-    /// Position of the eye; for an orthographic picture a point on the central ray.
+    /// Position of the eye in the world; for an orthographic picture a point on the central ray.
     pub eye: Vec3,
-    /// Unit vector into the picture.
+    /// Unit vector in the world from the eye into the picture.
     pub forward: Vec3,
-    /// From the middle of the picture to its right edge, at distance 1 in perspective.
+    /// Vector in the world from the middle of the picture to its right edge. In perspective the
+    /// edge is measured at distance 1 from the eye.
     pub right: Vec3,
-    /// From the middle of the picture to its upper edge, at distance 1 in perspective.
+    /// Vector in the world from the middle of the picture to its upper edge. In perspective the
+    /// edge is measured at distance 1 from the eye.
     pub up: Vec3,
     /// Whether the projection is orthographic.
     pub orthographic: bool,
@@ -30,13 +34,13 @@ pub struct Ray {
 }
 
 impl Projection {
-    /// Projects a point of the world into the picture; `None` behind the eye.
+    /// Projects a point of the world into the picture; `None` before the near plane.
     pub fn project(&self, point: Vec3) -> Option<Vec2> {
         let clip = self.clip_from_world * point.extend(1.0);
         (clip.w > 0.0 && clip.z <= clip.w).then(|| clip.truncate().truncate() / clip.w)
     }
 
-    /// The ray through a point of the picture.
+    /// The ray in the world through a point of the picture.
     pub fn ray(&self, at: Vec2) -> Ray {
         let aside = self.right * at.x + self.up * at.y;
         if self.orthographic {
@@ -54,15 +58,17 @@ impl Projection {
 }
 
 impl Ray {
-    /// Intersection with the plane through `point`; `None` behind the origin or where it overflows.
+    /// Intersection with the plane through `point` with the given normal, of any length. `None` if
+    /// it is behind the origin, or overflows because the ray is nearly parallel to the plane.
     pub fn meets_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
         let along = (point - self.origin).dot(normal) / self.direction.dot(normal);
         let met = self.origin + self.direction * along;
         (along >= 0.0 && met.is_finite()).then_some(met)
     }
 
-    /// Distance from `point` along the unit vector `axis` at which that line is nearest to the ray; `None`
-    /// behind the ray's origin or where it overflows.
+    /// Position, on the line through `point` along the unit vector `axis`, of the point nearest to
+    /// the ray: its signed distance from `point`. `None` if the nearest point is behind the ray's
+    /// origin or overflows.
     pub fn nearest_on_line(&self, point: Vec3, axis: Vec3) -> Option<f32> {
         let normal = axis.cross(self.direction).cross(axis);
         let along_ray = (point - self.origin).dot(normal) / self.direction.dot(normal);

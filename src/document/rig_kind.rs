@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// The two rigs of a document.
+/// One of the two rigs of a document.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RigKind {

@@ -12,18 +12,19 @@ use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 pub struct SkeletonRig {
     /// The joints.
     pub skeleton: Shared<Skeleton>,
-    /// Targets of tips, at most one for a joint.
+    /// Targets for the tips of joints, at most one per joint.
     pub targets: Vec<Target>,
     /// Options of the solver.
     pub solver: SolverOptions,
-    /// Iterations of a solver run per frame.
+    /// Number of solver iterations per displayed frame during a solver run.
     pub iterations_per_frame: u32,
-    /// A path that the chain of the first root follows in time; there are no targets to solve for then.
+    /// Path that the chain of the first root follows over time; with a path, the targets are not
+    /// solved for.
     pub follow_path: Option<FollowPath>,
 }
 
 impl SkeletonRig {
-    /// Maximum of `iterations_per_frame`.
+    /// Maximum of [`Self::iterations_per_frame`].
     pub const MAX_ITERATIONS_PER_FRAME: u32 = 1000;
 
     /// A skeleton without targets.
@@ -37,12 +38,12 @@ impl SkeletonRig {
         }
     }
 
-    /// The joints for an edit; copied first if other rigs share them.
+    /// The joints, for editing. They are copied first if other rigs share them.
     pub fn skeleton_mut(&mut self) -> &mut Skeleton {
         self.skeleton.make_mut()
     }
 
-    /// Index of a joint's target.
+    /// Index of a joint's target in [`Self::targets`]; `None` if the joint has none.
     pub fn target(&self, joint: JointId) -> Option<usize> {
         self.targets.iter().position(|target| target.joint == joint)
     }
@@ -58,7 +59,7 @@ impl SkeletonRig {
         enabled.map(target_at).collect()
     }
 
-    /// The skeleton at a time in seconds: on its path, if it follows one.
+    /// The skeleton at a time in seconds: on the followed path if there is one, else as it is.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
         match &self.follow_path {
             None => self.skeleton.clone(),
@@ -66,7 +67,7 @@ impl SkeletonRig {
         }
     }
 
-    /// Writes the pose of [`SkeletonRig::skeleton_at`] into another pose, in its memory.
+    /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
         match &self.follow_path {
             None => self.skeleton.write_pose(pose),
@@ -74,13 +75,13 @@ impl SkeletonRig {
         }
     }
 
-    /// Whether a target or the skeleton moves without keys.
+    /// Whether an enabled target or the skeleton moves over time without keys.
     pub fn is_moving(&self) -> bool {
         let moves = |target: &Target| target.enabled && target.motion.path != TargetPath::Still;
         self.follow_path.is_some() || self.targets.iter().any(moves)
     }
 
-    /// Whether any joint has a bone rather than being a point.
+    /// Whether any joint has a bone, that is, an axis of non-zero length.
     pub fn has_bones(&self) -> bool {
         self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
     }
@@ -93,7 +94,7 @@ impl SkeletonRig {
     }
 }
 
-/// Sizes and views.
+/// Size of the skeleton, and the camera, grid and bounding spheres that fit it.
 impl SkeletonRig {
     /// A camera that frames the skeleton and its targets at time 0.
     pub fn default_camera(&self) -> Camera {
@@ -101,19 +102,19 @@ impl SkeletonRig {
         Camera::default().framing(centre, radius, 1.0)
     }
 
-    /// Radius of the path of a new target.
+    /// Radius of the path of a new target, in world units.
     pub fn default_path_radius(&self) -> f32 {
         const FRACTION: f32 = 0.15;
         FRACTION * self.reach()
     }
 
-    /// Maximum length of a chain from a root to a tip along bones and offsets, in the world: the size of
-    /// the skeleton.
+    /// Length in the world of the longest chain from a root to a tip along bones and offsets: a
+    /// measure of the skeleton's size. It is 1 if that length is 0 or overflows.
     pub fn reach(&self) -> f32 {
         self.reach_in(&mut Vec::new())
     }
 
-    /// [`SkeletonRig::reach`], computed in `reach`.
+    /// [`SkeletonRig::reach`] with a buffer for intermediate results.
     pub(crate) fn reach_in(&self, reach: &mut Vec<f32>) -> f32 {
         let joints = self.skeleton.joints();
         reach.clear();
@@ -131,19 +132,20 @@ impl SkeletonRig {
         if reach.is_finite() && reach > 0.0 { reach } else { 1.0 }
     }
 
-    /// Width of a cell of the grid around a skeleton of this reach: the power of ten that fits into it 2
-    /// to 20 times.
+    /// Width of a cell of the grid around a skeleton of this reach: the largest power of ten that
+    /// is at most half the reach.
     pub(crate) fn grid_cell_for(reach: f32) -> f32 {
         let cell = 10_f32.powf((reach * 0.5).log10().floor());
         if cell.is_normal() { cell } else { 1.0 }
     }
 
-    /// Bounding sphere of a pose, the targets at a time and the path, in the world: centre and radius.
+    /// Centre and radius of a bounding sphere of a pose, the targets at a time in seconds and the
+    /// followed path, in the world. The radius is at least a quarter of the reach.
     pub fn bounds(&self, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
         self.bounds_with_reach(self.reach(), pose, time)
     }
 
-    /// [`SkeletonRig::bounds`] with a reach that is known.
+    /// [`SkeletonRig::bounds`] for a `reach` that the caller has already computed.
     pub(crate) fn bounds_with_reach(
         &self,
         reach: f32,
@@ -157,7 +159,8 @@ impl SkeletonRig {
         (centre, radius.max(0.25 * reach))
     }
 
-    /// Bounding sphere of the bones of some joints; `None` without joints.
+    /// Centre and radius of a bounding sphere of the bones of some joints, in the world; `None`
+    /// without joints.
     pub fn bounds_of(&self, pose: &SkeletonPose, joints: &[JointId]) -> Option<(Vec3, f32)> {
         let ends = joints.iter().flat_map(|joint| [pose.base(*joint), pose.tip(*joint)]);
         let (centre, radius) = bounding_sphere(ends)?;
@@ -165,7 +168,8 @@ impl SkeletonRig {
     }
 }
 
-/// The sphere around the bounding box of the finite points.
+/// Centre and radius of the sphere around the bounding box of the finite points; `None` without
+/// finite points.
 fn bounding_sphere(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, f32)> {
     let (low, high) = points
         .filter(|point| point.is_finite())

@@ -5,22 +5,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::kinematics::skeleton::JointId;
 
-/// A target of a skeleton: a point for the tip of a joint's bone.
+/// A target of a skeleton: a point that the tip of a joint's bone should reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Its joint.
+    /// Joint whose tip should reach the target.
     pub joint: JointId,
     /// Position at time 0, in the world.
     pub home: Vec3,
-    /// Weight against the other targets, above 0.
+    /// Weight relative to the other targets, above 0.
     pub weight: f32,
-    /// Whether solvers use it.
+    /// Whether solvers use the target.
     pub enabled: bool,
     /// Motion in time.
     pub motion: TargetMotion,
 }
 
-/// Motion of a target along a closed curve through its home, in the plane that faces +z.
+/// Motion of a target along a closed curve through its home, in a plane perpendicular to z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetMotion {
     /// Shape of the curve.
@@ -45,7 +45,8 @@ pub enum TargetPath {
 }
 
 impl TargetMotion {
-    /// Offset from the home at a time in seconds; zero at time 0.
+    /// Vector in the world from the target's home to its position at a time in seconds; zero at
+    /// time 0.
     pub fn offset(&self, time: f64) -> Vec3 {
         let angle = (time / f64::from(self.period)).fract() as f32 * TAU;
         let (sin, cos) = angle.sin_cos();
@@ -59,7 +60,8 @@ impl TargetMotion {
 }
 
 impl Target {
-    /// An enabled target that stays at its home; `radius` is that of its path once it moves.
+    /// An enabled target that stays at its home. `radius` is the radius of the path that it will
+    /// have once it moves.
     pub fn new(joint: JointId, home: Vec3, radius: f32) -> Self {
         let motion = TargetMotion { path: TargetPath::Still, radius, period: 4.0 };
         Self { joint, home, weight: 1.0, enabled: true, motion }

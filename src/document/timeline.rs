@@ -1,4 +1,4 @@
-/// The time that is played, and its frames.
+/// The time range that is played, and its frame rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timeline {
     /// Start in seconds.
@@ -12,12 +12,13 @@ pub struct Timeline {
 impl Timeline {
     /// Frame rates that the timeline offers; imported motions may have others.
     pub const FRAME_RATES: [u32; 3] = [24, 30, 60];
-    /// Maximum of frames per second.
+    /// Maximum number of frames per second.
     pub const MAX_FRAME_RATE: u32 = 1000;
-    /// Maximum distance from time 0 in seconds: a day.
+    /// Maximum distance in seconds of start and end from time 0: one day.
     pub const MAX_TIME: f64 = 86_400.0;
 
-    /// Whether it starts before it ends, within a day of 0, and has 1 to 1000 frames per second.
+    /// Whether the timeline starts before it ends, starts and ends within a day of time 0, and has
+    /// 1 to 1000 frames per second.
     pub fn is_valid(&self) -> bool {
         let times =
             -Self::MAX_TIME <= self.start && self.start < self.end && self.end <= Self::MAX_TIME;
@@ -31,7 +32,8 @@ impl Timeline {
 
     /// Number of frames from start to end, both included.
     pub fn frames(&self) -> usize {
-        /// A last frame that rounding puts past the end by up to this many frames counts.
+        /// Tolerance in frames: the last frame still counts if rounding puts it past the end by
+        /// less than this.
         const ROUNDING: f64 = 1e-6;
         (self.duration() * f64::from(self.frame_rate) + ROUNDING).floor() as usize + 1
     }
@@ -41,13 +43,14 @@ impl Timeline {
         self.start + frame as f64 / f64::from(self.frame_rate)
     }
 
-    /// The nearest time of a frame, where frame 0 is at 0 s.
+    /// The time of the nearest frame in seconds, for frames counted from time 0 instead of from the
+    /// start.
     pub fn snapped(&self, time: f64) -> f64 {
         let rate = f64::from(self.frame_rate);
         (time * rate).round() / rate
     }
 
-    /// A time clamped to start and end.
+    /// A time clamped to the range from start to end.
     pub fn clamp(&self, time: f64) -> f64 {
         time.clamp(self.start, self.end)
     }

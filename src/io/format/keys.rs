@@ -14,36 +14,12 @@ use crate::kinematics::spline::Spline;
 /// One channel and its keys.
 #[derive(Serialize, Deserialize)]
 pub struct ChannelFields {
-    channel: ChannelName,
+    channel: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     overlay: Option<Overlay>,
     keys: Vec<KeyRow>,
-}
-
-/// A [`Channel`] without its joint or overlay.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum ChannelName {
-    Hand,
-    Twist,
-    Root,
-    Upper,
-    Lower,
-    Pin,
-    Pole,
-    Influence,
-    Shoulder,
-    Bend,
-    Stretch,
-    HandOrientation,
-    Translation,
-    Rotation,
-    Offset,
-    Target,
-    Enabled,
-    Overlay,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -59,25 +35,9 @@ impl ChannelFields {
     }
 
     fn new(channel: Channel, track: &Spline<Vec3>) -> Self {
-        let (name, overlay) = match channel {
-            Channel::Hand => (ChannelName::Hand, None),
-            Channel::Twist => (ChannelName::Twist, None),
-            Channel::Root => (ChannelName::Root, None),
-            Channel::Upper => (ChannelName::Upper, None),
-            Channel::Lower => (ChannelName::Lower, None),
-            Channel::Pin => (ChannelName::Pin, None),
-            Channel::Pole => (ChannelName::Pole, None),
-            Channel::Influence => (ChannelName::Influence, None),
-            Channel::Shoulder => (ChannelName::Shoulder, None),
-            Channel::Bend => (ChannelName::Bend, None),
-            Channel::Stretch => (ChannelName::Stretch, None),
-            Channel::HandOrientation => (ChannelName::HandOrientation, None),
-            Channel::Translation => (ChannelName::Translation, None),
-            Channel::Rotation(_) => (ChannelName::Rotation, None),
-            Channel::Offset(_) => (ChannelName::Offset, None),
-            Channel::Target(_) => (ChannelName::Target, None),
-            Channel::Enabled(_) => (ChannelName::Enabled, None),
-            Channel::Overlay(overlay) => (ChannelName::Overlay, Some(overlay)),
+        let overlay = match channel {
+            Channel::Overlay(overlay) => Some(overlay),
+            _ => None,
         };
         let width = channel.quantity().width();
         let row = |time, value: Vec3| KeyRow {
@@ -86,7 +46,7 @@ impl ChannelFields {
         };
         let joint = channel.joint().and_then(|joint| u32::try_from(joint.index()).ok());
         Self {
-            channel: name,
+            channel: channel.name().to_owned(),
             joint: joint.map(Whole),
             overlay,
             keys: track.knots().iter().map(|it| row(it.time, it.value)).collect(),
@@ -94,49 +54,37 @@ impl ChannelFields {
     }
 
     fn channel(&self, at: &JsonPath, document: &Document) -> Result<Channel, FieldError> {
-        let joint = || {
-            let missing =
-                || FieldError::new(at.clone(), "`joint` is missing: each joint has this channel");
-            let joint = self.joint.ok_or_else(missing)?;
-            let joints = document.skeleton().joints().len();
-            check::joint(at.clone().key("joint"), joint, joints)
+        let unknown = || {
+            let reason = format!("must be the name of a channel, got {:?}", self.channel);
+            FieldError::new(at.clone().key("channel"), reason)
         };
-        let target = || {
-            let joint = joint()?;
-            match document.skeleton_rig.target(JointId::new(joint)) {
-                Some(_) => Ok(joint),
-                None => {
-                    let reason = format!("must be a joint with a target, got {joint}");
-                    Err(FieldError::new(at.clone().key("joint"), reason))
-                }
-            }
-        };
-        Ok(match self.channel {
-            ChannelName::Hand => Channel::Hand,
-            ChannelName::Twist => Channel::Twist,
-            ChannelName::Root => Channel::Root,
-            ChannelName::Upper => Channel::Upper,
-            ChannelName::Lower => Channel::Lower,
-            ChannelName::Pin => Channel::Pin,
-            ChannelName::Pole => Channel::Pole,
-            ChannelName::Influence => Channel::Influence,
-            ChannelName::Shoulder => Channel::Shoulder,
-            ChannelName::Bend => Channel::Bend,
-            ChannelName::Stretch => Channel::Stretch,
-            ChannelName::HandOrientation => Channel::HandOrientation,
-            ChannelName::Translation => Channel::Translation,
-            ChannelName::Rotation => Channel::Rotation(JointId::new(joint()?)),
-            ChannelName::Offset => Channel::Offset(JointId::new(joint()?)),
-            ChannelName::Target => Channel::Target(JointId::new(target()?)),
-            ChannelName::Enabled => Channel::Enabled(JointId::new(target()?)),
-            ChannelName::Overlay => Channel::Overlay(self.overlay.ok_or_else(|| {
-                FieldError::new(at.clone(), "`overlay` is missing: each overlay has this channel")
-            })?),
-        })
+        let any_owner = (Some(JointId::default()), Some(Overlay::Cursor));
+        let any = Channel::named(&self.channel, any_owner.0, any_owner.1).ok_or_else(unknown)?;
+        let joint = any.joint().map(|_| self.joint(at, document)).transpose()?;
+        if matches!(any, Channel::Overlay(_)) && self.overlay.is_none() {
+            let reason = "must have `overlay`: each overlay has such a channel";
+            return Err(FieldError::new(at.clone(), reason));
+        }
+        let channel = Channel::named(&self.channel, joint, self.overlay).ok_or_else(unknown)?;
+        if let Channel::Target(joint) | Channel::Enabled(joint) = channel
+            && document.skeleton_rig.target(joint).is_none()
+        {
+            let reason = format!("must be a joint with a target, got {joint}");
+            return Err(FieldError::new(at.clone().key("joint"), reason));
+        }
+        Ok(channel)
+    }
+
+    fn joint(&self, at: &JsonPath, document: &Document) -> Result<JointId, FieldError> {
+        let missing =
+            || FieldError::new(at.clone(), "must have `joint`: each joint has such a channel");
+        let joint = self.joint.ok_or_else(missing)?;
+        let joints = document.skeleton().joints().len();
+        check::joint(at.clone().key("joint"), joint, joints).map(JointId::new)
     }
 }
 
-/// Converts the keys of a document that has everything else already.
+/// Converts the keys; `document` has all other fields already.
 pub fn keys(
     channels: Vec<JsonObject<ChannelFields>>,
     document: &Document,
@@ -146,7 +94,7 @@ pub fn keys(
         let at = JsonPath::root().key("channels").index(index);
         let channel = fields.channel(&at, document)?;
         if keys.has(channel) {
-            return Err(FieldError::new(at, "another entry has the keys of this channel"));
+            return Err(FieldError::new(at, "channel must have one entry, got a second"));
         }
         for (index, row) in fields.keys.iter().enumerate() {
             let value = value(channel.quantity(), row)
