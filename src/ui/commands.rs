@@ -39,7 +39,8 @@ pub(in crate::ui) fn frame_all(session: &Session) -> ViewAction {
     ViewAction::GlideTo(session.framing_all())
 }
 
-/// Deletes the selected joints, or opens a dialog about children that are not selected.
+/// The action that deletes the selected joints. If a selected joint has a child that is not
+/// selected, the action opens a dialog that asks what to do with the children.
 pub(in crate::ui) fn delete(session: &Session) -> Action {
     let joints = session.selection().to_vec();
     let is_left = |parent: Option<JointId>| parent.is_some_and(|parent| joints.contains(&parent));
@@ -53,13 +54,14 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
     }
 }
 
-/// Opens the dialog that renames a joint.
+/// The action that opens the dialog to rename `joint`.
 pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
     let name = session.skeleton().joint(joint).map(|joint| joint.name.clone());
     ShellAction::OpenDialog(Dialog::Rename { joint, name: name.unwrap_or_default() })
 }
 
-/// Adds or removes the target of the selected joint.
+/// The action that adds or removes the target of the selected joint; `None` if no joint is
+/// selected.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
     let joint = session.selected()?;
     Some(match session.skeleton_rig().target(joint) {

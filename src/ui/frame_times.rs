@@ -1,4 +1,4 @@
-//! Durations of the last frames.
+//! Durations of the most recent frames.
 
 use core::time::Duration;
 
@@ -15,38 +15,40 @@ pub struct FrameTime {
     pub encode: Duration,
     /// Waiting for vsync or the GPU.
     pub wait: Duration,
-    /// GPU time, known some frames later; `None` without timestamp queries.
+    /// Time on the GPU. `None` until it is read back some frames later, and without timestamp
+    /// queries.
     pub gpu: Option<Duration>,
-    /// Time since the previous frame began, if that frame requested this one at once.
+    /// Time from the start of the previous frame to the start of this one; `None` unless the
+    /// previous frame requested this one without a delay.
     pub interval: Option<Duration>,
 }
 
 impl FrameTime {
-    /// CPU time.
+    /// CPU time: the sum of all stages except the wait.
     pub fn work(&self) -> Duration {
         self.solve + self.panels + self.scene + self.encode
     }
 
-    /// Time from input to presentation.
+    /// Time from input to presentation: CPU time and wait.
     pub fn total(&self) -> Duration {
         self.work() + self.wait
     }
 }
 
-/// Durations of the last frames, in a ring buffer that never allocates.
+/// Durations of the last [`Self::MOST`] frames, in a ring buffer that never allocates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// Frame n is at index n modulo the length.
+    /// Frame n is at index n modulo the length of the array.
     frames: [FrameTime; Self::MOST],
     drawn: u64,
 }
 
-/// Median and 99th percentile of durations.
+/// Median and 99th percentile of a set of durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeSpread {
-    /// Half of the durations are below it.
+    /// Duration that half of the frames do not exceed.
     pub median: Duration,
-    /// One duration in a hundred is above it.
+    /// Duration that 99 of 100 frames do not exceed.
     pub slowest: Duration,
 }
 
@@ -57,10 +59,10 @@ impl Default for FrameTimes {
 }
 
 impl FrameTimes {
-    /// Number of frames kept.
+    /// Maximum number of frames in the buffer.
     pub const MOST: usize = 240;
 
-    /// Adds the durations of a frame, in place of the oldest.
+    /// Adds the durations of a frame; a full buffer drops its oldest frame.
     pub fn push(&mut self, frame: FrameTime) {
         let place = self.place(self.drawn);
         self.frames[place] = frame;
@@ -72,7 +74,7 @@ impl FrameTimes {
         self.drawn
     }
 
-    /// Sets the GPU time of a frame, unless the frame is no longer kept.
+    /// Sets the GPU time of the frame with the index `frame`, if that frame is in the buffer.
     pub fn set_gpu(&mut self, frame: u64, time: Duration) {
         let is_kept = frame < self.drawn && self.drawn - frame <= Self::MOST as u64;
         if is_kept {
@@ -81,19 +83,20 @@ impl FrameTimes {
         }
     }
 
-    /// The kept frames, oldest first.
+    /// The frames in the buffer, oldest first.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = &FrameTime> {
         let count = self.drawn.min(Self::MOST as u64);
         let first = self.drawn - count;
         (0..count as usize).map(move |index| &self.frames[self.place(first + index as u64)])
     }
 
-    /// The newest frame.
+    /// The newest frame; `None` before the first frame.
     pub fn last(&self) -> Option<&FrameTime> {
         self.frames().last()
     }
 
-    /// Median and 99th percentile of one duration; `None` if no frame has it.
+    /// Median and 99th percentile of the durations that `part` returns for the frames in the
+    /// buffer; `None` if `part` returns `None` for all of them.
     pub fn spread(&self, part: impl Fn(&FrameTime) -> Option<Duration>) -> Option<TimeSpread> {
         let mut times = [Duration::ZERO; Self::MOST];
         let mut count = 0;
@@ -108,7 +111,8 @@ impl FrameTimes {
         Some(TimeSpread { median: *times.get(at(50))?, slowest: *times.get(at(99))? })
     }
 
-    /// Frames per second while something moves, from the median interval.
+    /// Frames per second during continuous motion, from the median interval; `None` if no frame in
+    /// the buffer has an interval.
     pub fn per_second(&self) -> Option<f64> {
         let interval = self.spread(|frame| frame.interval)?.median.as_secs_f64();
         (interval > 0.0).then(|| interval.recip())

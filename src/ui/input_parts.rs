@@ -5,12 +5,13 @@ use egui::{Event, Key};
 /// Splits a frame's events so that the panels can answer each key press and mouse button before the
 /// next one arrives.
 ///
-/// A slow frame gathers several: Ctrl+S and the first letters of a file name, or Ctrl+1 and the
-/// release of Ctrl. In one pass the letters would act as shortcuts, since the dialog is not open yet,
-/// and every key would have the modifiers that are held at the end of the frame. Each part holds at
-/// most one press with the modifiers that were held then, and the text that it types.
+/// A slow frame gathers several presses: Ctrl+S and the first letters of a file name, or Ctrl+1 and
+/// the release of Ctrl. In one pass the letters would act as shortcuts, since the dialog is not
+/// open yet, and every key would have the modifiers that are held at the end of the frame. Each
+/// part holds at most one press, the modifiers that were held at that press, and the text that it
+/// types.
 ///
-/// There is at least one part, so that a frame without events is drawn too.
+/// Returns at least one part, which may be empty, so that a frame without events is drawn too.
 pub fn strokes(events: Vec<Event>) -> Vec<Vec<Event>> {
     let mut parts = vec![Vec::new()];
     let mut has_press = false;
@@ -28,8 +29,9 @@ pub fn strokes(events: Vec<Event>) -> Vec<Vec<Event>> {
     parts
 }
 
-/// Moves typed events to `deferred`, for the dialog that is about to open. Esc stays: it ends the
-/// wait.
+/// Moves key, text and clipboard events of `stroke` to `deferred`, because they are meant for a
+/// file dialog that is not open yet. Returns the other events and Esc, which cancels the wait for
+/// that dialog.
 pub fn hold_typed(stroke: Vec<Event>, deferred: &mut Vec<Event>) -> Vec<Event> {
     let is_typed = |event: &Event| match event {
         Event::Key { key, .. } => *key != Key::Escape,
@@ -41,7 +43,8 @@ pub fn hold_typed(stroke: Vec<Event>, deferred: &mut Vec<Event>) -> Vec<Event> {
     rest
 }
 
-/// Releases of mouse buttons count too: a click is a release.
+/// Whether the event is a key press, a clipboard event, or a press or release of a mouse button.
+/// Releases count, because egui reports a click at the release.
 fn is_press(event: &Event) -> bool {
     match event {
         Event::Key { pressed, .. } => *pressed,

@@ -35,7 +35,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     }
 }
 
-/// A number of keys, such as "1 key" or "3 keys".
+/// Formats a number of keys, such as "1 key" or "3 keys".
 pub(in crate::ui) fn count_of_keys(count: usize) -> String {
     match count {
         1 => "1 key".to_owned(),

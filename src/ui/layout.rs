@@ -7,8 +7,8 @@ use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport
 use crate::document::RigKind;
 use crate::session::{Actions, Session};
 
-/// Shows all panels. Returns the rectangle of the viewport in points; `picture` is the scene as
-/// last drawn there.
+/// Shows all panels and returns the rectangle of the viewport in points. `picture` is the texture
+/// into which the scene is rendered; `None` while there is no graphics device.
 pub fn show(
     ui: &mut Ui,
     session: &Session,

@@ -100,7 +100,7 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// Channels to key, those of overlays in a submenu.
+/// Shows the menu of channels to key; the channels of overlays are in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Selected", "K") {
         actions.push(EditAction::Key(session.channels_to_key()));
@@ -135,7 +135,8 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// Undo or redo with the label of its step.
+/// Shows the item to undo or redo a step. `name` is the label of the step; `None` disables the
+/// item.
 fn step(
     ui: &mut Ui,
     verb: &str,

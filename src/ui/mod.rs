@@ -1,4 +1,4 @@
-//! The panels: functions that read a session and push actions. They know no window and no GPU.
+//! The panels: functions that read a session and push actions. They use neither a window nor a GPU.
 
 mod commands;
 mod dialogs;

@@ -1,4 +1,5 @@
-//! The status bar: the last message, the keys of a drag, or the pose.
+//! The status bar: the offset and shortcuts of a drag, the current message, or a description of the
+//! pose.
 
 use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
@@ -29,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actio
     });
 }
 
-/// Progress of an export with a button that cancels it.
+/// Shows the progress of an export, and a button that cancels it.
 fn show_job(ui: &mut Ui, job: &ExportJob, actions: &mut Actions) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Cancel the export; no file is written").clicked() {
@@ -79,7 +80,8 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     )
 }
 
-/// The applied rotation, which at a limit is less than the rotation of the mouse.
+/// Describes a rotation: the applied angle, which at a joint limit is less than the angle of the
+/// mouse, and the shortcuts of the drag.
 fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     const AT_LIMIT: f32 = 1e-5;
     let joints = session.skeleton().joints();

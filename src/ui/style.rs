@@ -1,4 +1,4 @@
-//! Colours, spacing and fonts of the panels, from the scene's palette.
+//! Colours, spacing and fonts of the panels. The accent colour is that of the scene's palette.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::document::Theme;
 use crate::render::SystemFace;
 use crate::scene::{Colour, Palette};
 
-/// Colours of the panels that are not in the scene's palette.
+/// Colours that the panels have in addition to the scene's palette.
 #[derive(Clone, Copy, Debug)]
 struct PanelColours {
     panel: Color32,
@@ -69,6 +69,8 @@ pub fn install(ctx: &Context) {
             spacing.interact_size = vec2(32.0, 22.0);
             spacing.icon_width = 16.0;
             spacing.menu_margin = egui::Margin::same(6);
+            // Otherwise scroll bars cover the ends of texts.
+            spacing.scroll.floating_allocated_width = 4.0;
             spacing.window_margin = egui::Margin::same(12);
             spacing.tooltip_width = 320.0;
             let size = |size| FontId::new(size, FontFamily::Proportional);
@@ -84,7 +86,8 @@ pub fn install(ctx: &Context) {
     }
 }
 
-/// Finds system fonts for letters that egui's fonts lack, once per letter.
+/// Returns a font provider that calls `find` for letters that egui's fonts lack. egui asks the
+/// provider at most once per letter and font family.
 fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> {
     Arc::new(move |request: &FallbackRequest<'_>| {
         let face = find(request.cluster.chars().next()?)?;
@@ -101,12 +104,12 @@ pub fn apply(ctx: &Context, theme: Theme) {
     ctx.set_theme(egui_theme(theme));
 }
 
-/// The scene's palette of the current theme.
+/// The scene's palette in the current theme.
 pub(in crate::ui) fn palette(ui: &egui::Ui) -> Palette {
     Palette::new(if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light })
 }
 
-/// The accent colour.
+/// The accent colour of the current theme.
 pub(in crate::ui) fn accent(ui: &egui::Ui) -> Color32 {
     colour(palette(ui).accent)
 }
@@ -167,7 +170,7 @@ fn visuals(theme: Theme) -> Visuals {
 mod tests {
     use super::*;
 
-    /// Relative luminance and contrast of WCAG 2.1.
+    /// Contrast ratio of two colours from their relative luminance, as WCAG 2.1 defines both.
     fn contrast(a: Color32, b: Color32) -> f32 {
         let luminance = |c: Color32| {
             let [r, g, b] = [c.r(), c.g(), c.b()].map(|channel| {

@@ -85,7 +85,7 @@ pub(in crate::ui) fn ui(
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
-        let name = ui.label("ExportFrames per second");
+        let name = ui.label("Frames per second");
         ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::MAX_FRAME_RATE))
             .labelled_by(name.id);
         ui.end_row();
@@ -170,7 +170,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
     });
 }
 
-/// The path without extension and frame number digits (`_####`).
+/// The path without its extension and without the placeholder of the frame number, `_####`.
 fn stem(path: &str) -> String {
     let without = Path::new(path).with_extension("");
     let without = without.to_string_lossy();

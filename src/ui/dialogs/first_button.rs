@@ -2,7 +2,8 @@
 
 use egui::Ui;
 
-/// A button that takes the keyboard, so that Enter presses it.
+/// Shows a button that takes the keyboard focus if no widget has it, so that Enter presses the
+/// button. Returns whether the button was pressed.
 pub(super) fn first_button(ui: &mut Ui, name: &str) -> bool {
     let button = ui.button(name);
     if ui.memory(|memory| memory.focused().is_none()) {

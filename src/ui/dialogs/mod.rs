@@ -86,7 +86,8 @@ pub(in crate::ui) fn ui(
     });
 }
 
-/// True in the first frame of a dialog.
+/// Whether the open dialog differs in kind from that of the previous frame: true in the first frame
+/// of a dialog.
 fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     let now = dialog.map(|dialog| match dialog {
         Dialog::Path(path) => (discriminant(dialog), Some(discriminant(path))),
@@ -98,7 +99,7 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// A modal window.
+/// Shows `contents` in a modal window.
 fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
@@ -113,7 +114,8 @@ fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A window that leaves the rest usable, first placed at the right of the viewport.
+/// Shows `contents` in a window that is not modal, so that everything else stays usable. The window
+/// is placed at the upper right of the viewport at first; closing the window closes the dialog.
 fn beside(
     ui: &Ui,
     title: &str,

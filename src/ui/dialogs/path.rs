@@ -38,7 +38,8 @@ pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     action: FileAction::SaveAs,
 };
 
-/// A text box for a path, with a button for the system file dialog.
+/// Shows a text box that contains `path`, the `problem` with the path, if any, and the buttons of
+/// the dialog, one of which opens the system's file dialog.
 pub(super) fn ask_path(
     ui: &mut Ui,
     session: &Session,
@@ -85,7 +86,7 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
     }
 }
 
-/// Shows the folder of a path that is typed without one.
+/// Shows the folder in which the dialog's path lies, also if the path is typed without a folder.
 pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog) {
     let full = session.full_path(dialog, dialog.path());
     let full = std::path::absolute(&full).unwrap_or(full);
@@ -93,7 +94,9 @@ pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog)
     ui.add(Label::new(RichText::new(format!("In {folder}")).weak()).truncate());
 }
 
-/// The action, or a dialog before it overwrites a file other than the open one.
+/// Returns `action`, which writes the file at `path`. If that would overwrite a file other than the
+/// open one, returns the action that opens a dialog to ask first; cancelling that dialog leads back
+/// to `back`.
 pub(in crate::ui) fn unless_there(
     session: &Session,
     path: PathBuf,

@@ -4,8 +4,8 @@ use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Key, TextEdit, Ui};
 
-/// A text line that takes the keyboard and selects its text when it is new. Returns the text, and
-/// true when Enter was pressed.
+/// Shows a text line with the label `prompt`. If `is_new`, the line takes the keyboard focus and
+/// its text is selected. Returns the text, and whether Enter was pressed.
 pub(in crate::ui) fn prompt(ui: &mut Ui, prompt: &str, text: &str, is_new: bool) -> (String, bool) {
     let mut typed = text.to_owned();
     let name = ui.label(prompt);

@@ -78,7 +78,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             ],
         ),
     ];
-    // Two columns show all at once; a smaller window scrolls.
+    // Two columns show all shortcuts at once; a window too small for them scrolls.
     let room = ui.ctx().content_rect().size() - vec2(64.0, 96.0);
     let size = vec2(900.0, 460.0).min(room);
     ui.set_min_size(size);

@@ -1,4 +1,4 @@
-//! The gizmo of the arm: handles of hand and Pole, and rings of the joint angles.
+//! The gizmo of the arm: handles of Cursor and Pole, and rings of the joint angles.
 
 use egui::{Color32, Painter, Pos2, Ui};
 
@@ -10,7 +10,8 @@ use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Screen positions of the arm's handles; `None` for those behind the eye.
+/// Screen positions of the arm's handles. Handles that are behind the eye, or that move nothing in
+/// the arm's current mode, are left out.
 pub(in crate::ui) struct ArmGizmo {
     hand: Option<TranslateHandles>,
     pole: Option<TranslateHandles>,
@@ -20,7 +21,8 @@ pub(in crate::ui) struct ArmGizmo {
 impl ArmGizmo {
     pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         let (arm, pose) = (session.arm(), session.pose());
-        // In a blend of IK and FK the hand is away from the Cursor and is no handle of it.
+        // In a blend of IK and FK the hand is away from the Cursor, so the hand is no handle of the
+        // Cursor.
         let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
         let is_led = arm.uses_ik();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
@@ -37,7 +39,7 @@ impl ArmGizmo {
         }
     }
 
-    /// The handle at a screen position.
+    /// The handle at a screen position; `None` if there is no handle.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let on = |handles: &Option<TranslateHandles>| handles.as_ref()?.at(mouse);
         let of_hand = on(&self.hand).map(Grip::Hand);
@@ -68,7 +70,8 @@ impl ArmGizmo {
     }
 }
 
-/// Hidden while another handle is dragged.
+/// Paints the handles of one point, unless a handle of something else is dragged. `pointed` and
+/// `own` are the hovered and the dragged handle of this point.
 fn paint(
     handles: Option<&TranslateHandles>,
     painter: &Painter,

@@ -1,4 +1,4 @@
-//! Handles in the viewport: their places on screen, hit tests and painting.
+//! Handles in the viewport: their positions on screen, hit tests and painting.
 
 mod arm;
 mod rotate;
@@ -19,7 +19,7 @@ use skeleton::SkeletonGizmo;
 pub(in crate::ui) enum Gizmo {
     Arm(ArmGizmo),
     Skeleton(SkeletonGizmo),
-    /// A crowd has no handles.
+    /// No handles, because a crowd is shown.
     None,
 }
 
@@ -34,7 +34,7 @@ impl Gizmo {
         }
     }
 
-    /// The handle at a screen position.
+    /// The handle at a screen position; `None` if there is no handle.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         match self {
             Self::Arm(arm) => arm.at(mouse),
@@ -43,7 +43,8 @@ impl Gizmo {
         }
     }
 
-    /// The joint whose bone is at a screen position.
+    /// The joint whose bone is at a screen position; `None` if there is no bone, and for an arm or
+    /// a crowd.
     pub fn joint_at(&self, mouse: Pos2) -> Option<JointId> {
         match self {
             Self::Arm(_) | Self::None => None,

@@ -1,4 +1,4 @@
-//! A ring that rotates about one axis, of constant size on screen.
+//! A ring of constant size on screen; a drag of the ring rotates about one axis.
 
 use core::f32::consts::TAU;
 
@@ -8,21 +8,23 @@ use super::shape::to_segment;
 use crate::session::{Grip, GripRing};
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Radius in points.
+/// Radius of the ring in points.
 const RADIUS: f32 = 56.0;
+/// Maximum distance in points at which the mouse hits a ring.
 const HIT: f32 = 7.0;
+/// Number of line segments of the ring.
 const STEPS: usize = 64;
 
 /// Screen positions of a ring.
 pub(in crate::ui) struct RotateRing {
     pub grip: Grip,
     points: Vec<Pos2>,
-    /// True for points on the side of the eye.
+    /// For each point, whether it is on the half of the ring that faces the eye.
     near: Vec<bool>,
 }
 
 impl RotateRing {
-    /// `None` if the centre is behind the eye.
+    /// Computes the screen positions of `ring`; `None` if its centre is behind the eye.
     pub fn new(screen: &ScreenProjection, grip: Grip, ring: GripRing) -> Option<Self> {
         let GripRing { centre, axis } = ring;
         let radius = RADIUS * screen.units_per_point(centre);
@@ -38,7 +40,8 @@ impl RotateRing {
         Some(Self { grip, points, near })
     }
 
-    /// The nearest ring at a screen position.
+    /// The handle of the ring nearest to a screen position; `None` if every ring is farther than
+    /// `HIT`.
     pub fn at(rings: &[Self], mouse: Pos2) -> Option<Grip> {
         rings
             .iter()

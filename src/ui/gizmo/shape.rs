@@ -6,7 +6,8 @@ pub(in crate::ui) fn bright(colour: Color32) -> Color32 {
     colour.lerp_to_gamma(Color32::WHITE, 0.35)
 }
 
-/// Distance from a point to a line segment; infinite for a segment that is off screen.
+/// Distance in points from a screen position to a line segment; infinite if an end of the segment
+/// is not finite, as behind the eye.
 pub(in crate::ui) fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {
     if !(from.is_finite() && to.is_finite()) {
         return f32::INFINITY;

@@ -11,11 +11,15 @@ use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Radius in points.
+/// Radius in points of the circle around a bone's tip.
 const TIP: f32 = 7.0;
+/// Maximum distance in points at which the mouse hits a tip.
 const TIP_HIT: f32 = 10.0;
+/// Radius in points of the circle around a target.
 const TARGET: f32 = 9.0;
+/// Maximum distance in points at which the mouse hits a target.
 const TARGET_HIT: f32 = 12.0;
+/// Maximum distance in points at which the mouse hits a bone.
 const BONE_HIT: f32 = 8.0;
 
 /// Screen positions of the skeleton's handles.
@@ -27,7 +31,7 @@ pub(in crate::ui) struct SkeletonGizmo {
     rings: Vec<RotateRing>,
 }
 
-/// A bone on screen with its depth.
+/// A bone on screen. `depth` is the distance of its middle from the eye along the view direction.
 struct ScreenBone {
     base: Pos2,
     tip: Pos2,
@@ -52,7 +56,8 @@ impl SkeletonGizmo {
         }
     }
 
-    /// The handle at a screen position: first the selection's handles, then targets, then tips.
+    /// The handle at a screen position; `None` if there is no handle. The handles of the selected
+    /// joint's target come first, then targets, then tips, then rings.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_handles = self.handles.as_ref().and_then(|(joint, handles)| {
             handles.at(mouse).map(|handle| Grip::Target(*joint, handle))
@@ -68,7 +73,8 @@ impl SkeletonGizmo {
         Some(Grip::Target(hit.joint, PointHandle::Free))
     }
 
-    /// The tip at a screen position: the selected one first, then the nearest, then the last.
+    /// The tip at a screen position; `None` if there is no tip. Of several tips, that of a selected
+    /// joint comes first, then the nearest, then that of the last joint.
     fn tip_at(&self, mouse: Pos2) -> Option<Grip> {
         let tips = self
             .bones
@@ -83,7 +89,8 @@ impl SkeletonGizmo {
         Some(Grip::Tip(JointId::new(joint), PointHandle::Free))
     }
 
-    /// The joint whose bone is at a screen position, nearest to the eye.
+    /// The joint whose bone is at a screen position; of several, the one nearest to the eye. `None`
+    /// if there is no bone.
     pub fn joint_at(&self, mouse: Pos2) -> Option<JointId> {
         let hits = self
             .bones
@@ -167,7 +174,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Option<(JointId, Tra
     Some((joint, TranslateHandles::new(screen, target.at(session.time()), None)?))
 }
 
-/// The rings of the selected joint.
+/// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
     let Some(joint) = session.selected().filter(|_| session.skeleton_rig().follow_path.is_none())
     else {

@@ -9,43 +9,46 @@ use crate::session::PointHandle;
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Length in points.
+/// Length in points of an arrow that is normal to the view direction.
 const LENGTH: f32 = 80.0;
+/// Distances in points from the centre to the near and the far edges of a square.
 const SQUARE: (f32, f32) = (24.0, 42.0);
+/// Maximum distance in points at which the mouse hits an arrow.
 const HIT: f32 = 10.0;
+/// Radius in points, around the centre, of the handle that moves the point freely.
 const FREE_RADIUS: f32 = 14.0;
 
-/// Arrows shorter than this fraction of their length are hidden, and squares narrower than this
-/// fraction of their size.
+/// An arrow is hidden if it is shorter on screen than this fraction of `LENGTH`.
 const SHORTEST: f32 = 0.25;
+/// A square is hidden if its area on screen is below this fraction of its full area.
 const NARROWEST: f32 = 0.2;
 
 const NAMES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Screen positions of the handles.
+/// Screen positions of the handles of one point.
 pub(in crate::ui) struct TranslateHandles {
     centre: Pos2,
-    /// The hand, which can be away from the Cursor.
+    /// The hand, if it serves as a second handle of the Cursor; it can be away from the Cursor.
     hand: Option<Pos2>,
-    /// Vectors on screen from the centre to the tips of the arrows.
+    /// Vectors on screen, in points, from the centre to the tips of the x, y and z arrows.
     arrows: [Vec2; 3],
 }
 
 impl TranslateHandles {
-    /// Handles around `cursor`, with `hand` as a second place to drag it by; `None` behind the
-    /// eye.
+    /// Handles around the world point `cursor`; `hand` is a second point by which `cursor` can be
+    /// dragged. `None` if `cursor` is behind the eye.
     pub fn new(screen: &ScreenProjection, cursor: Vec3, hand: Option<Vec3>) -> Option<Self> {
         let centre = screen.place(cursor)?;
         let unit = LENGTH * screen.units_per_point(cursor);
         let mut arrows = [Vec2::ZERO; 3];
         for (arrow, axis) in arrows.iter_mut().zip(Vec3::AXES) {
-            // Without perspective: arrows towards the eye would be endless.
+            // Projected without perspective, because arrows towards the eye would be endless.
             *arrow = screen.direction(axis * unit, cursor);
         }
         Some(Self { centre, hand: hand.and_then(|hand| screen.place(hand)), arrows })
     }
 
-    /// The handle at a screen position.
+    /// The handle at a screen position; `None` if there is no handle.
     pub fn at(&self, mouse: Pos2) -> Option<PointHandle> {
         let on_free = |centre: Pos2| centre.distance(mouse) <= FREE_RADIUS;
         if on_free(self.centre) || self.hand.is_some_and(on_free) {
@@ -119,7 +122,8 @@ impl TranslateHandles {
         self.arrows[axis].length() > LENGTH * SHORTEST
     }
 
-    /// The two sides of the square that is normal to `axis`.
+    /// The directions on screen of the two sides of the square that is normal to `axis`; a side
+    /// that is normal to the view direction has length 1.
     fn sides(&self, axis: usize) -> (Vec2, Vec2) {
         (self.arrows[(axis + 1) % 3] / LENGTH, self.arrows[(axis + 2) % 3] / LENGTH)
     }

@@ -1,4 +1,5 @@
-//! The view axes in the corner: drag them to orbit, click an end to look along it.
+//! The view axes in the corner: drag them to orbit, click the end of an axis to look along the
+//! axis.
 
 use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
@@ -19,12 +20,12 @@ struct AxisEnd {
     name: &'static str,
     letter: &'static str,
     at: Pos2,
-    /// Depth towards the viewer.
+    /// Component towards the viewer of the unit vector along the axis, from −1 to 1.
     depth: f32,
     colour: Color32,
 }
 
-/// True if a screen position is on the view axes.
+/// Whether a screen position is on the view axes.
 pub(in crate::ui) fn covers(viewport: Rect, at: Pos2) -> bool {
     centre(viewport).distance(at) <= RADIUS + END + 2.0
 }
@@ -33,7 +34,8 @@ fn centre(viewport: Rect) -> Pos2 {
     viewport.right_bottom() - Vec2::splat(RADIUS + END + MARGIN)
 }
 
-/// Shows the axes at the lower right of `viewport`, which handles drags on them.
+/// Shows the axes at the lower right of `viewport`, and handles clicks on their ends. Drags on the
+/// axes are handled by the viewport.
 pub(in crate::ui) fn ui(ui: &Ui, viewport: Rect, session: &Session, actions: &mut Actions) {
     let centre = centre(viewport);
     let painter = ui.painter();

@@ -2,11 +2,11 @@
 
 use egui::{Id, Ui};
 
-/// Marks a focused widget that leaves Space to playback.
+/// Marks a widget that makes no use of Space, so that Space plays or pauses while it has the focus.
 #[derive(Clone, Copy, Default)]
 struct IgnoresSpace;
 
-/// Lets Space play or pause while this widget has the keyboard.
+/// Lets Space play or pause while `widget` has the keyboard focus.
 pub(in crate::ui) fn leave_space(ui: &Ui, widget: Id) {
     ui.data_mut(|data| data.insert_temp(widget, IgnoresSpace));
 }
@@ -16,11 +16,12 @@ pub(in crate::ui) fn leaves_space(ui: &Ui) -> bool {
     focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresSpace>(id)).is_some())
 }
 
-/// True while a text field has the keyboard.
+/// Whether a text field had the keyboard focus at the end of the previous frame.
 #[derive(Clone, Copy, Default)]
 struct TextFocus(bool);
 
-/// Stores whether a text field has the keyboard; Esc removes the focus before the next frame.
+/// Stores for the next frame whether a text field has the keyboard focus, because Esc removes the
+/// focus before the next frame runs the panels.
 pub(in crate::ui) fn remember(ui: &Ui) {
     let typing = TextFocus(ui.text_edit_focused());
     ui.data_mut(|data| data.insert_temp(egui::Id::NULL, typing));

@@ -10,7 +10,8 @@ use crate::session::{
 };
 use crate::ui::commands;
 
-/// Handles single keys while the viewport, the outliner or no widget has the keyboard.
+/// Handles shortcuts of single keys, for use while the viewport, the outliner, the timeline or no
+/// widget has the keyboard focus.
 pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions) {
     if session.is_asking() {
         return;
@@ -83,8 +84,8 @@ fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// Orbits by arrow keys, pans with Shift, zooms by plus and minus, while the viewport has the
-/// keyboard.
+/// Moves the camera while the viewport has the keyboard focus: arrow keys orbit, arrow keys with
+/// Shift pan, plus and minus zoom. `aspect` is the ratio of the viewport's width to its height.
 pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut Actions) {
     const TURN: f32 = 5.0 * core::f32::consts::PI / 180.0;
     const PAN: f32 = 0.1;

@@ -1,4 +1,4 @@
-//! The crowd: number of arms, solver, and solve times.
+//! The crowd's window: number of arms, solver, and solve times.
 
 use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 

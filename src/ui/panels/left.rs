@@ -56,7 +56,7 @@ fn guides(session: &Session) -> &'static [Overlay] {
     }
 }
 
-/// Check boxes of overlays in `count` columns.
+/// Shows check boxes of overlays in `count` columns.
 fn overlays(
     ui: &mut Ui,
     session: &Session,

@@ -1,4 +1,4 @@
-//! Frame statistics: a graph of the last frames, durations, and contents of the scene.
+//! Frame statistics: a graph of the most recent frames, durations, and contents of the scene.
 
 use core::time::Duration;
 
@@ -16,14 +16,14 @@ use crate::ui::widgets::plot;
 pub(in crate::ui) const WIDTH: f32 = 272.0;
 const HEIGHT: f32 = 96.0;
 const ROW: f32 = 17.0;
-/// Fits any duration below a second.
+/// Width in points of a number, enough for any duration below a second.
 const FIGURE: f32 = 76.0;
 const GAP: f32 = 8.0;
 const NAME: f32 = WIDTH - 2.0 * (FIGURE + GAP);
 /// Duration of a frame at 60 Hz, in milliseconds.
 const SIXTIETH: f64 = 1000.0 / 60.0;
 
-/// CPU stages in order, stacked in the graph.
+/// Stages of a frame in the order in which the graph stacks them.
 const PARTS: [FramePart; 5] = [
     FramePart {
         name: "Solve",
@@ -126,7 +126,7 @@ fn heading(ui: &mut Ui, text: &str, tooltip: &str) {
     figure(ui, RichText::new(format!("{text}, ms")).weak().size(12.0)).on_hover_text(tooltip);
 }
 
-/// A name with the colour of its graph, if it has one.
+/// Shows a name and, to its left, a square of `colour` if there is a colour.
 fn name(ui: &mut Ui, text: &str, tooltip: &str, colour: Option<Color32>) {
     let left = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(NAME, ROW), left, |ui| {
@@ -160,7 +160,7 @@ fn row(ui: &mut Ui, name: &str, tooltip: &str, text: &str) {
     ui.end_row();
 }
 
-/// Right-aligned text of constant width.
+/// Shows right-aligned text in a column of constant width.
 fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
     let right = Layout::right_to_left(Align::Center);
     let label = |ui: &mut Ui| {
@@ -170,12 +170,12 @@ fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
     ui.allocate_ui_with_layout(vec2(FIGURE, ROW), right, label).inner
 }
 
-/// The stages of each frame, stacked, and the GPU time as a line.
+/// Shows the graph: the stages of each frame, stacked, and the GPU time as a line.
 fn graph(ui: &mut Ui, times: &FrameTimes) {
     let top = top(times);
     let (palette, weak) = (style::palette(ui), ui.visuals().weak_text_color());
     let strong = ui.visuals().strong_text_color();
-    // Fractions of the height.
+    // Positions of the labels, as fractions of the graph's height.
     let ticks = [0.0, 0.5, 1.0];
     let points = |part: &dyn Fn(&FrameTime) -> Option<Duration>| points(times, top, part);
     let response = plot::still("frame times", HEIGHT)
@@ -189,7 +189,7 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
         .show(ui, |plot| {
             let last = FrameTimes::MOST as f64;
             plot::show(plot, PlotBounds::from_min_max([1.0, 0.0], [last, 1.04]));
-            // Each area covers the lower part of the one before.
+            // Each area covers the lower part of the area drawn before it.
             for count in (1..=PARTS.len()).rev() {
                 let sum = |frame: &FrameTime| {
                     Some(PARTS[..count].iter().map(|part| (part.of)(frame)).sum())
@@ -215,7 +215,8 @@ fn graph(ui: &mut Ui, times: &FrameTimes) {
     response.on_hover_text("The last 240 frames, newest right; idle windows draw none");
 }
 
-/// Points of a duration, the newest frame at the right.
+/// Points of the graph of the duration `part`: x is the frame, with the newest at the right, and y
+/// is the ratio of the duration to `top`, which is in milliseconds.
 fn points(
     times: &FrameTimes,
     top: f64,
@@ -227,7 +228,8 @@ fn points(
     frames.enumerate().filter_map(point).collect()
 }
 
-/// Top of the graph: a round number above the 99th percentile, so that it seldom changes.
+/// Duration at the top of the graph in milliseconds: a round number that is at least the 99th
+/// percentile, so that it seldom changes.
 fn top(times: &FrameTimes) -> f64 {
     let total = times.spread(|frame| Some(frame.total().max(frame.gpu.unwrap_or_default())));
     let slowest = total.map_or(1.0, |total| milliseconds(total.slowest)).max(1.0);

@@ -2,12 +2,15 @@
 
 use egui::{Rect, Response, Ui, pos2};
 
-/// Width of the names.
+/// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;
+/// Height of the ruler in points.
 pub(super) const RULER: f32 = 24.0;
+/// Height of a row in points.
 pub(super) const ROW: f32 = 20.0;
 
-/// Gives the ruler the keyboard of the whole timeline after a press or click in an area.
+/// Moves the keyboard focus to the ruler if the mouse is pressed or clicked in `area`. The ruler
+/// has the keyboard focus for the whole timeline.
 pub(super) fn take_keyboard(ui: &Ui, area: &Response, ruler: &Response) {
     let touched = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_click());
     if touched && area.contains_pointer() {

@@ -9,14 +9,14 @@ use crate::document::Channel;
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
-/// Row and time of the right click.
+/// Row, and time in seconds, of the right click; the row is `None` below the last row.
 #[derive(Clone, Copy)]
 struct MenuTarget {
     row: Option<DopeSheetRow>,
     time: f64,
 }
 
-/// Context menu of the sheet.
+/// Shows the context menu of the dope sheet.
 pub(in crate::ui) fn of_rows(
     ui: &Ui,
     sheet: &DopeSheetView<'_>,
@@ -55,7 +55,7 @@ pub(in crate::ui) fn of_rows(
     });
 }
 
-/// Context menu of a channel's name.
+/// Shows the context menu of a channel's name.
 pub(in crate::ui) fn of_channel(
     response: &Response,
     session: &Session,

@@ -16,8 +16,9 @@ use crate::session::{Actions, SelectAction, Session};
 use crate::ui::widgets::diamond;
 use crate::ui::{labels, style};
 
+/// Distance in points from the centre of a key's diamond to a corner.
 const SIZE: f32 = 5.0;
-/// Minimum distance in points between keys that have tooltips of their own.
+/// A key that is closer than this distance, in points, to the key at its left has no tooltip.
 const NEAR: f32 = 5.0;
 
 pub(in crate::ui) fn ui(
@@ -59,7 +60,7 @@ struct DopeSheet<'a> {
 }
 
 impl DopeSheet<'_> {
-    /// Shows the visible sheet. Returns the scroll offset.
+    /// Shows the visible rows of `channels` in a scroll area. Returns the scroll offset in points.
     fn scrolled(
         &self,
         ui: &mut Ui,
@@ -67,7 +68,7 @@ impl DopeSheet<'_> {
         rect: Rect,
         actions: &mut Actions,
     ) -> f32 {
-        // Over the rows the wheel zooms.
+        // The wheel scrolls over the names only, because over the keys it zooms.
         let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
         let source = ScrollSource { scroll_bar: true, drag: DragScroll::Never, mouse_wheel };
         let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
@@ -107,7 +108,8 @@ impl DopeSheet<'_> {
         }
     }
 
-    /// The name of a channel; a click selects it, Shift or Ctrl adds it.
+    /// Shows the name of a channel. A click selects the channel, and with Shift or Ctrl adds it to
+    /// the selection or removes it.
     fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
         let session = self.session;
         let selected = session.selected_channels().contains(&channel);
@@ -185,7 +187,8 @@ impl DopeSheet<'_> {
         }
     }
 
-    /// Tooltip and screen reader node of a key. Returns true while the mouse is over it.
+    /// Adds the tooltip and the screen reader node of a key. Returns whether the mouse is over the
+    /// key.
     fn key(
         &self,
         ui: &Ui,
@@ -205,7 +208,7 @@ impl DopeSheet<'_> {
                 format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),
         };
-        // The rows handle presses.
+        // A key senses no presses: the whole sheet handles them.
         let response = ui.interact(rect.intersect(row_rect), id, Sense::hover());
         let picked = self.picked.has(row, time);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
@@ -218,7 +221,7 @@ impl DopeSheet<'_> {
         hovered
     }
 
-    /// The mark of a channel with an unkeyed change.
+    /// Draws the mark of an unkeyed change of the channel at the playhead, with a tooltip.
     fn overridden(&self, ui: &Ui, channel: Channel, rect: Rect) {
         let at = pos2(self.scale.x(self.session.time()), rect.center().y);
         let id = Id::unique(("timeline override", channel));

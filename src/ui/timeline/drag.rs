@@ -8,7 +8,7 @@ use crate::session::{Actions, Key as KeyOf, PlaybackAction, Session};
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) enum TimelineDrag {
-    /// The playhead, with the time before the drag.
+    /// The playhead; `before` is the time in seconds before the drag.
     Playhead { before: f64 },
     /// Selected keys.
     Keys(KeyDrag),
@@ -20,23 +20,25 @@ pub(in crate::ui) enum TimelineDrag {
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) struct KeyDrag {
-    /// The keys at their times before the drag.
+    /// The dragged keys, with their times before the drag.
     pub keys: Vec<KeyOf>,
-    /// Time of the key under the mouse.
+    /// Time of the pressed key before the drag, in seconds.
     pub time: f64,
     pub pressed: Pos2,
-    /// True once the drag has moved the keys.
+    /// True once the mouse has moved far enough that the press is a drag, not a click.
     pub moved: bool,
-    /// The selection after a click without a drag.
+    /// Keys to select if the press turns out to be a click.
     pub clicked: Vec<KeyOf>,
 }
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) struct BoxDrag {
+    /// Time at the press, in seconds.
     pub time: f64,
-    /// Offset in points from the top of the first channel's row.
+    /// Distance in points from the top of the first channel's row, which may be scrolled out of
+    /// view, down to the press.
     pub y: f32,
-    /// Keys that stay selected.
+    /// Keys that stay selected in addition to those in the box.
     pub base: Vec<KeyOf>,
 }
 
@@ -52,12 +54,12 @@ pub(in crate::ui) fn clear(ui: &Ui) {
     ui.data_mut(|data| data.remove::<TimelineDrag>(id()));
 }
 
-/// True in the frame of the release.
+/// Whether no mouse button is held or one was released in this frame.
 pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
     ui.input(|input| !input.pointer.any_down() || input.pointer.any_released())
 }
 
-/// Moves the playhead with the mouse; Esc restores the time.
+/// Moves the playhead with the mouse while it is dragged; Esc restores the time before the drag.
 pub(in crate::ui) fn follow_playhead(
     ui: &Ui,
     session: &Session,
@@ -80,7 +82,7 @@ pub(in crate::ui) fn follow_playhead(
     }
 }
 
-/// Starts to drag the playhead and pauses playback.
+/// Starts a drag of the playhead and pauses playback.
 pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Actions) {
     set(ui, TimelineDrag::Playhead { before: session.time() });
     if session.is_playing() {
@@ -88,7 +90,8 @@ pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Act
     }
 }
 
-/// The time under the mouse, snapped to frames unless Ctrl is held, within timeline and keys.
+/// The time under the mouse in seconds, snapped to frames unless Ctrl is held, and clamped to
+/// [`span`].
 pub(in crate::ui) fn pointed_time(
     ui: &Ui,
     session: &Session,
@@ -100,12 +103,12 @@ pub(in crate::ui) fn pointed_time(
     snapped(ui, timeline, scale.time(mouse.x)).clamp(first, last)
 }
 
-/// The time snapped to frames, unless Ctrl is held.
+/// The time in seconds, snapped to frames unless Ctrl is held.
 pub(in crate::ui) fn snapped(ui: &Ui, timeline: Timeline, time: f64) -> f64 {
     if ui.input(|input| input.modifiers.command) { time } else { timeline.snapped(time) }
 }
 
-/// The range of timeline and keys.
+/// Start and end, in seconds, of the range that contains the timeline and all keys.
 pub(in crate::ui) fn span(session: &Session) -> (f64, f64) {
     let Timeline { start, end, .. } = session.document().timeline;
     session.document().keys.tracks().fold((start, end), |(start, end), (_, track)| {

@@ -20,10 +20,10 @@ use crate::ui::{labels, style};
 const MOST: usize = 24;
 /// Distance in points between samples of a curve.
 const GRAIN: f32 = 2.0;
-/// Width of the value axis.
+/// Width of the value axis in points.
 const VALUES: f32 = 42.0;
 
-/// Minimum distance in points between labels.
+/// Minimum distance in points between labels of the value axis.
 const BETWEEN_VALUES: f32 = 15.0;
 
 /// The curve of one component of a channel.
@@ -75,7 +75,8 @@ pub(in crate::ui) fn ui(
 
 const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
-/// The selected channels with keys, else those of the shown rig.
+/// The channels whose curves are shown, at most `MOST`: the selected channels that have keys or,
+/// without a selection, all channels of the shown rig that have keys.
 fn shown(session: &Session) -> Vec<Channel> {
     let all = row::channels(session);
     let selected = session.selected_channels();
@@ -87,7 +88,9 @@ fn shown(session: &Session) -> Vec<Channel> {
     chosen.into_iter().take(MOST).collect()
 }
 
-/// Colours and line style: axis colours for points, a colour per channel otherwise.
+/// Colours, one for each component, and line style of a channel's curves. A channel with three
+/// components has the axis colours, a limb's length has the limb's colour, and any other channel
+/// has a colour chosen by `index`.
 fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     let palette = style::palette(ui);
     let style = match index % 4 {
@@ -139,7 +142,7 @@ fn curves(
     colours.into_iter().enumerate().map(curve).collect()
 }
 
-/// Sample times of a smooth curve.
+/// Times in seconds at which curves are sampled: `GRAIN` points apart over the visible range.
 fn times(scale: TimeScale) -> Vec<f64> {
     let (from, to) = scale.range();
     let step = f64::from(GRAIN) / scale.points_per_second();
@@ -187,20 +190,20 @@ fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelC
         });
 }
 
-/// A value with the digits that distinguish it from the next label.
+/// Formats a value with enough decimals to distinguish it from a label that is `step` away.
 fn value(value: f64, step: f64) -> String {
     let digits = -step.max(1e-6).log10().floor();
     format::fixed(value, digits.max(0.0) as usize)
 }
 
-/// The smallest 1, 2 or 5 times a power of ten from `step` up.
+/// The smallest number that is at least `step` and is 1, 2 or 5 times a power of ten.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1e-30).log10().floor());
     let steps = [1.0, 2.0, 5.0].map(|times| times * power);
     steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
 }
 
-/// The legend.
+/// Shows the names of the channels, each with the colours of its curves.
 fn legend(ui: &mut Ui, session: &Session, areas: &TimelineAreas, channels: &[Channel]) {
     let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
     let rect = Rect::from_min_max(areas.names.min, right);

@@ -1,4 +1,4 @@
-//! Shortcuts of the timeline, and of keys and playback everywhere.
+//! Shortcuts of the focused timeline, and shortcuts of keys and playback in the whole window.
 
 use egui::{Event, EventFilter, Key, Modifiers, Ui};
 
@@ -6,7 +6,8 @@ use super::{drag, ruler};
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session, ShellAction};
 use crate::ui::keyboard::{focus, viewport};
 
-/// Handles shortcuts of keys and playback, unless a text field has the keyboard.
+/// Handles shortcuts of keys and playback in the whole window, except during a drag in the viewport
+/// and while a text field, a modal dialog or a popup is in use.
 pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Actions) {
     let is_busy = ui.text_edit_focused()
         || session.drag().is_some()
@@ -47,20 +48,21 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     }
 }
 
-/// True if shortcuts act on the selected keys: the timeline has the keyboard, or no joint is
-/// selected.
+/// Whether shortcuts act on the selected keys: there are any, and the timeline has the keyboard
+/// focus or no joint is selected.
 pub(in crate::ui) fn has_the_word(ui: &Ui, session: &Session) -> bool {
     let is_used = ui.memory(|memory| memory.has_focus(ruler::id()));
     !session.selected_keys().is_empty() && (is_used || session.selection().is_empty())
 }
 
-/// True during a drag in the timeline, which Esc cancels.
+/// Whether a drag in the timeline is in progress, which Esc cancels.
 pub(in crate::ui) fn holds(ui: &Ui) -> bool {
     drag::get(ui).is_some()
 }
 
-/// Handles shortcuts of the focused timeline: arrows step frames and keys, Home and End go to the
-/// ends; others act as in the viewport.
+/// Handles shortcuts while the timeline has the keyboard focus: left and right arrow step by a
+/// frame, up and down arrow by a key, Home and End go to the start and the end. Other keys act as
+/// in the viewport.
 pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) {
     if !ui.memory(|memory| memory.has_focus(ruler::id())) {
         return;
@@ -102,9 +104,9 @@ pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) 
     viewport::viewport(ui, session, actions);
 }
 
-/// The time of the next or previous frame.
+/// The time in seconds of the next frame if `by` is positive, otherwise of the previous frame.
 fn next_frame(session: &Session, by: f64) -> f64 {
-    /// Tolerance of a time on a frame, in frames.
+    /// Distance from a frame, in frames, below which a time counts as on the frame.
     const ROUNDING: f64 = 1e-6;
     let timeline = session.document().timeline;
     let rate = f64::from(timeline.frame_rate);
@@ -117,7 +119,7 @@ fn next_frame(session: &Session, by: f64) -> f64 {
     (next / rate).clamp(first.min(session.time()), last.max(session.time()))
 }
 
-/// Time of the previous key.
+/// Time in seconds of the last key before the playhead; `None` if there is no key.
 pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
     let time = session.time();
     let tracks = session.document().keys.tracks();
@@ -128,7 +130,7 @@ pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
     before.max_by(f64::total_cmp)
 }
 
-/// Time of the next key.
+/// Time in seconds of the first key after the playhead; `None` if there is no key.
 pub(in crate::ui) fn key_after(session: &Session) -> Option<f64> {
     let time = session.time();
     let tracks = session.document().keys.tracks();

@@ -14,21 +14,21 @@ use crate::ui::{labels, style};
 
 /// Hit radius of a key, in points.
 const REACH: f32 = 7.0;
-/// Distance in points from which a press is a drag.
+/// Distance in points that the mouse must exceed for a press to become a drag.
 const SLACK: f32 = 3.0;
 
-/// The rows on screen.
+/// The dope sheet as it lies on screen.
 pub(in crate::ui) struct DopeSheetView<'a> {
     pub session: &'a Session,
     pub scale: TimeScale,
     pub channels: &'a [Channel],
     pub area: Rect,
-    /// Scroll offset of the channels' rows.
+    /// Scroll offset of the channels' rows in points.
     pub offset: f32,
 }
 
 impl DopeSheetView<'_> {
-    /// The row at a screen position.
+    /// The row at a screen position; `None` below the last row.
     pub fn row(&self, at: Pos2) -> Option<DopeSheetRow> {
         let y = at.y - self.area.top();
         if y < ROW {
@@ -38,7 +38,8 @@ impl DopeSheetView<'_> {
         self.channels.get(row).map(|channel| DopeSheetRow::Channel(*channel))
     }
 
-    /// Row and time of the key at a screen position.
+    /// Row, and time in seconds, of the key nearest to a screen position; `None` if no key of the
+    /// row is within `REACH`.
     pub fn key(&self, at: Pos2) -> Option<(DopeSheetRow, f64)> {
         let row = self.row(at)?;
         let (from, to) = (self.scale.time(at.x - REACH), self.scale.time(at.x + REACH));
@@ -48,12 +49,14 @@ impl DopeSheetView<'_> {
         Some((row, nearest))
     }
 
-    /// Offset from the top of the first channel's row, scrolling included.
+    /// Distance in points from the top of the first channel's row, which may be scrolled out of
+    /// view, down to a screen position.
     fn content_y(&self, at: Pos2) -> f32 {
         at.y - self.area.top() - ROW + self.offset
     }
 
-    /// The keys within a range of times and offsets.
+    /// The keys within a range of times in seconds, in the rows whose centres are within a range of
+    /// [`Self::content_y`].
     fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
         let centre = |row: usize| ROW * (row as f32 + 0.5);
         let rows = self.channels.iter().enumerate();
@@ -66,7 +69,8 @@ impl DopeSheetView<'_> {
     }
 }
 
-/// Starts a drag at a press.
+/// Handles presses and double-clicks in the dope sheet: starts drags, selects the key at a right
+/// click, and adds keys at a double-click.
 pub(in crate::ui) fn press(
     ui: &Ui,
     sheet: &DopeSheetView<'_>,
@@ -139,7 +143,7 @@ fn press_key(
     let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
     let all_selected = pointed.iter().all(|key| is_selected(&key));
     let (keys, clicked) = match (adds, all_selected) {
-        // Another click deselects it, unless it is dragged.
+        // Keys that are selected already are deselected by this click, unless they are dragged.
         (true, true) => {
             let others = selected.iter().filter(|key| !is_pointed(key)).copied();
             (selected.to_vec(), others.collect())
@@ -164,7 +168,7 @@ fn press_background(ui: &Ui, sheet: &DopeSheetView<'_>, at: Pos2, adds: bool) {
     drag::set(ui, TimelineDrag::Box(drag));
 }
 
-/// Continues the drag until release or Esc.
+/// Continues the drag until the release of the mouse button or Esc.
 pub(in crate::ui) fn follow(ui: &Ui, sheet: &DopeSheetView<'_>, actions: &mut Actions) {
     let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
         return;

@@ -5,14 +5,14 @@ use std::collections::HashSet;
 use crate::document::Channel;
 use crate::session::{Key, Session};
 
-/// A row: the keys of all channels, or of one.
+/// A row with the keys of all channels or of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::ui) enum DopeSheetRow {
     All,
     Channel(Channel),
 }
 
-/// The keyed channels, those of the shown rig first.
+/// The channels that have keys; channels of the shown rig come first.
 pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
     let rig = Some(session.rig());
     let keyed = session.document().keys.tracks().map(|(channel, _)| channel);
@@ -22,7 +22,7 @@ pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
 }
 
 impl DopeSheetRow {
-    /// Sorted times of the row's keys within a range.
+    /// Sorted times of the row's keys between `from` and `to`, in seconds.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
         let keys = &session.document().keys;
         match self {
@@ -40,7 +40,7 @@ impl DopeSheetRow {
         }
     }
 
-    /// The row's keys at a time.
+    /// The row's keys at a time in seconds.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
         match self {
             Self::Channel(channel) => vec![(channel, time)],
@@ -52,7 +52,7 @@ impl DopeSheetRow {
         }
     }
 
-    /// Channels that "Add key" keys in this row.
+    /// Channels to which "Add key" adds a key in this row.
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel(channel) => vec![channel],
@@ -90,7 +90,7 @@ impl SelectedKeys {
         }
     }
 
-    /// True if any of the row's keys at a time is in the set.
+    /// Whether the set contains a key of the row at `time`.
     pub fn has(&self, row: DopeSheetRow, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
         match row {

@@ -16,12 +16,12 @@ const LABEL: f64 = 64.0;
 /// Minimum distance in points between lines.
 const LINE: f64 = 7.0;
 
-/// Id of the ruler, which has the keyboard for the whole timeline.
+/// Id of the ruler, which has the keyboard focus for the whole timeline.
 pub(in crate::ui) fn id() -> Id {
     Id::unique("timeline ruler")
 }
 
-/// Shows the ruler and scrubs on it.
+/// Shows the ruler; a drag on it scrubs.
 pub(in crate::ui) fn ui(
     ui: &Ui,
     session: &Session,
@@ -61,7 +61,7 @@ pub(in crate::ui) fn ui(
     )
 }
 
-/// True when the left button is pressed on it.
+/// Whether the left mouse button was pressed on the widget of `response` in this frame.
 pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     let is_press = |event: &Event| {
         matches!(event, Event::PointerButton { button: PointerButton::Primary, pressed: true, .. })
@@ -69,7 +69,7 @@ pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     response.contains_pointer() && ui.input(|input| input.events.iter().any(is_press))
 }
 
-/// Handles requests of screen readers.
+/// Handles requests of screen readers to step or set the time.
 fn step_by_accesskit(ui: &Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let frames = ui.input(|input| {
@@ -112,7 +112,7 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     }
 }
 
-/// Extends the labelled lines over the sheet.
+/// Draws the ruler's labelled lines through `rect`, the area of the keys.
 pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
@@ -122,14 +122,14 @@ pub(in crate::ui) fn grid(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: R
     }
 }
 
-/// Highlights the range from start to end.
+/// Highlights the range from the timeline's start to its end.
 pub(in crate::ui) fn ground(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     let x = |time| scale.x(time).clamp(rect.left(), rect.right());
     let played = Rect::from_x_y_ranges(x(timeline.start)..=x(timeline.end), rect.y_range());
     ui.painter().rect_filled(played, 0.0, ui.visuals().extreme_bg_color);
 }
 
-/// Draws the playhead: a handle in the ruler and a line through all sheet.
+/// Draws the playhead: a handle in the ruler and a line through all rows down to `bottom`.
 pub(in crate::ui) fn playhead(
     ui: &Ui,
     session: &Session,
@@ -148,11 +148,11 @@ pub(in crate::ui) fn playhead(
     painter.add(Shape::convex_polygon(points.to_vec(), accent, rim));
 }
 
-/// Frames between lines.
+/// Spacing of the ruler's lines, in frames.
 struct RulerTicks {
-    /// Frames between labels.
+    /// Frames from one labelled line to the next.
     major: i64,
-    /// Frames between lines.
+    /// Frames from any line to the next.
     minor: i64,
 }
 
@@ -171,7 +171,7 @@ impl RulerTicks {
         Self { major, minor }
     }
 
-    /// The x of every `step`th visible frame, with its number.
+    /// The x on screen and the number of each visible frame whose number is a multiple of `step`.
     fn lines(
         &self,
         scale: TimeScale,

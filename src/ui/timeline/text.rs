@@ -4,7 +4,7 @@ use egui::{Color32, FontId, Rect, TextStyle, Ui, UiBuilder, pos2, vec2};
 
 use super::areas::{ROW, TimelineAreas};
 
-/// A weak sentence in an empty timeline.
+/// Shows a sentence in weak colour in the middle of an empty timeline.
 pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     let rect = Rect::from_center_size(
         areas.keys.center(),
@@ -18,7 +18,7 @@ pub(in crate::ui) fn hint(ui: &mut Ui, areas: &TimelineAreas, sentence: &str) {
     });
 }
 
-/// One line of text, truncated to the rectangle.
+/// Draws one line of text, truncated to the width of the rectangle.
 pub(in crate::ui) fn line(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     let font: FontId = TextStyle::Body.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);

@@ -1,4 +1,4 @@
-//! The visible time range and its place on screen.
+//! The visible time range and its mapping to the screen.
 
 use egui::{Event, Id, MouseWheelUnit, Rangef, Rect, Ui};
 
@@ -9,11 +9,12 @@ use crate::session::Session;
 const MARGIN: f32 = 16.0;
 /// Zoom factor of a wheel step.
 const WHEEL: f64 = 1.2;
+/// Scroll distance in points that counts as one wheel step.
 const POINTS_PER_STEP: f32 = 50.0;
-/// Smallest visible range, in frames.
+/// Minimum length of the visible range, in frames.
 const LEAST_FRAMES: f64 = 4.0;
 
-/// Converts between times and x on screen.
+/// Converts between times in seconds and x on screen in points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::ui) struct TimeScale {
     /// Horizontal range, in points.
@@ -24,16 +25,19 @@ pub(in crate::ui) struct TimeScale {
     to: f64,
 }
 
-/// The visible range kept between frames while the timeline is zoomed.
+/// The visible time range, kept while the timeline is zoomed or panned; `from` and `to` are those
+/// of [`TimeScale`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StoredRange {
+    /// Start and end of the timeline for which the range was stored, in seconds.
     of: (f64, f64),
     from: f64,
     to: f64,
 }
 
 impl TimeScale {
-    /// The stored range, or the whole timeline after its ends have changed.
+    /// The scale that shows the stored range or, if none is stored or the timeline's start or end
+    /// has changed since, the whole timeline. `seen` is the range of x on screen in points.
     pub fn load(ui: &Ui, timeline: Timeline, seen: Rangef) -> Self {
         let of = (timeline.start, timeline.end);
         let zoom = ui.data(|data| data.get_temp::<StoredRange>(id())).filter(|zoom| zoom.of == of);
@@ -51,7 +55,7 @@ impl TimeScale {
         ui.data_mut(|data| data.insert_temp(id(), zoom));
     }
 
-    /// Fits the whole timeline.
+    /// Removes the stored range, so that the next frame shows the whole timeline.
     pub fn fit(ui: &Ui) {
         ui.data_mut(|data| data.remove::<StoredRange>(id()));
     }
@@ -74,13 +78,13 @@ impl TimeScale {
         self.from + f64::from(x - self.seen.min - MARGIN) / self.points_per_second()
     }
 
-    /// The visible time range.
+    /// Start and end of the visible time range in seconds, with the margins.
     pub fn range(self) -> (f64, f64) {
         (self.time(self.seen.min), self.time(self.seen.max))
     }
 
-    /// Zooms by the wheel about the mouse; pans by Shift+wheel, horizontal wheel and middle drag;
-    /// follows the playhead during playback.
+    /// Zooms by the wheel about the mouse; pans by Shift+wheel and horizontal wheel, and by the
+    /// mouse if `is_panning`; follows the playhead during playback. Stores a changed range.
     pub fn follow_input(&mut self, ui: &Ui, session: &Session, area: Rect, is_panning: bool) {
         let before = *self;
         let timeline = session.document().timeline;
@@ -131,7 +135,7 @@ impl TimeScale {
         self.to += by;
     }
 
-    /// Zooms about x.
+    /// Zooms in by `factor`; the time at `x` on screen keeps its position.
     fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
         let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
         let span = self.to - self.from;
@@ -144,7 +148,7 @@ impl TimeScale {
         self.to = self.from + new_span;
     }
 
-    /// Moves the range to a time outside it.
+    /// If `time` is outside the visible range, moves the range so that it starts at `time`.
     fn reveal(&mut self, time: f64) {
         let span = self.to - self.from;
         if !(self.from..=self.to).contains(&time) {

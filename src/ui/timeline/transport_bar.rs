@@ -8,7 +8,7 @@ use crate::session::{Action, Actions, EditAction, PlaybackAction, Session, ViewA
 use crate::ui::style;
 use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 
-/// Below this width numbers have no labels.
+/// Width of the bar in points up to which numbers have no labels.
 const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
 
@@ -106,7 +106,8 @@ impl TimeField<'_> {
         number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
     }
 
-    /// Shows a number outside the document, which has no transaction.
+    /// Shows a number that does not belong to the document, so that a drag of it opens no
+    /// transaction.
     fn show_free<A: Into<Action>>(
         self,
         ui: &mut Ui,

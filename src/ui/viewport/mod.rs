@@ -87,7 +87,7 @@ fn has_joints(session: &Session) -> bool {
     session.rig() == RigKind::Skeleton && session.crowd().is_none()
 }
 
-/// Hint for a skeleton without bones.
+/// Shows how to add joints, for a skeleton without bones.
 fn invite(ui: &mut Ui, rect: Rect) {
     let line = |text: &str, size: f32| Label::new(RichText::new(text).size(size)).selectable(false);
     let at = Rect::from_center_size(rect.center_top() + vec2(0.0, 64.0), vec2(360.0, 24.0));
@@ -95,15 +95,16 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
-/// Reports the hovered joint.
+/// Pushes an action if the hovered joint has changed.
 fn point(session: &Session, joint: Option<JointId>, actions: &mut Actions) {
     if session.hovered() != joint {
         actions.push(SelectAction::Hover(joint));
     }
 }
 
-/// Selects the clicked joint; Shift toggles it; a click beside all joints deselects. Ctrl, or a
-/// first click, adds a bone that ends at the mouse.
+/// Handles a click in the viewport. A click selects the joint at the mouse, and with Shift adds it
+/// to the selection or removes it; a click beside all joints deselects. With Ctrl, or while the
+/// skeleton has no bones, a click adds a bone that ends at the mouse.
 fn select(
     ui: &Ui,
     session: &Session,
@@ -138,15 +139,17 @@ fn select(
     }
 }
 
-/// Rounded to pixels, so that the scene is drawn pixel for pixel.
+/// The rectangle rounded to whole pixels, so that each pixel of the scene covers one pixel of the
+/// screen.
 fn whole_pixels(ui: &Ui, rect: Rect) -> Rect {
     let scale = ui.pixels_per_point();
     let round = |at: Pos2| pos2((at.x * scale).round() / scale, (at.y * scale).round() / scale);
     Rect::from_min_max(round(rect.min), round(rect.max))
 }
 
-/// Advances everything that moves. Input ends a glide of the camera: a press in the viewport stops
-/// it there, other input jumps to its end.
+/// Advances everything that moves without input, such as playback. Input ends a glide of the
+/// camera: a press in the viewport stops the camera where it is, any other input moves it to the
+/// end of the glide.
 fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     if !session.is_moving() {
         return;
@@ -164,7 +167,7 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Action
     ui.request_repaint();
 }
 
-/// The drag under way.
+/// What the current drag in the viewport moves: nothing, a handle, or the camera.
 #[derive(Clone, Copy)]
 enum ViewportDrag {
     Nothing,
@@ -172,7 +175,8 @@ enum ViewportDrag {
     View,
 }
 
-/// The current drag, or the one that a press in this frame starts.
+/// Handles presses of mouse buttons. Returns the current drag, or the drag that a press in this
+/// frame starts.
 fn press(
     ui: &Ui,
     response: &Response,
@@ -191,7 +195,7 @@ fn press(
             continue;
         };
         if button == PointerButton::Secondary && session.is_editing() {
-            // Anywhere in the window.
+            // The right button cancels a drag anywhere in the window.
             actions.push(TransactionAction::Cancel);
         }
         if !response.contains_pointer() {
@@ -222,7 +226,7 @@ fn press(
     drag
 }
 
-/// Updates the drag and ends it at the release.
+/// Updates the drag, and ends it when the mouse button is released.
 fn follow(
     ui: &Ui,
     drag: ViewportDrag,
@@ -250,7 +254,8 @@ fn follow(
     }
 }
 
-/// Handles single keys while the viewport or no widget has the keyboard.
+/// Handles shortcuts of single keys during a drag of a handle, or while the viewport or no widget
+/// has the keyboard focus.
 fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.drag().is_some() {

@@ -9,6 +9,7 @@ use crate::session::{Actions, CameraMotion, Grip, Navigation, Session, ViewActio
 /// Zoom factor of a wheel step.
 const WHEEL: f32 = 1.15;
 
+/// Scroll distance in points that counts as one wheel step.
 const POINTS_PER_STEP: f32 = 50.0;
 
 pub(super) fn motion(
@@ -18,7 +19,7 @@ pub(super) fn motion(
 ) -> Option<CameraMotion> {
     use PointerButton::{Middle, Primary, Secondary};
     if modifiers.alt {
-        // Alt drags act over handles too.
+        // With Alt, a drag moves the camera even if it starts on a handle.
         return match button {
             Primary => Some(CameraMotion::Orbit),
             Middle => Some(CameraMotion::Pan),
@@ -73,7 +74,7 @@ pub(super) fn wheel(
     }
 }
 
-/// Trackpad scroll orbits, with Shift it pans.
+/// The camera after a scroll on a trackpad, in wheel steps: the scroll orbits, or pans with Shift.
 fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
     const TURN: f32 = 0.15;
     const PAN: f32 = 0.1;

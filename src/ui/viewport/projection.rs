@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use crate::document::{Camera, Projection, Ray};
 
-/// Projects world points to screen points, and screen points to rays.
+/// Converts world points to screen positions in points, and screen positions to rays in the world.
 pub(in crate::ui) struct ScreenProjection {
     pub rect: Rect,
     pub projection: Projection,
@@ -25,7 +25,7 @@ impl ScreenProjection {
         self.projection.ray(self.normalised(at))
     }
 
-    /// Normalised coordinates, −1 to 1, y up.
+    /// The screen position in normalised coordinates: −1 to 1 across the viewport, with y up.
     pub fn normalised(&self, at: Pos2) -> glam::Vec2 {
         let from_centre = (at - self.rect.center()) / (self.rect.size() / 2.0);
         glam::Vec2::new(from_centre.x, -from_centre.y)
@@ -35,12 +35,12 @@ impl ScreenProjection {
         self.projection.half_height_at(at) / (self.rect.height() / 2.0)
     }
 
-    /// Distance from the eye along the view direction.
+    /// Distance of a world point from the eye along the view direction.
     pub fn depth(&self, point: Vec3) -> f32 {
         (point - self.projection.eye).dot(self.projection.forward)
     }
 
-    /// Screen vector of a short world vector at a point.
+    /// Screen vector, in points, of a world vector at the world point `at`, without perspective.
     pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
         let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
         vec2(vector.dot(right), -vector.dot(up)) / self.units_per_point(at)

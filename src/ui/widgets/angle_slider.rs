@@ -8,7 +8,8 @@ use super::slider::Slider;
 use crate::session::{Action, Actions, Session};
 use crate::ui::style;
 
-/// A slider of an angle in degrees.
+/// A slider from −180° to 180° for an angle that is given in radians. The slider shows and sets
+/// degrees.
 pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: f32) -> Slider<'a> {
     Slider {
         name,
@@ -23,7 +24,8 @@ pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: 
     }
 }
 
-/// Three sliders of Euler angles.
+/// Shows three sliders for Euler angles about x, y and z. `angles` and the argument of `set` are in
+/// radians.
 pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
     ui: &mut Ui,
     session: &Session,

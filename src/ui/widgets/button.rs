@@ -2,7 +2,8 @@
 
 use egui::{Ui, WidgetText};
 
-/// A button; `disabled` is the reason shown while it is disabled. Returns true when pressed.
+/// Shows a button and returns whether it was pressed. `disabled` is the reason why the button is
+/// disabled, shown as its tooltip; `None` enables the button.
 pub(in crate::ui) fn button(
     ui: &mut Ui,
     name: impl Into<WidgetText>,

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Label, RichText, Ui};
 
-/// Text in the error colour, announced by screen readers.
+/// Shows text in the error colour; screen readers announce it as an alert.
 pub(in crate::ui) fn error_label(ui: &mut Ui, text: &str) {
     let colour = ui.visuals().error_fg_color;
     let label = Label::new(RichText::new(text).color(colour)).selectable(false);

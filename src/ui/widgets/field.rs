@@ -6,7 +6,7 @@ use super::format;
 use super::number::DragNumber;
 use crate::session::{Action, Actions, Session};
 
-/// Fits three fields beside a name in the narrowest panel.
+/// Width in points with which three fields and a name fit side by side in the narrowest panel.
 const FIELD_WIDTH: f32 = 52.0;
 
 /// A number to drag or type, without a slider.
@@ -15,9 +15,9 @@ pub(in crate::ui) struct NumberField<'a> {
     pub name: &'a str,
     pub value: f32,
     pub unit: &'a str,
-    /// Change per point of a drag.
+    /// Change of the value per point that the mouse is dragged.
     pub step: f32,
-    /// Decimals.
+    /// Number of decimals.
     pub digits: usize,
     pub tooltip: &'a str,
 }
@@ -35,7 +35,7 @@ impl NumberField<'_> {
         self.show_as(ui, session, actions, &format, set)
     }
 
-    /// As [`Self::show`] with a custom format.
+    /// Shows the field as [`Self::show`] does, but with the text that `format` returns.
     pub fn show_as<A: Into<Action>>(
         self,
         ui: &mut Ui,

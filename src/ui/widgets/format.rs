@@ -1,6 +1,7 @@
 //! Numbers as text.
 
-/// At most about six characters: three digits, or scientific notation.
+/// Formats a number in about six characters: with at most three decimals, or in scientific notation
+/// below 0.001 and from 100,000.
 pub(in crate::ui) fn short(value: f32) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -12,7 +13,7 @@ pub(in crate::ui) fn short(value: f32) -> String {
     }
 }
 
-/// A whole number with thousands separators: "1,000,000".
+/// Formats a whole number with thousands separators: "1,000,000".
 pub(in crate::ui) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
@@ -25,15 +26,16 @@ pub(in crate::ui) fn grouped(number: u64) -> String {
     grouped
 }
 
-/// Decimals that show a tenth of a step.
+/// Number of decimals with which a change by a tenth of `step` is visible.
 pub(in crate::ui) fn decimals(step: f32) -> usize {
     (1.0 - step.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
-/// At most seven characters.
+/// Formats a number in about seven characters: with `decimals` decimals, with fewer if the number
+/// is large, and in scientific notation from 999,999.5 or if `decimals` is above 4.
 pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
     const MOST: usize = 4;
-    // Avoids "-0".
+    // Small negative numbers would be formatted as "-0".
     let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
     match value.abs() {
         0.0 if decimals > MOST => "0".to_owned(),
@@ -45,7 +47,7 @@ pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Decimals that show a hundredth of a grid cell.
+/// Number of decimals with which a hundredth of `cell`, the width of a grid cell, is visible.
 pub(in crate::ui) fn decimals_of_cell(cell: f32) -> usize {
     (2.0 - cell.log10().round()).clamp(0.0, 6.0) as usize
 }

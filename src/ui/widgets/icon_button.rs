@@ -14,7 +14,7 @@ pub(in crate::ui) enum Icon {
     Loop,
 }
 
-/// An icon button; `disabled` is the reason shown while it is disabled.
+/// An icon button; `disabled` is the reason shown while the button is disabled, `None` otherwise.
 pub(in crate::ui) struct IconButton<'a> {
     pub icon: Icon,
     pub name: &'a str,
@@ -25,7 +25,7 @@ pub(in crate::ui) struct IconButton<'a> {
 }
 
 impl IconButton<'_> {
-    /// Returns true when pressed.
+    /// Shows the button and returns whether it was pressed.
     pub fn show(self, ui: &mut Ui) -> bool {
         let enabled = self.disabled.is_none();
         let response = ui.add_enabled_ui(enabled, |ui| self.button(ui)).inner;
@@ -96,7 +96,7 @@ impl Icon {
     }
 }
 
-/// The diamond of a key.
+/// The diamond that marks a key; `size` is the distance in points from its centre to a corner.
 pub(in crate::ui) fn diamond(at: Pos2, size: f32, fill: Color32, stroke: Stroke) -> Shape {
     let points = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
     let points = points.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();

@@ -1,4 +1,4 @@
-//! Widgets that panels are made of. A widget knows no panel.
+//! Widgets of which the panels consist. They depend on no panel.
 
 mod angle_slider;
 mod button;

@@ -13,15 +13,16 @@ pub(in crate::ui) struct DragNumber<'a, N = f32> {
     pub name: &'a str,
     pub value: N,
     pub unit: &'a str,
-    /// Change per point of a drag.
+    /// Change of the value per point that the mouse is dragged.
     pub speed: f32,
     pub width: f32,
     pub format: &'a dyn Fn(f64) -> String,
 }
 
 impl<N: Numeric> DragNumber<'_, N> {
-    /// Shows the number at constant width. Pushes `set` of a new value. A drag is one transaction
-    /// and ends when the transaction is cancelled.
+    /// Shows the number at constant width, and pushes the action that `set` returns when the user
+    /// changes the number. A drag is one transaction, and ends when that transaction is cancelled.
+    /// `is_editing` says whether a transaction is open.
     pub fn show<A: Into<Action>>(
         &self,
         ui: &mut Ui,
@@ -49,7 +50,7 @@ impl<N: Numeric> DragNumber<'_, N> {
         if response.drag_started() {
             actions.push(TransactionAction::Begin);
         }
-        // egui reports the typed value one pass after Esc.
+        // egui reports the typed value one pass after Esc; the mark makes that pass discard it.
         let was_left = ui.data_mut(|data| data.remove_temp::<LeftByEscape>(response.id)).is_some();
         if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
             ui.data_mut(|data| data.insert_temp(response.id, LeftByEscape));
@@ -67,7 +68,8 @@ impl<N: Numeric> DragNumber<'_, N> {
         response
     }
 
-    /// Parses text with or without the unit. The unchanged text keeps the value's hidden digits.
+    /// Parses text with or without the unit; `None` if it is not a finite number. Unchanged text
+    /// returns the value itself, with the digits that are not shown.
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
         let text = text.replace('\u{2212}', "-");
@@ -79,6 +81,6 @@ impl<N: Numeric> DragNumber<'_, N> {
     }
 }
 
-/// Marks a number that Esc has just left.
+/// Marks a number in which Esc ended the typing in the previous pass.
 #[derive(Clone, Copy, Default)]
 struct LeftByEscape;

@@ -3,7 +3,7 @@
 use egui::{Rangef, Ui};
 use egui_plot::{AxisHints, GridMark, Plot, PlotBounds, PlotUi};
 
-/// A plot without navigation.
+/// A plot that the mouse cannot pan or zoom; `height` is in points.
 pub(in crate::ui) fn still<'a>(id: &'static str, height: f32) -> Plot<'a> {
     Plot::new(id)
         .height(height)
@@ -18,13 +18,13 @@ pub(in crate::ui) fn still<'a>(id: &'static str, height: f32) -> Plot<'a> {
         .set_margin_fraction(egui::Vec2::ZERO)
 }
 
-/// Shows exactly `bounds`.
+/// Sets the visible range of the plot to exactly `bounds`.
 pub(in crate::ui) fn show(plot: &mut PlotUi<'_>, bounds: PlotBounds) {
     plot.set_auto_bounds(egui::Vec2b::FALSE);
     plot.set_plot_bounds(bounds);
 }
 
-/// An axis with a label at every mark.
+/// An axis with a label at every grid mark; `written` formats the value of a mark.
 pub(in crate::ui) fn axis<'a>(
     ui: &Ui,
     axis: AxisHints<'a>,
@@ -37,7 +37,7 @@ pub(in crate::ui) fn axis<'a>(
         .min_thickness(12.0)
 }
 
-/// Marks at given values.
+/// Grid marks at the given values.
 pub(in crate::ui) fn marks(values: &[f64]) -> Vec<GridMark> {
     let step_size = 1.0;
     values.iter().map(|value| GridMark { value: *value, step_size }).collect()

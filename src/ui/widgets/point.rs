@@ -11,9 +11,9 @@ pub(in crate::ui) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Three sliders for the coordinates of a point.
 pub(in crate::ui) struct PointSliders<'a> {
-    /// Accessible name: the first slider of "Hand" is "Hand x".
+    /// Start of the accessible names: with "Hand" the sliders are "Hand x", "Hand y" and "Hand z".
     pub name: &'a str,
-    /// Labels of the sliders.
+    /// Visible labels of the sliders for x, y and z.
     pub labels: [&'a str; 3],
     pub value: Vec3,
     pub default: Vec3,
@@ -21,7 +21,7 @@ pub(in crate::ui) struct PointSliders<'a> {
     pub range: f32,
     pub step: f32,
     pub tooltip: &'a str,
-    /// Reason shown while the sliders are disabled.
+    /// Reason shown while the sliders are disabled; `None` enables the sliders.
     pub disabled: Option<&'a str>,
 }
 

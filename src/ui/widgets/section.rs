@@ -5,15 +5,15 @@ use egui::{
     Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Rect, Ui, UiBuilder, WidgetText,
 };
 
-/// Space below a section.
+/// Space below a section, in points.
 const SPACE: f32 = 1.0;
 
-/// A foldable section; its state survives a restart.
+/// Shows a foldable section, open at first. Whether it is folded is kept across restarts.
 pub(in crate::ui) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     named_section(ui, title, title, contents);
 }
 
-/// A section with widgets at the right of its title.
+/// Shows a section with the widgets of `aside` at the right end of its title row.
 pub(in crate::ui) fn section_with(
     ui: &mut Ui,
     title: &str,
@@ -23,16 +23,16 @@ pub(in crate::ui) fn section_with(
     let header = show_section(ui, title, title, true, contents);
     let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), header.y_range());
     let right = Layout::right_to_left(Align::Center);
-    // Overlaid on the title row.
+    // The widgets are laid over the title row.
     aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
 }
 
-/// A section that is folded at first.
+/// Shows a section that is folded at first.
 pub(in crate::ui) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
     show_section(ui, title, title, false, contents);
 }
 
-/// A section with a stable `id` and a variable title.
+/// Shows a section that is identified by `id`, because its title changes.
 pub(in crate::ui) fn named_section(
     ui: &mut Ui,
     id: &str,
@@ -42,7 +42,7 @@ pub(in crate::ui) fn named_section(
     show_section(ui, id, title, true, contents);
 }
 
-/// Returns the rectangle of the title.
+/// Shows a section, folded at first unless `open`, and returns the rectangle of its title.
 fn show_section(
     ui: &mut Ui,
     id: &str,
@@ -57,7 +57,7 @@ fn show_section(
     shown.header_response.rect
 }
 
-/// A title truncated to the panel: an egui header would widen the panel to its title.
+/// The title, truncated to the width of the panel: egui would widen the panel for a longer title.
 fn cut(ui: &Ui, title: &str) -> WidgetText {
     let colour = ui.visuals().strong_text_color();
     let font = FontId::proportional(13.5);
@@ -67,7 +67,7 @@ fn cut(ui: &Ui, title: &str) -> WidgetText {
     ui.fonts_mut(|fonts| fonts.layout_job(job)).into()
 }
 
-/// A row with a name on the left and widgets on the right.
+/// Shows a row with a name on the left and the widgets of `contents` on the right.
 pub(in crate::ui) fn pair<T>(
     ui: &mut Ui,
     name: &str,

@@ -14,7 +14,8 @@ use crate::ui::style;
 
 /// A slider: a label, a rail with a thumb, and the value, which can be typed.
 ///
-/// Showing a value never changes it; the range limits only the thumb.
+/// Showing a value never changes it: a value outside the range only puts the thumb at an end of the
+/// rail.
 #[derive(Default)]
 pub(in crate::ui) struct Slider<'a> {
     /// Accessible name, such as "Hand x".
@@ -27,10 +28,10 @@ pub(in crate::ui) struct Slider<'a> {
     pub range: (f32, f32),
     pub default: f32,
     pub unit: &'a str,
-    /// Change per arrow key; a tenth with Shift, ten times with page keys. The value is shown to a
-    /// tenth of it.
+    /// Change per press of an arrow key. With Shift the change is a tenth of the step, and with a
+    /// page key ten times the step. The value is shown to a tenth of the step.
     pub step: f32,
-    /// Reason shown while the slider is disabled.
+    /// Reason shown while the slider is disabled; `None` enables the slider.
     pub disabled: Option<&'a str>,
 }
 
@@ -40,13 +41,14 @@ const HEIGHT: f32 = 22.0;
 const THUMB: f32 = 6.5;
 const RAIL: f32 = 4.0;
 
-/// Factors of Shift and page keys.
+/// Factor of the step for an arrow key with Shift.
 const FINE: f32 = 0.1;
+/// Factor of the step for a page key.
 const PAGE: f32 = 10.0;
 
 impl Slider<'_> {
-    /// Shows the slider. Pushes `set` of a new value. A drag is one transaction and ends when the
-    /// transaction is cancelled.
+    /// Shows the slider, and pushes the action that `set` returns when the user changes the value.
+    /// A drag is one transaction, and ends when that transaction is cancelled.
     pub fn show<A: Into<Action>>(
         self,
         ui: &mut Ui,
@@ -62,7 +64,8 @@ impl Slider<'_> {
         self.show_after(ui, session, actions, &set, label);
     }
 
-    /// As [`Self::show`], with other widgets in place of the label.
+    /// Shows the slider as [`Self::show`] does, but with the widgets of `head` in place of the
+    /// label.
     pub fn show_after<A: Into<Action>>(
         &self,
         ui: &mut Ui,
@@ -167,12 +170,13 @@ impl Slider<'_> {
         let pointed = rail.interact_pointer_pos().map(|at| {
             let part = ((at.x - track.left()) / track.width()).clamp(0.0, 1.0);
             let value = self.range.0 + part * (self.range.1 - self.range.0);
-            // Rounded to the resolution of a pixel.
+            // Rounded to the largest power of ten that is at most the change per point.
             let grain =
                 10.0_f32.powf(((self.range.1 - self.range.0) / track.width()).log10().floor());
             (value / grain).round() * grain
         });
-        // From the press on, before egui calls it a drag; a click by the keyboard has no position.
+        // The value follows the mouse from the press on, before egui reports a drag. A click by the
+        // keyboard has no position.
         let pressed = rail.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
         if pressed {
             rail.request_focus();
@@ -188,9 +192,9 @@ impl Slider<'_> {
         if rail.clicked() || rail.drag_stopped() {
             actions.push(TransactionAction::Commit);
         }
-        let asked = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
-        if asked != 0.0 {
-            actions.push(set(self.value + asked));
+        let change = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
+        if change != 0.0 {
+            actions.push(set(self.value + change));
         }
         if let Some(end) = self.keyed_end(ui, rail) {
             actions.push(set(end));
@@ -200,7 +204,7 @@ impl Slider<'_> {
         }
     }
 
-    /// Change by arrow and page keys.
+    /// Change of the value by the arrow and page keys that were pressed in this frame.
     fn keyed(&self, ui: &Ui, rail: &Response) -> f32 {
         if !rail.has_focus() {
             return 0.0;
@@ -230,11 +234,12 @@ impl Slider<'_> {
         }
     }
 
-    /// Change requested by a screen reader.
+    /// Change of the value by the steps that a screen reader requested in this frame.
     fn spoken_steps(&self, ui: &Ui, rail: &Response) -> f32 {
         ui.input(|input| {
-            let asked = |action| input.num_accesskit_action_requests(rail.id, action) as f32;
-            (asked(accesskit::Action::Increment) - asked(accesskit::Action::Decrement)) * self.step
+            let requests = |action| input.num_accesskit_action_requests(rail.id, action) as f32;
+            (requests(accesskit::Action::Increment) - requests(accesskit::Action::Decrement))
+                * self.step
         })
     }
 
@@ -274,7 +279,7 @@ fn spoken_values(ui: &Ui, rail: &Response) -> Vec<f32> {
     })
 }
 
-/// True while a slider is dragged, rather than something in the viewport.
+/// Whether a transaction is open that is not a drag in the viewport, such as the drag of a slider.
 fn is_sliding(session: &Session) -> bool {
     session.is_editing() && session.drag().is_none()
 }

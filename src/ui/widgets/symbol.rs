@@ -3,7 +3,8 @@
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, FontFamily, FontId, Label, Response, Role, Ui, WidgetInfo};
 
-/// Text with letters and digits after an underscore as subscript.
+/// Lays out text of `size` points. The letters and digits after an underscore become a subscript,
+/// and the underscore is omitted.
 pub(in crate::ui) fn layout(text: &str, size: f32, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     let format = |size, valign| TextFormat {
@@ -20,7 +21,7 @@ pub(in crate::ui) fn layout(text: &str, size: f32, colour: Color32) -> LayoutJob
     job
 }
 
-/// Text for screen readers.
+/// The text that screen readers read out: Greek letters as words, and underscores as spaces.
 pub(in crate::ui) fn spoken(text: &str) -> String {
     let mut spoken = String::new();
     for letter in text.chars() {
@@ -39,14 +40,14 @@ pub(in crate::ui) fn spoken(text: &str) -> String {
     spoken
 }
 
-/// A label with symbols, named by their words.
+/// Shows `text` with subscripts; screen readers get the result of [`spoken`].
 pub(in crate::ui) fn label(ui: &mut Ui, text: &str, size: f32, colour: Color32) -> Response {
     let response = ui.add(Label::new(layout(text, size, colour)).selectable(false));
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken(text)));
     response
 }
 
-/// Parts of the text; true for subscripts.
+/// Splits the text into parts without the underscores; the flag of a part is true for a subscript.
 fn parts(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split('_').enumerate().flat_map(|(index, part)| {
         let lowered = if index == 0 {

@@ -7,10 +7,10 @@ use crate::session::{Actions, EditAction, PoseMode, Session, TransactionAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, Slider, angle_slider};
 
-/// Width of each of the two buttons.
+/// Width in points of each of the two buttons.
 const WIDTH: f32 = 33.0;
 
-/// Buttons for IK and FK, and the slider of the blend.
+/// Shows buttons for IK and FK, and the slider that blends between them.
 pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let influence = session.arm().influence;
     let modes = [
@@ -41,7 +41,7 @@ pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Action
     });
 }
 
-/// Sliders of the shoulder's three angles and the elbow's one.
+/// Shows sliders of the three shoulder angles and the elbow bend, and a button that sets all to 0.
 pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let fk = session.arm().fk;
     let shoulder = [

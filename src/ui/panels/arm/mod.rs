@@ -15,8 +15,9 @@ use crate::ui::style;
 use crate::ui::widgets::{self, AXES, PointSliders, Slider};
 use disabled::ANGLES_LEAD;
 
-/// Slider range, in units of the arm.
+/// Maximum of the sliders of a world coordinate, in units of [`Session::arm_unit`].
 const ROOT_RANGE: f32 = 500.0;
+/// Range of the length sliders, in units of [`Session::arm_unit`].
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {

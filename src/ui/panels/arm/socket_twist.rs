@@ -31,9 +31,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Combo box of the twist references, for the title row of the section.
+/// Shows the combo box of the twist references, for the title row of the section.
 pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    /// Width of the section's title and the combo box's label.
+    /// Width in points of the section's title and the label "reference".
     const TITLES: f32 = 170.0;
     let chosen = session.arm().twist_reference;
     let combo = ComboBox::from_id_salt("twist reference").width(60.0).selected_text(chosen.name());

@@ -131,7 +131,7 @@ fn elbow(ui: &Ui, session: &Session) -> [FormulaRow; 8] {
         },
         FormulaRow {
             symbol: "Out o_e",
-            formula: "Heron's formula",
+            formula: "√((d_1 − h_e)(d_1 + h_e))",
             value: length(arm, pose.out),
             meaning: "Distance of the elbow from the Pointer: twice the triangle's area over D",
             colour: None,
@@ -178,13 +178,14 @@ fn degrees(radians: f32) -> String {
     format!("{:.1}°", tidy(radians.to_degrees()))
 }
 
-/// Avoids "-0.0".
+/// Formats a length of the arm; a length that rounds to 0 is shown without a sign.
 fn length(arm: &Arm, length: f32) -> String {
     let nothing = 0.0005 * arm.grid_cell();
     arm.format_length(if length.abs() < nothing { 0.0 } else { length })
 }
 
-/// Avoids "-0.0".
+/// Returns 0 for a value that rounds to 0 at one decimal, so that 0 has no sign; otherwise the
+/// value.
 fn tidy(value: f32) -> f32 {
     if value.abs() < 0.05 { 0.0 } else { value }
 }

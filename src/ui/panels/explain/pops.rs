@@ -1,4 +1,4 @@
-//! Elbow speed over Cursor speed, the pops, and their fixes.
+//! A plot of the ratio of elbow speed to Cursor speed, and a list of the pops with their fixes.
 
 use egui::{Align2, Color32, RichText, Role, Stroke, Ui, WidgetInfo};
 use egui_plot::{
@@ -15,9 +15,9 @@ use crate::ui::style;
 use crate::ui::widgets::{self, plot};
 
 const HEIGHT: f32 = 140.0;
-/// Range of ratios on the plot; values outside are clamped.
+/// Range of ratios on the plot; a ratio outside is clamped.
 const SHOWN: (f64, f64) = (0.05, 100.0);
-/// Number of pops listed.
+/// Maximum number of pops in the list, which has the newest first.
 const LISTED: usize = 3;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -45,7 +45,8 @@ fn is_marked(pops: &Pops, change: InputChange) -> bool {
     pops.samples().any(|sample| sample.kind == PopSampleKind::Change(change))
 }
 
-/// One pop with its fix, unless the fix is offered above already.
+/// Shows one pop and a button for its fix. The button is left out if `offered`, the fixes of the
+/// pops above, contains the same fix.
 fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
     let text = format!("{}: {}", name(spike.pop), describe(spike));
     if !spike.persists(arm) {
@@ -191,14 +192,15 @@ impl PopColours {
     }
 }
 
-/// Steps of one drag or playback: x, and logarithms of ratio and limit.
+/// The plotted steps of one drag or playback: the x of each step with the log₁₀ of its ratio, and
+/// with the log₁₀ of the limit above which the ratio is a pop.
 #[derive(Default)]
 struct PlottedRun {
     ratios: Vec<[f64; 2]>,
     limits: Vec<[f64; 2]>,
 }
 
-/// The x of each sample, with a gap between runs.
+/// The x of each sample on the plot, with a gap between runs.
 fn places(pops: &Pops) -> Vec<f64> {
     const GAP: f64 = 4.0;
     let (mut at, mut last) = (0.0, None);
@@ -251,8 +253,8 @@ fn draw_changes(plot: &mut PlotUi<'_>, pops: &Pops, places: &[f64], colours: Pop
     }
 }
 
-/// Draws a mark on each pop, an arrow where it exceeds the plot, and names where they fit, latest
-/// first.
+/// Draws a mark on each pop, which is an arrow if the ratio exceeds the plot, and the names of the
+/// pops. Where names would overlap, only that of the newest pop is drawn.
 fn draw_spikes(
     plot: &mut PlotUi<'_>,
     spikes: &[Spike],

@@ -1,4 +1,5 @@
-//! The reach curve: hand distance over Cursor distance, hard, soft and stretched.
+//! The reach curve: a plot of hand distance against Cursor distance, with soft limits off, with
+//! softness, and with stretch.
 
 use egui::{Color32, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 use egui_plot::{
@@ -14,8 +15,9 @@ use crate::ui::widgets::{format, plot};
 
 const HEIGHT: f32 = 168.0;
 const POINTS: u16 = 240;
-/// Values of the example curves, for settings that are off.
+/// Softness of the example curve, if softness is off.
 const EXAMPLE_SOFTNESS: f32 = 0.5;
+/// Stretch factor of the example curve, if stretch is off.
 const EXAMPLE_STRETCH: f32 = 1.5;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
@@ -39,7 +41,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     }
 }
 
-/// Hand distance over Cursor distance, as fractions of L.
+/// A curve of hand distance against Cursor distance, both as fractions of L, the length of the
+/// straight arm.
 struct ReachCurve {
     name: String,
     soft_reach: SoftReach,
@@ -49,7 +52,8 @@ struct ReachCurve {
 }
 
 impl ReachCurve {
-    /// Off, softness and stretch: with the arm's own values, else with examples.
+    /// The three curves: soft limits off, softness, and stretch. A setting that is off in the arm
+    /// has an example value.
     fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
         let own = arm.soft_reach;
         let (softness, stretch, angle) = (own.softness(), own.max_stretch(), own.min_elbow_angle());
@@ -83,7 +87,7 @@ impl ReachCurve {
     }
 }
 
-/// L, the unit of the plot.
+/// L, the length of the straight arm: the unit of the plot.
 fn outer(arm: &Arm) -> f64 {
     f64::from(arm.bones.upper()) + f64::from(arm.bones.lower())
 }
@@ -99,7 +103,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
     let weak = ui.visuals().weak_text_color();
-    // The arm's own curve is the widest, below the others.
+    // The arm's own curve, the widest, is drawn first, so that it does not cover the others.
     let (own, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_own);
     let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(arm, most)).collect();
     let dot = ReachMarker::new(arm, most);
@@ -143,7 +147,8 @@ struct ReachMarker {
 }
 
 impl ReachMarker {
-    /// A Cursor beyond the plot is an arrow at the edge.
+    /// The mark of the arm's Cursor; an arrow at the right edge of the plot if the Cursor is
+    /// farther than `most`, in units of L.
     fn new(arm: &Arm, most: f64) -> Self {
         let cursor = arm.cursor_in_root().length().min(f32::MAX);
         let part = f64::from(cursor) / outer(arm);
@@ -159,7 +164,7 @@ impl ReachMarker {
     }
 }
 
-/// Legend entry of a curve.
+/// Shows the legend entry of a curve.
 fn legend(ui: &mut Ui, curve: &ReachCurve) {
     ui.spacing_mut().item_spacing.x = 5.0;
     let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
@@ -179,14 +184,14 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
     ui.add_space(4.0);
 }
 
-/// Hand distance and slope for a Cursor distance.
+/// Describes the hand distance and the slope of the curve at a Cursor distance.
 fn reading(arm: &Arm, cursor: f32) -> String {
     let cursor = cursor.min(f32::MAX);
     let HandDistance { distance, slope, .. } = arm.soft_reach.hand_distance(arm.bones, cursor);
     format!("Cursor at {cursor:.1}: hand at {distance:.1}, slope {slope:.2}")
 }
 
-/// A sentence on which curves are examples.
+/// A sentence that says which curves are examples.
 fn note(own: SoftReach) -> &'static str {
     match (own.softness() > 0.0, own.max_stretch() > 1.0) {
         (false, false) => "Soft limits are off; the dashed curves show what they would do",

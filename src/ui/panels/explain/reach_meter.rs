@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
         let at = egui::pos2(at, bar.bottom() + 6.0);
         painter.text(at, anchor, text, font.clone(), visuals.weak_text_color());
     };
-    // Numbers would collide on a short bar.
+    // On a short bar the two numbers would overlap.
     let apart = place(outer) - place(inner) > 60.0;
     if apart && inner > 0.0 {
         written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));

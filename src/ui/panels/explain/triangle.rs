@@ -1,9 +1,11 @@
 //! The triangle of shoulder, elbow and hand in the plane of the arm, to scale.
 
 use core::f32::consts::TAU;
+use std::sync::Arc;
 
 use egui::{
-    Align2, Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Color32, Galley, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 
 use crate::document::Arm;
@@ -14,6 +16,8 @@ use crate::ui::widgets::symbol;
 const HEIGHT: f32 = 170.0;
 const MARGIN: f32 = 26.0;
 const SIZE: f32 = 14.0;
+/// Radius of the arc of the angle.
+const ARC: f32 = 24.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     let (rect, response) =
@@ -34,7 +38,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     response.on_hover_text("The arm in its own plane, to scale");
 }
 
-/// Screen positions and colours.
+/// Screen positions and colours of the triangle. `foot` is the point of the Pointer nearest to the
+/// elbow, and `angle` is θ_e in radians.
 struct TriangleDrawing {
     shoulder: Pos2,
     elbow: Pos2,
@@ -52,8 +57,8 @@ impl TriangleDrawing {
     fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink(MARGIN);
-        // One scale for all poses of an arm, so that a growing D grows; smaller only where the
-        // triangle would not fit.
+        // All poses of an arm have the same scale, so that the triangle grows with D; only a
+        // triangle that would not fit has a smaller scale.
         let widest = (right - left).max(arm.bones.outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
         let middle = (left + right) / 2.0;
@@ -89,40 +94,88 @@ impl TriangleDrawing {
     }
 
     fn paint_angle(&self, painter: &Painter) {
-        const RADIUS: f32 = 24.0;
         const STEPS: usize = 24;
         let arc = (0..=STEPS).map(|step| {
             let angle = self.angle * step as f32 / STEPS as f32;
-            self.shoulder + RADIUS * vec2(angle.cos(), -angle.sin())
+            self.shoulder + ARC * vec2(angle.cos(), -angle.sin())
         });
         painter.add(Shape::line(arc.collect(), Stroke::new(1.5, self.accent)));
     }
 
+    /// Writes each label at the first of its positions that is clear of lines and other labels. Labels
+    /// without such a position are left out, except those of the sides.
     fn write(&self, painter: &Painter, ui: &Ui) {
-        let middle = |a: Pos2, b: Pos2| a + (b - a) / 2.0;
-        let beside = |from: Pos2, to: Pos2| {
-            let along = (to - from).normalized();
-            middle(from, to) + vec2(along.y, -along.x) * 12.0
+        let mut labels = Labels { painter, ui, lines: self.lines(), written: Vec::new() };
+        let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
+        let along = |from: Pos2, to: Pos2| [0.5, 0.35, 0.65].map(|part| from + (to - from) * part);
+        let beside = |from: Pos2, to: Pos2, distance: f32| {
+            let direction = (to - from).normalized();
+            along(from, to).map(|at| at + distance * vec2(direction.y, -direction.x))
         };
-        let write = |at: Pos2, text: &str, colour: Color32| {
-            let galley = ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(text, SIZE, colour)));
-            let min = Align2::CENTER_CENTER.anchor_size(at, galley.size()).min;
-            painter.galley(min, galley, colour);
-        };
-        write(beside(self.shoulder, self.elbow), "d_1", self.upper);
-        write(beside(self.elbow, self.hand), "d_2", self.lower);
-        let half = self.angle.min(TAU / 4.0) / 2.0;
-        write(self.shoulder + 38.0 * vec2(half.cos(), -half.sin()), "θ_e", self.accent);
-        let below = vec2(0.0, 13.0);
-        write(middle(self.shoulder, self.hand) + below, "D", self.text);
-        // Hidden with their lines in a straight or folded arm.
-        if (self.elbow - self.foot).length() > 24.0 {
-            write(middle(self.elbow, self.foot) + vec2(12.0, 0.0), "o_e", self.weak);
-            let clear =
-                (middle(self.shoulder, self.foot) - middle(self.shoulder, self.hand)).length();
-            if clear > 24.0 {
-                write(middle(self.shoulder, self.foot) + below, "h_e", self.weak);
-            }
+        labels.write_always("d_1", self.upper, beside(shoulder, elbow, 12.0));
+        labels.write_always("d_2", self.lower, beside(elbow, hand, 12.0));
+        labels.write_always("D", self.text, beside(hand, shoulder, 13.0));
+        let angle = self.angle.min(TAU / 4.0);
+        let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
+            let at = |part: f32| shoulder + radius * Vec2::angled(-part * angle);
+            [0.5, 0.65, 0.35].map(at)
+        });
+        let [below, ..] = beside(hand, shoulder, 13.0).map(|at| pos2(shoulder.x + ARC + 8.0, at.y));
+        labels.write("θ_e", self.accent, in_angle.chain([below]));
+        let heights = beside(elbow, foot, 12.0).into_iter().chain(beside(elbow, foot, -12.0));
+        labels.write("o_e", self.weak, heights);
+        labels.write("h_e", self.weak, beside(foot, shoulder, 13.0));
+    }
+
+    fn lines(&self) -> [[Pos2; 2]; 4] {
+        let Self { shoulder, elbow, hand, foot, .. } = *self;
+        [[shoulder, elbow], [elbow, hand], [shoulder, hand], [elbow, foot]]
+    }
+}
+
+/// Labels of a drawing, beside its lines.
+struct Labels<'a> {
+    painter: &'a Painter,
+    ui: &'a Ui,
+    lines: [[Pos2; 2]; 4],
+    written: Vec<Rect>,
+}
+
+impl Labels<'_> {
+    /// Writes a label at the first clear position, if there is one.
+    fn write(&mut self, text: &str, colour: Color32, positions: impl IntoIterator<Item = Pos2>) {
+        let galley = self.galley(text, colour);
+        let mut rects = positions.into_iter().map(|at| Rect::from_center_size(at, galley.size()));
+        if let Some(rect) = rects.find(|rect| self.is_clear(*rect)) {
+            self.paint(rect, galley, colour);
         }
+    }
+
+    /// Writes a label at the first clear position, or else at the first one.
+    fn write_always(&mut self, text: &str, colour: Color32, positions: [Pos2; 3]) {
+        let galley = self.galley(text, colour);
+        let rects = positions.map(|at| Rect::from_center_size(at, galley.size()));
+        let rect = rects.into_iter().find(|rect| self.is_clear(*rect)).unwrap_or(rects[0]);
+        self.paint(rect, galley, colour);
+    }
+
+    fn galley(&self, text: &str, colour: Color32) -> Arc<Galley> {
+        self.ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(text, SIZE, colour)))
+    }
+
+    fn paint(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32) {
+        self.painter.galley(rect.min, galley, colour);
+        self.written.push(rect);
+    }
+
+    fn is_clear(&self, rect: Rect) -> bool {
+        let rect = rect.expand(2.0);
+        let is_crossed = |[from, to]: &[Pos2; 2]| {
+            const STEPS: usize = 64;
+            (0..=STEPS)
+                .any(|step| rect.contains(*from + (*to - *from) * (step as f32 / STEPS as f32)))
+        };
+        !self.lines.iter().any(is_crossed)
+            && !self.written.iter().any(|other| other.intersects(rect))
     }
 }

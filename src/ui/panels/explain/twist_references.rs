@@ -42,7 +42,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Colour bar of the singularity globe on a logarithmic scale.
+/// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain.
 fn legend(ui: &mut Ui) {
     const HEIGHT: f32 = 30.0;
     const STEPS: usize = 64;
@@ -119,12 +119,12 @@ fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
-/// A gain such as "0.47" or "∞".
+/// Formats a gain, such as "0.47"; "∞" from 1000.
 fn gain_in_words(gain: f32) -> String {
     if gain < 1e3 { format!("{gain:.2}") } else { "∞".to_owned() }
 }
 
-/// An angle such as "−17.0°"; zero has no sign.
+/// Formats an angle in degrees, such as "-17.0°"; zero has no sign.
 fn turn_in_words(radians: f32) -> String {
     let degrees = radians.to_degrees();
     if degrees.abs() < 0.05 { "0.0°".to_owned() } else { format!("{degrees:+.1}°") }

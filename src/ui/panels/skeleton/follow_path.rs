@@ -22,7 +22,7 @@ fn follows_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Default path of a skeleton.
+/// Default path of a skeleton with this reach.
 fn first(reach: f32) -> FollowPath {
     FollowPath { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
 }

@@ -63,7 +63,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     }
 }
 
-/// A check box for each axis, with the range beside it.
+/// Shows, for each axis, a check box that limits the rotation, with the range beside it.
 fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
     for (axis, label) in AXES.into_iter().enumerate() {
         let limit = joint.limits[axis];
@@ -91,7 +91,8 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
     }
 }
 
-/// One end of a limit in radians, shown in degrees.
+/// Shows a field for one end of a limit. `value` and the argument of `set` are in radians; the
+/// field shows degrees.
 fn angle(
     ui: &mut Ui,
     session: &Session,
@@ -161,7 +162,7 @@ fn parent(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
             .width(ui.available_width().min(150.0))
             .truncate();
         let response = combo.show_ui(ui, |ui| {
-            let others = skeleton.ids().filter(|j| !skeleton.hangs_from(*j, index));
+            let others = skeleton.ids().filter(|j| !skeleton.is_in_subtree(*j, index));
             for parent in std::iter::once(None).chain(others.map(Some)) {
                 if ui.selectable_label(joint.parent == parent, name(parent)).clicked() {
                     actions.push(EditAction::ReparentJoint { joint: index, parent });

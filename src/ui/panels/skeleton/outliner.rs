@@ -1,4 +1,4 @@
-//! The outliner: the tree of joints, selection, and buttons that edit it.
+//! The outliner: the tree of joints, their selection, and buttons that edit the tree.
 
 use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
@@ -15,13 +15,13 @@ const ROWS: f32 = 9.0;
 const NONE_SELECTED: &str = "Select a joint first";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    // Above the tree, which grows: no button may move under the mouse.
+    // The buttons are above the tree: below it they would move under the mouse as the tree grows.
     buttons(ui, session, actions);
     ui.add_space(4.0);
     tree(ui, session, actions);
 }
 
-/// True while a row has the keyboard.
+/// Whether a row of the tree had the keyboard focus in the previous frame.
 #[derive(Clone, Copy, Default)]
 struct OutlinerFocus(bool);
 
@@ -139,7 +139,8 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     response.on_hover_text(said.join(", "))
 }
 
-/// Scrolls to a joint that was selected elsewhere, and moves the keyboard focus to it.
+/// Scrolls to the row when its joint becomes selected, and moves the keyboard focus to the row if
+/// the tree has the focus.
 fn reveal(ui: &Ui, session: &Session, row: &OutlinerRow, response: &Response) {
     let seen = response.id.with("selected");
     let is_new = session.selected() == Some(row.joint);
@@ -164,7 +165,7 @@ fn respond(
     response: &Response,
     actions: &mut Actions,
 ) {
-    // Space plays or pauses.
+    // egui reports Space on the focused row as a click, but here Space plays or pauses.
     let by_space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
     if response.double_clicked() {
         actions.push(commands::rename(session, row.joint));

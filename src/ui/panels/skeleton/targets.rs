@@ -12,7 +12,7 @@ const PATHS: [(TargetPath, &str); 3] = [
     (TargetPath::FigureEight, "Figure eight"),
 ];
 
-/// The list of targets.
+/// Shows the list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     if rig.targets.is_empty() {
@@ -46,7 +46,7 @@ fn residual(session: &Session, target: &Target) -> f32 {
     session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
 }
 
-/// Settings of the selected joint's target.
+/// Shows the settings of the selected joint's target.
 pub(in crate::ui) fn selected(
     ui: &mut Ui,
     session: &Session,

@@ -42,7 +42,7 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
         let said = format!("{}: {}", short_name(solver.method), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-        // Only converged solvers are filled.
+        // The square of a solver is filled only if the solver has converged.
         if solver.report().is_ok_and(|report| report.converged()) {
             ui.painter().rect_filled(rect, 2.0, colour);
         } else {

@@ -1,4 +1,4 @@
-//! Error over iterations on a logarithmic scale.
+//! A plot of the solver's error against the iteration, on a logarithmic scale.
 
 use core::ops::RangeInclusive;
 
@@ -11,7 +11,7 @@ use crate::ui::style;
 use crate::ui::widgets::{format, plot};
 
 const HEIGHT: f32 = 132.0;
-/// Lower end of the scale, as a fraction of the skeleton's reach.
+/// Smallest error on the scale, as a fraction of the skeleton's reach.
 const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
@@ -74,7 +74,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     response.on_hover_text("Error over iterations, dashed: tolerance");
 }
 
-/// Iteration and log₁₀ of the error, for every solver that has run.
+/// One curve for each running or finished solver of the comparison or, without a comparison, for
+/// the solver run. A point is the iteration and the log₁₀ of the error, or of `least` if the error
+/// is smaller.
 fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
     let points = |history: &ResidualHistory| {
         let point = |(iteration, error): (usize, f32)| {
@@ -91,13 +93,14 @@ fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
     solver_run.map(|it| (it.report().method, points(it.history()))).into_iter().collect()
 }
 
-/// The largest 1, 2 or 5 times a power of ten up to `step`, at least 1.
+/// The largest number that is at most `step` and is 1, 2 or 5 times a power of ten; 1 if `step` is
+/// below 1.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1.0).log10().floor());
     [5.0, 2.0].map(|times| times * power).into_iter().find(|it| *it <= step).unwrap_or(power)
 }
 
-/// Empty where the edge of the plot would cut the label.
+/// Label of an iteration; empty if the right edge of the plot would cut the label off.
 fn iteration(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
     let edge = shown.end() - 0.04 * (shown.end() - shown.start());
     if mark.value > edge { String::new() } else { mark.value.to_string() }

@@ -167,7 +167,7 @@ fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool 
     ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
-/// Report of the shown pose, of constant height so that nothing below moves.
+/// Shows the solver's report on the shown pose, at constant height so that nothing below moves.
 fn report(ui: &mut Ui, session: &Session) {
     let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
