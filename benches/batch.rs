@@ -1,5 +1,5 @@
-//! How long many arms take, beside the copy of as many bytes as they are asked by and answered with:
-//! what the ratio is taken to, for nothing that reads and writes memory is faster.
+//! Time to solve many arms, relative to copying as many bytes as the solver reads and writes:
+//! the copy is the lower bound for anything limited by memory bandwidth.
 
 use core::hint::black_box;
 
@@ -12,7 +12,7 @@ use ik_arm::kinematics::batch::{
 };
 use ik_arm::kinematics::two_bone::TwoBone;
 
-/// In the cache of one core, and beyond that of all.
+/// Numbers of arms: within the cache of one core, and beyond the caches of all.
 const SIZES: [(usize, &str); 3] = [(4 << 10, "4 Ki"), (1 << 20, "1 Mi"), (4 << 20, "4 Mi")];
 
 struct Data {
@@ -52,7 +52,7 @@ impl Data {
         }
     }
 
-    /// The question, and room for the answer.
+    /// Input arrays, and output arrays to be filled.
     fn split(
         &mut self,
         kind: Kind,
@@ -68,17 +68,17 @@ impl Data {
             _ => BatchTwist::CosSin { cos, sin },
         };
         let arms = ArmBatch::new(bones, Points { x, y, z }, twist).expect("a batch");
-        let places = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
+        let positions = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
         let [of_upper, of_lower] = rotations;
         let rotations = matches!(kind, Kind::Rotations).then(|| BatchRotations {
             upper: QuaternionsMut::of(of_upper),
             lower: QuaternionsMut::of(of_lower),
         });
-        (arms, places, rotations)
+        (arms, positions, rotations)
     }
 
-    /// Five arrays are read and six are written, and with rotations fourteen: as many copies, of
-    /// which some read what has been read.
+    /// The solver reads five arrays and writes six, or fourteen with rotations. This makes as many
+    /// copies, some from the same array.
     fn copy(&mut self, kind: Kind) {
         let Self { cursor, cos, sin, elbow, hand, rotations, .. } = self;
         let from = cursor.iter().chain([&*cos, &*sin]).cycle();
@@ -117,8 +117,8 @@ fn batch(criterion: &mut Criterion) {
         for (kind, what) in KINDS {
             group.bench_function(BenchmarkId::new(what, name), |bencher| {
                 bencher.iter(|| {
-                    let (arms, places, rotations) = black_box(&mut data).split(kind);
-                    arms.solve(places, rotations)
+                    let (arms, positions, rotations) = black_box(&mut data).split(kind);
+                    arms.solve(positions, rotations)
                 });
             });
         }
@@ -130,8 +130,8 @@ fn batch(criterion: &mut Criterion) {
         #[cfg(feature = "parallel")]
         group.bench_function(BenchmarkId::new("all cores", name), |bencher| {
             bencher.iter(|| {
-                let (arms, places, rotations) = black_box(&mut data).split(Kind::Places);
-                arms.solve_on_all_cores(places, rotations)
+                let (arms, positions, rotations) = black_box(&mut data).split(Kind::Places);
+                arms.solve_on_all_cores(positions, rotations)
             });
         });
     }

@@ -1,5 +1,5 @@
-//! How long a solve takes by each method, from bind poses to targets that can be reached, and what
-//! one iteration takes.
+//! Time of a solver run by each method, from bind poses to reachable targets, and time of
+//! one iteration.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -31,7 +31,7 @@ fn cases(joints: usize) -> Vec<(Skeleton, [TipTarget; 1])> {
     (0..64).map(case).collect()
 }
 
-/// From the skeleton to the skeleton, setting up included; to 1e-4 of the chain's length.
+/// Whole runs, setup and writing the skeleton included; tolerance 1e-4 of the chain's length.
 fn whole(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("chain_ik");
     for joints in [2, 10, 30, 100] {
@@ -54,7 +54,7 @@ fn whole(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The first iteration, setting up left out.
+/// The first iteration without setup.
 fn iteration(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("iteration");
     for joints in [10, 20, 40, 80] {

@@ -1,4 +1,4 @@
-//! How long the elbow's reference takes by each rule, and a value between keys.
+//! Time to evaluate each twist reference, and a value between keys.
 
 use core::hint::black_box;
 

@@ -1,6 +1,6 @@
-//! How long one solve takes, the spin's sine and cosine included.
+//! Time of one solve, including the sine and cosine of the twist.
 //!
-//! Beside it, in the same run, the textbook solution by angles: what the ratio is taken to.
+//! The baseline, measured in the same run, is the textbook solution by angles.
 
 use core::hint::black_box;
 
@@ -8,7 +8,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Mat3, Vec3};
 use ik_arm::kinematics::two_bone::TwoBone;
 
-/// Cursors that differ, so that no branch is learnt by heart.
+/// Different cursors, so that the branch predictor cannot learn them.
 fn cursors() -> Vec<(Vec3, f32)> {
     (0..1024)
         .map(|i| {
@@ -22,8 +22,8 @@ fn cursors() -> Vec<(Vec3, f32)> {
         .collect()
 }
 
-/// The paper's way: arc tangents and an arc cosine, then rotation matrices from the angles.
-fn by_angles(upper: f32, lower: f32, cursor: Vec3, spin: f32) -> Vec3 {
+/// The method of Palmieri's report: arc tangents and an arc cosine, then rotation matrices.
+fn by_angles(upper: f32, lower: f32, cursor: Vec3, twist: f32) -> Vec3 {
     let yaw = cursor.z.atan2(cursor.x);
     let flat = cursor.x.hypot(cursor.z);
     let pitch = cursor.y.atan2(flat);
@@ -32,7 +32,7 @@ fn by_angles(upper: f32, lower: f32, cursor: Vec3, spin: f32) -> Vec3 {
     let shoulder = cos.clamp(-1.0, 1.0).acos();
     Mat3::from_rotation_y(-yaw)
         * Mat3::from_rotation_z(pitch)
-        * Mat3::from_rotation_x(spin)
+        * Mat3::from_rotation_x(twist)
         * Vec3::new(upper * shoulder.cos(), upper * shoulder.sin(), 0.0)
 }
 
@@ -43,16 +43,16 @@ fn two_bone(criterion: &mut Criterion) {
     group.throughput(criterion::Throughput::Elements(cursors.len() as u64));
     group.bench_function("solve", |bencher| {
         bencher.iter(|| {
-            for (cursor, spin) in &cursors {
-                black_box(black_box(arm).solve(black_box(*cursor), black_box(*spin)));
+            for (cursor, twist) in &cursors {
+                black_box(black_box(arm).solve(black_box(*cursor), black_box(*twist)));
             }
         });
     });
     group.bench_function("by angles", |bencher| {
         bencher.iter(|| {
-            for (cursor, spin) in &cursors {
-                let (cursor, spin) = black_box((*cursor, *spin));
-                black_box(by_angles(black_box(200.0), black_box(300.0), cursor, spin));
+            for (cursor, twist) in &cursors {
+                let (cursor, twist) = black_box((*cursor, *twist));
+                black_box(by_angles(black_box(200.0), black_box(300.0), cursor, twist));
             }
         });
     });

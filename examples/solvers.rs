@@ -1,4 +1,4 @@
-//! How often, how fast and how near each solver brings random reachable targets, as a table:
+//! Prints success rate, time and error of each solver for random reachable targets:
 //!
 //! ```text
 //! cargo run --release --no-default-features --example solvers
@@ -16,11 +16,11 @@ use common::skeletons::{chain, length, reachable, shake, tree};
 use ik_arm::kinematics::chain_ik::{Method, Report, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::Skeleton;
 
-/// In the order of columns: one per random case.
+/// Table columns, with one value per random case.
 struct Outcome {
     report: Report,
     microseconds: f64,
-    /// Of the chain's length.
+    /// As a fraction of the chain's length.
     error: f32,
 }
 

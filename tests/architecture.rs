@@ -1,9 +1,9 @@
 //! Imports of `src`: floors use only floors above them, and no files of one floor import each other
-//! in a circle.
+//! in a cycle.
 //!
-//! The floors are the rows of the table in the docs of `src/lib.rs`, so there is one list of them. An
-//! import leads to the file that defines the item, so a `mod.rs` that only declares modules and
-//! re-exports their items ties no files together. Test modules are not read.
+//! The floors are the rows of the table in the docs of `src/lib.rs`, so there is one list of them.
+//! An import counts for the file that defines the item, so a `mod.rs` that only declares modules
+//! and re-exports their items ties no files together. Test modules are not read.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt::Write as _;
@@ -21,8 +21,8 @@ fn each_floor_imports_only_floors_above_it() {
 }
 
 #[test]
-fn no_files_import_each_other_in_a_circle() {
-    let faults = circles(&Crate::read(&sources_of_the_crate()));
+fn no_files_import_each_other_in_a_cycle() {
+    let faults = cycles(&Crate::read(&sources_of_the_crate()));
     assert!(faults.is_empty(), "files that import each other:\n\n{}", faults.join("\n"));
 }
 
@@ -83,9 +83,9 @@ fn upward_imports(read: &Crate, floors: &[String]) -> Vec<String> {
     lines(read.imports().iter().filter(|import| against(import)))
 }
 
-/// Files that import each other, one text for each group: the shortest circle, its imports, and the
+/// Files that import each other, one text for each group: the shortest cycle, its imports, and the
 /// other imports that tie the group together.
-fn circles(read: &Crate) -> Vec<String> {
+fn cycles(read: &Crate) -> Vec<String> {
     let imports: Vec<_> = read.imports().into_iter().filter(|import| import.ties).collect();
     let mut graph = Graph::new();
     for import in &imports {
@@ -105,16 +105,16 @@ fn circles(read: &Crate) -> Vec<String> {
         let tied = |other: &&str| reaches(file, other) && reaches(other, file);
         let group: BTreeSet<&str> = graph.keys().copied().filter(tied).collect();
         seen.extend(&group);
-        let circles = group.iter().map(|start| shortest_circle(&graph, start));
-        let circle = circles.min_by_key(Vec::len).unwrap_or_default();
-        let steps: BTreeSet<_> = circle.windows(2).map(|pair| (pair[0], pair[1])).collect();
+        let cycles = group.iter().map(|start| shortest_cycle(&graph, start));
+        let cycle = cycles.min_by_key(Vec::len).unwrap_or_default();
+        let steps: BTreeSet<_> = cycle.windows(2).map(|pair| (pair[0], pair[1])).collect();
         let inside =
             |import: &&Import| group.contains(&*import.from) && group.contains(&*import.to);
-        let (of_circle, others): (Vec<_>, Vec<_>) = imports
+        let (of_cycle, others): (Vec<_>, Vec<_>) = imports
             .iter()
             .filter(inside)
             .partition(|import| steps.contains(&(&*import.from, &*import.to)));
-        let mut text = format!("{}\n  {}\n", circle.join(" → "), lines(of_circle).join("\n  "));
+        let mut text = format!("{}\n  {}\n", cycle.join(" → "), lines(of_cycle).join("\n  "));
         if !others.is_empty() {
             let others = lines(others).join("\n    ");
             let _ =
@@ -142,7 +142,7 @@ fn reachable<'a>(graph: &Graph<'a>, start: &str) -> BTreeSet<&'a str> {
 }
 
 /// Files from `start` back to it, over as few others as possible.
-fn shortest_circle<'a>(graph: &Graph<'a>, start: &'a str) -> Vec<&'a str> {
+fn shortest_cycle<'a>(graph: &Graph<'a>, start: &'a str) -> Vec<&'a str> {
     let mut routes = VecDeque::from([vec![start]]);
     let mut seen = BTreeSet::new();
     while let Some(route) = routes.pop_front() {
@@ -640,14 +640,14 @@ fn made_up(files: &[(&str, &str)]) -> Crate {
     Crate::read(&all.map(|(file, text)| (file.to_owned(), text.to_owned())).collect())
 }
 
-/// The first circle that is found, as the names of its files.
-fn circle(files: &[(&str, &str)]) -> Option<String> {
-    circles(&made_up(files)).first().and_then(|text| text.lines().next()).map(str::to_owned)
+/// The first cycle that is found, as the names of its files.
+fn cycle(files: &[(&str, &str)]) -> Option<String> {
+    cycles(&made_up(files)).first().and_then(|text| text.lines().next()).map(str::to_owned)
 }
 
 #[test]
 fn two_files_that_import_each_other_are_found_with_their_lines() {
-    let found = circles(&made_up(&[
+    let found = cycles(&made_up(&[
         ("src/low/mod.rs", "mod a; mod b;"),
         ("src/low/a.rs", "//! A.\nuse super::b::B;\npub struct A(B);"),
         ("src/low/b.rs", "pub struct B;\nimpl B { fn a() -> super::a::A { todo!() } }"),
@@ -662,7 +662,7 @@ fn two_files_that_import_each_other_are_found_with_their_lines() {
 }
 
 #[test]
-fn a_circle_of_three_files_is_found_through_nested_groups() {
+fn a_cycle_of_three_files_is_found_through_nested_groups() {
     let files = [
         ("src/low/mod.rs", "mod a; mod b; mod c;"),
         ("src/low/a.rs", "use crate::{low::{b::{self, B}, c as _}, high};\npub struct A(B);"),
@@ -670,11 +670,11 @@ fn a_circle_of_three_files_is_found_through_nested_groups() {
         ("src/low/c.rs", "pub struct C; fn a(_: Vec<crate::low::a::A>) {}"),
     ];
     let expected = "src/low/a.rs → src/low/b.rs → src/low/c.rs → src/low/a.rs";
-    assert_eq!(circle(&files).as_deref(), Some(expected));
+    assert_eq!(cycle(&files).as_deref(), Some(expected));
 }
 
 #[test]
-fn a_circle_through_a_re_export_leads_to_the_files_behind_it() {
+fn a_cycle_through_a_re_export_names_the_files_behind_it() {
     let files = [
         ("src/low/mod.rs", "mod a; mod deep; pub use a::A; pub use deep::Deep as Renamed;"),
         ("src/low/a.rs", "use super::Renamed; pub struct A(Renamed);"),
@@ -682,28 +682,28 @@ fn a_circle_through_a_re_export_leads_to_the_files_behind_it() {
         ("src/low/deep/inner.rs", "use super::super::A; pub struct Deep(A);"),
     ];
     let expected = "src/low/a.rs → src/low/deep/inner.rs → src/low/a.rs";
-    assert_eq!(circle(&files).as_deref(), Some(expected));
+    assert_eq!(cycle(&files).as_deref(), Some(expected));
 }
 
 #[test]
-fn a_parent_that_uses_its_child_and_defines_what_the_child_uses_is_a_circle() {
+fn a_parent_and_a_child_that_use_each_others_items_are_a_cycle() {
     let child = ("src/low/a.rs", "use super::Kind; pub struct A(Kind);");
     let parent = "mod a; pub use a::A; pub enum Kind { One } ";
-    assert_eq!(circle(&[child, ("src/low/mod.rs", parent)]), None, "it only re-exports A");
+    assert_eq!(cycle(&[child, ("src/low/mod.rs", parent)]), None, "it only re-exports A");
     let used = format!("{parent} fn all(_: &[A]) {{}}");
     let expected = Some("src/low/a.rs → src/low/mod.rs → src/low/a.rs");
-    assert_eq!(circle(&[child, ("src/low/mod.rs", &used)]).as_deref(), expected);
+    assert_eq!(cycle(&[child, ("src/low/mod.rs", &used)]).as_deref(), expected);
 }
 
 #[test]
-fn a_name_of_both_a_module_and_a_function_leads_to_the_function() {
+fn a_name_of_both_a_module_and_a_function_means_the_function() {
     let files = [
         ("src/low/mod.rs", "mod arc; mod user; pub(crate) use arc::arc;"),
         ("src/low/arc.rs", "use crate::low::user; pub fn arc() { user::User::new() }"),
         ("src/low/user.rs", "use super::arc; pub struct User; fn f() { arc() }"),
     ];
     let expected = "src/low/arc.rs → src/low/user.rs → src/low/arc.rs";
-    assert_eq!(circle(&files).as_deref(), Some(expected));
+    assert_eq!(cycle(&files).as_deref(), Some(expected));
 }
 
 #[test]
@@ -727,7 +727,7 @@ fn tests_comments_and_strings_import_nothing() {
             "##,
         ),
     ];
-    assert_eq!(circle(&files), None);
+    assert_eq!(cycle(&files), None);
 }
 
 #[test]

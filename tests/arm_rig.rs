@@ -27,22 +27,22 @@ const PARENTS: [(ArmPart, Option<ArmPart>); 11] = [
     (ArmPart::OuterLimit, Some(ArmPart::Root)),
 ];
 
-/// A posed arm that stands somewhere in the world.
+/// A posed arm with its root anywhere in world space.
 #[derive(Debug)]
-struct Standing {
+struct PosedArm {
     case: Case,
     root: Vec3,
     pose: TwoBonePose,
     rig: ArmRig,
 }
 
-impl Standing {
+impl PosedArm {
     /// A point of Root space in the world.
     fn in_world(&self, at: Vec3) -> DVec3 {
         self.root.as_dvec3() + at.as_dvec3()
     }
 
-    /// What a point of the arm may be off by.
+    /// Allowed error of a point of the arm.
     fn bound(&self) -> f64 {
         let TwoBonePose { elbow, hand, .. } = self.pose;
         let points = [self.root.as_dvec3(), self.in_world(elbow), self.in_world(hand)];
@@ -71,15 +71,16 @@ fn places() -> impl Strategy<Value = Vec3> {
     (directions(), power_of_ten(-2.0..6.0)).prop_map(|(to, distance)| (to * distance).as_vec3())
 }
 
-fn standing() -> impl Strategy<Value = Standing> {
+fn posed_arms() -> impl Strategy<Value = PosedArm> {
     (anywhere(), places()).prop_map(|(case, root)| {
         let pose = case.solve();
         let rig = ArmRig::new(case.arm, root, case.cursor, &pose);
-        Standing { case, root, pose, rig }
+        PosedArm { case, root, pose, rig }
     })
 }
 
-/// Right-handed and orthonormal, after so many turns, each with axes as accurate as hands.
+/// Right-handed and orthonormal after `turns` products of rotations, each with axes as accurate as
+/// hands.
 fn is_rotation(transform: Affine3A, turns: u32) -> TestCaseResult {
     let (axes, error) = (transform.as_daffine3().matrix3, EXACT * f64::from(turns));
     let skew = axes.transpose() * axes - DMat3::IDENTITY;
@@ -105,7 +106,7 @@ proptest! {
     #![proptest_config(config(10_000, 0x2014_1a4e))]
 
     #[test]
-    fn elbow_and_hand_are_where_the_solver_says(arm in standing()) {
+    fn elbow_and_hand_are_where_the_solver_says(arm in posed_arms()) {
         for (part, solved) in [(ArmPart::Elbow, arm.pose.elbow), (ArmPart::Hand, arm.pose.hand)] {
             let origin = arm.rig.origin(part).as_dvec3();
             within("joint", origin.distance(arm.in_world(solved)), arm.bound())?;
@@ -113,7 +114,7 @@ proptest! {
     }
 
     #[test]
-    fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in standing()) {
+    fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in posed_arms()) {
         let (upper, lower) = (arm.rig.upper(), arm.rig.lower());
         for (what, end, joint) in [
             ("shoulder end", arm.point(ArmPart::UpperLimb, 0.0), Vec3::ZERO),
@@ -132,8 +133,8 @@ proptest! {
     }
 
     #[test]
-    fn the_pointer_is_as_long_as_the_arm_and_passes_through_hand_and_cursor(arm in standing()) {
-        let Standing { case, root, pose, rig } = &arm;
+    fn the_pointer_is_as_long_as_the_arm_and_passes_through_hand_and_cursor(arm in posed_arms()) {
+        let PosedArm { case, root, pose, rig } = &arm;
         let length = limits(case.arm).1;
         within("length", (f64::from(rig.pointer().length) - length).abs(), U * length)?;
 
@@ -155,7 +156,7 @@ proptest! {
     }
 
     #[test]
-    fn the_limit_spheres_are_about_the_shoulder(arm in standing()) {
+    fn the_limit_spheres_are_centred_on_the_shoulder(arm in posed_arms()) {
         for (part, radius, limit) in [
             (ArmPart::InnerLimit, arm.rig.inner_limit(), limits(arm.case.arm).0),
             (ArmPart::OuterLimit, arm.rig.outer_limit(), limits(arm.case.arm).1),
@@ -166,10 +167,10 @@ proptest! {
     }
 
     #[test]
-    fn limb_and_socket_turn_by_the_papers_angles(arm in standing()) {
+    fn limb_and_socket_rotate_by_the_angles_of_the_report(arm in posed_arms()) {
         let turns = [
             (ArmPart::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
-            (ArmPart::Socket, DMat3::from_rotation_x(arm.case.spin.into())),
+            (ArmPart::Socket, DMat3::from_rotation_x(arm.case.twist.into())),
         ];
         for (part, turn) in turns {
             let local = arm.rig.local(part);
@@ -179,7 +180,7 @@ proptest! {
     }
 
     #[test]
-    fn world_transforms_are_rotations_and_products_up_the_parents(arm in standing()) {
+    fn world_transforms_are_rotations_and_products_up_the_parents(arm in posed_arms()) {
         for (part, _) in PARENTS {
             let mut product = Mat4::from(arm.rig.local(part)).as_dmat4();
             let (mut child, mut turns) = (part, 0);
@@ -192,10 +193,10 @@ proptest! {
             // Two products of rotations; each rounds the terms of Σ aᵢₖbₖⱼ, Σ|aᵢₖbₖⱼ| ≤ 1, thrice.
             let turned = world.as_daffine3().matrix3 - DMat3::from_mat4(product);
             within("rotation", largest_entry(turned), 2.0 * 3.0 * U)?;
-            let place = product.w_axis.truncate();
+            let position = product.w_axis.truncate();
             let reach = limits(arm.case.arm).1;
-            let bound = world_bound(reach, &[arm.root.as_dvec3(), place]);
-            within("place", arm.rig.origin(part).as_dvec3().distance(place), bound)?;
+            let bound = world_bound(reach, &[arm.root.as_dvec3(), position]);
+            within("position", arm.rig.origin(part).as_dvec3().distance(position), bound)?;
         }
     }
 
@@ -207,25 +208,25 @@ proptest! {
     ) {
         let tip = (base.as_dvec3() + direction * length).as_vec3();
         let (flat_base, flat_tip) = (base.with_z(0.0), tip.with_z(0.0));
-        for (base, tip, (placed, cone)) in [
+        for (base, tip, (placement, cone)) in [
             (base, tip, TaperedCylinder::between(base, tip, 3.0, 2.0)),
             (flat_base, flat_tip, TaperedCylinder::in_xy_plane(flat_base, flat_tip, 3.0, 2.0)),
         ] {
-            is_rotation(placed, 1)?;
-            prop_assert_eq!(at(placed, 0.0), base.as_dvec3());
+            is_rotation(placement, 1)?;
+            prop_assert_eq!(at(placement, 0.0), base.as_dvec3());
             prop_assert_eq!((cone.base_radius, cone.tip_radius), (3.0, 2.0));
             let (base, tip) = (base.as_dvec3(), tip.as_dvec3());
             let bound = world_bound(base.distance(tip), &[base, tip]);
-            within("tip", at(placed, cone.length).distance(tip), bound)?;
+            within("tip", at(placement, cone.length).distance(tip), bound)?;
         }
     }
 }
 
 #[test]
-fn a_cone_without_a_length_keeps_x() {
+fn a_cone_without_a_length_points_along_x() {
     let here = Vec3::new(1.0, 2.0, 3.0);
-    let (placed, cone) = TaperedCylinder::between(here, here, 3.0, 2.0);
+    let (placement, cone) = TaperedCylinder::between(here, here, 3.0, 2.0);
     assert_eq!(cone.length, 0.0);
-    assert_eq!(at(placed, 1.0), (here + Vec3::X).as_dvec3());
-    is_rotation(placed, 1).unwrap();
+    assert_eq!(at(placement, 1.0), (here + Vec3::X).as_dvec3());
+    is_rotation(placement, 1).unwrap();
 }

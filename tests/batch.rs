@@ -1,4 +1,4 @@
-//! Many arms at once: the bits of one arm solved alone, whatever is beside it.
+//! Batches of arms: bit-identical to solving each arm alone.
 
 mod common;
 
@@ -11,7 +11,7 @@ use ik_arm::kinematics::batch::{
 use ik_arm::kinematics::fk;
 use ik_arm::kinematics::two_bone::TwoBone;
 
-/// A structure of arrays, to be asked of and to be filled.
+/// A structure of arrays for the input and output of a batch.
 struct Crowd {
     upper: Vec<f32>,
     lower: Vec<f32>,
@@ -95,19 +95,19 @@ impl Answer {
 
     fn of(arms: &ArmBatch<'_>, turned: bool) -> Self {
         let mut answer = Self::none(arms.len(), turned);
-        let (places, rotations) = answer.room();
-        arms.solve(places, rotations).expect("room");
+        let (positions, rotations) = answer.room();
+        arms.solve(positions, rotations).expect("room");
         answer
     }
 
     fn room(&mut self) -> (BatchPositions<'_>, Option<BatchRotations<'_>>) {
         let Self { elbow, hand, rotations } = self;
-        let places = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
+        let positions = BatchPositions { elbow: PointsMut::of(elbow), hand: PointsMut::of(hand) };
         let rotations = rotations.as_mut().map(|[upper, lower]| BatchRotations {
             upper: QuaternionsMut::of(upper),
             lower: QuaternionsMut::of(lower),
         });
-        (places, rotations)
+        (positions, rotations)
     }
 
     fn append(&mut self, mut other: Self) {
@@ -138,7 +138,7 @@ fn plain(random: &mut Random) -> (TwoBone, Vec3, f32) {
     (bones, cursor, random.within(-7.0..7.0))
 }
 
-/// Numbers of any size in any place: most arms have something that is not plain.
+/// Numbers of any size in any array: most arms need the general solver.
 fn any(random: &mut Random) -> (TwoBone, Vec3, f32) {
     let mut number = |least: f32, most: f32| match random.below(8) {
         0 => most,
@@ -153,7 +153,7 @@ fn any(random: &mut Random) -> (TwoBone, Vec3, f32) {
 }
 
 #[test]
-fn each_arm_has_the_bits_that_it_has_alone() {
+fn a_batch_is_bit_identical_to_solving_each_arm_alone() {
     let mut random = Random(1);
     for kind in [plain, any] {
         for count in [0, 1, 7, 16, 17, 2_047, 2_048, 2_049, 10_000] {
@@ -176,7 +176,7 @@ fn each_arm_has_the_bits_that_it_has_alone() {
 }
 
 #[test]
-fn arms_of_the_same_bones_have_the_bits_of_arms_with_their_own() {
+fn shared_bone_lengths_are_bit_identical_to_lengths_per_arm() {
     let mut random = Random(2);
     for kind in [plain, any] {
         let (bones, _, _) = kind(&mut random);
@@ -194,7 +194,7 @@ fn arms_of_the_same_bones_have_the_bits_of_arms_with_their_own() {
 }
 
 #[test]
-fn cut_up_in_any_way_a_batch_gives_the_same_bits() {
+fn splitting_a_batch_changes_no_bit() {
     let mut random = Random(3);
     let mut kinds = Random(4);
     // One arm in a thousand is not plain, so that some blocks are solved twice and others are not.
@@ -231,7 +231,7 @@ fn cut_up_in_any_way_a_batch_gives_the_same_bits() {
 
 #[cfg(feature = "parallel")]
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn the_number_of_threads_changes_no_bit() {
     let mut random = Random(5);
     let crowd = Crowd::new((0..100_001).map(|_| plain(&mut random)));
     for turned in [false, true] {
@@ -239,9 +239,9 @@ fn any_number_of_threads_gives_the_same_bits() {
         for threads in [1, 2, 3, 7] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let mut answer = Answer::none(crowd.len(), turned);
-            let (places, rotations) = answer.room();
+            let (positions, rotations) = answer.room();
             pool.expect("threads")
-                .install(|| crowd.arms().solve_on_all_cores(places, rotations))
+                .install(|| crowd.arms().solve_on_all_cores(positions, rotations))
                 .expect("room");
             assert!(answer.bits() == whole, "{threads} threads");
         }
@@ -249,7 +249,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn hands_and_limbs_are_exact_to_three_in_ten_million() {
+fn hand_and_limb_errors_are_within_3e_7_of_the_arm_length() {
     let mut random = Random(6);
     let crowd = Crowd::new((0..100_000).map(|_| plain(&mut random)));
     let answer = Answer::of(&crowd.arms(), false);
@@ -270,7 +270,7 @@ fn hands_and_limbs_are_exact_to_three_in_ten_million() {
 }
 
 #[test]
-fn rotations_lay_the_limbs_where_they_are_and_agree_with_forward_kinematics() {
+fn rotations_agree_with_limb_positions_and_forward_kinematics() {
     let mut random = Random(7);
     let crowd = Crowd::new((0..20_000).map(|_| plain(&mut random)));
     let answer = Answer::of(&crowd.arms(), true);
@@ -294,7 +294,7 @@ fn rotations_lay_the_limbs_where_they_are_and_agree_with_forward_kinematics() {
 
         let pose = bones.solve(crowd.cursor(arm), crowd.angle[arm]);
         let (by_fk, lower_by_fk) = fk::limb_rotations(&pose);
-        // What is said of a limb by points is as much less exact as it is shorter than the arm.
+        // The direction of a limb is less exact the shorter the limb is relative to the arm.
         for (mine, theirs, length) in [(of_upper, by_fk, d1), (of_lower, lower_by_fk, d2)] {
             let angle = mine.normalize().angle_between(DQuat::from_mat3(&theirs));
             let angle = angle.min((std::f64::consts::TAU - angle).abs());
@@ -326,7 +326,7 @@ fn straight_and_folded_arms_and_cursors_without_a_direction_have_unit_rotations(
 }
 
 #[test]
-fn arrays_that_are_no_batch_are_refused_by_name() {
+fn invalid_arrays_are_refused_by_name() {
     let (three, two) = ([1.0; 3], [1.0; 2]);
     let bones = BatchBones::Same(TwoBone::new(2.0, 3.0).expect("lengths"));
     let cursor = Points { x: &three, y: &three, z: &three };
@@ -344,14 +344,14 @@ fn arrays_that_are_no_batch_are_refused_by_name() {
     let each = BatchBones::Each { upper: &three, lower: &[1.0, 0.0, f32::NAN] };
     assert_eq!(
         refused(each, cursor, BatchTwist::Angle(&three)).to_string(),
-        "arm 1: lower length is 0; it must be a finite number above 0"
+        "arm 1: lower length must be finite and above 0, got 0"
     );
 
     let arms = ArmBatch::new(bones, cursor, BatchTwist::Angle(&three)).expect("a batch");
     let mut answer = Answer::none(3, true);
     answer.rotations.as_mut().expect("rotations")[1][3].pop();
-    let (places, rotations) = answer.room();
-    assert_eq!(arms.solve(places, rotations), Err(len(BatchArray::LowerRotations)));
+    let (positions, rotations) = answer.room();
+    assert_eq!(arms.solve(positions, rotations), Err(len(BatchArray::LowerRotations)));
     assert!(answer.elbow[0][0].is_nan(), "nothing is solved then");
 }
 

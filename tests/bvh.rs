@@ -1,4 +1,5 @@
-//! BVH: what is written stands where the document stands, and what is read where the file says.
+//! BVH: exported joints are where the document has them, and imported joints where the file has
+//! them.
 #![cfg(feature = "document")]
 
 mod common;
@@ -37,7 +38,7 @@ fn shown(skeleton: Skeleton) -> Document {
     Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() }
 }
 
-/// Where the bases are at a time, and the tips of what nothing hangs from.
+/// Positions of bases at a time, and of the tips of leaves.
 fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
     let document = document.evaluate(time);
     let skeleton = document.skeleton_rig.skeleton_at(time);
@@ -68,7 +69,7 @@ fn assert_same(document: &Document, exported: &Exported, per_unit: f32) {
     }
 }
 
-/// Turned, moved, and scaled alike; every other one in a mirror.
+/// A rotation, translation and uniform scale; every other one mirrored.
 fn even_transform(random: &mut Random) -> Affine3A {
     let mirror = if random.chance(0.5) { -1.0 } else { 1.0 };
     let scale = Vec3::new(mirror, 1.0, 1.0) * random.within(0.1..10.0);
@@ -88,7 +89,7 @@ fn key_rotations(random: &mut Random, document: &mut Document) {
 // Round trips
 
 #[test]
-fn random_forests_with_random_keys_come_back_where_they_were() {
+fn random_keyed_forests_round_trip() {
     let mut random = Random(1);
     for case in 0..60 {
         let joints = 1 + random.below(20);
@@ -109,7 +110,7 @@ fn random_forests_with_random_keys_come_back_where_they_were() {
 }
 
 #[test]
-fn a_single_roots_offset_moves_in_the_file_too() {
+fn the_keyed_offset_of_a_single_root_round_trips() {
     let mut random = Random(2);
     let mut document = shown(skeletons::chain(&mut random, 5, 1.0));
     document.skeleton_mut().set_transform(even_transform(&mut random)).expect("finite");
@@ -122,7 +123,7 @@ fn a_single_roots_offset_moves_in_the_file_too() {
 }
 
 #[test]
-fn every_skeleton_among_the_examples_comes_back_where_it_was() {
+fn every_example_skeleton_round_trips() {
     for example in Example::ALL {
         let document = example.open().expect("it opens").document;
         if document.rig == RigKind::Arm {
@@ -135,7 +136,7 @@ fn every_skeleton_among_the_examples_comes_back_where_it_was() {
 }
 
 #[test]
-fn the_arm_comes_back_where_it_was() {
+fn the_arm_round_trips() {
     let mut random = Random(3);
     let mut document = Document::default();
     document.timeline.end = 1.0;
@@ -162,7 +163,7 @@ fn the_arm_comes_back_where_it_was() {
 }
 
 #[test]
-fn a_file_is_written_as_it_was_read() {
+fn a_file_that_was_read_is_written_unchanged() {
     let mut random = Random(4);
     let mut document = shown(skeletons::tree(&mut random, 3, 10.0).0);
     key_rotations(&mut random, &mut document);
@@ -174,10 +175,10 @@ fn a_file_is_written_as_it_was_read() {
     assert_same(&first, &export(&first), 1.0);
 }
 
-// Out
+// Export
 
 #[test]
-fn a_small_skeleton_is_this_text() {
+fn a_small_skeleton_is_written_as_this_text() {
     let mut skeleton = Skeleton::with_root("the hip");
     let add = |skeleton: &mut Skeleton, name, parent, offset, axis| {
         let joint = Joint { offset, ..Joint::new(name, Some(parent), axis) };
@@ -232,7 +233,7 @@ fn a_small_skeleton_is_this_text() {
 }
 
 #[test]
-fn units_are_chosen() {
+fn the_unit_can_be_chosen() {
     let document = shown(skeletons::chain(&mut Random(5), 3, 2.0));
     let length = |document: &Document, unit| {
         let read = open(text(&export_in(document, unit))).document;
@@ -249,7 +250,7 @@ fn units_are_chosen() {
 }
 
 #[test]
-fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
+fn the_frame_rate_can_be_chosen_and_a_still_document_has_one_frame() {
     let mut document = shown(skeletons::chain(&mut Random(6), 2, 1.0));
     let frames = |document: &Document, fps| {
         let exported = io::to_bvh(document, fps, BvhUnit::Metres, &Progress::default());
@@ -268,7 +269,7 @@ fn frames_are_as_many_as_are_asked_for_and_one_where_nothing_moves() {
 }
 
 #[test]
-fn angles_go_on_over_full_turns() {
+fn angles_continue_past_full_turns() {
     let mut document = shown(skeletons::chain(&mut Random(7), 3, 1.0));
     document.skeleton_mut().set_transform(even_transform(&mut Random(8))).expect("finite");
     for (time, turns) in [(0.0, 0.0), (8.0, 2.0)] {
@@ -298,7 +299,7 @@ fn angles_go_on_over_full_turns() {
 }
 
 #[test]
-fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
+fn unsupported_channels_are_noted_and_keep_their_first_frame() {
     let mut document = shown(skeletons::chain(&mut Random(9), 3, 1.0));
     let offset = document.skeleton().joints()[2].offset;
     document.keys.insert(Channel::Offset(JointId::new(2)), 0.0, offset);
@@ -332,7 +333,7 @@ fn what_cannot_be_written_is_noted_and_stays_as_at_the_first_frame() {
 }
 
 #[test]
-fn an_uneven_or_flat_transform_is_noted_and_written_as_nearly_as_can_be() {
+fn a_non_uniform_or_singular_transform_is_noted_and_approximated() {
     let mut random = Random(10);
     for scale in [Vec3::new(1.0, 2.0, 1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO] {
         let mut document = shown(skeletons::tree(&mut random, 3, 1.0).0);
@@ -342,7 +343,7 @@ fn an_uneven_or_flat_transform_is_noted_and_written_as_nearly_as_can_be() {
         assert!(exported.notes[0].contains("unevenly"), "{:?}", exported.notes);
         open(text(&exported));
     }
-    // Where it is nearly even, turns are nearly right.
+    // With a nearly uniform scale, rotations are nearly right.
     let mut document = shown(skeletons::chain(&mut random, 4, 1.0));
     skeletons::shake(&mut random, document.skeleton_mut());
     let nearly = Affine3A::from_scale(Vec3::new(-1.0, 1.00002, 1.0));
@@ -353,24 +354,24 @@ fn an_uneven_or_flat_transform_is_noted_and_written_as_nearly_as_can_be() {
 }
 
 #[test]
-fn what_no_file_holds_is_refused() {
+fn documents_that_no_file_can_hold_are_refused() {
     let refused = |document: &Document| {
         io::to_bvh(document, None, BvhUnit::default(), &Progress::default())
             .expect_err("refused")
             .to_string()
     };
-    assert!(refused(&shown(Skeleton::default())).contains("no joint"));
+    assert!(refused(&shown(Skeleton::default())).contains("at least one joint"));
     let mut far = Skeleton::with_root("far");
     far.change(JointId::new(0), |root| root.offset = Vec3::splat(3e38)).expect("finite");
-    assert_eq!(refused(&shown(far)), "\"far\" is beyond 3.4028235e38; bring it nearer to 0");
+    assert_eq!(refused(&shown(far)), "the position of \"far\" must be within ±3.4028235e38");
     let mut long = shown(Skeleton::with_root("root"));
     long.timeline = Timeline { start: 0.0, end: 86_000.0, frame_rate: 1000 };
     long.keys.insert(Channel::Rotation(JointId::new(0)), 0.0, Vec3::X);
-    assert!(refused(&long).contains("more than 100000000 numbers"));
+    assert!(refused(&long).contains("must have at most 100000000 numbers"));
 }
 
 #[test]
-fn an_export_stops_when_it_is_told_to() {
+fn a_cancelled_export_stops() {
     let progress = Progress::default();
     progress.cancel();
     let document = Example::find("snake").expect("there").open().expect("it opens").document;
@@ -379,7 +380,7 @@ fn an_export_stops_when_it_is_told_to() {
 }
 
 #[test]
-fn a_very_deep_skeleton_goes_out_and_in() {
+fn a_very_deep_skeleton_round_trips() {
     let mut joints = vec![Joint::new("0", None, Vec3::Y)];
     for index in 1..Skeleton::MOST_JOINTS {
         let joint = Joint::new(&index.to_string(), Some(JointId::new(index - 1)), Vec3::Y);
@@ -390,7 +391,7 @@ fn a_very_deep_skeleton_goes_out_and_in() {
     assert_eq!(read.skeleton().joints().len(), Skeleton::MOST_JOINTS);
 }
 
-// In
+// Import
 
 /// A root with three channels for rotation.
 const SMALL: &str = "HIERARCHY\nROOT hip\n{\n OFFSET 1 2 3\n CHANNELS 3 Zrotation Xrotation Yrotation\n \
@@ -398,12 +399,12 @@ const SMALL: &str = "HIERARCHY\nROOT hip\n{\n OFFSET 1 2 3\n CHANNELS 3 Zrotatio
     MOTION\nFrames: 2\nFrame Time: 0.04\n10 20 30 7\n10 20 40 7\n";
 
 #[test]
-fn a_small_file_is_read_as_it_says() {
+fn a_small_file_is_read_as_written() {
     let Opened { document, warnings, order, skeletons } = open(SMALL);
     let joints = document.skeleton().joints();
     let name = |index: usize| (joints[index].name.as_str(), joints[index].parent);
     assert_eq!((name(0), name(1)), (("hip", None), ("knee", Some(JointId::new(0)))));
-    // A position channel stands in the place of one component of the offset.
+    // A position channel replaces one component of the offset.
     assert_eq!(
         (joints[0].offset, joints[1].offset),
         ((1.0, 2.0, 3.0).into(), (7.0, 4.0, 0.0).into())
@@ -424,7 +425,7 @@ fn a_small_file_is_read_as_it_says() {
 }
 
 #[test]
-fn spaces_lines_and_cases_are_free() {
+fn whitespace_line_breaks_and_case_do_not_matter() {
     let plain = open(SMALL).document;
     for text in [
         SMALL.replace('\n', "\r\n"),
@@ -446,7 +447,7 @@ fn spaces_lines_and_cases_are_free() {
 }
 
 #[test]
-fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
+fn a_joint_rotates_by_the_product_of_its_channels_in_file_order() {
     const ROTATIONS: [&str; 3] = ["Xrotation", "Yrotation", "Zrotation"];
     const POSITIONS: [&str; 3] = ["Xposition", "Yposition", "Zposition"];
     let mut random = Random(11);
@@ -466,7 +467,7 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
             hierarchy += &format!("{kind} j{joint} {{ OFFSET {x} {y} {z}\n");
             hierarchy += &format!("CHANNELS {} {}\n", channels.len(), channels.join(" "));
             for frame in 0..2 {
-                let (mut place, mut turn) = (offset.as_dvec3(), DMat3::IDENTITY);
+                let (mut position, mut turn) = (offset.as_dvec3(), DMat3::IDENTITY);
                 for channel in &channels {
                     let value = random.within(-400.0..400.0);
                     numbers[frame].push(value.to_string());
@@ -475,13 +476,13 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
                         "Xrotation" => turn *= DMat3::from_rotation_x(angle),
                         "Yrotation" => turn *= DMat3::from_rotation_y(angle),
                         "Zrotation" => turn *= DMat3::from_rotation_z(angle),
-                        "Xposition" => place.x = value,
-                        "Yposition" => place.y = value,
-                        _ => place.z = value,
+                        "Xposition" => position.x = value,
+                        "Yposition" => position.y = value,
+                        _ => position.z = value,
                     }
                 }
                 let above = expected[frame][joint];
-                expected[frame].push(above * DAffine3::from_mat3_translation(turn, place));
+                expected[frame].push(above * DAffine3::from_mat3_translation(turn, position));
             }
         }
         let text = format!(
@@ -491,7 +492,7 @@ fn a_joint_turns_by_the_product_of_its_own_channels_in_their_order() {
             numbers[1].join(" ")
         );
         let document = open(&text).document;
-        // A file of no channels has no frames to tell apart.
+        // Without channels all frames are equal.
         for frame in 0..2 {
             let pose = document.evaluate(frame as f64 * 0.5).skeleton().pose();
             let size = 400.0 * joints as f64;
@@ -524,7 +525,7 @@ fn several_roots_are_one_skeleton() {
 }
 
 #[test]
-fn names_that_are_there_twice_are_changed_with_a_remark() {
+fn duplicate_names_are_changed_with_a_warning() {
     let leaf = "JOINT left arm { OFFSET 0 1 0 }\n";
     let text = format!(
         "HIERARCHY\nROOT left arm {{ OFFSET 0 0 0\n{}}}\nMOTION\nFrames: 0\nFrame Time: 1\n",
@@ -540,14 +541,14 @@ fn names_that_are_there_twice_are_changed_with_a_remark() {
     let first = warnings[0].to_string();
     assert_eq!(
         first,
-        "line 3, column 7: [\"left arm\"]: must be unique; this joint is renamed to \
+        "line 3, column 7: [\"left arm\"]: joint names must be unique; renamed to \
          \"left arm_2\""
     );
     assert!(warnings[20].reason.contains("10 more"));
 }
 
 #[test]
-fn a_bone_goes_to_the_only_child_or_to_the_middle_of_several() {
+fn a_bone_ends_at_the_only_child_or_at_the_middle_of_several() {
     let text = "HIERARCHY\nROOT a { OFFSET 0 0 0\n\
         JOINT b { OFFSET 2 4 0 JOINT c { OFFSET 0 6 0 } }\n\
         JOINT d { OFFSET 0 4 0 } }\nMOTION\nFrames: 0\nFrame Time: 1\n";
@@ -559,7 +560,7 @@ fn a_bone_goes_to_the_only_child_or_to_the_middle_of_several() {
 }
 
 #[test]
-fn frames_are_at_whole_parts_of_a_second_where_the_file_means_that() {
+fn rounded_frame_times_give_whole_frame_rates() {
     for (said, frame_rate, end) in [
         ("0.033333", 30, 2.0 / 30.0),
         ("0.0083333", 120, 2.0 / 120.0),
@@ -579,7 +580,7 @@ fn frames_are_at_whole_parts_of_a_second_where_the_file_means_that() {
 }
 
 #[test]
-fn more_frames_than_are_said_are_ignored_with_a_remark() {
+fn frames_beyond_the_declared_count_are_ignored_with_a_warning() {
     let opened = open(&SMALL.replace("Frames: 2", "Frames: 1"));
     assert_eq!(opened.warnings.len(), 1);
     assert_eq!(
@@ -590,22 +591,26 @@ fn more_frames_than_are_said_are_ignored_with_a_remark() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
-    for (right, wrong, said) in [
+fn errors_name_the_position_the_joint_and_the_rule() {
+    for (right, invalid, said) in [
         ("ROOT", "", "line 2, column 2: found \"hip\", expected ROOT"),
-        ("hip\n", "\n", "line 3, column 1: a name is missing after ROOT"),
+        ("hip\n", "\n", "line 3, column 1: ROOT must be followed by a name"),
         ("hip\n{", "hip\n", "line 4, column 2: hip: found \"OFFSET\", expected {"),
-        (" OFFSET 1 2 3\n", "", "line 14, column 1: hip: OFFSET is missing"),
+        (" OFFSET 1 2 3\n", "", "line 14, column 1: hip: must have an OFFSET"),
         ("1 2 3", "1 2", "line 5, column 2: hip: found \"CHANNELS\", expected a number"),
-        ("1 2 3", "1 2 nan", "line 4, column 13: hip: must be between ±3.4"),
-        ("1 2 3", "1 2 1e39", "line 4, column 13: hip: must be between ±3.4028235e38, got 1e39"),
+        ("1 2 3", "1 2 nan", "line 4, column 13: hip: must be within ±3.4"),
+        ("1 2 3", "1 2 1e39", "line 4, column 13: hip: must be within ±3.4028235e38, got 1e39"),
         (
             "1 2 3",
             "1 2 3 4",
             "line 4, column 15: hip: found \"4\", expected OFFSET, CHANNELS, JOINT,",
         ),
-        ("1 2 3", "1 2 3\nOFFSET 1 2 3", "line 5, column 1: hip: this joint has a second OFFSET"),
-        ("CHANNELS 3", "CHANNELS 7", "line 5, column 11: hip: must be from 0 to 6 channels, got 7"),
+        (
+            "1 2 3",
+            "1 2 3\nOFFSET 1 2 3",
+            "line 5, column 1: hip: must have one OFFSET, got a second",
+        ),
+        ("CHANNELS 3", "CHANNELS 7", "line 5, column 11: hip: must have 0 to 6 channels, got 7"),
         (
             "CHANNELS 3",
             "CHANNELS -3",
@@ -636,11 +641,15 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         ("MOTION", "", "expected ROOT or MOTION"),
         ("Frames: 2", "Frames 2", "line 17, column 1: found \"Frames\", expected Frames:"),
         ("Frames: 2", "Frames: 2.5", "line 17, column 9: found \"2.5\", expected a whole number"),
-        ("Frames: 2", "Frames: 4", "line 17, column 9: must be the number of frames, 2, got 4"),
+        (
+            "Frames: 2",
+            "Frames: 4",
+            "line 17, column 9: Frames must be 2, the number of lines that follow, got 4",
+        ),
         (
             "Frames: 2",
             "Frames: 999999999999",
-            "must last at most 86400 s, got 999999999999 frames of 0.04 s",
+            "motion must last at most 86400 s, got 999999999999 frames of 0.04 s",
         ),
         (
             "Frame Time: 0.04",
@@ -650,7 +659,11 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         ("0.04", "0", "line 18, column 13: Frame Time must be above 0 s, got 0"),
         ("0.04", "-1", "line 18, column 13: Frame Time must be above 0 s, got -1"),
         ("0.04", "inf", "line 18, column 13: found \"inf\", expected a time in seconds"),
-        ("0.04", "1e5", "line 18, column 13: must last at most 86400 s, got 2 frames of 100000 s"),
+        (
+            "0.04",
+            "1e5",
+            "line 18, column 13: motion must last at most 86400 s, got 2 frames of 100000 s",
+        ),
         (
             "10 20 40 7",
             "10 20",
@@ -666,10 +679,10 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
         (
             "10 20 40 7",
             "10 20 40 inf",
-            "line 20, column 10: knee: Xposition of frame 1: must be between ±3.4028235e38, got inf",
+            "line 20, column 10: knee: Xposition of frame 1: must be within ±3.4028235e38, got inf",
         ),
     ] {
-        let text = SMALL.replacen(right, wrong, 1);
+        let text = SMALL.replacen(right, invalid, 1);
         let refusal = refusal(&text);
         assert!(refusal.contains(said), "{refusal}\n{said}\n{text}");
     }
@@ -683,7 +696,7 @@ fn what_is_wrong_is_said_with_its_place_its_joint_and_what_would_be_right() {
 }
 
 #[test]
-fn damaged_files_are_documents_or_errors() {
+fn damaged_files_open_or_are_refused() {
     let mut random = Random(12);
     let mut document = shown(skeletons::tree(&mut Random(13), 3, 1.0).0);
     key_rotations(&mut Random(14), &mut document);
@@ -715,7 +728,7 @@ fn damaged_files_are_documents_or_errors() {
 }
 
 #[test]
-fn deep_and_endless_files_are_refused_without_a_deep_stack() {
+fn deep_and_endless_files_are_refused_without_deep_recursion() {
     let deep = "JOINT a { OFFSET 0 0 0\n".repeat(1_000_000);
     assert!(refusal(&format!("HIERARCHY ROOT a {{ OFFSET 0 0 0 {deep}")).contains("at most 10000"));
     let braces = format!("HIERARCHY ROOT a {}", "{".repeat(1_000_000));
@@ -734,6 +747,6 @@ fn a_file_too_large_is_refused_before_it_is_read() {
     file.set_len(200 << 20).expect("sparse");
     let before = std::time::Instant::now();
     let error = message(io::open(&path, None).expect_err("refused"));
-    assert!(error.ends_with("is larger than 64 MB, the largest size that is read"), "{error}");
+    assert!(error.ends_with("must be at most 64 MB large"), "{error}");
     assert!(before.elapsed().as_millis() < 100);
 }

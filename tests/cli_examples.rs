@@ -17,7 +17,7 @@ fn stdout(output: &Output) -> &str {
 }
 
 #[test]
-fn without_a_name_they_are_listed_each_with_what_it_shows() {
+fn without_a_name_all_examples_are_listed_with_descriptions() {
     let output = examples(&[]);
     let lines: Vec<_> = stdout(&output).lines().collect();
     assert_eq!(lines.len(), Example::ALL.len());
@@ -28,7 +28,7 @@ fn without_a_name_they_are_listed_each_with_what_it_shows() {
 }
 
 #[test]
-fn with_a_name_its_file_is_printed() {
+fn with_a_name_the_example_is_printed() {
     for example in Example::ALL {
         let output = examples(&[example.name]);
         assert_eq!(stdout(&output), example.text);
@@ -37,7 +37,7 @@ fn with_a_name_its_file_is_printed() {
 }
 
 #[test]
-fn with_an_output_its_file_is_written() {
+fn with_an_output_the_example_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("snake.json");
     let output = examples(&["snake", "-o", path.to_str().expect("a path in UTF-8")]);

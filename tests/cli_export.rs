@@ -45,7 +45,7 @@ impl Desk {
         self.command(out, arguments).output().expect("the program runs")
     }
 
-    /// What it says of an export that is done.
+    /// Standard error of a successful export.
     fn export(&self, out: &str, arguments: &[&str]) -> String {
         let output = self.run(out, arguments);
         assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
@@ -77,7 +77,7 @@ fn moving() -> Document {
     document
 }
 
-/// What the program says; drivers may say something, too.
+/// The program's own lines of standard error; drivers may write others.
 fn complaint(output: &Output) -> String {
     let said = String::from_utf8_lossy(&output.stderr);
     let is_ours = |line: &&str| line.starts_with("ik-arm: ") || line.starts_with("error: invalid");
@@ -110,7 +110,7 @@ fn every_format_is_written_and_nothing_else() {
 }
 
 #[test]
-fn bvh_goes_out_in_the_chosen_unit_and_comes_in_again() {
+fn bvh_round_trips_in_the_chosen_unit() {
     let desk = Desk::new(Example::find("human").expect("there").text);
     desk.export("a.bvh", &["--unit", "m"]);
     desk.export("b.bvh", &[]);
@@ -142,7 +142,7 @@ fn standard_input_is_exported() {
 }
 
 #[test]
-fn what_the_file_cannot_say_is_said_on_stderr() {
+fn what_the_format_cannot_hold_is_reported_on_stderr() {
     let mut document = moving();
     for (time, length) in [(1.0, 200.0), (1.2, 210.0)] {
         document.keys.insert(Channel::Upper, time, Vec3::new(length, 0.0, 0.0));
@@ -155,7 +155,7 @@ fn what_the_file_cannot_say_is_said_on_stderr() {
 // Pictures
 
 #[test]
-fn an_animated_picture_has_every_frame_and_plays_for_ever() {
+fn an_animated_picture_has_every_frame_and_loops() {
     let desk = Desk::moving();
     desk.export("a.apng", &["--size", "80x50", "--fps", "20"]);
     desk.export("a_#.png", &["--size", "80x50", "--fps", "20"]);
@@ -190,7 +190,7 @@ fn a_picture_is_taken_at_a_time_or_at_the_start() {
 }
 
 #[test]
-fn a_sequence_replaces_what_was_there_or_nothing() {
+fn a_sequence_replaces_all_existing_files_or_none() {
     let desk = Desk::moving();
     fs::write(desk.out("a_00.png"), "before").expect("written");
     fs::create_dir(desk.out("a_01.png")).expect("a folder");
@@ -206,7 +206,7 @@ fn a_sequence_replaces_what_was_there_or_nothing() {
 }
 
 #[test]
-fn a_batch_that_is_dropped_leaves_nothing() {
+fn a_dropped_batch_leaves_no_file() {
     let desk = Desk::moving();
     let mut batch = FileBatch::beside(&desk.out("x")).expect("a folder");
     batch.add("x".as_ref(), b"new").expect("written");
@@ -217,7 +217,7 @@ fn a_batch_that_is_dropped_leaves_nothing() {
 // No file
 
 #[test]
-fn what_is_cancelled_leaves_no_file() {
+fn a_cancelled_export_leaves_no_file() {
     let desk = Desk::moving();
     let options = ExportOptions { size: (40, 40), ..ExportOptions::default() };
     for name in ["a.bvh", "a.csv", "a.png", "a_##.png", "a.apng"] {
@@ -230,7 +230,7 @@ fn what_is_cancelled_leaves_no_file() {
 }
 
 #[test]
-fn what_is_cancelled_on_its_way_leaves_no_file() {
+fn an_export_cancelled_midway_leaves_no_file() {
     let desk = Desk::moving();
     let mut document = moving();
     document.timeline.end = 100.0;
@@ -276,7 +276,7 @@ fn an_interrupted_export_leaves_no_file_and_exits_with_130() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_an_error_that_names_the_file() {
+fn a_missing_folder_is_an_error_that_names_the_file() {
     let desk = Desk::moving();
     assert_not_written(&desk, &desk.out("missing"));
     assert_eq!(desk.names(), ["file"]);
@@ -284,7 +284,7 @@ fn a_folder_that_is_not_there_is_an_error_that_names_the_file() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_folder_that_takes_no_file_is_an_error_that_names_the_file() {
+fn a_read_only_folder_is_an_error_that_names_the_file() {
     use std::os::unix::fs::PermissionsExt as _;
 
     let desk = Desk::moving();
@@ -311,7 +311,7 @@ fn assert_not_written(desk: &Desk, folder: &Path) {
 }
 
 #[test]
-fn an_ending_that_is_not_known_is_an_error_that_lists_those_that_are() {
+fn an_unknown_extension_is_an_error_that_lists_the_known_ones() {
     let desk = Desk::new("no document at all");
     for out in ["a.mp4", "a"] {
         let output = desk.run(out, &[]);
@@ -325,7 +325,7 @@ fn an_ending_that_is_not_known_is_an_error_that_lists_those_that_are() {
 }
 
 #[test]
-fn an_argument_that_the_format_has_no_use_for_is_a_usage_error() {
+fn an_argument_that_the_format_does_not_use_is_a_usage_error() {
     let desk = Desk::moving();
     for (out, arguments) in [
         ("a.png", ["--fps", "5"]),

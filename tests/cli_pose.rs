@@ -40,7 +40,7 @@ impl Scene {
         answer(&output)
     }
 
-    /// What is said after the file's name.
+    /// The message after the file's name.
     fn refusal(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{output:?}");
@@ -126,7 +126,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
 }
 
 #[test]
-fn joints_have_the_order_and_the_numbers_of_the_file_and_stand_in_the_world() {
+fn joints_keep_the_order_of_the_file_and_are_in_world_space() {
     let Answer { joints, targets, report } = Scene::new(BENT).pose(&[]);
     let names: Vec<_> = joints.iter().map(|joint| (joint.index, joint.name.as_str())).collect();
     assert_eq!(names, [(0, "bone_0"), (1, "bone_1")]);
@@ -143,7 +143,7 @@ fn joints_have_the_order_and_the_numbers_of_the_file_and_stand_in_the_world() {
 }
 
 #[test]
-fn a_transform_takes_the_joints_own_space_to_the_world() {
+fn a_transform_maps_the_joints_own_space_to_the_world() {
     for name in ["human", "snake", "degenerate"] {
         let scene = Scene::example(name);
         let skeleton = io::open(&scene.path, None).expect("opens").document.skeleton_rig;
@@ -172,7 +172,7 @@ fn a_document_comes_from_standard_input_as_well() {
 }
 
 #[test]
-fn what_is_odd_in_a_file_is_said_beside_the_pose() {
+fn warnings_about_a_file_are_printed_beside_the_pose() {
     let scene = Scene::new(
         "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"skeleton\",\n\"colour\":\"red\"}",
     );
@@ -187,7 +187,7 @@ fn what_is_odd_in_a_file_is_said_beside_the_pose() {
 // SolverRun
 
 #[test]
-fn every_solver_says_how_near_it_came() {
+fn every_solver_reports_its_error() {
     let scene = Scene::example("ten-joints");
     for solver in ["transpose", "transpose-fixed", "dls", "ccd", "fabrik"] {
         let Answer { targets, report, .. } = scene.pose(&["--solver", solver]);
@@ -200,7 +200,7 @@ fn every_solver_says_how_near_it_came() {
 }
 
 #[test]
-fn two_bones_are_solved_at_once_in_a_mirror() {
+fn the_closed_form_reaches_the_target_of_a_mirrored_skeleton() {
     let Answer { joints, targets, report } = Scene::new(BENT).pose(&["--solver", "two-bone"]);
     let report = report.expect("it solved");
     assert!(report.converged, "{report:?}");
@@ -209,7 +209,7 @@ fn two_bones_are_solved_at_once_in_a_mirror() {
 }
 
 #[test]
-fn iterations_and_tolerance_bound_a_solve() {
+fn iterations_and_tolerance_limit_a_solver_run() {
     let scene = Scene::example("ten-joints");
     let report = |arguments: &[&str]| {
         scene.pose(&[&["--solver", "ccd"], arguments].concat()).report.expect("it solved")
@@ -225,7 +225,7 @@ fn iterations_and_tolerance_bound_a_solve() {
 }
 
 #[test]
-fn a_target_out_of_reach_is_an_answer_and_no_failure() {
+fn an_unreachable_target_is_a_result_and_not_an_error() {
     let scene = Scene::example("degenerate");
     for solver in ["dls", "fabrik"] {
         let report = scene.pose(&["--solver", solver]).report.expect("it solved");
@@ -246,12 +246,12 @@ fn the_humans_targets_are_in_reach() {
 // Failures
 
 #[test]
-fn a_file_that_is_no_scene_is_an_error_with_its_place() {
+fn an_invalid_file_is_an_error_with_its_position() {
     for (text, expected) in [
         ("hello", ", line 1, column 1: not JSON: expected value"),
         (
             "{\"format\":\"ik-arm\",\n\"version\":7}",
-            ", line 2, column 11: version: version 7 needs a newer ik-arm; this one reads up to 2",
+            ", line 2, column 11: version: must be from 1 to 2, got 7, which needs a newer ik-arm",
         ),
         (
             "{\"scene\":{\"skinned_meshes\":{\"X\":{\"skeleton\":{\"bones\":\n[{\"extent\":1}]}}}}}",
@@ -266,7 +266,7 @@ fn a_file_that_is_no_scene_is_an_error_with_its_place() {
 }
 
 #[test]
-fn a_skeleton_that_is_not_there_is_an_error_that_lists_those_that_are() {
+fn a_missing_skeleton_is_an_error_that_lists_the_existing_ones() {
     let expected = " has no skeleton called \"Y\"; it has \"X\"";
     assert_eq!(Scene::new(BENT).refusal(&["--skeleton", "Y"]), expected);
     let expected = " has no skeleton called \"Y\"; it has one skeleton, without a name";
@@ -275,7 +275,7 @@ fn a_skeleton_that_is_not_there_is_an_error_that_lists_those_that_are() {
 }
 
 #[test]
-fn a_document_that_shows_the_arm_points_to_solve() {
+fn a_document_of_the_arm_is_an_error_that_points_to_solve() {
     let expected = " shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms";
     assert_eq!(Scene::example("arm").refusal(&[]), expected);
 }
@@ -289,12 +289,12 @@ fn a_two_bone_target_on_a_root_is_an_error_that_names_the_files_bone() {
 }
 
 #[test]
-fn a_pose_beyond_all_numbers_is_an_error() {
+fn a_pose_that_overflows_is_an_error() {
     let bones = r#"{"extent":[3e38,0,0]},{"extent":[3e38,0,0],"parent":0}"#;
     let scene = Scene::new(&format!(
         r#"{{"scene":{{"skinned_meshes":{{"X":{{"skeleton":{{"bones":[{bones}]}}}}}}}}}}"#
     ));
-    let expected = ": joint \"bone_1\" must lie within ±3.4028235e38";
+    let expected = ": the position of joint \"bone_1\" must be within ±3.4028235e38";
     assert_eq!(scene.refusal(&[]), expected);
 }
 
@@ -353,7 +353,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 }
 
 #[test]
-fn a_time_moves_what_moves_by_itself_and_the_targets() {
+fn a_time_moves_path_followers_and_targets() {
     let snake = Scene::example("snake");
     let document = Example::find("snake").expect("there").open().expect("opens").document;
     let pose = document.skeleton_rig.skeleton_at(2.5).pose();
@@ -370,7 +370,7 @@ fn a_time_moves_what_moves_by_itself_and_the_targets() {
 }
 
 #[test]
-fn a_time_that_is_no_time_is_a_usage_error() {
+fn an_invalid_time_is_a_usage_error() {
     for time in ["inf", "nan", "soon", ""] {
         let output = Scene::example("human").run(&["--time", time]);
         assert_eq!(output.status.code(), Some(2), "{time}");
@@ -378,7 +378,7 @@ fn a_time_that_is_no_time_is_a_usage_error() {
 }
 
 #[test]
-fn a_motion_in_bvh_is_posed_as_it_is() {
+fn a_bvh_motion_is_posed_at_a_time() {
     let text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 2 0\n}\n}\n\
                 MOTION\nFrames: 2\nFrame Time: 1\n0\n90\n";
     let tip = Scene::new(text).pose(&["--time", "1"]).joints[0].tip;

@@ -37,7 +37,7 @@ fn complaint(output: &Output) -> String {
 }
 
 #[test]
-fn a_picture_has_the_size_that_was_asked_for() {
+fn a_picture_has_the_requested_size() {
     for size in ["1x1", "3x500", "641x77"] {
         let image = picture(&["--size", size]);
         assert_eq!(format!("{}x{}", image.width(), image.height()), size);
@@ -66,7 +66,7 @@ fn every_argument_changes_the_picture() {
 }
 
 #[test]
-fn a_negative_number_is_a_number_however_it_is_given() {
+fn a_negative_number_is_accepted_with_and_without_an_equals_sign() {
     assert_eq!(picture(&["--hand", "-1,2,3"]), picture(&["--hand=-1,2,3"]));
 }
 
@@ -83,7 +83,7 @@ fn extreme_arms_are_drawn() {
 }
 
 #[test]
-fn an_argument_that_means_nothing_is_a_usage_error_that_says_what_would_be_right() {
+fn an_invalid_argument_is_a_usage_error_that_states_the_rule() {
     for (arguments, right) in [
         (["--size", "0x10"], "each side 1 to 8192"),
         (["--size", "8193x10"], "each side 1 to 8192"),
@@ -250,7 +250,7 @@ fn a_view_guides_a_theme_and_a_skeleton_change_the_picture_of_a_file() {
 }
 
 #[test]
-fn a_file_that_cannot_be_drawn_is_an_error_with_its_place() {
+fn a_file_that_cannot_be_drawn_is_an_error_with_its_position() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = file(&folder, "scene.js3d", BONE);
     let broken = file(&folder, "broken.js3d", "{\"scene\":\n5}");
@@ -288,7 +288,7 @@ fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
 // Times
 
 #[test]
-fn a_time_moves_what_is_keyed() {
+fn a_time_moves_keyed_channels() {
     use ik_arm::document::{Channel, Document, Overlay};
     let folder = tempfile::tempdir().expect("a folder");
     let mut document = Document::default();
@@ -313,7 +313,7 @@ fn a_time_moves_what_is_keyed() {
 }
 
 #[test]
-fn a_time_moves_what_moves_by_itself_and_the_view_with_it() {
+fn a_time_moves_a_path_follower_and_the_view_with_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let snake = ik_arm::io::Example::find("snake").expect("there").text;
     let snake = file(&folder, "snake.json", snake);
@@ -348,7 +348,7 @@ fn a_crowd_is_timed_and_drawn_by_either_solver() {
 }
 
 #[test]
-fn a_crowd_that_cannot_be_is_refused() {
+fn an_invalid_crowd_is_refused() {
     for (arguments, why) in [
         (&["--crowd", "0"][..], "0 is not in 1..=1000000"),
         (&["--crowd", "1000001"], "1000001 is not in 1..=1000000"),

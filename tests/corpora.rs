@@ -1,5 +1,5 @@
-//! The files that the fuzzer begins with, and those it found something wrong with, hold what it asks
-//! of any bytes: see `fuzz/README.md`.
+//! The files that the fuzzer begins with, and those it found something wrong with, hold what it
+//! asks of any bytes: see `fuzz/README.md`.
 #![cfg(feature = "document")]
 
 #[path = "../fuzz/src/lib.rs"]
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What no file takes, not even unoptimised and on a busy machine.
+/// Time limit for one file, generous for an unoptimised build on a busy machine.
 const LONGEST: Duration = Duration::from_secs(10);
 
 /// Runs the check of a target on all its files.
@@ -36,27 +36,27 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn documents_are_refused_or_saved_as_they_are() {
+fn documents_are_refused_or_saved_unchanged() {
     replay("document", checks::document);
 }
 
 #[test]
-fn scenes_are_refused_or_have_skeletons_that_can_be() {
+fn scenes_are_refused_or_have_valid_skeletons() {
     replay("js3d", checks::js3d);
 }
 
 #[test]
-fn motions_are_refused_or_have_skeletons_that_can_be() {
+fn motions_are_refused_or_have_valid_skeletons() {
     replay("bvh", checks::bvh);
 }
 
 #[test]
-fn gltf_is_refused_or_has_skeletons_that_can_be() {
+fn gltf_is_refused_or_has_valid_skeletons() {
     replay("gltf", checks::gltf);
 }
 
 #[test]
-fn lines_are_refused_or_have_poses_that_are_what_they_say() {
+fn lines_are_refused_or_have_poses_that_match_their_report() {
     replay("json_lines", checks::json_lines);
 }
 

@@ -1,4 +1,4 @@
-//! Many arms after targets of their own, solved here and on a device.
+//! Crowds of arms with their own targets, solved on the CPU and the GPU.
 #![cfg(feature = "render")]
 
 mod common;
@@ -34,8 +34,8 @@ fn elbow_angle(elbow: DVec3, hand: DVec3) -> f64 {
     (-elbow).angle_between(hand - elbow).to_degrees()
 }
 
-/// Asks `arrays` of the device and of the batch solver, and compares: hands and lengths to 1e-5 of the
-/// arm, elbows too where they are well bent.
+/// Solves `arrays` on the GPU and by the batch solver, and compares: hands and lengths to 1e-5 of
+/// the arm, elbows too where they are well bent.
 fn agree(gpu: &Gpu, bones: TwoBone, arrays: &mut CrowdArrays) {
     let mut solver = CrowdSolver::new(gpu).expect("compute shaders");
     solver.reserve(gpu, arrays.len() as u32);
@@ -71,8 +71,8 @@ fn device_and_batch_agree_on_a_hundred_thousand_random_arms() {
             for (axis, part) in cursor.to_array().into_iter().enumerate() {
                 arrays.cursor[axis][arm] = part;
             }
-            let spin = random.within(-4.0..4.0);
-            (arrays.sin[arm], arrays.cos[arm]) = spin.sin_cos();
+            let twist = random.within(-4.0..4.0);
+            (arrays.sin[arm], arrays.cos[arm]) = twist.sin_cos();
         }
         agree(&gpu, bones, &mut arrays);
     }
@@ -98,7 +98,7 @@ fn device_and_batch_agree_where_a_cursor_has_no_direction_and_on_the_limits() {
 }
 
 #[test]
-fn spins_are_angles_and_targets_stay_about_their_arm_and_come_round() {
+fn twists_are_angles_and_targets_stay_near_their_arm_and_loop() {
     let mut crowd = crowd(20_000);
     let mut first = None;
     for step in 0..=8 {
@@ -122,7 +122,7 @@ fn spins_are_angles_and_targets_stay_about_their_arm_and_come_round() {
 }
 
 #[test]
-fn more_arms_leave_those_that_are_there_where_they_are() {
+fn adding_arms_does_not_move_the_existing_ones() {
     let few = arrays(&crowd(100));
     let mut arrays = few;
     let shoulders = arrays.shoulder.clone();
@@ -137,7 +137,7 @@ fn more_arms_leave_those_that_are_there_where_they_are() {
 }
 
 #[test]
-fn a_crowd_that_was_larger_is_drawn_like_one_that_never_was() {
+fn a_crowd_made_smaller_is_drawn_like_a_new_one() {
     let gpu = Gpu::headless().expect("a device");
     let (mut used, mut new) = (picture(&gpu), picture(&gpu));
     for arms in [30, 3_000] {
@@ -148,7 +148,7 @@ fn a_crowd_that_was_larger_is_drawn_like_one_that_never_was() {
 }
 
 #[test]
-fn solved_here_or_on_the_device_a_crowd_looks_the_same() {
+fn a_crowd_looks_the_same_solved_on_the_cpu_or_the_gpu() {
     let gpu = Gpu::headless().expect("a device");
     let mut picture = picture(&gpu);
     let here = draw(&mut picture, &crowd(500), near());
@@ -177,7 +177,7 @@ fn arms_near_and_far_have_the_colours_of_their_limbs() {
 }
 
 #[test]
-fn what_is_behind_the_eye_is_not_drawn() {
+fn arms_behind_the_camera_are_not_drawn() {
     let gpu = Gpu::headless().expect("a device");
     let with = draw(&mut picture(&gpu), &crowd(1), behind());
     let mut scene = Scene::new(
@@ -191,7 +191,7 @@ fn what_is_behind_the_eye_is_not_drawn() {
 }
 
 #[test]
-fn a_session_shows_a_crowd_lets_it_go_on_and_leaves_the_document_alone() {
+fn a_session_shows_and_moves_a_crowd_without_changing_the_document() {
     let mut session = Session::default();
     let before = session.document().clone();
     assert_eq!(session.crowd(), None);
@@ -242,7 +242,7 @@ fn draw(picture: &mut PictureRenderer<'_>, crowd: &Crowd, camera: Camera) -> Rgb
 }
 
 #[test]
-fn a_crowd_of_arms_that_numbers_cannot_square_is_not_drawn() {
+fn a_crowd_whose_squared_lengths_overflow_is_not_drawn() {
     for length in [1e-30, 1e19, 1e38] {
         let bones = TwoBone::new(length, length).expect("lengths");
         let overlays =

@@ -7,7 +7,7 @@ use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::rig::{Crowd, CrowdArrays, Processor};
 
 #[test]
-fn a_crowd_has_the_bits_of_a_batch() {
+fn a_crowd_is_bit_identical_to_a_batch() {
     const ARMS: u32 = 5_000;
     let bones = TwoBone::new(200.0, 300.0).expect("lengths");
     let crowd = Crowd { arms: ARMS, bones, time: 3.25, processor: Processor::Cpu };
@@ -17,12 +17,12 @@ fn a_crowd_has_the_bits_of_a_batch() {
     arrays.solve(bones).expect("a batch");
 
     let [x, y, z] = &arrays.cursor;
-    let spin = BatchTwist::CosSin { cos: &arrays.cos, sin: &arrays.sin };
-    let arms = ArmBatch::new(BatchBones::Same(bones), Points { x, y, z }, spin).expect("a batch");
+    let twist = BatchTwist::CosSin { cos: &arrays.cos, sin: &arrays.sin };
+    let arms = ArmBatch::new(BatchBones::Same(bones), Points { x, y, z }, twist).expect("a batch");
     let [mut elbow, mut hand] = [(); 2].map(|()| [(); 3].map(|()| vec![0.0; ARMS as usize]));
-    let places =
+    let positions =
         BatchPositions { elbow: PointsMut::of(&mut elbow), hand: PointsMut::of(&mut hand) };
-    arms.solve(places, None).expect("room");
+    arms.solve(positions, None).expect("room");
 
     let bits = |of: &[Vec<f32>; 3]| {
         of.each_ref().map(|all| all.iter().map(|x| x.to_bits()).collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-//! Tables: every joint where it is, a row for each frame.
+//! CSV tables: positions of all joints, a row for each frame.
 #![cfg(feature = "document")]
 
 use glam::Vec3;
@@ -13,7 +13,7 @@ fn table(document: &Document, fps: Option<u32>) -> String {
 }
 
 #[test]
-fn a_small_skeleton_is_this_table() {
+fn a_small_skeleton_is_written_as_this_table() {
     let mut skeleton = Skeleton::with_root("hip, \"left\"");
     let thigh = Joint { offset: Vec3::X, ..Joint::new("thigh", Some(JointId::new(0)), Vec3::Y) };
     skeleton.add(thigh).expect("joint");
@@ -64,7 +64,7 @@ fn the_arm_is_shoulder_elbow_and_hand() {
 }
 
 #[test]
-fn what_moves_by_itself_moves_in_the_table() {
+fn a_path_follower_moves_in_the_table() {
     let document = Example::find("snake").expect("there").open().expect("it opens").document;
     let table = table(&document, None);
     let mut rows = csv::Reader::from_reader(table.as_bytes());
@@ -81,7 +81,7 @@ fn what_moves_by_itself_moves_in_the_table() {
 }
 
 #[test]
-fn a_table_of_nothing_has_one_row_and_a_cancelled_one_none() {
+fn an_empty_skeleton_gives_one_row_and_a_cancelled_table_none() {
     let skeleton_rig = SkeletonRig::new(Skeleton::default());
     let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
     assert_eq!(table(&document, None), "frame,time\n0,0\n");
@@ -93,5 +93,5 @@ fn a_table_of_nothing_has_one_row_and_a_cancelled_one_none() {
     far.offset = Vec3::splat(3e38);
     document.skeleton_mut().add(far).expect("joint");
     let refused = io::to_csv(&document, None, &Progress::default()).expect_err("refused");
-    assert_eq!(refused.to_string(), "\"far_tip\" is beyond 3.4028235e38; bring it nearer to 0");
+    assert_eq!(refused.to_string(), "the position of \"far_tip\" must be within ±3.4028235e38");
 }

@@ -1,4 +1,4 @@
-//! Joints that are dissolved: their children stay where they are.
+//! Dissolving joints: their children keep their positions.
 #![cfg(feature = "document")]
 
 use glam::Vec3;
@@ -6,7 +6,7 @@ use ik_arm::document::{Channel, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 
-/// Where bases and tips are in the world, by joint name.
+/// Positions of bases and tips in world space, by joint name.
 fn positions(document: &Document, time: f64) -> Vec<(String, Vec3, Vec3)> {
     let evaluated = document.evaluate(time);
     let pose = evaluated.skeleton_rig.skeleton_at(time).pose();

@@ -81,7 +81,7 @@ fn errors_and_warnings_have_the_positions_of_the_file() {
         (
             "\"arm\":{\"swivel\":{\"carried\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}",
             "line 2, column 59: arm.twist_reference.transported.outward: must be perpendicular to \
-             `direction`",
+             `direction`, got [1, 0, 0]",
         ),
         (
             "\"keys\":[{\"channel\":\"elbow_spin\",\"knots\":[[0,1,2]]}]",

@@ -1,4 +1,4 @@
-//! Every edit is one labelled step that undo and redo bring back to the last byte of a file.
+//! Every edit is one labelled step that undo and redo restore byte for byte.
 #![cfg(feature = "document")]
 
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! The arm's joint angles: the pose that they give, the angles that a pose has, and what is between.
+//! The arm's joint angles: pose from angles, angles from a pose, and blends.
 
 mod common;
 
@@ -67,14 +67,14 @@ proptest! {
     #![proptest_config(config(10_000, 0x000f_ee1f))]
 
     #[test]
-    fn a_pose_is_what_matrices_make_of_its_angles(
+    fn a_pose_agrees_with_the_matrix_product_of_its_angles(
         bones in arms(), shoulder in angles(), bend in bends()
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let pose = fk.pose(bones, Pointer::default());
         let (elbow, hand) = apart(&pose, twin(fk, bones));
         prop_assert!(elbow < 3e-7 * limits(bones).1 && hand < 3e-7 * limits(bones).1);
-        // What the hierarchy is made of says the same.
+        // The hierarchy's rotations agree.
         let w = pose.pointer.direction.as_dvec3();
         let out = pose.outward().as_dvec3();
         let again = w * f64::from(pose.along) + out * f64::from(pose.out);
@@ -93,14 +93,14 @@ proptest! {
     }
 
     #[test]
-    fn from_angles_to_a_hand_and_back_the_pose_stays(
+    fn switching_from_fk_to_ik_and_back_keeps_the_pose(
         bones in arms(), shoulder in angles(), bend in bends(), reference in references(poles())
     ) {
         let fk = Fk { shoulder, bend, stretch: 1.0 };
         let pose = fk.pose(bones, Pointer::default());
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
-        let (cursor, spin) = ik.matching(&pose, None);
-        let solved = ik.solve(cursor, spin, IkState { pointer: pose.pointer, transported: None }).pose;
+        let (cursor, twist) = ik.matching(&pose, None);
+        let solved = ik.solve(cursor, twist, IkState { pointer: pose.pointer, transported: None }).pose;
         let again = Fk::matching(&solved, fk).pose(bones, solved.pointer);
         for found in [solved, again] {
             let (elbow, hand) = apart(&found, points(&pose));
@@ -111,17 +111,17 @@ proptest! {
     }
 
     #[test]
-    fn from_a_hand_to_angles_and_back_the_pose_stays(
-        bones in arms(), direction in uniform_directions(), part in 0.0..1.2_f32, spin in 0.0..6.2_f32,
+    fn switching_from_ik_to_fk_and_back_keeps_the_pose(
+        bones in arms(), direction in uniform_directions(), part in 0.0..1.2_f32, twist in 0.0..6.2_f32,
         reference in references(poles())
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
         let cursor = direction.as_vec3() * part * bones.outer_limit();
-        let solved = ik.solve(cursor, spin, IkState::default());
+        let solved = ik.solve(cursor, twist, IkState::default());
         let fk = Fk::matching(&solved.pose, Fk::default());
         let posed = fk.pose(bones, solved.pose.pointer);
-        let (cursor, spin) = ik.matching(&posed, Some(solved.transported));
-        let again = ik.solve(cursor, spin, IkState { pointer: posed.pointer, ..solved.state() }).pose;
+        let (cursor, twist) = ik.matching(&posed, Some(solved.transported));
+        let again = ik.solve(cursor, twist, IkState { pointer: posed.pointer, ..solved.state() }).pose;
         for found in [posed, again] {
             let (elbow, hand) = apart(&found, points(&solved.pose));
             let l = limits(bones).1;
@@ -131,7 +131,7 @@ proptest! {
     }
 
     #[test]
-    fn angles_go_on_where_they_were(shoulder in angles(), turns in -1..2_i32, bend in bends()) {
+    fn matching_angles_stay_in_the_same_full_turn(shoulder in angles(), turns in -1..2_i32, bend in bends()) {
         let bones = TwoBone::new(2.0, 3.0).expect("lengths");
         let turned = f64::from(turns) * 2.0 * PI;
         let around = |angle: f32| (f64::from(angle) + turned) as f32;
@@ -143,7 +143,7 @@ proptest! {
     }
 
     #[test]
-    fn between_angles_and_a_solved_pose_the_limbs_keep_their_lengths(
+    fn blending_between_fk_and_ik_keeps_limb_lengths(
         bones in arms(), shoulder in angles(), bend in bends(), direction in uniform_directions(),
         part in 0.0..1.2_f32, weight in 0.0..=1.0_f32
     ) {
@@ -162,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn half_way_the_upper_limb_has_made_half_its_turn(
+    fn half_way_between_fk_and_ik_the_upper_limb_has_made_half_its_rotation(
         shoulder in angles(), bend in 0.0..3.1_f32, direction in uniform_directions(), part in 0.3..0.9_f32
     ) {
         let bones = TwoBone::new(2.0, 3.0).expect("lengths");
@@ -199,9 +199,9 @@ fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
         for bend in [0.0, core::f32::consts::PI] {
             let fk = Fk { shoulder: Vec3::new(twist, 0.3, -0.7), bend, stretch: 1.0 };
             let pose = fk.pose(bones, Pointer::default());
-            let (cursor, spin) = ik.matching(&pose, None);
+            let (cursor, twist) = ik.matching(&pose, None);
             let solved = ik
-                .solve(cursor * 0.999, spin, IkState { pointer: pose.pointer, transported: None })
+                .solve(cursor * 0.999, twist, IkState { pointer: pose.pointer, transported: None })
                 .pose;
             let hinge = DQuat::from_mat3(&euler::rotation(fk.shoulder)) * DVec3::Z;
             let found = solved.pointer.direction.cross(solved.outward()).as_dvec3();
@@ -217,7 +217,7 @@ proptest! {
     #![proptest_config(config(2_000, 0x000f_ee1f))]
 
     #[test]
-    fn many_turns_are_dropped_and_the_pose_stays(
+    fn dropping_full_turns_keeps_the_pose(
         shoulder in angles(), bend in bends(), turns in -100_000_000..100_000_000_i32
     ) {
         let bones = TwoBone::new(2.0, 3.0).expect("lengths");
@@ -241,7 +241,7 @@ fn straight_up_the_last_yaw_is_kept() {
 }
 
 #[test]
-fn a_roll_is_the_part_of_a_rotation_about_x_and_goes_on_past_half_a_turn() {
+fn a_roll_is_the_part_of_a_rotation_about_x_and_continues_past_half_a_turn() {
     let swing = DQuat::from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 0.9);
     let mut last = 0.0;
     for step in 0..=40 {
@@ -253,7 +253,7 @@ fn a_roll_is_the_part_of_a_rotation_about_x_and_goes_on_past_half_a_turn() {
 }
 
 #[test]
-fn turned_around_a_hand_keeps_its_last_roll() {
+fn a_hand_that_faces_backwards_keeps_its_last_roll() {
     let around = DMat3::from_rotation_y(PI);
     assert_eq!(euler::roll(around, 0.7), 0.7);
 }

@@ -134,9 +134,9 @@ fn a_guide_that_is_missing_is_noticed() {
 fn example(name: &str) -> Document {
     let example = Example::find(name).expect("an example");
     let mut document = example.open().expect("it opens").document;
-    let goals = document.skeleton_rig.targets_at(0.0);
+    let targets = document.skeleton_rig.targets_at(0.0);
     let options = document.skeleton_rig.solver;
-    chain_ik::solve(document.skeleton_mut(), &goals, &options).expect("it can be solved");
+    chain_ik::solve(document.skeleton_mut(), &targets, &options).expect("it can be solved");
     document.camera.distance *= 0.9;
     document
 }
@@ -217,7 +217,7 @@ fn with(arm: Arm, layers: &[Overlay]) -> Document {
 fn the_arm_with_all_overlays_of_an_animator() {
     let pole = Arm { twist_reference: TwistReferenceKind::Pole, ..Arm::default() };
     let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().with_pinned(true) };
-    let spun = Arm { twist: 1.0, ..pole };
+    let twisted = Arm { twist: 1.0, ..pole };
     let hand_orientation =
         HandOrientation { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
     let turned = Arm { hand_orientation, ..Arm::default() };
@@ -226,7 +226,7 @@ fn the_arm_with_all_overlays_of_an_animator() {
     let cases: [(&str, Arm, &[Overlay]); 5] = [
         ("pole", pole, &[]),
         ("pin", pinned, &[]),
-        ("references", spun, &[Overlay::TwistReferences]),
+        ("references", twisted, &[Overlay::TwistReferences]),
         ("turned", turned, &[]),
         ("led", led, &[Overlay::SingularityGlobe]),
     ];

@@ -1,5 +1,5 @@
-//! Pictures of where the elbow's reference fails, of limbs that twist, and of a hand, compared with
-//! the ones kept in `tests/golden`; and numbers read off such pictures.
+//! Pictures of the singularities of twist references, of twisting limbs, and of a hand, compared
+//! with the ones kept in `tests/golden`; and numbers read off such pictures.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test golden_trouble` keeps the new ones; look at them before
 //! committing.
@@ -90,7 +90,7 @@ fn picture(scene: &Scene, side: u32) -> RgbaImage {
     PictureRenderer::new(&gpu, side, side, 1.0).draw(scene).expect("drawn")
 }
 
-/// The colours of a pixel of the globe as they are to be, if it has any that are smooth there: the
+/// Expected colours of a pixel of the globe, if they are smooth there: the
 /// ramp's for the library's own gain where the far and the near side are met, laid over the sky.
 fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
     const FAR_OPACITY: f64 = 0.65;
@@ -178,7 +178,7 @@ fn every_pixel_of_a_globe_has_the_colour_of_its_gain() {
 }
 
 #[test]
-fn a_pole_at_the_shoulder_is_a_calm_globe() {
+fn an_invalid_pole_is_drawn_as_the_globe_of_transport() {
     let camera = Camera { distance: 1700.0, ..Document::default().camera };
     let calm = picture(&bare(globe(TwistReference::Transport), Theme::Dark, camera), 200);
     for pole in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
@@ -188,7 +188,7 @@ fn a_pole_at_the_shoulder_is_a_calm_globe() {
 }
 
 #[test]
-fn a_globe_without_a_size_is_no_globe() {
+fn a_globe_without_a_size_is_not_drawn() {
     let plain = scene(&Document::default(), Theme::Dark);
     for (centre, radius) in [
         (Vec3::ZERO, 0.0),
@@ -243,7 +243,7 @@ fn lightness(colour: [f32; 4]) -> f32 {
 }
 
 #[test]
-fn the_ramp_of_gains_reads_without_its_hues() {
+fn the_colours_of_gains_rise_in_contrast() {
     for theme in [Theme::Dark, Theme::Light] {
         let palette = Palette::new(theme);
         let background = lightness(palette.sky_bottom.mixed(palette.sky_top, 0.5).channels());
@@ -278,7 +278,7 @@ fn striped(upper: Option<f32>, lower: Option<f32>) -> Scene {
 }
 
 #[test]
-fn stripes_that_are_straight_and_that_wind() {
+fn straight_and_winding_stripes() {
     let turn = 270_f32.to_radians();
     check("stripes", &striped(Some(0.0), Some(turn)));
     for (upper, lower) in [(Some(0.0), Some(-turn)), (Some(turn), Some(turn)), (None, Some(turn))] {
@@ -348,7 +348,7 @@ fn a_hand_from_its_palm_and_from_its_back() {
 }
 
 #[test]
-fn a_hand_is_as_long_as_it_is_told_and_has_its_thumb_where_a_right_hand_has() {
+fn a_hand_has_the_given_length_and_the_thumb_of_a_right_hand() {
     let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -1.1, 2.0);
     let transform = Affine3A::from_rotation_translation(turn, Vec3::new(7.0, -3.0, 12.0));
     for size in [0.5, 100.0] {

@@ -46,7 +46,7 @@ fn gpu_and_timer() -> (Gpu, GpuTimer) {
 }
 
 #[test]
-fn a_frame_is_timed_within_the_time_that_it_took() {
+fn gpu_time_is_at_most_the_wall_time_of_a_frame() {
     let (gpu, mut gpu_timer) = gpu_and_timer();
     let mut renderer = Renderer::new(&gpu);
     for frame in 0..12 {
@@ -59,7 +59,7 @@ fn a_frame_is_timed_within_the_time_that_it_took() {
 }
 
 #[test]
-fn frames_that_nobody_reads_are_left_out_and_nothing_waits() {
+fn unread_frames_are_dropped_without_waiting() {
     let (gpu, mut gpu_timer) = gpu_and_timer();
     let mut read = 0;
     for frame in 0..20 {

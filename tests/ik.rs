@@ -1,4 +1,5 @@
-//! The arm with a reference and a softening: how far it is the plain arm, and how smooth it is.
+//! The arm with a twist reference and soft reach: agreement with the plain arm, and bounds of
+//! speed.
 
 mod common;
 
@@ -29,37 +30,37 @@ proptest! {
     #![proptest_config(config(10_000, 0x001c_0de5))]
 
     #[test]
-    fn with_all_off_it_is_the_plain_arm_bit_for_bit(
-        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in -7.0..7.0_f32
+    fn without_options_a_pose_is_bit_identical_to_the_plain_arm(
+        bones in arms_of(1.0..10.0), cursor in points(25.0), twist in -7.0..7.0_f32
     ) {
-        let plain = bones.solve(cursor, spin);
+        let plain = bones.solve(cursor, twist);
         let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
-        let pose = ik.solve(cursor, spin, IkState::default()).pose;
+        let pose = ik.solve(cursor, twist, IkState::default()).pose;
         prop_assert_eq!(bits(pose.elbow), bits(plain.elbow));
         prop_assert_eq!(bits(pose.hand), bits(plain.hand));
         prop_assert_eq!(pose, plain);
     }
 
     #[test]
-    fn softening_never_changes_which_way_the_elbow_points(
-        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32,
+    fn softness_does_not_change_the_direction_of_the_elbow(
+        bones in arms_of(1.0..10.0), cursor in points(25.0), twist in 0.0..6.0_f32,
         reference in references(points(25.0)), soft_reach in softenings()
     ) {
         let hard = Ik { bones, reference, soft_reach: SoftReach::default() };
         let soft = Ik { soft_reach, ..hard };
-        let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, spin, IkState::default()));
+        let [hard, soft] = [hard, soft].map(|ik| ik.solve(cursor, twist, IkState::default()));
         prop_assert!(hard.pose.outward().distance(soft.pose.outward()) < 1e-6);
         prop_assert_eq!(hard.transported, soft.transported);
     }
 
     #[test]
-    fn the_elbow_is_turned_from_the_reference_by_the_spin(
-        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32, reference in references(points(25.0))
+    fn the_elbow_is_turned_from_the_reference_by_the_twist(
+        bones in arms_of(1.0..10.0), cursor in points(25.0), twist in 0.0..6.0_f32, reference in references(points(25.0))
     ) {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
-        let IkSolution { pose, transported, .. } = ik.solve(cursor, spin, IkState::default());
+        let IkSolution { pose, transported, .. } = ik.solve(cursor, twist, IkState::default());
         let (w, e) = (pose.pointer.direction.as_dvec3(), transported.outward.as_dvec3());
-        let (sin, cos) = f64::from(spin).sin_cos();
+        let (sin, cos) = f64::from(twist).sin_cos();
         let expected = e * cos + w.cross(e) * sin;
         let elbow = w * f64::from(pose.along) + expected * f64::from(pose.out);
         let error = elbow.distance(pose.elbow.as_dvec3());
@@ -93,16 +94,16 @@ proptest! {
     }
 
     #[test]
-    fn a_pose_is_found_again_from_its_hand_and_its_elbow(
-        bones in arms_of(1.0..10.0), cursor in points(25.0), spin in 0.0..6.0_f32,
+    fn a_pose_is_recovered_from_its_hand_and_its_elbow(
+        bones in arms_of(1.0..10.0), cursor in points(25.0), twist in 0.0..6.0_f32,
         from in references(points(25.0)), to in references(points(25.0)), soft_reach in softenings()
     ) {
         let from = Ik { bones, reference: from, soft_reach };
         let to = Ik { reference: to, ..from };
-        let solved = from.solve(cursor, spin, IkState::default());
-        let (cursor, spin) = to.matching(&solved.pose, None);
-        prop_assert!((0.0..TAU as f32).contains(&spin));
-        let again = to.solve(cursor, spin, IkState { pointer: solved.pose.pointer, transported: None }).pose;
+        let solved = from.solve(cursor, twist, IkState::default());
+        let (cursor, twist) = to.matching(&solved.pose, None);
+        prop_assert!((0.0..TAU as f32).contains(&twist));
+        let again = to.solve(cursor, twist, IkState { pointer: solved.pose.pointer, transported: None }).pose;
         let l = limits(bones).1;
         let hand = again.hand.as_dvec3().distance(solved.pose.hand.as_dvec3());
         let stretched = f64::from(solved.pose.stretch) * l;
@@ -114,7 +115,7 @@ proptest! {
     }
 }
 
-/// A smooth way through space: three waves along each axis.
+/// A smooth path through space: three waves along each axis.
 #[derive(Clone, Debug)]
 struct Way([[(f64, f64); 3]; 3]);
 
@@ -135,7 +136,7 @@ fn ways() -> impl Strategy<Value = Way> {
     [axis(), axis(), axis()].prop_map(Way)
 }
 
-/// How fast the elbow may be for a cursor, from the bound in the mathematics, in f64.
+/// Bound of the elbow's speed relative to the cursor's, in f64.
 fn bound(arm: TwoBone, softness: f64, cursor: DVec3, gain: f64) -> f64 {
     let [d1, d2] = [arm.upper(), arm.lower()].map(f64::from);
     let (l, least, d) = (d1 + d2, (d1 - d2).abs(), cursor.length());
@@ -156,8 +157,8 @@ fn bound(arm: TwoBone, softness: f64, cursor: DVec3, gain: f64) -> f64 {
     radial.hypot(around)
 }
 
-/// The fastest that the elbow goes beyond its bound along a way, in parts of the arm's length. Steps
-/// near the shoulder, or nearer to a direction than 30°, are left out.
+/// Largest excess of the elbow's movement over its bound along a path, relative to the arm's
+/// length. Steps near the shoulder, or nearer to a direction than 30°, are left out.
 fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
     const STEPS: usize = 6000;
     let l = limits(ik.bones).1;
@@ -192,14 +193,14 @@ fn excess(ik: Ik, softness: f64, way: &Way, avoided: Option<DVec3>) -> f64 {
     worst
 }
 
-/// What rounding of the hand moves the elbow of a nearly straight arm by, in parts of its length.
+/// Elbow movement by rounding of the hand for a nearly straight arm, relative to its length.
 const ROUNDING: f64 = 2e-4;
 
 proptest! {
     #![proptest_config(config(1_000, 0x001c_0de5))]
 
     #[test]
-    fn measured_on_the_map_a_soft_elbow_never_pops(
+    fn a_soft_elbow_never_pops_with_stereographic(
         bones in arms_of(1.0..10.0), way in ways(), softness in 0.1..0.8_f32
     ) {
         let map = Stereographic::default();
@@ -211,7 +212,7 @@ proptest! {
     }
 
     #[test]
-    fn transported_a_soft_elbow_never_pops(
+    fn a_soft_elbow_never_pops_with_transport(
         bones in arms_of(1.0..10.0), way in ways(), softness in 0.1..0.8_f32
     ) {
         let ik = Ik { bones, reference: TwistReference::Transport, soft_reach: soft(softness, 1.0, 0.0) };
@@ -220,7 +221,8 @@ proptest! {
     }
 }
 
-/// The elbow's speed over the cursor's where the cursor passes a point above the shoulder by a hair.
+/// The elbow's speed over the cursor's where the cursor passes a point above the shoulder by a
+/// hair.
 fn speed_beside_vertical(reference: TwistReference, aside: f32) -> f64 {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let ik = Ik { bones, reference, soft_reach: soft(0.2, 1.0, 0.0) };
@@ -231,7 +233,7 @@ fn speed_beside_vertical(reference: TwistReference, aside: f32) -> f64 {
 }
 
 #[test]
-fn past_vertical_the_limbs_reference_breaks_any_bound_and_the_map_none() {
+fn past_vertical_elbow_speed_is_unbounded_with_limb_and_bounded_with_stereographic() {
     for bound in [1e1, 1e2, 1e3, 1e4] {
         let aside = 0.5 / bound as f32;
         let speed = speed_beside_vertical(TwistReference::Limb, aside);
@@ -243,7 +245,7 @@ fn past_vertical_the_limbs_reference_breaks_any_bound_and_the_map_none() {
 }
 
 #[test]
-fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
+fn without_softness_the_speed_of_a_nearly_straight_elbow_is_unbounded() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let speed = |soft_reach, from: f32| {
         let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
@@ -257,7 +259,7 @@ fn without_softness_a_nearly_straight_elbow_breaks_any_bound() {
 }
 
 #[test]
-fn transport_without_a_past_begins_on_the_map() {
+fn transport_without_earlier_state_starts_stereographic() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let solve = |reference| {
         let ik = Ik { bones, reference, soft_reach: SoftReach::default() };
@@ -268,7 +270,7 @@ fn transport_without_a_past_begins_on_the_map() {
 }
 
 #[test]
-fn a_cursor_farther_than_numbers_go_is_not_reached() {
+fn a_cursor_whose_distance_overflows_is_not_reached() {
     const FAR: f32 = f32::MAX;
     // √2 times as far as the largest number.
     let cursor = Vec3::new(0.0, FAR, FAR);

@@ -1,4 +1,4 @@
-//! Scotty3D's scenes: their bones stand where Scotty3D's formulas put them.
+//! Scotty3D's scenes: their bones are where Scotty3D's formulas put them.
 #![cfg(feature = "document")]
 
 mod common;
@@ -29,7 +29,7 @@ fn bones(bones: &str) -> String {
     skeleton(&format!("\"bones\":[{bones}]"))
 }
 
-// What is in a scene
+// Contents of a scene
 
 #[test]
 fn the_smallest_scene_opens() {
@@ -55,7 +55,7 @@ fn the_camera_shows_all_of_a_small_skeleton_and_of_a_large_one() {
 }
 
 #[test]
-fn everything_but_skeletons_is_passed_over() {
+fn everything_but_skeletons_is_ignored() {
     let mesh = "AAECAwQF".repeat(100_000);
     let text = format!(
         r#"{{"animator":{{"x":[{{}}]}},"scene":{{"FORMAT":"js3d-v1","cameras":{{"c":1}},
@@ -84,7 +84,7 @@ fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
 }
 
 #[test]
-fn a_radius_and_a_pose_are_taken_over() {
+fn radius_and_pose_are_imported() {
     let opened = open(&bones(r#"{"extent":[0,1,0],"radius":0.25,"pose":[90,-180,720]}"#));
     let joint = &opened.document.skeleton().joints()[0];
     let degrees = joint.rotation.to_array().map(|angle| f64::from(angle).to_degrees() as f32);
@@ -92,7 +92,7 @@ fn a_radius_and_a_pose_are_taken_over() {
 }
 
 #[test]
-fn parents_that_follow_their_children_are_brought_before_them() {
+fn parents_are_sorted_before_their_children() {
     let opened = open(&bones(
         r#"{"extent":[1,0,0],"parent":2},{"extent":[0,1,0],"parent":4294967295},
            {"extent":[0,0,1],"parent":1},{"extent":[0,0,2],"parent":0}"#,
@@ -108,7 +108,7 @@ fn parents_that_follow_their_children_are_brought_before_them() {
 // Handles
 
 #[test]
-fn a_handle_is_a_target_that_the_instances_transform_brings_into_the_world() {
+fn a_handle_becomes_a_target_in_world_space() {
     let text = r#"{"scene":{
         "skinned_meshes":{"X":{"skeleton":{"bones":[{"extent":[0,1,0]},{"extent":[0,1,0],"parent":0}],
             "handles":[{"bone":1,"target":[1,2,3],"enabled":false},{"bone":0,"target":[0,0,0]}]}}},
@@ -149,7 +149,7 @@ fn of_several_handles_on_a_bone_the_first_enabled_one_counts() {
     }
 }
 
-// Where bones are: an independent twin
+// Bone positions by an independent implementation
 
 /// A bone as the file has it.
 struct Bone {
@@ -294,7 +294,7 @@ fn shuffle(bones: &mut [Bone], random: &mut Random) {
 }
 
 #[test]
-fn bones_stand_where_the_formulas_of_the_format_put_them() {
+fn bones_are_where_the_formulas_of_the_format_put_them() {
     for seed in 0..2000 {
         let scene = Scene::random(&mut Random(seed));
         let text = scene.text();
@@ -326,7 +326,7 @@ fn tiny_and_huge_bones_have_a_frame() {
 // Scenes that are refused
 
 #[test]
-fn a_bone_or_a_handle_that_cannot_be_is_named() {
+fn an_invalid_bone_or_handle_is_named() {
     let at = "scene.skinned_meshes.X.skeleton";
     let one = r#"{"extent":[0,1,0]}"#;
     let parent = |parent: i64| format!("{{\"extent\":[0,1,0],\n\"parent\":{parent}}}");
@@ -338,7 +338,7 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         ),
         (
             format!("\"bones\":[{one},{}]", parent(7)),
-            format!("line 3, column 10: {at}.bones[1].parent: there is no bone 7; they are 0 to 1"),
+            format!("line 3, column 10: {at}.bones[1].parent: must be a bone from 0 to 1, got 7"),
         ),
         (
             format!("\"bones\":[{one},{}]", parent(-1)),
@@ -349,11 +349,15 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         ),
         (
             format!("\"bones\":[{}]", parent(0)),
-            format!("line 3, column 10: {at}.bones[0].parent: bone 0 is a descendant of bone 0"),
+            format!(
+                "line 3, column 10: {at}.bones[0].parent: must not be a descendant of bone 0, got 0"
+            ),
         ),
         (
             format!("\"bones\":[{one},{},{},{}]", parent(2), parent(3), parent(1)),
-            format!("line 5, column 10: {at}.bones[3].parent: bone 1 is a descendant of bone 3"),
+            format!(
+                "line 5, column 10: {at}.bones[3].parent: must not be a descendant of bone 3, got 1"
+            ),
         ),
         (
             "\"bones\":[{\"extent\":[0,1]}]".to_owned(),
@@ -367,10 +371,7 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         ),
         (
             "\"bones\":[{\"extent\":[0,1,0],\"roll\":1e39}]".to_owned(),
-            format!(
-                "line 2, column 35: {at}.bones[0].roll: number out of range; it must be between \
-                 ±3.4028235e38"
-            ),
+            format!("line 2, column 35: {at}.bones[0].roll: must be within ±3.4028235e38"),
         ),
         (
             "\"bones\":[{\"extent\":[0,1,0],\"roll\":\"0\"}]".to_owned(),
@@ -385,15 +386,13 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
         (
             "\"bones\":[],\"base\":[3e38,0,0],\"base_offset\":[3e38,0,0]".to_owned(),
             format!(
-                "line 2, column 44: {at}.base_offset: base and base_offset add up to more than \
-                 3.4028235e38"
+                "line 2, column 44: {at}.base_offset: base + base_offset must be within \
+                 ±3.4028235e38"
             ),
         ),
         (
             format!("\"bones\":[{one}],\"handles\":[{{\"bone\":3,\"target\":[0,0,0]}}]"),
-            format!(
-                "line 2, column 49: {at}.handles[0].bone: there is no bone 3; there is only bone 0"
-            ),
+            format!("line 2, column 49: {at}.handles[0].bone: must be 0, the only bone, got 3"),
         ),
         (
             format!("\"bones\":[{one}],\"handles\":[{{\"bone\":0}}]"),
@@ -405,7 +404,7 @@ fn a_bone_or_a_handle_that_cannot_be_is_named() {
 }
 
 #[test]
-fn a_place_in_the_world_that_cannot_be_is_named() {
+fn an_invalid_instance_transform_is_named() {
     let scene = |transforms: &str| {
         format!(
             "{{\"scene\":{{\"skinned_meshes\":{{\"X\":{{\"skeleton\":{{\"bones\":[]}}}}}},\n\
@@ -416,25 +415,28 @@ fn a_place_in_the_world_that_cannot_be_is_named() {
     for (transforms, expected) in [
         (
             "",
-            "line 2, column 60: scene.instances.skinned_meshes.I.transform: there is no transform \
-             called \"A\"",
+            "line 2, column 60: scene.instances.skinned_meshes.I.transform: must be the name of a \
+             transform, got \"A\"",
         ),
         (
             "\"A\":{\"parent\":\"B\"}",
-            "line 3, column 29: scene.transforms.A.parent: there is no transform called \"B\"",
+            "line 3, column 29: scene.transforms.A.parent: must be the name of a transform, \
+             got \"B\"",
         ),
         (
             "\"B\":{\"parent\":\"A\"},\n\"A\":{\"parent\":\"B\"}",
-            "line 3, column 29: scene.transforms.B.parent: transform \"A\" is its own ancestor",
+            "line 3, column 29: scene.transforms.B.parent: transform must not be its own \
+             ancestor, got \"A\"",
         ),
         (
             "\"A\":{\"parent\":\"A\"}",
-            "line 3, column 29: scene.transforms.A.parent: transform \"A\" is its own ancestor",
+            "line 3, column 29: scene.transforms.A.parent: transform must not be its own \
+             ancestor, got \"A\"",
         ),
         (
             "\"A\":{\"rotation\":[0,0,0,0]}",
             "line 3, column 31: scene.transforms.A.rotation: must not be four zeros; \
-             [0, 0, 0, 1] is no rotation",
+             the identity is [0, 0, 0, 1]",
         ),
         (
             "\"A\":{\"rotation\":[0,0,1]}",
@@ -443,7 +445,7 @@ fn a_place_in_the_world_that_cannot_be_is_named() {
         ),
         (
             "\"A\":{\"parent\":\"B\",\"scale\":[1e30,1,1]},\"B\":{\"scale\":[1e30,1,1]}",
-            "line 3, column 57: scene.transforms.B: overflows 3.4028235e38 in the world",
+            "line 3, column 57: scene.transforms.B: must be within ±3.4028235e38 in the world",
         ),
         ("\"A\":{},\"A\":{}", "line 3, column 24: scene.transforms: duplicate name \"A\""),
     ] {
@@ -470,7 +472,7 @@ fn a_scene_without_a_skeleton_is_refused() {
 }
 
 #[test]
-fn long_chains_and_too_many_bones_are_no_trouble() {
+fn chains_open_up_to_the_largest_number_of_joints() {
     let chain = |count: usize| {
         let bone = |index: usize| {
             let parent = if index + 1 < count { index as u64 + 1 } else { u64::from(u32::MAX) };
@@ -481,7 +483,8 @@ fn long_chains_and_too_many_bones_are_no_trouble() {
     let opened = open(&chain(10_000));
     let first = opened.order[0];
     assert_eq!((first.index(), opened.document.skeleton().pose().tip(first).y), (9_999, 10_000.0));
-    let expected = "scene.skinned_meshes.X.skeleton.bones: a skeleton has at most 10000 joints";
+    let expected =
+        "scene.skinned_meshes.X.skeleton.bones: a skeleton must have at most 10000 joints";
     assert_eq!(refusal(&chain(10_001)), format!("test.js3d, line 2, column 9: {expected}"));
 }
 

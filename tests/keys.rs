@@ -1,4 +1,4 @@
-//! A document at a time: what its keys make of it.
+//! Documents evaluated at a time.
 #![cfg(feature = "document")]
 
 use glam::Vec3;
@@ -138,7 +138,7 @@ fn keys_follow_their_joints() {
 }
 
 #[test]
-fn frames_are_counted_with_both_ends() {
+fn the_frame_count_includes_both_ends() {
     let timeline = Timeline { start: 1.0, end: 2.0, frame_rate: 24 };
     assert_eq!((timeline.frames(), timeline.time(24)), (25, 2.0));
     assert_eq!(Timeline { end: 2.02, ..timeline }.frames(), 25);

@@ -1,4 +1,4 @@
-//! Pictures of joint names, with letters of some font and letters of none.
+//! Pictures of joint names, with letters that fonts have and letters that no font has.
 #![cfg(feature = "render")]
 
 mod pictures;
@@ -63,7 +63,7 @@ fn the_dots_of_an_umlaut_are_drawn() {
 #[test]
 fn a_letter_that_no_font_has_is_a_box() {
     let boxed = lit_by(&NO_LETTER.to_string());
-    // As high as a capital letter of 15 points, a pixel wide at least.
+    // The height of a capital letter at 15 points, and at least a pixel wide.
     assert!((16..120).contains(&boxed), "{boxed}");
     assert_eq!(lit_by(&NO_LETTER.to_string().repeat(3)), 3 * boxed);
 }
@@ -76,7 +76,7 @@ fn letters_of_any_script_are_drawn_or_boxes() {
 }
 
 #[test]
-fn what_shows_nothing_changes_nothing() {
+fn invisible_characters_change_nothing() {
     let plain = draw(&named(&["ab"]));
     for letter in ['\n', '\u{200b}', '\u{feff}', '\u{202e}', '\u{7}'] {
         assert!(draw(&named(&[&format!("a{letter}b")])) == plain, "{letter:?}");

@@ -1,4 +1,4 @@
-//! When an elbow pops, and why.
+//! Elbow pops and their causes.
 
 mod common;
 
@@ -80,14 +80,14 @@ fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
 }
 
 #[test]
-fn the_same_pass_is_calm_with_the_map_and_with_transport() {
+fn the_same_pass_does_not_pop_with_stereographic_or_transport() {
     for reference in [map(), TwistReference::Transport] {
         assert_eq!(pops(arm(reference, 0.0), over_the_top()), [], "{reference:?}");
     }
 }
 
 #[test]
-fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
+fn passing_the_pole_or_its_opposite_pops_there() {
     let pole = Vec3::new(100.0, 300.0, -100.0);
     let aside = pole.normalize().any_orthonormal_vector();
     for side in [1.0, -1.0] {
@@ -107,7 +107,7 @@ fn a_pass_of_the_pole_and_of_its_opposite_pops_there() {
 }
 
 #[test]
-fn the_map_pops_only_behind_and_transport_not_even_there() {
+fn stereographic_pops_only_behind_and_transport_nowhere() {
     let behind = line(Vec3::new(-300.0, 60.0, 8.0), Vec3::new(-300.0, -60.0, 8.0), 40);
     let pops_of = |reference| pops(arm(reference, 0.0), behind.clone());
     let on_map = pops_of(map());
@@ -146,7 +146,7 @@ fn a_cursor_that_passes_the_shoulder_pops_however_soft_the_arm_is() {
 }
 
 #[test]
-fn near_the_shoulder_calm_is_what_it_is_at_a_fifth_of_the_reach() {
+fn near_the_shoulder_the_pop_limit_stops_growing() {
     let bones = TwoBone::new(250.0, 250.0).expect("lengths");
     let limit = |distance: f32| {
         let ik = Ik { bones, ..arm(map(), 0.0) };
@@ -157,14 +157,14 @@ fn near_the_shoulder_calm_is_what_it_is_at_a_fifth_of_the_reach() {
 }
 
 #[test]
-fn a_step_too_short_to_tell_from_rounding_is_none() {
+fn steps_within_rounding_are_ignored() {
     let x = Vec3::new(300.0, 0.0, 0.0);
     let found = |length: f32| steps(arm(map(), 0.0), [x, x + Vec3::Y * length]).len();
     assert_eq!([found(0.0), found(0.49), found(0.51)], [0, 0, 1]);
 }
 
 #[test]
-fn every_change_that_is_not_the_cursors_has_its_own_name() {
+fn every_input_change_except_the_cursors_has_its_own_name() {
     let ik = arm(TwistReference::Pole(Vec3::Y), 0.0);
     let moment = moments(ik, [Vec3::new(300.0, 50.0, 0.0)])[0];
     let before = PosedArm { pinned_root: Some(Vec3::ZERO), influence: 0.5, ..moment };
@@ -189,7 +189,7 @@ fn every_change_that_is_not_the_cursors_has_its_own_name() {
 }
 
 #[test]
-fn what_does_not_pose_the_arm_is_no_change() {
+fn settings_that_do_not_pose_the_arm_are_no_input_change() {
     let before = moments(arm(TwistReference::Limb, 0.0), [Vec3::X])[0];
     let elsewhere = PosedArm { cursor: Vec3::Y, ..before };
     let pinned = PosedArm { pinned_root: Some(Vec3::Y), ..before };
@@ -199,7 +199,7 @@ fn what_does_not_pose_the_arm_is_no_change() {
     }
 }
 
-/// An arm with a reference, in f64, without a line of the program: the elbow by the law of cosines.
+/// An independent arm with a twist reference in f64: the elbow by the law of cosines.
 fn elbow(ik: &Ik, cursor: DVec3) -> DVec3 {
     let (upper, lower) = (f64::from(ik.bones.upper()), f64::from(ik.bones.lower()));
     let distance = cursor.length().clamp((upper - lower).abs(), upper + lower);
@@ -232,8 +232,8 @@ fn references() -> impl Strategy<Value = TwistReference> {
     ]
 }
 
-/// Where an elbow is sure in f32.
-fn is_well_placed(ik: &Ik, cursor: Vec3) -> bool {
+/// Returns whether the elbow is well-conditioned in f32 for this cursor.
+fn is_well_conditioned(ik: &Ik, cursor: Vec3) -> bool {
     let pointer = Pointer::towards(cursor, Pointer::default());
     ik.reference.gain(pointer) < 10.0
 }
@@ -246,7 +246,7 @@ proptest! {
         reference in references(), from in cursors(), to in cursors()
     ) {
         let ik = arm(reference, 0.0);
-        prop_assume!(is_well_placed(&ik, from) && is_well_placed(&ik, to));
+        prop_assume!(is_well_conditioned(&ik, from) && is_well_conditioned(&ik, to));
         let (from64, to64) = (from.as_dvec3(), to.as_dvec3());
         let went = from64.distance(to64);
         let expected = elbow(&ik, from64).distance(elbow(&ik, to64)) / went;
@@ -260,7 +260,7 @@ proptest! {
     }
 
     #[test]
-    fn turn_bend_and_swing_add_up_to_what_the_elbow_did(
+    fn turn_bend_and_swing_add_up_to_the_elbows_movement(
         reference in references(), softness in 0.0..0.9_f32, from in cursors(), to in cursors()
     ) {
         let moments = moments(arm(reference, softness), [from, to]);
@@ -280,7 +280,7 @@ proptest! {
     }
 
     #[test]
-    fn softness_of_a_quarter_calms_every_arm_at_both_limits(
+    fn with_softness_one_quarter_no_arm_pops_at_either_limit(
         upper in 10.0..300.0_f32, lower in 10.0..300.0_f32, cursor in cursors(), count in 20..100_u16
     ) {
         let bones = TwoBone::new(upper, lower).expect("lengths");
@@ -292,7 +292,7 @@ proptest! {
     }
 
     #[test]
-    fn where_the_map_turns_slowly_a_soft_arm_is_calm(
+    fn where_stereographic_turns_slowly_a_soft_arm_does_not_pop(
         from in cursors(), to in cursors(), length in 1.0..40.0_f32
     ) {
         let from = Vec3::new(from.x.abs(), from.y, from.z);

@@ -1,5 +1,5 @@
-//! In a binary of its own, whose allocator counts: what a picture costs in memory once all has been
-//! drawn that is drawn.
+//! Allocations per picture once everything has been drawn. The test has its own binary because its
+//! allocator counts.
 #![cfg(feature = "render")]
 
 use allocation_counter::measure;
@@ -41,7 +41,7 @@ impl Bench {
         Self { gpu, canvas, renderer }
     }
 
-    /// How often memory is taken to upload a scene and to encode the orders to draw it.
+    /// Number of allocations to upload a scene and to encode its draw commands.
     fn frame(&mut self, scene: &Scene) -> (u64, u64) {
         let Self { gpu, canvas, renderer } = self;
         let uploading = measure(|| renderer.upload(gpu, scene, SIZE, 1.0));
@@ -67,7 +67,7 @@ const HANDS: [Vec3; 3] =
     [Vec3::new(250.0, 120.0, 60.0), Vec3::new(180.0, 260.0, -90.0), Vec3::new(40.0, 330.0, 70.0)];
 
 #[test]
-fn what_has_not_changed_takes_no_memory_and_is_not_sent_again() {
+fn an_unchanged_scene_allocates_and_uploads_nothing() {
     let mut bench = Bench::new();
     let scene = scene(HANDS[0], 1000);
     bench.frame(&scene);
@@ -87,7 +87,7 @@ fn named(name: &str) -> Scene {
 }
 
 #[test]
-fn a_letter_is_drawn_and_sent_once() {
+fn a_letter_is_rasterized_and_uploaded_once() {
     let mut bench = Bench::new();
     // The last is in no font of the program.
     let names = ["Hand", "Hüfte", "左手"];
@@ -114,7 +114,7 @@ fn a_letter_is_drawn_and_sent_once() {
 }
 
 #[test]
-fn what_changes_is_sent_alone() {
+fn only_changes_are_uploaded() {
     let mut bench = Bench::new();
     let mut scene = scene(HANDS[0], 1000);
     bench.frame(&scene);
@@ -123,7 +123,7 @@ fn what_changes_is_sent_alone() {
     bench.frame(&scene);
     let a_ball = bench.renderer.counts().uploaded;
     assert!(a_ball > 0 && a_ball < 200, "{a_ball} bytes for a ball");
-    // So little that nothing comes near enough to be divided more finely.
+    // So little that nothing comes near enough for a finer mesh.
     scene.camera.yaw += 1e-4;
     scene.labels.clear();
     bench.frame(&scene);
@@ -132,7 +132,7 @@ fn what_changes_is_sent_alone() {
 }
 
 #[test]
-fn what_a_changed_picture_takes_does_not_depend_on_how_much_is_in_it() {
+fn allocations_of_a_changed_picture_do_not_depend_on_the_scene_size() {
     let mut bench = Bench::new();
     let mut costs = Vec::new();
     for more in [20, 200, 2_000] {
@@ -147,7 +147,7 @@ fn what_a_changed_picture_takes_does_not_depend_on_how_much_is_in_it() {
 }
 
 #[test]
-fn what_shells_take_does_not_depend_on_how_many_there_are() {
+fn allocations_of_shells_do_not_depend_on_their_number() {
     let mut bench = Bench::new();
     let mut costs = Vec::new();
     for count in [4_u8, 40] {
@@ -170,7 +170,7 @@ fn what_shells_take_does_not_depend_on_how_many_there_are() {
 }
 
 #[test]
-fn a_picture_takes_as_much_as_the_one_before() {
+fn allocations_per_picture_do_not_grow() {
     let mut bench = Bench::new();
     let scenes = HANDS.map(|hand| scene(hand, 100));
     let frames: Vec<_> =

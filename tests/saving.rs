@@ -36,7 +36,7 @@ fn old_and_new() -> [Document; 2] {
     [document(300), document(1500)]
 }
 
-/// What other tests start with a path, and kill.
+/// Helper process: other tests start it with a path, and kill it.
 #[test]
 #[ignore = "no test of its own: it saves for ever, if another test names a file"]
 fn saves_one_document_after_the_other_for_ever() {
@@ -58,7 +58,7 @@ impl Saver {
     }
 }
 
-/// With a signal that cannot be caught.
+/// Kills with a signal that cannot be caught.
 impl Drop for Saver {
     fn drop(&mut self) {
         let _ = self.0.kill();
@@ -148,7 +148,7 @@ fn in_a_read_only_folder_the_document_stays_open_and_unsaved() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).expect("read-only");
     let path = folder.path().join("x.json");
-    // Whoever may do everything may write there, too; but nobody among the kernel's own files.
+    // Root may write there, too; but nobody may among the kernel's own files.
     let path = match fs::write(&path, "") {
         Ok(()) => Path::new("/proc/self/x.json").to_owned(),
         Err(_) => path,

@@ -1,5 +1,5 @@
-//! In a binary of its own, whose allocator counts: what is drawn changes, and the memory it is in
-//! stays.
+//! Scenes change without allocating. The test has its own binary because its allocator
+//! counts.
 #![cfg(feature = "document")]
 
 use allocation_counter::measure;
@@ -14,7 +14,7 @@ use ik_arm::session::{
     Action, EditAction, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
 };
 
-/// What the window does between two frames, with what it keeps for it.
+/// The window's work between two frames, with the buffers that it reuses.
 struct Bench {
     session: Session,
     overlays: Overlays,
@@ -32,11 +32,11 @@ impl Bench {
         Self { session, overlays, builder, shown: scene.clone(), scene }
     }
 
-    /// Takes an action and makes the next scene: how often memory was taken for it, and whether it is
-    /// another scene than the one before.
+    /// Applies an action and builds the next scene. Returns the number of allocations, and whether
+    /// it is another scene than the one before.
     fn frame(&mut self, action: Action) -> (u64, bool) {
         self.session.apply(action);
-        // Walked when it is first asked for.
+        // Built on first use.
         self.session.overlays();
         let counted = measure(|| {
             self.session.write_overlays(&mut self.overlays);
@@ -47,7 +47,7 @@ impl Bench {
         (counted.count_total, has_changed)
     }
 
-    /// Once warm, every action changes the picture and takes no memory.
+    /// Once warm, every action changes the picture and allocates nothing.
     fn assert_takes_nothing(&mut self, actions: &[Action]) {
         for round in 0..3 {
             for action in actions {
@@ -64,7 +64,7 @@ fn all_layers_but_onion_skins() -> Display {
 }
 
 #[test]
-fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
+fn a_moving_arm_with_all_guides_allocates_nothing() {
     for twist_reference in TwistReferenceKind::ALL {
         let mut document =
             Document { display: all_layers_but_onion_skins(), ..Document::default() };
@@ -88,7 +88,7 @@ fn an_arm_that_moves_with_all_its_guides_takes_no_memory() {
 }
 
 #[test]
-fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
+fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
     let opened = Example::find("ten-joints").expect("an example").open().expect("it opens");
     let mut document = opened.document;
     document.display = all_layers_but_onion_skins();
@@ -117,7 +117,7 @@ fn a_skeleton_that_moves_with_targets_keys_and_trails_takes_no_memory() {
 }
 
 #[test]
-fn solvers_that_race_take_no_memory() {
+fn a_solver_comparison_allocates_nothing() {
     let opened = Example::find("human").expect("an example").open().expect("it opens");
     let mut bench = Bench::new(opened.document);
     bench.session.apply(SolverAction::Compare(true));
@@ -130,14 +130,14 @@ fn solvers_that_race_take_no_memory() {
 }
 
 #[test]
-fn a_snake_on_its_way_takes_no_memory() {
+fn a_snake_that_follows_its_path_allocates_nothing() {
     let opened = Example::find("snake").expect("an example").open().expect("it opens");
     let times = [0.1, 0.4, 1.7, 2.3].map(|time| PlaybackAction::SetTime(time).into());
     Bench::new(opened.document).assert_takes_nothing(&times);
 }
 
 #[test]
-fn a_scene_made_in_the_memory_of_another_is_as_one_made_anew() {
+fn a_scene_built_in_reused_memory_equals_a_new_one() {
     let mut scene: Option<Scene> = None;
     let mut builder = SceneBuilder::default();
     for example in Example::ALL {

@@ -1,4 +1,4 @@
-//! Whatever is done to a session, it stays one.
+//! A session stays valid under any actions.
 #![cfg(feature = "document")]
 
 mod common;
@@ -347,7 +347,7 @@ proptest! {
     }
 }
 
-/// A hand that goes from one place to another in a second, and is between them.
+/// A hand keyed at two positions a second apart, at a time between them.
 fn halfway() -> Session {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
@@ -404,7 +404,7 @@ fn an_unkeyed_edit_leaves_the_document_unchanged() {
     session.apply(PlaybackAction::SetTime(0.6));
     assert_eq!(session.document(), &document);
     assert!(!session.is_unsaved());
-    // Nothing of it is left to undo: the step before is.
+    // It left no undo step; the next undo is of the step before.
     session.apply(TransactionAction::Undo);
     assert_eq!(session.document().keys.count(), 1);
 }
@@ -446,7 +446,7 @@ fn selected_and_copied_keys_follow_their_joints() {
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(EditAction::PasteKeys);
     assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
-    // Going back, places are others again: nothing is selected that was not meant.
+    // Undo restores the joint indices and clears the selection: no wrong joint is selected.
     session.apply(TransactionAction::Undo);
     session.apply(TransactionAction::Undo);
     assert_eq!((session.selected_keys(), session.selection()), (&[][..], &[][..]));
@@ -572,7 +572,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
     assert!(after < before * 0.99, "{before} before and {after} after");
 }
 
-/// Equal, where not-a-number is what it was before too.
+/// Equal, and NaN equals NaN.
 fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
     a == b || format!("{a:?}") == format!("{b:?}")
 }

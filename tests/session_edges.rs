@@ -1,4 +1,4 @@
-//! What cannot be leaves a session as it is.
+//! Invalid actions leave a session unchanged.
 #![cfg(feature = "document")]
 
 use glam::{Vec2, Vec3};
@@ -16,15 +16,15 @@ fn ray() -> Ray {
     Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
 }
 
-/// With a skeleton that is a root alone.
+/// A session with a skeleton of one root.
 fn session() -> Session {
     Session::with_document(Preferences::default(), Document::default())
 }
 
 #[test]
-fn a_camera_that_looks_from_nowhere_is_not_taken() {
+fn an_invalid_camera_is_ignored() {
     let camera = Camera::default();
-    for wrong in [
+    for invalid in [
         Camera { target: Vec3::NAN, ..camera },
         Camera { yaw: f32::INFINITY, ..camera },
         Camera { pitch: 1.6, ..camera },
@@ -32,17 +32,17 @@ fn a_camera_that_looks_from_nowhere_is_not_taken() {
         Camera { distance: f32::NAN, ..camera },
     ] {
         let mut session = session();
-        session.apply(ViewAction::SetCamera(wrong));
-        session.apply(ViewAction::GlideTo(wrong));
+        session.apply(ViewAction::SetCamera(invalid));
+        session.apply(ViewAction::GlideTo(invalid));
         for seconds in [0.0, 0.1, 1.0] {
             session.apply(PlaybackAction::Advance(seconds));
         }
-        assert_eq!(session.camera(), &camera, "after {wrong:?}");
+        assert_eq!(session.camera(), &camera, "after {invalid:?}");
     }
 }
 
 #[test]
-fn a_view_that_is_dragged_to_nowhere_stays() {
+fn an_invalid_camera_drag_is_ignored() {
     for (motion, to, aspect) in [
         (CameraMotion::Pan, Vec2::NAN, 1.0),
         (CameraMotion::Pan, Vec2::splat(f32::MAX), 2.0),
@@ -57,7 +57,7 @@ fn a_view_that_is_dragged_to_nowhere_stays() {
 }
 
 #[test]
-fn a_picture_at_no_time_changes_nothing() {
+fn a_frame_at_a_non_finite_time_changes_nothing() {
     let mut session = session();
     let to = Camera { yaw: 3.0, ..Camera::default() };
     session.apply(ViewAction::GlideTo(to));
@@ -73,7 +73,7 @@ fn a_picture_at_no_time_changes_nothing() {
 }
 
 #[test]
-fn what_is_about_a_fourth_axis_is_not_done() {
+fn actions_on_a_fourth_axis_are_refused() {
     for axis in [3, usize::MAX] {
         let mut session = session();
         let before = session.document().clone();
@@ -109,7 +109,7 @@ fn what_is_about_a_fourth_axis_is_not_done() {
 }
 
 #[test]
-fn a_pointer_is_on_no_joint_that_is_not_there() {
+fn a_missing_joint_cannot_be_hovered() {
     let mut session = session();
     for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
         let joint = JointId::new(joint);
@@ -119,7 +119,7 @@ fn a_pointer_is_on_no_joint_that_is_not_there() {
 }
 
 #[test]
-fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
+fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
     let mut session = session();
     session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
     session.apply(EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
@@ -133,7 +133,7 @@ fn keys_that_move_after_their_joints_have_gone_bring_none_back() {
 }
 
 #[test]
-fn keys_that_are_made_while_others_move_stay() {
+fn keys_made_while_others_move_stay() {
     let mut session = session();
     session.apply(EditAction::Key(vec![Channel::Hand]));
     session.apply(TransactionAction::Begin);
@@ -149,7 +149,7 @@ fn keys_that_are_made_while_others_move_stay() {
 }
 
 #[test]
-fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
+fn a_dragged_tip_is_released_when_the_joints_change() {
     let hang = EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) };
     for change in [
         EditAction::DeleteJoints(vec![JointId::new(2)]),
@@ -171,7 +171,7 @@ fn a_tip_that_is_held_is_let_go_when_the_joints_become_others() {
 }
 
 #[test]
-fn a_race_ends_when_the_joints_become_others() {
+fn a_comparison_ends_when_the_joints_change() {
     for change in [
         Action::from(EditAction::DeleteJoints(vec![JointId::new(3)])),
         EditAction::AddRoot.into(),
@@ -195,14 +195,14 @@ fn a_race_ends_when_the_joints_become_others() {
 }
 
 #[test]
-fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
+fn a_ring_dragged_by_an_invalid_ray_does_not_turn() {
     let mut session = session();
     session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
     let before = session.document().clone();
     for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
-        for wrong in [f32::INFINITY, f32::NAN, f32::MAX] {
+        for invalid in [f32::INFINITY, f32::NAN, f32::MAX] {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
-            let (origin, direction) = (Vec3::splat(wrong), Vec3::new(-0.4, 0.4, wrong));
+            let (origin, direction) = (Vec3::splat(invalid), Vec3::new(-0.4, 0.4, invalid));
             for ray in
                 [Ray { origin, ..ray() }, Ray { direction, ..ray() }, Ray { origin, direction }]
             {
@@ -224,7 +224,7 @@ fn a_ring_that_is_turned_by_a_ray_to_nowhere_stays() {
 }
 
 #[test]
-fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
+fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
     let far = f32::MAX;
     for actions in [
         vec![
@@ -260,7 +260,7 @@ fn what_is_at_the_end_of_numbers_can_still_be_framed_and_drawn() {
 }
 
 #[test]
-fn a_joint_that_would_be_beyond_numbers_is_not_hung_elsewhere() {
+fn a_joint_that_would_overflow_is_not_reparented() {
     let mut session = session();
     let far = Vec3::new(-1e19, 0.7, -f32::MAX);
     for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
@@ -308,7 +308,7 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 }
 
 #[test]
-fn what_is_dragged_or_snapped_past_the_end_of_numbers_stops_there() {
+fn drags_and_snaps_that_overflow_are_clamped() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
         let mut session = session();
         session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
@@ -338,7 +338,7 @@ fn the_same_revision_is_saved_as_the_same_text() {
 }
 
 #[test]
-fn a_ring_that_is_snapped_past_the_end_of_numbers_stops_there() {
+fn a_ring_snap_that_overflows_is_clamped() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
         session

@@ -36,9 +36,9 @@ fn past_the_shoulder(session: &mut Session) {
     drag(session, Vec3::new(95.0, 3.0, 5.0), Vec3::new(-95.0, 3.0, 5.0), 19);
 }
 
-fn standing(session: &Session) -> Vec<Spike> {
-    let stands = |spike: &Spike| spike.persists(session.arm());
-    session.pops().spikes().into_iter().filter(stands).collect()
+fn persisting(session: &Session) -> Vec<Spike> {
+    let persists = |spike: &Spike| spike.persists(session.arm());
+    session.pops().spikes().into_iter().filter(persists).collect()
 }
 
 fn changes(session: &Session) -> Vec<InputChange> {
@@ -49,48 +49,52 @@ fn changes(session: &Session) -> Vec<InputChange> {
     session.pops().samples().filter_map(|sample| change(sample.kind)).collect()
 }
 
-/// Drags, does what is said to help against the one pop, and drags again: what cured it.
-fn cure(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
+/// Drags, applies the fix of the only pop, and checks that the same drag no longer pops. Returns
+/// the fix.
+fn fix_pop(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     drag(session);
-    let spikes = standing(session);
+    let spikes = persisting(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
     let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a fix");
     session.apply(pop_fix.action());
     assert_eq!(session.message(), None);
     assert_eq!(PopFix::new(&spikes[0], session.arm()), None, "it is taken");
     drag(session);
-    assert_eq!(standing(session), []);
+    assert_eq!(persisting(session), []);
     pop_fix
 }
 
 #[test]
-fn each_remedy_cures_the_drag_that_asked_for_it() {
+fn each_fix_prevents_the_pop_of_the_same_drag() {
     let map = PopFix::ChangeReference(TwistReferenceKind::Stereographic);
-    assert_eq!(cure(&mut Session::default(), over_the_top), map);
+    assert_eq!(fix_pop(&mut Session::default(), over_the_top), map);
     let soft = PopFix::Soften(SoftReach::new(0.25, 1.0, 0.0).expect("soft"));
-    assert_eq!(cure(&mut Session::default(), into_the_limit), soft);
-    assert_eq!(cure(&mut Session::default(), fold_up), soft);
+    assert_eq!(fix_pop(&mut Session::default(), into_the_limit), soft);
+    assert_eq!(fix_pop(&mut Session::default(), fold_up), soft);
 }
 
 #[test]
-fn an_elbow_that_points_at_a_pole_is_cured_by_the_map_too() {
+fn pops_of_a_pole_reference_are_fixed_by_stereographic_too() {
     let mut session = Session::default();
     session.apply(EditAction::SetPole(Vec3::new(0.0, 300.0, 10.0)));
     session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
     assert_eq!(
-        cure(&mut session, over_the_top),
+        fix_pop(&mut session, over_the_top),
         PopFix::ChangeReference(TwistReferenceKind::Stereographic)
     );
 }
 
 #[test]
-fn behind_the_body_the_map_pops_and_transport_cures_it() {
+fn behind_the_body_stereographic_pops_and_transport_fixes_it() {
     let mut session = Session::default();
     session.apply(EditAction::SetTwistReference(TwistReferenceKind::Stereographic));
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
-    assert_eq!(cure(&mut session, behind), PopFix::ChangeReference(TwistReferenceKind::Transport));
+    assert_eq!(
+        fix_pop(&mut session, behind),
+        PopFix::ChangeReference(TwistReferenceKind::Transport)
+    );
 }
 
 #[test]
@@ -99,7 +103,7 @@ fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let almost_hard = SoftReach::new(0.01, 1.2, 0.0).expect("soft");
     session.apply(EditAction::SetSoftReach(almost_hard));
     let expected = PopFix::KeepOpen(SoftReach::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
-    assert_eq!(cure(&mut session, fold_up), expected);
+    assert_eq!(fix_pop(&mut session, fold_up), expected);
 
     let spike = |pop, soft_reach| {
         let arm = Arm { soft_reach, ..Arm::default() };
@@ -116,10 +120,10 @@ fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
 }
 
 #[test]
-fn nothing_helps_a_cursor_that_passes_the_shoulder() {
+fn a_cursor_that_passes_the_shoulder_has_no_fix() {
     let mut session = Session::default();
     past_the_shoulder(&mut session);
-    let spikes = standing(&session);
+    let spikes = persisting(&session);
     assert!(spikes.iter().any(|spike| spike.pop == PopCause::Shoulder), "{spikes:?}");
     for spike in spikes.iter().filter(|spike| spike.pop == PopCause::Shoulder) {
         assert_eq!(PopFix::new(spike, session.arm()), None);
@@ -127,7 +131,7 @@ fn nothing_helps_a_cursor_that_passes_the_shoulder() {
 }
 
 #[test]
-fn each_drag_and_each_played_stretch_is_a_run_of_its_own() {
+fn each_drag_and_each_playback_is_a_separate_run() {
     let mut session = Session::default();
     into_the_limit(&mut session);
     over_the_top(&mut session);
@@ -143,14 +147,14 @@ fn each_drag_and_each_played_stretch_is_a_run_of_its_own() {
     assert_eq!(runs(&session), (2, 28 + 30), "what is not dragged is not measured");
 }
 
-/// A second of the hand over the top, ten pictures, and the spin the other way.
+/// Keys that move the hand over the top in a second, with a changing twist.
 fn keyed(channels: &[Channel]) -> Session {
     let mut session = Session::default();
     session.apply(EditAction::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
-    for (time, x, spin) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
+    for (time, x, twist) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
         session.apply(PlaybackAction::SetTime(time));
         session.apply(EditAction::SetHand(Vec3::new(x, 300.0, 20.0)));
-        session.apply(EditAction::SetTwist(spin));
+        session.apply(EditAction::SetTwist(twist));
         session.apply(EditAction::Key(channels.to_vec()));
     }
     session
@@ -167,7 +171,7 @@ fn play(session: &mut Session, seconds: std::ops::Range<f64>) {
 }
 
 #[test]
-fn what_is_played_is_measured_and_its_beginning_again_is_no_step() {
+fn playback_is_measured_and_a_loop_starts_a_new_run() {
     let mut session = keyed(&[Channel::Hand]);
     let typed = session.pops().samples().count();
     play(&mut session, 10.0..11.9);
@@ -185,7 +189,7 @@ fn what_is_played_is_measured_and_its_beginning_again_is_no_step() {
 }
 
 #[test]
-fn a_spin_that_is_played_is_marked_once_and_apart() {
+fn a_played_twist_is_one_input_change_and_no_pop() {
     let mut session = keyed(&[Channel::Hand, Channel::Twist]);
     let before = changes(&session).len();
     play(&mut session, 10.0..10.9);
@@ -194,7 +198,7 @@ fn a_spin_that_is_played_is_marked_once_and_apart() {
 }
 
 #[test]
-fn the_root_of_a_pinned_arm_is_marked_and_that_of_another_is_nothing() {
+fn moving_the_root_is_an_input_change_only_with_a_pinned_hand() {
     for (pinned, marked) in [(false, vec![]), (true, vec![InputChange::Root])] {
         let mut session = Session::default();
         session.apply(EditAction::PinHand(pinned));
@@ -214,11 +218,11 @@ fn a_slow_hand_adds_up_to_the_same_pop() {
     drag(&mut session, Vec3::new(40.0, 300.0, 4.0), Vec3::new(-40.0, 300.0, 4.0), 1600);
     let count = session.pops().samples().count();
     assert!((130..=160).contains(&count), "{count} of 80 units in steps of half a one or more");
-    assert_eq!(standing(&session).len(), 1);
+    assert_eq!(persisting(&session).len(), 1);
 }
 
 #[test]
-fn what_is_kept_is_bounded_and_goes_with_the_document() {
+fn samples_are_bounded_and_cleared_with_the_document() {
     let mut session = Session::default();
     drag(&mut session, Vec3::new(150.0, 300.0, 20.0), Vec3::new(-150.0, 300.0, 20.0), 200);
     for _ in 0..4 {
@@ -232,7 +236,7 @@ fn what_is_kept_is_bounded_and_goes_with_the_document() {
 }
 
 #[test]
-fn a_hand_that_only_lies_out_of_reach_moves_no_elbow() {
+fn a_drag_straight_out_of_reach_does_not_move_the_elbow() {
     let mut session = Session::default();
     drag(&mut session, Vec3::new(600.0, 0.0, 0.0), Vec3::new(900.0, 0.0, 0.0), 10);
     let ratios: Vec<f32> = session

@@ -1,4 +1,4 @@
-//! Every shader is valid, as far as can be known without a GPU.
+//! Validation of every shader without a GPU.
 #![cfg(feature = "render")]
 
 use wgpu::naga::front::wgsl;

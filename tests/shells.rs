@@ -57,7 +57,7 @@ fn seen_from(camera: Camera, shells: Vec<SphereShell>) -> Scene {
 }
 
 #[test]
-fn shells_in_each_other_and_apart() {
+fn nested_and_separate_shells() {
     let mut scene = scene(shells());
     // One inside of all, one between, one in front.
     for (centre, radius) in
@@ -69,7 +69,7 @@ fn shells_in_each_other_and_apart() {
 }
 
 #[test]
-fn each_shell_is_seen() {
+fn each_shell_is_visible() {
     let all = draw(&scene(shells()));
     for left_out in 0..shells().len() {
         let mut others = shells();
@@ -95,7 +95,7 @@ fn the_order_of_the_list_changes_no_pixel() {
 }
 
 #[test]
-fn a_shell_without_a_size_is_no_shell() {
+fn a_shell_without_a_size_is_not_drawn() {
     let expected = draw(&scene(shells()));
     let mut with = scene(shells());
     for (centre, radius) in [
@@ -119,14 +119,14 @@ fn square(scene: &Scene) -> RgbaImage {
 }
 
 /// Colour at a pixel, from the sides of the shells that its ray meets, from the farthest to the
-/// nearest, and in the wrong order; `None` near a rim.
+/// nearest, and in reverse order; `None` near a rim.
 fn expected(scene: &Scene, at: (u32, u32), sky: [f64; 3]) -> Option<(usize, [[f64; 3]; 2])> {
     let ray = scene.camera.projection(1.0).ray(Vec2::new(
         (at.0 as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0,
         1.0 - (at.1 as f32 + 0.5) / SIDE as f32 * 2.0,
     ));
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize());
-    // Where a pixel is only partly covered.
+    // Near a rim a pixel is only partly covered.
     const RIM: f64 = 4.0;
     let mut sides = Vec::new();
     for shell in &scene.shells {
@@ -178,7 +178,7 @@ fn every_pixel_has_the_sides_of_the_shells_from_back_to_front() {
             |pixel: &image::Rgba<u8>| [0, 1, 2].map(|channel| f64::from(pixel.0[channel]) / 255.0);
         let mut compared = 0;
         for (x, y, pixel) in drawn.enumerate_pixels().step_by(7) {
-            let Some((sides, [expected, wrong])) =
+            let Some((sides, [expected, reversed])) =
                 expected(&scene, (x, y), screen(sky.get_pixel(x, y)))
             else {
                 continue;
@@ -188,7 +188,7 @@ fn every_pixel_has_the_sides_of_the_shells_from_back_to_front() {
                 |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < off(sides));
             assert!(is_near(seen, expected), "{camera:?} at {x}, {y}: {seen:?}, not {expected:?}");
             compared += 1;
-            told_apart += u32::from(!is_near(expected, wrong));
+            told_apart += u32::from(!is_near(expected, reversed));
         }
         assert!(compared > 2000, "only {compared} pixels");
     }
@@ -196,7 +196,7 @@ fn every_pixel_has_the_sides_of_the_shells_from_back_to_front() {
 }
 
 #[test]
-fn what_is_solid_hides_the_shells_behind_it_alone() {
+fn solids_hide_only_the_shells_behind_them() {
     let ball = |z: f32| Ball { centre: Vec3::Z * z, radius: 60.0, colour: WHITE };
     let middle = |scene: &Scene| *draw(scene).get_pixel(SIZE.0 / 2, SIZE.1 / 2);
     let camera = Camera { yaw: 0.0, pitch: 0.0, ..scene(Vec::new()).camera };

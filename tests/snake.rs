@@ -76,24 +76,24 @@ fn the_body_trails_behind_the_head_and_never_overtakes_it() {
 }
 
 #[test]
-fn time_goes_on_smoothly_and_comes_around() {
-    let place = |time: f64| PATH.pose(&snake(), time).pose().tip(JointId::new(23));
+fn the_motion_is_smooth_and_loops() {
+    let tip_at = |time: f64| PATH.pose(&snake(), time).pose().tip(JointId::new(23));
     for step in 0..200 {
         let time = f64::from(step) * 0.05;
-        let moved = place(time).distance(place(time + 1e-3));
+        let moved = tip_at(time).distance(tip_at(time + 1e-3));
         assert!(moved < 3e-3, "the tail leaps {moved} at {time} s");
     }
-    assert!(place(0.0).distance(place(9.0)) < 1e-4);
+    assert!(tip_at(0.0).distance(tip_at(9.0)) < 1e-4);
 }
 
 #[test]
-fn following_a_path_that_is_one_point_ends() {
+fn following_a_path_of_one_point_terminates() {
     let points = follow::along(|_| Vec3::ONE, 0.0, 0.1, [1.0, 2.0]);
     assert_eq!(points, [Vec3::ONE; 3]);
 }
 
 #[test]
-fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
+fn an_empty_skeleton_and_bones_without_length_are_unchanged() {
     assert_eq!(PATH.pose(&Skeleton::default(), 1.0), Skeleton::default());
     let mut point = Skeleton::default();
     point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
@@ -102,7 +102,7 @@ fn an_empty_skeleton_and_bones_without_length_stay_what_they_are() {
 }
 
 #[test]
-fn a_long_snake_on_a_path_that_it_does_not_fit_on_is_no_search_without_end() {
+fn a_snake_longer_than_its_path_terminates() {
     const JOINTS: usize = 10_000;
     let evaluated = Cell::new(0_usize);
     let ring = |s: f64| {

@@ -1,4 +1,4 @@
-//! How far the hand goes: the curve of soft limits and stretch against a twin in f64.
+//! Distance of the hand: the curve of soft limits and stretch against a twin in f64.
 
 mod common;
 
@@ -89,7 +89,7 @@ proptest! {
     }
 
     #[test]
-    fn the_slope_is_the_curves(
+    fn the_slope_is_that_of_the_published_curve(
         arm in arms_of(1.0..1000.0), softness in 0.01..0.99_f32, stretch in 1.0..3.0_f32, part in 0.0..2.5_f64
     ) {
         let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("possible");
@@ -104,12 +104,12 @@ proptest! {
     }
 
     #[test]
-    fn the_slope_is_how_fast_the_distance_grows(
+    fn the_slope_is_the_derivative_of_the_distance(
         arm in arms_of(1.0..1000.0), softness in 0.3..0.99_f32, widths in -1.0..3.0_f64
     ) {
         let soft_reach = soft(softness);
         let twin = Twin::new(soft_reach, arm);
-        // Where f32 tells two hands apart.
+        // Only where f32 resolves the difference of two distances.
         prop_assume!(twin.width > 0.05 * twin.most);
         let step = 0.02 * twin.width;
         for d in [twin.outer() + widths * twin.width, twin.inner() - widths * twin.width] {
@@ -192,7 +192,7 @@ proptest! {
     }
 
     #[test]
-    fn stretching_brings_the_hand_to_the_cursor_as_far_as_it_may(
+    fn stretching_brings_the_hand_to_the_cursor_up_to_its_maximum(
         arm in arms_of(1.0..1000.0), softness in 0.0..0.9_f32, max_stretch in 1.0..3.0_f32, part in 0.0..4.0_f64
     ) {
         let soft_reach = SoftReach::new(softness, max_stretch, 0.0).expect("possible");
@@ -210,7 +210,7 @@ proptest! {
     }
 
     #[test]
-    fn the_elbow_is_never_less_open_than_it_may_be(
+    fn the_elbow_angle_stays_above_its_minimum(
         arm in arms_of(1.0..1000.0), angle in 0.05..3.0_f32, part in 0.0..1.2_f64
     ) {
         let soft_reach = SoftReach::new(0.0, 1.0, angle).expect("possible");
@@ -258,14 +258,14 @@ proptest! {
 }
 
 #[test]
-fn numbers_that_no_softening_has_are_named() {
+fn invalid_soft_reach_values_are_named() {
     for (values, said) in [
-        ([1.0, 1.0, 0.0], "softness is 1; it must be from 0 to less than 1"),
-        ([-0.1, 1.0, 0.0], "softness is -0.1; it must be from 0 to less than 1"),
-        ([f32::NAN, 1.0, 0.0], "softness is NaN; it must be from 0 to less than 1"),
-        ([0.0, 0.9, 0.0], "max_stretch is 0.9; it must be a finite number, 1 or more"),
-        ([0.0, f32::INFINITY, 0.0], "max_stretch is inf; it must be a finite number, 1 or more"),
-        ([0.0, 1.0, 3.2], "min_elbow_angle is 3.2; it must be from 0 to less than 180°"),
+        ([1.0, 1.0, 0.0], "softness must be from 0 to less than 1, got 1"),
+        ([-0.1, 1.0, 0.0], "softness must be from 0 to less than 1, got -0.1"),
+        ([f32::NAN, 1.0, 0.0], "softness must be from 0 to less than 1, got NaN"),
+        ([0.0, 0.9, 0.0], "max_stretch must be finite and at least 1, got 0.9"),
+        ([0.0, f32::INFINITY, 0.0], "max_stretch must be finite and at least 1, got inf"),
+        ([0.0, 1.0, 3.2], "min_elbow_angle must be from 0 to less than 180°, got 3.2"),
     ] {
         let [softness, stretch, angle] = values;
         let error = SoftReach::new(softness, stretch, angle).expect_err("refused");
@@ -274,7 +274,7 @@ fn numbers_that_no_softening_has_are_named() {
 }
 
 #[test]
-fn huge_and_tiny_arms_have_the_curve_as_far_as_numbers_go() {
+fn huge_and_tiny_arms_follow_the_curve_up_to_overflow() {
     let soft_reach = SoftReach::new(0.5, 2.0, 0.1).expect("possible");
     for length in [f32::MAX, f32::MIN_POSITIVE, 1e-40, 1.0] {
         let arm = TwoBone::new(length, length).expect("lengths");

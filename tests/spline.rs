@@ -149,7 +149,7 @@ fn outside_it_stays_at_the_outer_knots() {
 }
 
 #[test]
-fn one_knot_is_constant_and_none_is_nothing() {
+fn one_knot_is_constant_and_no_knots_have_no_value() {
     let one = spline(&[(2.0, 7.0)]);
     assert_eq!([-1.0, 2.0, 9.0].map(|time| at(&one, time)), [7.0; 3]);
     assert_eq!(Spline::<f32>::default().at(0.0), None);
@@ -175,7 +175,7 @@ fn a_time_that_is_not_finite_is_refused() {
 }
 
 #[test]
-fn what_does_not_blend_steps() {
+fn values_that_do_not_blend_step() {
     let switch = spline(&[(1.0, 1.0), (2.0, 0.0)]);
     let values = [0.0, 1.0, 1.999, 2.0, 9.0].map(|time| switch.step(time));
     assert_eq!(values, [Some(1.0), Some(1.0), Some(1.0), Some(0.0), Some(0.0)]);

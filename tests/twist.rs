@@ -1,4 +1,4 @@
-//! Which way the elbow points.
+//! Twist references: direction of the elbow, gain and transport.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn stateless() -> [TwistReference; 3] {
     ]
 }
 
-/// e₀ as the formulas have it, in f64.
+/// e₀ by the formulas, in f64.
 fn twin(reference: TwistReference, w: DVec3) -> DVec3 {
     match reference {
         // Up, as far as the Pointer lets it.
@@ -43,7 +43,7 @@ fn twin(reference: TwistReference, w: DVec3) -> DVec3 {
     }
 }
 
-/// How far `to` is turned from `from` about `w`.
+/// Signed angle from `from` to `to` about `w`.
 fn turn(from: DVec3, to: DVec3, w: DVec3) -> f64 {
     w.dot(from.cross(to)).atan2(from.dot(to))
 }
@@ -74,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn every_reference_is_what_its_formula_says(w in uniform_directions()) {
+    fn every_reference_agrees_with_its_formula(w in uniform_directions()) {
         let pointer = pointer(w);
         for reference in stateless() {
             if reference.gain(pointer) < 1e3 {
@@ -86,7 +86,7 @@ proptest! {
     }
 
     #[test]
-    fn the_gain_is_the_worst_turn_against_transport_for_a_turn_of_the_pointer(w in uniform_directions()) {
+    fn the_gain_is_the_largest_turn_relative_to_transport_per_turn_of_the_pointer(w in uniform_directions()) {
         const STEP: f64 = 1e-5;
         for reference in stateless() {
             let gain = f64::from(reference.gain(pointer(w)));
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn a_closed_loop_turns_what_is_carried_by_its_solid_angle(
+    fn a_closed_loop_turns_the_transported_direction_by_its_solid_angle(
         a in uniform_directions(), b in uniform_directions(), c in uniform_directions()
     ) {
         // Not near half turns, where the least turn is not defined.
@@ -135,19 +135,19 @@ proptest! {
     }
 
     #[test]
-    fn another_reference_leaves_the_elbow_where_it_is(
-        w in uniform_directions(), spin in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
+    fn changing_the_reference_keeps_the_elbow(
+        w in uniform_directions(), twist in 0.0..std::f32::consts::TAU, length in 150.0..450.0_f64
     ) {
         let (arm, pointer) = (TwoBone::new(200.0, 300.0).expect("lengths"), pointer(w));
         let cursor = (w * length).as_vec3();
         let last = Some(TransportedFrame::new(pointer));
         let all = stateless().into_iter().chain([TwistReference::Transport]);
         let angles: Vec<f32> = all.map(|reference| reference.angle(pointer, last)).collect();
-        let elbow = arm.solve(cursor, spin + angles[0]).elbow;
+        let elbow = arm.solve(cursor, twist + angles[0]).elbow;
         for from in &angles {
-            let spin = remeasured(spin, angles[0], *from);
+            let twist = remeasured(twist, angles[0], *from);
             for to in &angles {
-                let again = remeasured(spin, *from, *to);
+                let again = remeasured(twist, *from, *to);
                 prop_assert!((0.0..std::f32::consts::TAU).contains(&again));
                 let moved = arm.solve(cursor, again + to).elbow.distance(elbow);
                 prop_assert!(moved < 5e-3, "moved by {moved}");
@@ -164,7 +164,7 @@ fn a_stereographic_elbow_is_up_when_the_hand_is_in_front() {
 }
 
 #[test]
-fn singular_directions_have_an_infinite_gain_and_take_what_is_carried() {
+fn singular_directions_have_an_infinite_gain_and_use_the_transported_direction() {
     let transported = TransportedFrame { direction: Vec3::X, outward: Vec3::Z };
     for (reference, w) in [
         (TwistReference::Pole(POLE), POLE),
@@ -186,14 +186,14 @@ fn singular_directions_have_an_infinite_gain_and_take_what_is_carried() {
 }
 
 #[test]
-fn between_opposite_pointers_what_is_carried_stays() {
+fn transport_to_the_opposite_pointer_keeps_the_direction() {
     let transported = TransportedFrame { direction: Vec3::X, outward: Vec3::Z };
     assert_eq!(transported.to(Vec3::NEG_X).outward, Vec3::Z);
     assert_eq!(transported.to(Vec3::X).outward, Vec3::Z);
 }
 
 #[test]
-fn what_is_carried_nowhere_stays_bit_for_bit() {
+fn transport_without_movement_changes_no_bit() {
     for cursor in [Vec3::new(0.3, 0.9, -0.4), Vec3::new(-250.0, 1.0, 3.0), Vec3::Y] {
         let transported = TransportedFrame::new(Pointer::towards(cursor, Pointer::default()));
         assert_eq!(transported.to(transported.direction), transported);
@@ -201,7 +201,7 @@ fn what_is_carried_nowhere_stays_bit_for_bit() {
 }
 
 #[test]
-fn beside_its_singular_direction_the_map_is_as_exact_as_elsewhere() {
+fn stereographic_is_as_exact_beside_its_singular_direction_as_elsewhere() {
     for aside in [1e-2, 1e-3, 1e-4_f32] {
         // Two directions that are the same but for the rounding of their lengths.
         let w = Vec3::new(-1.0, aside, 0.7 * aside).normalize();
@@ -215,7 +215,7 @@ fn beside_its_singular_direction_the_map_is_as_exact_as_elsewhere() {
 }
 
 #[test]
-fn a_map_needs_two_directions() {
+fn stereographic_needs_two_directions() {
     assert_eq!(Stereographic::new(Vec3::ZERO, Vec3::Y), None);
     assert_eq!(Stereographic::new(Vec3::Y, Vec3::NEG_Y * 3.0), None);
     let map = Stereographic::new(Vec3::new(0.0, 0.0, -2.0), Vec3::new(0.0, 1.0, 5.0));
@@ -224,7 +224,7 @@ fn a_map_needs_two_directions() {
 }
 
 #[test]
-fn the_limbs_reference_is_the_seeds() {
+fn the_limb_reference_is_the_y_axis_of_the_limb_frame() {
     let pointer = Pointer::towards(Vec3::new(1.0, 2.0, -0.5), Pointer::default());
     assert_eq!(TwistReference::Limb.angle(pointer, None), 0.0);
     let limb = pointer.limb_frame();

@@ -13,8 +13,8 @@ use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
-/// The same arm in f64 by another road: angles from half-angle tangents, which lose nothing near a
-/// straight or folded arm (L, δ and D ± δ are exact or nearly so in f64), then rotation matrices.
+/// The same arm in f64 by another method: angles from half-angle tangents, which stay accurate near
+/// a straight or folded arm (L, δ and D ± δ are exact or nearly so in f64), then rotation matrices.
 struct Twin {
     distance: f64,
     shoulder_angle: f64,
@@ -26,7 +26,7 @@ struct Twin {
 }
 
 impl Twin {
-    fn new(arm: TwoBone, asked: f64, pointer: (f64, f64), spin: f32) -> Self {
+    fn new(arm: TwoBone, asked: f64, pointer: (f64, f64), twist: f32) -> Self {
         let (upper, lower) = bones(arm);
         let (inner, outer) = limits(arm);
         let (distance, difference) = (asked.clamp(inner, outer), upper - lower);
@@ -38,7 +38,7 @@ impl Twin {
         let shoulder_angle =
             if distance == 0.0 { FRAC_PI_2 } else { 2.0 * near.sqrt().atan2(far.sqrt()) };
         let elbow_socket = DMat3::from_rotation_z(shoulder_angle) * (DVec3::X * upper);
-        let socket = limb_rotation(pointer) * DMat3::from_rotation_x(spin.into());
+        let socket = limb_rotation(pointer) * DMat3::from_rotation_x(twist.into());
         Self {
             distance,
             shoulder_angle,
@@ -71,7 +71,7 @@ fn bits(v: Vec3) -> [u32; 3] {
     v.to_array().map(f32::to_bits)
 }
 
-/// Where the cursor is among the limits, in f64.
+/// Expected reach of the cursor, in f64.
 fn reach(arm: TwoBone, cursor: Vec3) -> Reach {
     let ((inner, outer), asked) = (limits(arm), cursor.as_dvec3().length());
     if asked > outer {
@@ -131,32 +131,32 @@ proptest! {
     }
 
     #[test]
-    fn spinning_turns_the_elbow_about_the_pointer_and_leaves_the_hand(case in anywhere()) {
-        let (still, spun) = (Case { spin: 0.0, ..case }.solve(), case.solve());
-        let unspun = TwoBonePose { elbow: still.elbow, twist: still.twist, ..spun };
-        prop_assert_eq!(unspun, still, "more than the elbow moved");
+    fn twist_turns_the_elbow_about_the_pointer_and_keeps_the_hand(case in anywhere()) {
+        let (still, twisted) = (Case { twist: 0.0, ..case }.solve(), case.solve());
+        let untwisted = TwoBonePose { elbow: still.elbow, twist: still.twist, ..twisted };
+        prop_assert_eq!(untwisted, still, "more than the elbow moved");
 
         let axis = case.cursor.as_dvec3().try_normalize().unwrap_or(DVec3::X);
-        let (elbow, (sin, cos)) = (still.elbow.as_dvec3(), f64::from(case.spin).sin_cos());
+        let (elbow, (sin, cos)) = (still.elbow.as_dvec3(), f64::from(case.twist).sin_cos());
         let rodrigues =
             elbow * cos + axis.cross(elbow) * sin + axis * axis.dot(elbow) * (1.0 - cos);
-        let error = spun.elbow.as_dvec3().distance(rodrigues);
+        let error = twisted.elbow.as_dvec3().distance(rodrigues);
         within("spun elbow", error, EXACT * limits(case.arm).1)?;
     }
 
     #[test]
     fn points_and_limb_lengths_agree_with_the_f64_twin(case in anywhere()) {
-        let Case { arm, cursor, spin } = case;
+        let Case { arm, cursor, twist } = case;
         let asked = cursor.as_dvec3().length();
-        agrees(&case.solve(), arm, &Twin::new(arm, asked, yaw_and_pitch(cursor), spin))?;
+        agrees(&case.solve(), arm, &Twin::new(arm, asked, yaw_and_pitch(cursor), twist))?;
     }
 
     #[test]
     fn distances_and_angles_agree_with_the_f64_twin(case in anywhere()) {
-        let Case { arm, cursor, spin } = case;
+        let Case { arm, cursor, twist } = case;
         let ((upper, lower), (_, length)) = (bones(arm), limits(arm));
         let (pose, (yaw, pitch)) = (case.solve(), yaw_and_pitch(cursor));
-        let twin = Twin::new(arm, cursor.as_dvec3().length(), (yaw, pitch), spin);
+        let twin = Twin::new(arm, cursor.as_dvec3().length(), (yaw, pitch), twist);
 
         // |c| is 2.5 U of itself off: three roundings under the root, halved, and the root's own.
         // L and |δ| are U off; a clamp adds nothing to the largest.
@@ -191,17 +191,17 @@ proptest! {
     }
 
     #[test]
-    fn at_the_shoulder_the_hand_goes_the_last_way_or_along_x(
-        arm in arms(), spin in -10.0..10.0_f32, last in directions()
+    fn at_the_shoulder_the_hand_keeps_the_last_direction_or_points_along_x(
+        arm in arms(), twist in -10.0..10.0_f32, last in directions()
     ) {
         let equal = arm.upper() == arm.lower();
         let last = last.as_vec3();
         for (pose, way) in [
-            (arm.solve(Vec3::ZERO, spin), Vec3::X),
-            (arm.solve_from(Vec3::ZERO, spin, arm.solve(last, 0.0).pointer), last),
+            (arm.solve(Vec3::ZERO, twist), Vec3::X),
+            (arm.solve_from(Vec3::ZERO, twist, arm.solve(last, 0.0).pointer), last),
         ] {
             prop_assert_eq!(pose.reach.unwrap(), if equal { Reach::Reached } else { Reach::TooClose });
-            agrees(&pose, arm, &Twin::new(arm, 0.0, yaw_and_pitch(way), spin))?;
+            agrees(&pose, arm, &Twin::new(arm, 0.0, yaw_and_pitch(way), twist))?;
         }
     }
 
@@ -209,20 +209,20 @@ proptest! {
     fn straight_above_and_below_the_yaw_is_the_last_or_none(
         case in anywhere(), last in directions(), up in either_sign(Just(1.0)),
     ) {
-        let Case { arm, cursor, spin } = case;
+        let Case { arm, cursor, twist } = case;
         let height = (cursor.as_dvec3().length() as f32).max(f32::from_bits(1));
         let (cursor, pitch) = (Vec3::Y * height * up, FRAC_PI_2 * f64::from(up));
         let last = last.as_vec3();
         for (pose, yaw) in [
-            (arm.solve(cursor, spin), 0.0),
-            (arm.solve_from(cursor, spin, arm.solve(last, 0.0).pointer), yaw_and_pitch(last).0),
+            (arm.solve(cursor, twist), 0.0),
+            (arm.solve_from(cursor, twist, arm.solve(last, 0.0).pointer), yaw_and_pitch(last).0),
         ] {
-            agrees(&pose, arm, &Twin::new(arm, height.into(), (yaw, pitch), spin))?;
+            agrees(&pose, arm, &Twin::new(arm, height.into(), (yaw, pitch), twist))?;
         }
     }
 
     #[test]
-    fn exactly_at_a_limit_is_reached_and_the_next_number_is_not(
+    fn a_cursor_exactly_at_a_limit_is_reached_and_the_next_float_is_not(
         arm in arms(), axis in either_sign(prop::sample::select(&Vec3::AXES)),
     ) {
         let (inner, outer) = (arm.inner_limit(), arm.outer_limit());
@@ -239,12 +239,12 @@ proptest! {
     fn every_finite_cursor_gives_a_finite_pose(
         upper in sizes(), lower in sizes(), equal in prop::bool::ANY,
         cursor in [either_sign(sizes()), either_sign(sizes()), either_sign(sizes())],
-        spin in either_sign(sizes()),
+        twist in either_sign(sizes()),
     ) {
         let [upper, lower] = [upper, lower].map(|length| length.max(f32::from_bits(1)));
         let arm = TwoBone::new(upper, if equal { upper } else { lower }).unwrap();
         let cursor = Vec3::from_array(cursor);
-        let pose = arm.solve(cursor, spin);
+        let pose = arm.solve(cursor, twist);
         let TwoBonePose { elbow, hand, distance, along, out, pointer, .. } = pose;
         prop_assert!(elbow.is_finite() && hand.is_finite(), "{:?}", pose);
         prop_assert!(distance.is_finite() && along.is_finite() && out.is_finite(), "{:?}", pose);
@@ -262,7 +262,7 @@ proptest! {
     }
 
     #[test]
-    fn a_power_of_two_larger_is_the_same_pose(case in in_reach(), power in 0..=100) {
+    fn scaling_by_a_power_of_two_keeps_the_pose(case in in_reach(), power in 0..=100) {
         let scaled = |case: Case, factor: f32| Case {
             arm: TwoBone::new(case.arm.upper() * factor, case.arm.lower() * factor).unwrap(),
             cursor: case.cursor * factor,
@@ -286,12 +286,12 @@ fn sizes() -> impl Strategy<Value = f32> + Clone {
 }
 
 #[test]
-fn a_length_that_no_bone_can_have_is_refused_by_name_and_value() {
+fn an_invalid_length_is_refused_by_name_and_value() {
     for value in [0.0, -0.0, -1.5, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for (bone, lengths) in [("upper", (value, 1.0)), ("lower", (1.0, value))] {
             let message = TwoBone::new(lengths.0, lengths.1).unwrap_err().to_string();
-            let named = format!("{bone} length is {value};");
-            assert!(message.starts_with(&named), "{message}");
+            let named = format!("{bone} length must be finite and above 0, got {value}");
+            assert!(message.eq(&named), "{message}");
         }
     }
 }
@@ -299,12 +299,12 @@ fn a_length_that_no_bone_can_have_is_refused_by_name_and_value() {
 #[test]
 #[cfg(debug_assertions)]
 #[should_panic(expected = "cursor is [1, NaN, 0]")]
-fn a_cursor_that_is_not_finite_is_the_callers_mistake() {
+fn a_cursor_that_is_not_finite_panics() {
     let _ = TwoBone::new(2.0, 3.0).unwrap().solve(Vec3::new(1.0, f32::NAN, 0.0), 0.0);
 }
 
 #[test]
-fn an_arm_that_keeps_no_facing_faces_x() {
+fn the_default_pointer_faces_x() {
     assert_eq!(Pointer::default(), Pointer { direction: Vec3::X, heading: Vec2::X });
 }
 
@@ -318,8 +318,8 @@ fn poses_agree_with_the_original_program() {
         let point =
             |name: &str| DVec3::from_array([0, 1, 2].map(|i| row[name][i].as_f64().unwrap()));
         let (hand, root) = (point("hand"), point("root"));
-        let spin = row["elbow_spin_deg"].as_f64().unwrap().to_radians();
-        let pose = arm.solve(hand.as_vec3(), spin as f32);
+        let twist = row["elbow_spin_deg"].as_f64().unwrap().to_radians();
+        let pose = arm.solve(hand.as_vec3(), twist as f32);
 
         // The original stops 0.01 short of each limit: see "about" in the file.
         let between = (100.0..=500.0).contains(&hand.length());
@@ -356,7 +356,7 @@ fn too_close_folds_the_arm_along_the_line_to_the_cursor() {
     }
 }
 
-/// Of the bits of elbows and hands.
+/// Hash of the bits of elbows and hands.
 fn digest(poses: impl Iterator<Item = TwoBonePose>) -> u64 {
     let coordinates = poses.flat_map(|pose| [pose.elbow, pose.hand]).flat_map(|it| it.to_array());
     // FNV-1a.
@@ -366,8 +366,8 @@ fn digest(poses: impl Iterator<Item = TwoBonePose>) -> u64 {
 }
 
 #[test]
-fn the_plain_arm_has_the_same_bits_everywhere() {
-    // Sums, products and roots alone, which every machine rounds alike.
+fn the_plain_arm_is_bit_identical_on_every_machine() {
+    // The solver uses sums, products and roots only, which round alike on every machine.
     let arms = [(200.0, 300.0), (1.0, 1.0), (300.0, 10.0), (0.3, 0.3001)];
     let digests = arms.map(|(upper, lower)| {
         let arm = TwoBone::new(upper, lower).expect("lengths");

@@ -1,4 +1,4 @@
-//! How exactly hands and limb lengths hold, over random arms of every kind.
+//! Accuracy of hands and limb lengths, over random arms of every kind.
 
 mod common;
 
@@ -109,7 +109,7 @@ fn hands_and_limb_lengths_are_within_2_8e_7_of_the_arm_length() {
 
 #[test]
 #[ignore = "measures the worst errors over five times 1,000,000 random arms"]
-fn other_random_arms_are_as_exact() {
+fn other_random_seeds_are_as_exact() {
     for seed in 1..6 {
         let Worst { hand, length } = Worst::of(1_000_000, seed);
         println!("seed {seed}: hand {:.3e} of the arm length: {}", hand.0, hand.1);

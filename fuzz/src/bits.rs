@@ -50,7 +50,7 @@ impl<'a> Bits<'a> {
         }
     }
 
-    /// As [`Bits::number`], where callers are to check that first.
+    /// Like [`Bits::number`], but finite.
     pub fn finite(&mut self) -> f32 {
         let number = self.number();
         if number.is_finite() { number } else { 0.0 }

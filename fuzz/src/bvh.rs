@@ -1,7 +1,7 @@
 use super::opened::opened;
 
-/// A motion in BVH, or what looks like one: it is refused in a few words, or is a skeleton that can
-/// be, with keys, and can be saved and read again as it is.
+/// A motion in BVH, or what looks like one: it is refused with a short message, or is a valid
+/// skeleton with keys, and survives saving and reading.
 pub fn bvh(data: &[u8]) {
     opened(data, None);
 }

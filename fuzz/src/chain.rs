@@ -9,9 +9,9 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use super::bits::Bits;
 use super::opened::is_readable;
 
-/// A skeleton of a few joints with targets, of any numbers, by every method: what cannot be is
-/// refused in a few words; else a solve moves what it may, as far as limits let it, and tells the
-/// truth about how near it came.
+/// A skeleton of a few joints with targets, of any numbers, by every method: invalid problems are
+/// refused with a short message; else the solver moves only the chains of targets, within limits,
+/// and reports the true error.
 pub fn chain(data: &[u8]) {
     let bits = &mut Bits::new(data);
     let Some(skeleton) = skeleton(bits) else { return };
@@ -83,7 +83,7 @@ fn transform(bits: &mut Bits<'_>) -> Affine3A {
 
 fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<TipTarget> {
     const MOST: usize = 3;
-    // One more than there are.
+    // Including one index out of range.
     let places = skeleton.joints().len() + 1;
     let count = 1 + bits.below(MOST);
     let target = |_| TipTarget {
@@ -135,11 +135,11 @@ fn solve(before: &Skeleton, targets: &[TipTarget], options: &SolverOptions, else
     case.check(&after, &moved, solve.report());
 }
 
-/// What a solve is of.
+/// Input of a solver run.
 struct Case<'a> {
     before: &'a Skeleton,
     options: &'a SolverOptions,
-    /// How far roots and targets have been from the origin, in the world.
+    /// Largest distance of roots and targets from the origin, in world space.
     way: f64,
 }
 
@@ -173,21 +173,21 @@ fn farthest(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
     roots.chain(targets.iter().map(|target| target.point.as_dvec3().length())).fold(0.0, f64::max)
 }
 
-/// At most.
+/// Upper bound of the scale: the Frobenius norm of the transform.
 fn scale(skeleton: &Skeleton) -> f64 {
     let matrix = skeleton.transform().matrix3.as_dmat3();
     matrix.to_cols_array().into_iter().fold(0.0, f64::hypot)
 }
 
-/// A bone keeps its length however it is turned.
+/// A bone keeps its length under any rotation.
 fn is_rigid(joint: &Joint) {
     let turn = joint.local_rotation();
     let squared = turn.transpose() * turn;
     assert!(squared.abs_diff_eq(Mat3A::IDENTITY, 1e-5), "{joint:?} is turned by {turn}");
 }
 
-/// What is reported is how far the tips are from their targets, as far as 32 bits tell. Angles of many
-/// turns have few digits for the rest.
+/// The reported error is the distance from tips to targets, within rounding. Angles of many
+/// turns leave few digits for their fraction.
 fn is_truth(skeleton: &Skeleton, targets: &[TipTarget], report: Report, way: f64) {
     const COARSE: f64 = 1e-6;
     const FEW_TURNS: f32 = 100.0;
@@ -199,7 +199,7 @@ fn is_truth(skeleton: &Skeleton, targets: &[TipTarget], report: Report, way: f64
     let error = twins.iter().map(|twin| twin.error).fold(0.0, f64::max);
     let blur = twins.iter().map(|twin| twin.blur).fold(0.0, f64::max);
     let off = (error.min(f64::from(f32::MAX)) - f64::from(report.error)).abs();
-    // What a root can move by at least may be much in the world.
+    // The smallest step of a root's coordinates may be large in world space.
     let least = f64::from(f32::from_bits(2)) * scale(skeleton).max(1.0);
     assert!(
         off <= TRUE * (error + blur) + COARSE * way + least,
@@ -207,13 +207,13 @@ fn is_truth(skeleton: &Skeleton, targets: &[TipTarget], report: Report, way: f64
     );
 }
 
-/// Of what is long, how much may be off.
+/// Allowed error relative to a length.
 const TRUE: f64 = 1e-4;
 
-/// A tip and its target by the formulas, in 64 bits.
+/// A tip and its target by the formulas, in f64.
 struct Twin {
     error: f64,
-    /// How long the way from the root to the tip is at most, in the world, and what 64 bits round.
+    /// Longest path from the root to the tip in world space, and its f64 rounding.
     blur: f64,
 }
 

@@ -3,8 +3,8 @@ use ik_arm::io::{self, BvhUnit, Progress};
 
 use super::opened::{is_readable, opened};
 
-/// A document, or what looks like one: it is refused in a few words, or is saved and read again as it
-/// is; and so are its exports, if it has any.
+/// A document or similar bytes: they are refused with a short message, or the document survives
+/// saving and reading, and so do its exports.
 pub fn document(data: &[u8]) {
     if let Some(opened) = opened(data, None) {
         export(&short(opened.document));

@@ -1,7 +1,7 @@
 use super::opened::every_skeleton;
 
-/// A `.gltf` or `.glb` file, or what looks like one: each of its skins is refused in a few words, or
-/// is a skeleton that can be, and can be saved and read again as it is.
+/// A `.gltf` or `.glb` file, or similar bytes: each skin is refused with a short message, or
+/// is a valid skeleton that survives saving and reading.
 pub fn gltf(data: &[u8]) {
     every_skeleton(data);
 }

@@ -5,8 +5,8 @@ use ik_arm::kinematics::two_bone::Reach;
 use super::bits::Bits;
 use super::opened::is_readable;
 
-/// A job of any numbers: it is refused in a few words, or two rotations come out that bring the hand
-/// to where it is said to be.
+/// A job of any numbers: it is refused with a short message, or its two rotations bring the hand
+/// to the reported position.
 pub fn job(bits: &mut Bits<'_>) {
     let [start, middle, end] = [(); 3].map(|()| matrix(bits));
     let job = TwoBoneJob {
@@ -17,7 +17,7 @@ pub fn job(bits: &mut Bits<'_>) {
         weight: if bits.coin() { 1.0 } else { bits.number() },
         ..TwoBoneJob::new(start, middle, end, bits.vector())
     };
-    // Whatever is above them: often of an uneven scale.
+    // Any parent transform, often with a non-uniform scale.
     let parent = if bits.coin() { bits.matrix() } else { Affine3A::IDENTITY };
     let [start, middle, end] = [job.start, job.middle, job.end].map(|joint| parent * joint);
     let job = TwoBoneJob { start, middle, end, ..job };
@@ -57,7 +57,7 @@ fn check(job: &TwoBoneJob, correction: TwoBoneCorrection) {
     assert!(reach != Reach::Reached || is_there, "{off} of {length}: {correction:?} of {job:?}");
 }
 
-/// Where the hand goes, by the joints' matrices alone.
+/// Position of the hand, from the joints' matrices alone.
 struct Twin {
     /// From the hand to the target, in start joint space and in model space.
     off: f64,
@@ -69,7 +69,7 @@ struct Twin {
 }
 
 impl Twin {
-    /// Nothing where a joint has no inverse, or the hand is farther than numbers go.
+    /// `None` if a joint has no inverse or the position of the hand overflows.
     fn new(job: &TwoBoneJob, correction: TwoBoneCorrection) -> Option<Self> {
         let start = job.start.matrix3.as_dmat3();
         let middle = start.inverse() * job.middle.matrix3.as_dmat3();

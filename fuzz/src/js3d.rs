@@ -1,7 +1,7 @@
 use super::opened::every_skeleton;
 
-/// A scene of Scotty3D, or what looks like one: each of its skeletons is refused in a few words, or is
-/// one that can be, and can be saved and read again as it is.
+/// A scene of Scotty3D, or similar bytes: each skeleton is refused with a short message, or is
+/// valid and survives saving and reading.
 pub fn js3d(data: &[u8]) {
     every_skeleton(data);
 }

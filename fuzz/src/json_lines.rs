@@ -3,8 +3,8 @@ use serde_json::Value;
 
 use super::opened::is_readable;
 
-/// The lines of `ik-arm solve`: each is refused in a few words and leaves no trace, or has a pose of
-/// finite numbers with limbs as long as they may be, and a hand that is where it is said to be.
+/// The lines of `ik-arm solve`: each is refused with a short message and has no effect, or has a
+/// pose of finite numbers with allowed limb lengths and a hand that matches the reported reach.
 pub fn json_lines(data: &[u8]) {
     let mut past = None;
     for line in data.split(|byte| *byte == b'\n') {
@@ -27,7 +27,7 @@ fn solve(line: &[u8], past: &mut Option<PreviousLine>) {
     }
 }
 
-/// What a good line says, read by other code.
+/// A valid line, parsed by independent code.
 struct Asked {
     hand: [f64; 3],
     root: [f64; 3],
@@ -52,7 +52,7 @@ impl Asked {
     }
 
     fn check(&self, answer: &Value) {
-        /// Of what is softened or stretched, in lengths; else of the bones alone.
+        /// Allowed error relative to the arm length, with and without soft reach or stretch.
         const SOFT: f64 = 2e-6;
         const HARD: f64 = 3e-7;
         let [elbow, hand] = ["elbow", "hand"].map(|key| point(&answer[key]));
@@ -78,7 +78,7 @@ impl Asked {
     }
 }
 
-/// As the program reads it: a number is what is nearest to it in 32 bits.
+/// Rounded to the nearest f32, as the program does.
 fn as_f32(value: &Value) -> f64 {
     f64::from(value.as_f64().expect("a number") as f32)
 }

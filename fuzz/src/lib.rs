@@ -1,8 +1,8 @@
-//! What must hold of any bytes whatsoever: a function for each target, which panics where it does
+//! Properties that hold for any bytes: a function for each target, which panics if one does
 //! not.
 //!
-//! The fuzzer calls them with bytes of its own, and `tests/corpora.rs` of the main package with those
-//! that are kept here.
+//! The fuzzer calls them with bytes of its own, and `tests/corpora.rs` of the main package with
+//! those that are kept here.
 
 mod bits;
 mod bvh;

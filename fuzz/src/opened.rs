@@ -4,7 +4,7 @@ use ik_arm::document::Document;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 
-/// What is in a file, if it is one: checked; or else checks that the error is one to read.
+/// Checks the content of a file, or that its error is readable.
 pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
     match io::read("file", bytes, skeleton) {
         Ok(opened) => {
@@ -28,7 +28,7 @@ pub fn every_skeleton(bytes: &[u8]) {
     }
 }
 
-/// Something is said, and not more than a window shows.
+/// The message is not empty and fits a window.
 pub fn is_readable(message: &str) {
     assert!((1..1000).contains(&message.chars().count()), "{message}");
 }

@@ -10,8 +10,8 @@ use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use super::bits::Bits;
 use super::job::job;
 
-/// The arm and the job of two bones, of any numbers: what cannot be is refused, and all that can be
-/// has a finite pose with limbs as long as they are, and a hand that is where it is said to be.
+/// The arm and the job of two bones, of any numbers: invalid input is refused, and valid input
+/// gives a finite pose with the right limb lengths and a hand that matches the reported reach.
 pub fn two_bone(data: &[u8]) {
     let bits = &mut Bits::new(data);
     if bits.coin() {
@@ -19,10 +19,10 @@ pub fn two_bone(data: &[u8]) {
     }
     let (Some(bones), Some(soft_reach)) = (bones(bits), soft_reach(bits)) else { return };
     let cursors = [bits.finite_vector(), bits.finite_vector()];
-    let spin = bits.finite();
-    plain(bones, cursors, spin);
+    let twist = bits.finite();
+    plain(bones, cursors, twist);
     let ik = Ik { bones, reference: reference(bits), soft_reach };
-    let solved = solved_on(ik, cursors, spin);
+    let solved = solved_on(ik, cursors, twist);
     found_again(ik, &solved);
     forward(bits, bones, &solved.pose);
 }
@@ -60,11 +60,11 @@ fn reference(bits: &mut Bits<'_>) -> TwistReference {
     }
 }
 
-/// The seed's arm, first without a past and then with one.
-fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
+/// The original arm, first without and then with an earlier pose.
+fn plain(bones: TwoBone, [first, second]: [Vec3; 2], twist: f32) {
     let mut last = Pointer::default();
     for cursor in [first, second] {
-        let pose = bones.solve_from(cursor, spin, last);
+        let pose = bones.solve_from(cursor, twist, last);
         is_whole(&pose);
         has_its_lengths(&pose, bones, EXACT);
         let (asked, hand) = (cursor.as_dvec3().length(), pose.hand.as_dvec3().length());
@@ -85,10 +85,10 @@ fn plain(bones: TwoBone, [first, second]: [Vec3; 2], spin: f32) {
     }
 }
 
-/// With all its choices, from one cursor to the next.
-fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> IkSolution {
-    let one = ik.solve(first, spin, IkState::default());
-    let two = ik.solve(second, spin, one.state());
+/// The arm with all options, from one cursor to the next.
+fn solved_on(ik: Ik, [first, second]: [Vec3; 2], twist: f32) -> IkSolution {
+    let one = ik.solve(first, twist, IkState::default());
+    let two = ik.solve(second, twist, one.state());
     for (cursor, solved) in [(first, one), (second, two)] {
         let IkSolution { pose, transported, slope } = solved;
         is_whole(&pose);
@@ -109,12 +109,12 @@ fn solved_on(ik: Ik, [first, second]: [Vec3; 2], spin: f32) -> IkSolution {
     two
 }
 
-/// The cursor and the spin of a pose lead to it again.
+/// The cursor and the twist of a pose give the pose again.
 fn found_again(ik: Ik, solved: &IkSolution) {
     let pose = &solved.pose;
-    let (cursor, spin) = ik.matching(pose, Some(solved.transported));
-    assert!(cursor.is_finite() && (0.0..TAU).contains(&spin), "{cursor}, {spin}");
-    let again = ik.solve(cursor, spin, solved.state()).pose;
+    let (cursor, twist) = ik.matching(pose, Some(solved.transported));
+    assert!(cursor.is_finite() && (0.0..TAU).contains(&twist), "{cursor}, {twist}");
+    let again = ik.solve(cursor, twist, solved.state()).pose;
     is_whole(&again);
     let length = limits(ik.bones)[1] * f64::from(pose.stretch);
     if length <= LARGEST {
@@ -126,7 +126,7 @@ fn found_again(ik: Ik, solved: &IkSolution) {
     }
 }
 
-/// Angles of a pose, the pose of any angles, and what is between the two.
+/// Angles of a pose, the pose of any angles, and blends of the two.
 fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &TwoBonePose) {
     let last = Fk { shoulder: bits.finite_vector(), bend: bits.finite(), stretch: 1.0 };
     let fk = Fk::matching(pose, last);
@@ -150,9 +150,9 @@ fn forward(bits: &mut Bits<'_>, bones: TwoBone, pose: &TwoBonePose) {
 /// Of the length: of a hand and of a limb, and of a hand that is reached.
 const EXACT: f64 = 3e-7;
 const REACHED: f64 = 1e-6;
-/// Steps of the least numbers.
+/// A few steps of subnormal numbers.
 const TINY: f64 = 4.0 * f32::from_bits(1) as f64;
-/// Beyond it, what is longer is as long as numbers go.
+/// Largest f32; longer results are clamped to it.
 const LARGEST: f64 = f32::MAX as f64;
 
 /// |δ| and L.

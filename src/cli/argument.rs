@@ -21,7 +21,7 @@ pub enum ArgumentError {
     Number,
     #[error("time must be a finite number of seconds")]
     Time,
-    #[error("limb length is {0}; it must be a finite number above 0")]
+    #[error("limb length must be finite and above 0, got {0}")]
     Length(f32),
     #[error("guides must be some of cursor, pointer, inner, outer, or none alone, got {0:?}")]
     Guide(String),

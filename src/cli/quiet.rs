@@ -1,11 +1,11 @@
 //! Keeps graphics drivers from writing to standard error without an error.
 
-/// Replaces this process by one without Mesa's Vulkan layer "device select", if the layer would print an
-/// error.
+/// Replaces this process by one without Mesa's Vulkan layer "device select", if the layer would
+/// print an error.
 ///
 /// The layer asks the Wayland compositor for its GPU. Without `XDG_RUNTIME_DIR` there is no
-/// compositor, and libwayland prints an error each time. The layer is switched off by an environment variable,
-/// which must be set before a process starts: changing it later is unsafe.
+/// compositor, and libwayland prints an error each time. The layer is switched off by an
+/// environment variable, which must be set before a process starts: changing it later is unsafe.
 pub(super) fn restart_without_device_select() {
     #[cfg(target_os = "linux")]
     linux::restart();

@@ -33,7 +33,7 @@ pub enum ExportError {
     #[error("cannot encode PNG: {0}")]
     Png(#[from] png::EncodingError),
     /// An animated picture has too many frames.
-    #[error("an animated PNG holds at most {max} frames, got {0}", max = u32::MAX)]
+    #[error("an animated PNG must have at most {max} frames, got {0}", max = u32::MAX)]
     Frames(usize),
     /// The file could not be written.
     #[error(transparent)]

@@ -46,8 +46,8 @@ impl Format {
     /// If the extension is unknown.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-        let is_it = |(known, _): &(&str, Self)| extension.eq_ignore_ascii_case(known);
-        match Self::EXTENSIONS.into_iter().find(is_it) {
+        let matches = |(known, _): &(&str, Self)| extension.eq_ignore_ascii_case(known);
+        match Self::EXTENSIONS.into_iter().find(matches) {
             Some((_, Self::Png)) if NumberedName::new(path).is_some() => Ok(Self::PngSequence),
             Some((_, format)) => Ok(format),
             None => Err(FormatError { path: path.display().to_string() }),
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sequence_finds_the_frames_that_are_there_already() {
+    fn an_existing_frame_of_a_sequence_is_found() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("walk_##.png");
         assert_eq!(existing(&path), None);

@@ -1,8 +1,8 @@
 //! Files for other programs, made from a document: motions, tables, pictures.
 //!
-//! An export may take long. [`export`] is meant for a thread of its own: it works on its own document and
-//! graphics device, reports its progress, and can be cancelled. A file or sequence of files is written
-//! completely or not at all.
+//! An export may take long. [`export`] is meant for a thread of its own: it works on its own
+//! document and graphics device, reports its progress, and can be cancelled. A file or sequence of
+//! files is written completely or not at all.
 
 mod error;
 mod format;
@@ -21,13 +21,13 @@ use numbered_name::NumberedName;
 use crate::document::Document;
 use crate::io::{self, Exported, Progress};
 
-/// Writes a document to a file whose extension selects the [`Format`], and returns notes on what the
-/// format cannot hold.
+/// Writes a document to a file whose extension selects the [`Format`], and returns notes on what
+/// the format cannot hold.
 ///
 /// # Errors
 ///
-/// If it is cancelled, the format is unknown or cannot hold the document, or the file cannot be written.
-/// The path then holds no file, or the previous one.
+/// If it is cancelled, the format is unknown or cannot hold the document, or the file cannot be
+/// written. The path then holds no file, or the previous one.
 pub fn export(
     document: &Document,
     path: &Path,

@@ -17,8 +17,8 @@ pub struct ExportOptions {
 }
 
 impl ExportOptions {
-    /// Maximum width and height that the program offers for a picture. A graphics device may have a lower
-    /// limit.
+    /// Maximum width and height that the program offers for a picture. A graphics device may have a
+    /// lower limit.
     pub const MAX_SIDE: u32 = 8192;
 }
 

@@ -60,7 +60,7 @@ pub fn animation(
     const LOOP_FOR_EVER: u32 = 0;
     let frames = ExportFrames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
-    // Timeline::MAX_FRAME_RATE is below.
+    // Never fails: Timeline::MAX_FRAME_RATE fits into u16.
     let rate = u16::try_from(frames.rate()).unwrap_or(u16::MAX);
     let gpu = Gpu::headless()?;
     let mut renderer = FrameRenderer::new(document, options, &gpu)?;
@@ -79,9 +79,9 @@ pub fn animation(
     Ok(Vec::new())
 }
 
-/// Draws a document at one time after another.
+/// Draws a document at successive times.
 struct FrameRenderer<'a> {
-    playback: FrameEvaluator,
+    evaluator: FrameEvaluator,
     overlays: Overlays,
     builder: SceneBuilder,
     picture: PictureRenderer<'a>,
@@ -96,7 +96,7 @@ impl<'a> FrameRenderer<'a> {
     ) -> Result<Self, ExportError> {
         let (width, height) = options.size;
         Ok(Self {
-            playback: FrameEvaluator::new(document),
+            evaluator: FrameEvaluator::new(document),
             overlays: Overlays::new(document, document.timeline.start),
             builder: SceneBuilder::default(),
             picture: PictureRenderer::of_size(gpu, width, height)?,
@@ -106,7 +106,7 @@ impl<'a> FrameRenderer<'a> {
 
     /// RGBA pixels at a time, rows from the top.
     fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
-        let document = self.playback.at(time);
+        let document = self.evaluator.at(time);
         self.overlays = std::mem::take(&mut self.overlays).at(document, time);
         let scene = self.builder.build(document, &self.overlays, self.theme);
         Ok(self.picture.draw(&scene)?.into_raw())

@@ -9,9 +9,9 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
-/// One row per frame: its number from 0, its time in seconds from the first frame, the world position
-/// of every joint's base, then that of every leaf bone's tip, in units of the scene. Of the arm:
-/// shoulder, elbow, hand.
+/// One row per frame: its number from 0, its time in seconds from the first frame, the world
+/// position of every joint's base, then that of every leaf bone's tip, in units of the scene. Of
+/// the arm: shoulder, elbow, hand.
 ///
 /// # Errors
 ///
@@ -23,7 +23,7 @@ pub fn to_csv(
 ) -> Result<Exported, MotionError> {
     let frames = ExportFrames::of_pose(document, fps)?;
     let columns = Columns::new(document);
-    MotionError::if_too_much(frames.count(), 2 + 3 * columns.names.len())?;
+    MotionError::check_size(frames.count(), 2 + 3 * columns.names.len())?;
     let mut playback = FrameEvaluator::new(document);
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.header())?;
@@ -37,7 +37,7 @@ pub fn to_csv(
                 return Err(MotionError::TooFar { joint: name.clone() });
             }
             for number in point.to_array() {
-                // Never −0.
+                // Adding 0 turns −0 into 0.
                 table.write_field((number + 0.0).to_string())?;
             }
         }
@@ -51,8 +51,8 @@ pub fn to_csv(
 /// The points in the columns of the table.
 struct Columns {
     names: Vec<String>,
-    /// The joints whose tips are in the table.
-    ends: Vec<usize>,
+    /// The joints whose bone's tip is in the table.
+    leaves: Vec<usize>,
 }
 
 impl Columns {
@@ -60,7 +60,7 @@ impl Columns {
         match document.rig {
             RigKind::Arm => {
                 let names = ["shoulder", "elbow", "hand"].map(str::to_owned).into();
-                Self { names, ends: Vec::new() }
+                Self { names, leaves: Vec::new() }
             }
             RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
         }
@@ -68,14 +68,14 @@ impl Columns {
 
     fn of_skeleton(skeleton: &Skeleton) -> Self {
         let joints = skeleton.joints();
-        let mut is_end: Vec<bool> = joints.iter().map(|joint| joint.axis != Vec3::ZERO).collect();
+        let mut is_leaf: Vec<bool> = joints.iter().map(|joint| joint.axis != Vec3::ZERO).collect();
         for parent in joints.iter().filter_map(|joint| joint.parent) {
-            is_end[parent.index()] = false;
+            is_leaf[parent.index()] = false;
         }
-        let ends: Vec<usize> = (0..joints.len()).filter(|joint| is_end[*joint]).collect();
-        let tips = ends.iter().map(|joint| format!("{}_tip", joints[*joint].name));
+        let leaves: Vec<usize> = (0..joints.len()).filter(|joint| is_leaf[*joint]).collect();
+        let tips = leaves.iter().map(|joint| format!("{}_tip", joints[*joint].name));
         let names = joints.iter().map(|joint| joint.name.clone()).chain(tips).collect();
-        Self { names, ends }
+        Self { names, leaves }
     }
 
     fn header(&self) -> impl Iterator<Item = String> + '_ {
@@ -94,7 +94,9 @@ impl Columns {
             RigKind::Skeleton => {
                 let pose = document.skeleton_rig.skeleton_at(time).pose();
                 let bases = pose.ids().map(|joint| pose.base(joint));
-                bases.chain(self.ends.iter().map(|joint| pose.tip(JointId::new(*joint)))).collect()
+                bases
+                    .chain(self.leaves.iter().map(|joint| pose.tip(JointId::new(*joint))))
+                    .collect()
             }
         }
     }

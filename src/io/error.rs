@@ -15,7 +15,7 @@ pub enum OpenError {
         source: io::Error,
     },
     /// The file is larger than [`OpenError::MAX_BYTES`].
-    #[error("{file} is larger than {} MB, the largest size that is read", OpenError::MAX_BYTES >> 20)]
+    #[error("{file} must be at most {} MB large", OpenError::MAX_BYTES >> 20)]
     TooLarge {
         /// Name of the file.
         file: String,
@@ -113,7 +113,7 @@ fn list(names: &[String]) -> String {
     }
 }
 
-/// A message without the middle of a long quotation.
+/// Cuts the middle out of a long message.
 pub(crate) fn shortened(message: String) -> String {
     const START: usize = 200;
     const END: usize = 120;

@@ -76,15 +76,16 @@ impl Example {
             group: Group::Tour,
             name: "keyframes",
             title: "Keyframes",
-            sentence: "An arm whose hand goes along a spline through six keys; press Space to play.",
+            sentence: "An arm whose hand goes along a spline through six keys; press Space to \
+                       play.",
             text: include_str!("../../assets/keyframes.json"),
         },
         Self {
             group: Group::Tour,
             name: "degenerate",
             title: "Degenerate cases",
-            sentence: "What breaks careless solvers: a bone without length, a target at the root, a \
-                       straight chain, targets out of reach, all of it in a mirror.",
+            sentence: "Cases that break careless solvers: a bone without length, a target at the \
+                       root, a straight chain, targets out of reach, all of it in a mirror.",
             text: include_str!("../../assets/degenerate.json"),
         },
         Self {

@@ -1,6 +1,6 @@
 use super::json_path::JsonPath;
 
-/// A field that cannot be read, or not as it is, and the reason.
+/// A field that is invalid, ignored or changed, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldError {
     pub field: JsonPath,
@@ -18,7 +18,7 @@ impl FieldError {
 #[derive(Debug, Default)]
 pub struct FieldWarnings {
     pub first: Vec<FieldError>,
-    /// JsonNumber of further ones.
+    /// Number of further warnings.
     pub more: usize,
 }
 

@@ -8,18 +8,21 @@ use tempfile::TempDir;
 use super::WriteError;
 use super::write::{failed, folder_of};
 
-/// Several files in one folder that are written all or none, by way of a temporary folder beside them.
+/// Several files in one folder that are written all or none, by way of a temporary folder beside
+/// them.
 ///
 /// Existing files are replaced only at the end, and restored if one of them cannot be replaced.
 #[derive(Debug)]
 pub struct FileBatch {
     folder: PathBuf,
-    /// Holds the new files until the end, then the replaced ones in [`BEFORE`]; deleted with the batch.
+    /// Holds the new files until the end, then the replaced ones in [`BACKUP`]; deleted with the
+    /// batch.
     temporary: TempDir,
     names: Vec<OsString>,
 }
 
-const BEFORE: &str = "before";
+/// Subfolder of the files that are replaced.
+const BACKUP: &str = "before";
 
 impl FileBatch {
     /// A batch without files, in the folder of a file.
@@ -33,7 +36,7 @@ impl FileBatch {
             .prefix(".ik-arm-")
             .tempdir_in(&folder)
             .map_err(|source| failed(path, source))?;
-        fs::create_dir(temporary.path().join(BEFORE)).map_err(|source| failed(path, source))?;
+        fs::create_dir(temporary.path().join(BACKUP)).map_err(|source| failed(path, source))?;
         Ok(Self { folder, temporary, names: Vec::new() })
     }
 
@@ -56,7 +59,7 @@ impl FileBatch {
     /// Fails if one cannot be moved. The folder is then restored as far as possible.
     pub fn finish(self) -> Result<(), WriteError> {
         for (index, name) in self.names.iter().enumerate() {
-            if let Err(source) = self.place(name) {
+            if let Err(source) = self.install(name) {
                 self.names[..index].iter().rev().for_each(|name| self.restore(name));
                 return Err(failed(&self.folder.join(name), source));
             }
@@ -64,15 +67,15 @@ impl FileBatch {
         Ok(())
     }
 
-    fn place(&self, name: &OsStr) -> io::Result<()> {
-        let (path, before) = (self.folder.join(name), self.before_path(name));
+    fn install(&self, name: &OsStr) -> io::Result<()> {
+        let (path, backup) = (self.folder.join(name), self.backup_path(name));
         match fs::symlink_metadata(&path) {
-            Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-            Ok(_) => fs::rename(&path, &before)?,
+            Ok(existing) if existing.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(_) => fs::rename(&path, &backup)?,
             Err(_) => {}
         }
         fs::rename(self.new_path(name), &path).inspect_err(|_| {
-            let _ = fs::rename(&before, &path);
+            let _ = fs::rename(&backup, &path);
         })
     }
 
@@ -80,14 +83,14 @@ impl FileBatch {
         let path = self.folder.join(name);
         // The error that led here is the one to report.
         let _ = fs::remove_file(&path);
-        let _ = fs::rename(self.before_path(name), &path);
+        let _ = fs::rename(self.backup_path(name), &path);
     }
 
     fn new_path(&self, name: &OsStr) -> PathBuf {
         self.temporary.path().join(name)
     }
 
-    fn before_path(&self, name: &OsStr) -> PathBuf {
-        self.temporary.path().join(BEFORE).join(name)
+    fn backup_path(&self, name: &OsStr) -> PathBuf {
+        self.temporary.path().join(BACKUP).join(name)
     }
 }

@@ -10,33 +10,34 @@ pub struct ExportFrames {
 }
 
 impl ExportFrames {
-    /// The frames of the document's timeline, at `fps` frames a second if given; only the first if the
-    /// rig's pose does not change.
+    /// The frames of the document's timeline, at `fps` frames a second if given; only the first if
+    /// the rig's pose does not change.
     ///
     /// # Errors
     ///
-    /// Fails if the frame rate is not one that a timeline can have.
+    /// Fails if the frame rate is 0 or above [`Timeline::MAX_FRAME_RATE`].
     pub fn of_pose(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
         Self::new(document, fps, document.is_animated())
     }
 
-    /// Like [`ExportFrames::of_pose`], but one frame only if nothing in a picture changes.
+    /// Like [`ExportFrames::of_pose`] for pictures: only the first frame if nothing visible
+    /// changes.
     ///
     /// # Errors
     ///
     /// As [`ExportFrames::of_pose`].
     pub fn of_picture(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
-        let moves = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
-        Self::new(document, fps, moves || !document.keys.is_empty())
+        let is_moving = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
+        Self::new(document, fps, is_moving || !document.keys.is_empty())
     }
 
-    fn new(document: &Document, fps: Option<u32>, moves: bool) -> Result<Self, MotionError> {
+    fn new(document: &Document, fps: Option<u32>, is_moving: bool) -> Result<Self, MotionError> {
         let frame_rate = fps.unwrap_or(document.timeline.frame_rate);
         let timeline = Timeline { frame_rate, ..document.timeline };
         if !(1..=Timeline::MAX_FRAME_RATE).contains(&frame_rate) {
             return Err(MotionError::FrameRate(frame_rate));
         }
-        Ok(Self { timeline, count: if moves { timeline.frames() } else { 1 } })
+        Ok(Self { timeline, count: if is_moving { timeline.frames() } else { 1 } })
     }
 
     /// Number of frames, at least 1.
@@ -60,7 +61,7 @@ impl ExportFrames {
     }
 }
 
-/// A document evaluated at one time after another without a copy for each.
+/// Evaluates a document at successive times without copying it for each.
 pub struct FrameEvaluator {
     document: Document,
 }
@@ -71,7 +72,7 @@ impl FrameEvaluator {
         Self { document: document.clone() }
     }
 
-    /// The document at a time, like [`Document::at`].
+    /// The document at a time, like [`Document::evaluate`].
     pub fn at(&mut self, time: f64) -> &Document {
         self.document.apply_keys(time);
         &self.document

@@ -44,8 +44,8 @@ impl JsonPath {
 
     /// The byte at which the value begins, or else the nearest existing value around it.
     pub fn find(&self, text: &str) -> usize {
-        let inside = (1..=self.0.len()).rev();
-        let found = inside.map(|depth| &self.0[..depth]).find_map(|path| find(text, path));
+        let depths = (1..=self.0.len()).rev();
+        let found = depths.map(|depth| &self.0[..depth]).find_map(|path| find(text, path));
         found.unwrap_or_else(|| skip_space(text, 0))
     }
 }
@@ -119,7 +119,7 @@ fn find(text: &str, path: &[PathSegment]) -> Option<usize> {
     let mut json = serde_json::Deserializer::from_str(text);
     let mut found = false;
     let error = ValueFinder { path, found: &mut found }.deserialize(&mut json).err()?;
-    // The parser is before the value, at most some spaces away.
+    // The parser stopped at the value, or at the space in front of it.
     found.then(|| skip_space(text, start_of_line(text, error.line()) + error.column()))
 }
 
@@ -186,7 +186,7 @@ mod tests {
 
     const TEXT: &str = "{\n  \"é\": 1, \"b\":[ 1,\n\t{\"c\" :\n  \"d\"},[\n[]]],\n \"e\":null}";
 
-    fn place(field: &JsonPath) -> (usize, usize) {
+    fn position(field: &JsonPath) -> (usize, usize) {
         line_and_column(TEXT, field.find(TEXT))
     }
 
@@ -204,16 +204,16 @@ mod tests {
             (b().index(2).index(0), (5, 1)),
             (root().key("e"), (6, 6)),
         ] {
-            assert_eq!(place(&field), expected, "{field}");
+            assert_eq!(position(&field), expected, "{field}");
         }
     }
 
     #[test]
-    fn of_a_value_that_is_not_there_the_one_around_it_is_found() {
-        assert_eq!(place(&JsonPath::root().key("b").index(1).key("none")), (3, 2));
-        assert_eq!(place(&JsonPath::root().key("b").index(9)), (2, 15));
-        assert_eq!(place(&JsonPath::root().key("e").key("x").index(1)), (6, 6));
-        assert_eq!(place(&JsonPath::root().index(1)), (1, 1));
+    fn a_missing_value_is_found_at_the_nearest_value_around_it() {
+        assert_eq!(position(&JsonPath::root().key("b").index(1).key("none")), (3, 2));
+        assert_eq!(position(&JsonPath::root().key("b").index(9)), (2, 15));
+        assert_eq!(position(&JsonPath::root().key("e").key("x").index(1)), (6, 6));
+        assert_eq!(position(&JsonPath::root().index(1)), (1, 1));
     }
 
     #[test]

@@ -1,13 +1,13 @@
-//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`], [`to_bvh`] and
-//! [`to_csv`] write; [`solve_line`] answers the lines of `ik-arm solve`. docs/files.md describes the
-//! formats.
+//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`], [`to_bvh`]
+//! and [`to_csv`] write; [`solve_line`] answers the lines of `ik-arm solve`. docs/files.md
+//! describes the formats.
 //!
-//! An [`OpenError`] has the line, the column, the field, the rule and the value. Oddities that do not
-//! keep a file from being opened are [`Remark`]s in [`Opened`]. Losses of an export are in the notes of
-//! [`Exported`].
+//! An [`OpenError`] has the line, the column, the field, the rule and the value. Oddities that do
+//! not keep a file from being opened are [`Remark`]s in [`Opened`]. Losses of an export are in the
+//! notes of [`Exported`].
 //!
-//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]; nothing else
-//! writes to the disk.
+//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]; nothing
+//! else writes to the disk.
 
 mod bvh;
 mod csv;

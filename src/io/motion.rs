@@ -19,21 +19,21 @@ pub enum MotionError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The frame rate, in frames per second, is 0 or above [`Timeline::MAX_FRAME_RATE`].
-    #[error("frames a second must be from 1 to {max}, got {0}", max = Timeline::MAX_FRAME_RATE)]
+    #[error("frames per second must be from 1 to {max}, got {0}", max = Timeline::MAX_FRAME_RATE)]
     FrameRate(u32),
     /// The skeleton has no joints.
-    #[error("the skeleton has no joint; the file needs at least one")]
+    #[error("the skeleton must have at least one joint")]
     NoJoints,
     /// A position overflows in the file's unit.
-    #[error("{joint:?} is beyond 3.4028235e38; bring it nearer to 0")]
+    #[error("the position of {joint:?} must be within ±3.4028235e38")]
     TooFar {
         /// Name of the joint or point.
         joint: String,
     },
     /// The motion has more than [`MotionError::MOST_NUMBERS`] numbers.
     #[error(
-        "{frames} frames of {numbers} numbers each are more than {max} numbers; export a shorter \
-         time or fewer frames in a second",
+        "a motion must have at most {max} numbers, got {frames} frames of {numbers}; export a \
+         shorter time or fewer frames per second",
         max = MotionError::MOST_NUMBERS
     )]
     TooMuch {
@@ -51,10 +51,12 @@ impl MotionError {
     /// The most numbers that a motion can have: about a gigabyte of text.
     pub const MOST_NUMBERS: usize = 100_000_000;
 
+    /// Checks the size of a motion.
+    ///
     /// # Errors
     ///
     /// Fails with more than [`MotionError::MOST_NUMBERS`].
-    pub(super) fn if_too_much(frames: usize, numbers: usize) -> Result<(), Self> {
+    pub(super) fn check_size(frames: usize, numbers: usize) -> Result<(), Self> {
         if frames.saturating_mul(numbers) > Self::MOST_NUMBERS {
             return Err(Self::TooMuch { frames, numbers });
         }

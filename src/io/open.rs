@@ -20,7 +20,7 @@ use super::{bvh, format, gltf, js3d};
 ///
 /// Fails if the file cannot be read or has none of these formats.
 pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    opened(&Source::open(path)?, skeleton)
+    open_source(&Source::open(path)?, skeleton)
 }
 
 /// Like [`open`], from a reader. `name` stands for the file in errors.
@@ -29,7 +29,7 @@ pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
 ///
 /// See [`open`].
 pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    opened(&Source::read(name, input)?, skeleton)
+    open_source(&Source::read(name, input)?, skeleton)
 }
 
 /// Like [`open`], from a text. `name` stands for the file in errors.
@@ -38,11 +38,11 @@ pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Open
 ///
 /// See [`open`].
 pub fn parse(name: &str, text: &str, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    opened(&Source::new(name, text), skeleton)
+    open_source(&Source::new(name, text), skeleton)
 }
 
-fn opened(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    match (kind(source)?, skeleton) {
+fn open_source(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+    match (detect_format(source)?, skeleton) {
         (FileFormat::Scene, skeleton) => js3d::read(source, skeleton),
         (FileFormat::Gltf, skeleton) => gltf::read(source, skeleton),
         (FileFormat::Motion, skeleton) => bvh::read(source, skeleton),
@@ -63,19 +63,19 @@ enum FileFormat {
     Motion,
 }
 
-/// The format, by the first word or key that identifies it. The rest is not parsed.
-fn kind(source: &Source) -> Result<FileFormat, OpenError> {
+/// Detects the format by the first word or key that identifies it, and parses no further.
+fn detect_format(source: &Source) -> Result<FileFormat, OpenError> {
     if source.binary().is_some() {
         return Ok(FileFormat::Gltf);
     }
     if bvh::is_bvh(source.text()) {
         return Ok(FileFormat::Motion);
     }
-    let mut kind = None;
+    let mut format = None;
     let mut json = serde_json::Deserializer::from_str(source.text());
-    let read = json.deserialize_map(FileFormatVisitor(&mut kind)).and_then(|()| json.end());
-    match (kind, read) {
-        (Some(kind), _) => Ok(kind),
+    let read = json.deserialize_map(FileFormatVisitor(&mut format)).and_then(|()| json.end());
+    match (format, read) {
+        (Some(format), _) => Ok(format),
         (None, Err(error)) => Err(source.parse_error(&JsonPath::root(), &error)),
         (None, Ok(())) => {
             let reason = "must have \"format\" (a document of ik-arm), \"scene\" (a .js3d file of \
@@ -96,9 +96,9 @@ impl<'de> Visitor<'de> for FileFormatVisitor<'_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         while let Some(key) = map.next_key::<Cow<'_, str>>()? {
-            let kind = match &*key {
+            let format = match &*key {
                 "format" => FileFormat::Document,
-                // glTF has a number here, and an "asset" before or after.
+                // In glTF, "scene" is a number, and "asset" may come later.
                 "scene" if map.next_value::<Whole>().is_ok() => {
                     *self.0 = Some(FileFormat::Scene);
                     continue;
@@ -110,8 +110,9 @@ impl<'de> Visitor<'de> for FileFormatVisitor<'_> {
                     continue;
                 }
             };
-            *self.0 = Some(kind);
-            return Err(A::Error::custom("the format is known"));
+            *self.0 = Some(format);
+            // Stops the parser; the caller ignores this error.
+            return Err(A::Error::custom("the format is detected"));
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ pub struct Opened {
     pub warnings: Vec<Remark>,
     /// For each joint in the file's order, its index in the document's skeleton.
     pub order: Vec<JointId>,
-    /// The names of the file's skeletons, one of which is the document's; empty where skeletons have
-    /// no names.
+    /// The names of the file's skeletons, one of which is the document's; empty where skeletons
+    /// have no names.
     pub skeletons: Vec<String>,
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Default)]
 pub struct Progress {
     done: AtomicUsize,
-    of: AtomicUsize,
+    total: AtomicUsize,
     cancelled: AtomicBool,
 }
 
@@ -16,14 +16,14 @@ pub struct Progress {
 pub struct Cancelled;
 
 impl Progress {
-    /// Reports that `done` of `of` steps are done. The job calls it often.
+    /// Reports that `done` of `total` steps are done. The job calls it often.
     ///
     /// # Errors
     ///
     /// Fails if the job was cancelled.
-    pub fn step(&self, done: usize, of: usize) -> Result<(), Cancelled> {
+    pub fn step(&self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.done.store(done, Ordering::Relaxed);
-        self.of.store(of, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
         if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
@@ -39,7 +39,7 @@ impl Progress {
 
     /// Fraction of the job that is done, from 0 to 1.
     pub fn part(&self) -> f32 {
-        let (done, of) = (self.done.load(Ordering::Relaxed), self.of.load(Ordering::Relaxed));
-        if of == 0 { 0.0 } else { (done as f32 / of as f32).min(1.0) }
+        let (done, total) = (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed));
+        if total == 0 { 0.0 } else { (done as f32 / total as f32).min(1.0) }
     }
 }

@@ -14,11 +14,11 @@ use super::translation::Translation;
 pub struct Source {
     name: String,
     text: String,
-    /// The text in the file, where `text` is a translation of it.
+    /// The text of the file before the translation, if `text` is a translation.
     translated: Option<(String, Translation)>,
     /// The binary chunk of a GLB file.
     binary: Option<Vec<u8>>,
-    /// The folder of the file, in which other files that it names are looked for.
+    /// The folder of the file, for other files that it names.
     folder: Option<PathBuf>,
 }
 
@@ -70,7 +70,8 @@ impl Source {
         }
     }
 
-    /// The same file with a translation of its text. Errors have the positions of the file's text.
+    /// The same file with a translation of its text. Errors keep the positions of the original
+    /// text.
     pub fn translated(&self, translation: Translation) -> Self {
         let translated = Self::new(&self.name, &translation.text);
         Self { translated: Some((self.text.clone(), translation)), ..translated }
@@ -122,7 +123,7 @@ impl Source {
         remarks
     }
 
-    /// An error of the parser, at the position of the value that it is about.
+    /// An error of the parser, at the position of the invalid value.
     pub fn parse_error(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
         let reason = without_position(error);
         if self.text.trim_ascii().is_empty() {
@@ -131,7 +132,7 @@ impl Source {
         let is_about_value =
             error.is_data() && !reason.starts_with("duplicate") || reason == OUT_OF_RANGE;
         let reason = match reason.as_str() {
-            OUT_OF_RANGE => format!("{OUT_OF_RANGE}; it must be between ±3.4028235e38"),
+            OUT_OF_RANGE => "must be within ±3.4028235e38".to_owned(),
             _ if error.is_data() => reason,
             _ => format!("not JSON: {reason}"),
         };
@@ -143,9 +144,9 @@ impl Source {
         OpenError::Content { file: self.name.clone(), remark }
     }
 
-    /// A remark about the text at a byte, and about a thing there by name; the name may be empty.
-    pub fn remark_about(&self, byte: usize, thing: &str, reason: &str) -> Remark {
-        let field = if thing.is_empty() { JsonPath::root() } else { JsonPath::root().key(thing) };
+    /// A remark at a byte of the text, about a joint if its name is not empty.
+    pub fn remark_about(&self, byte: usize, joint: &str, reason: &str) -> Remark {
+        let field = if joint.is_empty() { JsonPath::root() } else { JsonPath::root().key(joint) };
         self.remark_at(byte, &field, reason)
     }
 
@@ -177,7 +178,7 @@ fn not_utf8(file: String, bytes: &[u8]) -> OpenError {
     let valid = bytes.utf8_chunks().next().map_or("", |chunk| chunk.valid());
     let (line, column) = line_and_column(valid, valid.len());
     let byte = bytes.get(valid.len()).copied().unwrap_or_default();
-    let reason = format!("byte {byte:#04x} is not UTF-8 there; JSON is written in UTF-8");
+    let reason = format!("text must be UTF-8, got byte {byte:#04x}");
     OpenError::Content { file, remark: Remark { line, column, field: String::new(), reason } }
 }
 

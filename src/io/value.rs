@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visi
 use serde::ser::{Error as _, SerializeSeq as _, Serializer};
 use serde::{Deserialize, Serialize};
 
-/// An object. The derived code alone accepts an array, too.
+/// An object. Without this wrapper, serde's derived code would accept an array, too.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct JsonObject<T>(pub T);
@@ -70,7 +70,7 @@ impl<'de> Deserialize<'de> for JsonNumber {
 impl Serialize for JsonNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !self.0.is_finite() {
-            return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
+            return Err(S::Error::custom(format!("number must be finite, got {}", self.0)));
         }
         serializer.serialize_f32(self.0)
     }
@@ -89,7 +89,7 @@ impl<'de> Deserialize<'de> for Seconds {
 impl Serialize for Seconds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !self.0.is_finite() {
-            return Err(S::Error::custom(format!("{} is not a finite number", self.0)));
+            return Err(S::Error::custom(format!("number must be finite, got {}", self.0)));
         }
         serializer.serialize_f64(self.0)
     }
@@ -160,8 +160,8 @@ impl<'de, const N: usize> Deserialize<'de> for JsonNumbers<N> {
                 let mut numbers = [0.0; N];
                 let mut found = 0;
                 while let Some(JsonNumber(number)) = row.next_element()? {
-                    if let Some(place) = numbers.get_mut(found) {
-                        *place = number;
+                    if let Some(slot) = numbers.get_mut(found) {
+                        *slot = number;
                     }
                     found += 1;
                 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
-/// Writes a file whole or not at all, by way of a temporary file beside it. An existing file keeps its
-/// permissions, and a link stays a link. A pipe or a device is written to directly.
+/// Writes a file whole or not at all, by way of a temporary file beside it. An existing file keeps
+/// its permissions, and a link stays a link. A pipe or a device is written to directly.
 ///
 /// # Errors
 ///
@@ -14,7 +14,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
 }
 
-/// Like [`write()`], with the content that `write` writes piece by piece. If it fails, no file is
+/// Like [`write()`], for content that the closure writes piece by piece. If it fails, no file is
 /// created.
 ///
 /// # Errors
@@ -25,12 +25,12 @@ pub fn write_with<E: From<WriteError>>(
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
     let failed = |source| failed(path, source);
-    let there = fs::metadata(path).ok();
-    match &there {
-        Some(there) if there.is_dir() => {
+    let existing = fs::metadata(path).ok();
+    match &existing {
+        Some(existing) if existing.is_dir() => {
             return Err(failed(io::ErrorKind::IsADirectory.into()).into());
         }
-        Some(there) if !there.is_file() => {
+        Some(existing) if !existing.is_file() => {
             let mut file = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
             return write(&mut file);
         }
@@ -38,13 +38,13 @@ pub fn write_with<E: From<WriteError>>(
     }
     // The target of a link, so that it stays a link.
     let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let rights = there.map(|there| there.permissions());
+    let permissions = existing.map(|existing| existing.permissions());
     let mut file = temporary_file(&folder_of(path)?).map_err(failed)?;
     let mut buffered = BufWriter::new(&mut file);
     write(&mut buffered)?;
     buffered.flush().map_err(failed)?;
     drop(buffered);
-    keep(file, path, rights).map_err(failed)?;
+    persist(file, path, permissions).map_err(failed)?;
     Ok(())
 }
 
@@ -67,13 +67,13 @@ pub(super) fn failed(path: &Path, source: io::Error) -> WriteError {
     WriteError::Write { path: path.display().to_string(), source }
 }
 
-fn keep(
+fn persist(
     file: tempfile::NamedTempFile,
     path: &Path,
-    rights: Option<fs::Permissions>,
+    permissions: Option<fs::Permissions>,
 ) -> io::Result<()> {
-    if let Some(rights) = rights {
-        file.as_file().set_permissions(rights)?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
     }
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;

@@ -1,17 +1,17 @@
-//! Path following: joints of a chain on the path of its head.
+//! Path following: the joints of a chain follow the path of its head, as a snake's do.
 //!
-//! Every joint of a snake is where its head was before. With bones of fixed length, joint k+1 is the
-//! first point at a distance of one bone when the path is followed back from joint k:
+//! With bones of fixed length, joint k+1 is the first point at the distance of one bone on the way back
+//! along the path from joint k:
 //! |P(s_{k+1}) − P(s_k)| = d_k, s_{k+1} < s_k.
 
 use glam::Vec3;
 
 /// Positions of the joints for the head at parameter `head` of `path`: one more than `lengths`.
 ///
-/// `path` must be continuous and defined before `head` as far as the chain reaches back. `stride` is
-/// a parameter step over which the path is nearly straight and leaves a bone's reach at most once. A
-/// joint is at most 10,000 strides behind the one before it, and the whole chain 1,000,000: on a path
-/// that never goes one bone away, joints stop there.
+/// `path` must be continuous and defined before `head` for the length of the chain. `stride` is a
+/// parameter step over which the path is nearly straight and crosses the sphere of one bone about a
+/// joint at most once. The search for a joint ends after 10,000 strides, that for the whole chain after
+/// 1,000,000: on a path that stays within one bone of a joint, the next joint is where the search ends.
 pub fn along(
     path: impl Fn(f64) -> Vec3,
     head: f64,
@@ -34,19 +34,20 @@ pub(crate) fn behind(
     let mut at = head;
     lengths.into_iter().map(move |length| {
         let from = path(at);
-        at = back_by(|s| path(s).distance(from) - length, at, stride, &mut left);
+        at = first_before(|s| path(s).distance(from) - length, at, stride, &mut left);
         path(at)
     })
 }
 
-/// The parameter before `start` at which `beyond` becomes positive, by at most so many strides.
-fn back_by(beyond: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
+/// The first parameter before `start` at which `excess` becomes positive, found by strides and then by
+/// bisection. `left` counts down the strides.
+fn first_before(excess: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
     const MOST_STRIDES: usize = 10_000;
     const HALVINGS: usize = 40;
     let mut near = start;
     let mut far = start;
     for _ in 0..MOST_STRIDES.min(*left) {
-        if beyond(far) > 0.0 {
+        if excess(far) > 0.0 {
             break;
         }
         near = far;
@@ -55,7 +56,7 @@ fn back_by(beyond: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usiz
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (near + far);
-        if beyond(middle) > 0.0 {
+        if excess(middle) > 0.0 {
             far = middle;
         } else {
             near = middle;

@@ -15,9 +15,9 @@
 //! ```
 //!
 //! times as fast as the cursor; r' = dD/dd is [`IkSolution::slope`], g the reference's
-//! [gain](TwistReference::gain), d the cursor's distance from the shoulder. Where this is unbounded the
-//! elbow pops: at a straight or folded arm without softness (oₑ → 0 while r' = 1), where the reference
-//! is singular (g → ∞), and at a cursor that crosses the shoulder (d → 0).
+//! [gain](TwistReference::gain), d the cursor's distance from the shoulder. Where this bound is
+//! infinite the elbow pops: at a straight or folded arm without softness (oₑ → 0 while r' = 1),
+//! where the reference is singular (g → ∞), and at a cursor that crosses the shoulder (d → 0).
 
 use glam::Vec3;
 
@@ -57,15 +57,16 @@ pub struct Ik {
     pub soft_reach: SoftReach,
 }
 
-/// State of an arm that the next solve continues from: it resolves a cursor without a direction or yaw
-/// and a singular twist reference. The default is an arm without a previous pose.
+/// State of an arm from which the next solve continues. It supplies the direction for a cursor at
+/// the shoulder, the yaw for a cursor straight above or below the shoulder, and the twist reference
+/// where that is singular. The default is an arm without a previous pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IkState {
     /// Direction and yaw of the previous pose's Pointer.
     pub pointer: Pointer,
-    /// The previous twist reference; without one [`TwistReference::Transport`] begins at the
-    /// stereographic direction.
+    /// Twist reference of the previous pose. With `None`, [`TwistReference::Transport`] begins at
+    /// the stereographic direction.
     pub transported: Option<TransportedFrame>,
 }
 
@@ -77,7 +78,7 @@ pub struct IkSolution {
     pub pose: TwoBonePose,
     /// The Pointer with the direction from which the twist was measured.
     pub transported: TransportedFrame,
-    /// r' = dD/dd, the hand's radial speed per radial speed of the cursor.
+    /// r' = dD/dd, the ratio of the hand's radial speed to the cursor's.
     pub slope: f32,
 }
 
@@ -90,11 +91,11 @@ impl IkSolution {
 }
 
 impl Ik {
-    /// Poses the hand at `cursor` with the elbow at the angle `twist` (ψ) from the reference. `last`
-    /// is the [state](IkSolution::state) of the previous pose.
+    /// Poses the hand at `cursor` with the elbow at the angle `twist` (ψ) from the twist reference.
+    /// `last` is the [state](IkSolution::state) of the previous pose.
     ///
-    /// With softness or stretch the hand is [`Reach::Reached`] when it is within 1e-6·L of the
-    /// cursor.
+    /// With softness or stretch, the reach is [`Reach::Reached`] if the hand is within 1e-6·L of
+    /// the cursor.
     ///
     /// # Panics
     ///
@@ -122,11 +123,12 @@ impl Ik {
         IkSolution { pose, transported, slope: extent.slope }
     }
 
-    /// Inverse of [`Self::solve`]: cursor and twist ψ in [0, 2π) of a pose. The side of the elbow is
-    /// kept for a straight or folded arm too.
+    /// Returns the cursor and the twist ψ, in [0, 2π), for which [`Self::solve`] gives `pose`. The
+    /// elbow keeps its side even if the arm is straight or folded.
     ///
-    /// A hand that soft limits cannot reach is brought as near as they allow. Stretch is a function of
-    /// the hand's distance: a pose with another stretch keeps its hand and changes its elbow.
+    /// A hand that soft limits cannot reach is brought as near as they allow. Stretch is a function
+    /// of the hand's distance: for a pose with another stretch, the hand is kept and the elbow
+    /// changes.
     #[must_use]
     pub fn matching(
         &self,
@@ -145,7 +147,8 @@ impl Ik {
     }
 }
 
-/// Reach of a hand at `distance` from the shoulder for a cursor at `wanted`.
+/// Reach of a hand at the distance `distance` from the shoulder for a cursor at the distance
+/// `wanted`.
 pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
     const NEAR: f64 = 1e-6;
     let near = NEAR * (f64::from(bones.upper()) + f64::from(bones.lower()));
@@ -156,7 +159,8 @@ pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
     }
 }
 
-/// Length, computed in f64 where no square overflows; infinite above `f32::MAX`.
+/// Length of a vector, computed in f64, where no square of an f32 overflows; infinite above
+/// `f32::MAX`.
 pub(super) fn length(v: Vec3) -> f32 {
     v.as_dvec3().length() as f32
 }

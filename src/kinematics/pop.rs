@@ -1,8 +1,9 @@
 //! Pops: steps in which the elbow moves much faster than the cursor, with their causes.
 //!
-//! With ŵ the Pointer's direction, ê the side of the elbow, hₑ along and oₑ out, the elbow is at
-//! hₑ ŵ + oₑ ê. T is the least rotation from the Pointer before a step (ŵ) to that after it (ŵ'). The
-//! elbow's displacement is exactly the sum of three parts:
+//! With ŵ the Pointer's direction, ê the unit vector from the Pointer towards the elbow, and hₑ and
+//! oₑ the elbow's coordinates along ŵ and ê, the elbow is at hₑ ŵ + oₑ ê. T is the rotation by the
+//! smallest angle from the Pointer before a step (ŵ) to the Pointer after it (ŵ'). The elbow's
+//! displacement is exactly the sum of three parts:
 //!
 //! ```text
 //! turn    T(hₑ ŵ + oₑ ê) − (hₑ ŵ + oₑ ê)                   the Pointer's rotation
@@ -12,18 +13,20 @@
 //!
 //! # Definition of a spike
 //!
-//! A step in which the elbow moves more than twice as far as expected. Expected is the cursor's own
-//! displacement, or σd₁/D times that, as of an arm that rotates rigidly about the shoulder:
+//! A spike is a step in which the elbow moves more than twice as far as expected. The expected
+//! displacement is the cursor's own, or σd₁/D times that if it is more, as for an arm with stretch
+//! σ that rotates rigidly about the shoulder:
 //!
 //! ```text
 //! |Δ elbow| / |Δ cursor|  >  2 · max(1, σd₁ / max(D, L/5))
 //! ```
 //!
-//! The factor 2 is what an arm without a pop can need: the sideways part of the bound in
-//! [`ik`](super::ik) is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer
-//! turns (gain g ≤ 1: 45° or more from the Limb's or a pole's line, all of the front of the map), and
-//! the bending of two equal bones stays below 2 up to D = 0.968·L. Within a fifth of the outer limit
-//! around the shoulder a passing cursor rotates the whole arm, which is a pop of its own kind.
+//! An arm without a pop can need the factor 2. The sideways part of the bound in [`ik`](super::ik)
+//! is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer turns (gain g
+//! ≤ 1: at 45° or more from the vertical for the Limb, at 45° or more from the pole's line, and in
+//! the half of all directions opposite to the stereographic map's singular one). The bending of two
+//! equal bones stays below 2 up to D = 0.968·L. A cursor that passes the shoulder within a fifth of
+//! the outer limit rotates the whole arm, which is a kind of pop of its own.
 //!
 //! Everything is in Root space; lengths share any one unit, angles are radians.
 
@@ -46,10 +49,10 @@ pub struct PosedArm {
     pub cursor: Vec3,
     /// Bones, twist reference and soft limits.
     pub ik: Ik,
-    /// ψ.
+    /// Twist ψ, in radians.
     pub twist: f32,
-    /// Position of the shoulder in the world for a cursor pinned to the world; `None` for a cursor in
-    /// Root space, which moves with the shoulder.
+    /// Position of the shoulder in the world if the cursor is pinned to the world; `None` if the
+    /// cursor is in Root space and moves with the shoulder.
     pub pinned_root: Option<Vec3>,
     /// Influence of IK: 1 for the solved pose, 0 for the FK angles.
     pub influence: f32,
@@ -57,7 +60,7 @@ pub struct PosedArm {
     pub fk: Fk,
 }
 
-/// The input other than the cursor that changed in a step.
+/// An input, other than the cursor, that changed in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(
     feature = "serde",
@@ -69,7 +72,7 @@ pub enum InputChange {
     Lengths,
     /// Kind of the twist reference, or its map.
     TwistReference,
-    /// Direction of the pole.
+    /// Position of the pole.
     Pole,
     /// Soft limits.
     SoftReach,
@@ -87,17 +90,17 @@ pub enum InputChange {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ElbowStep {
-    /// The elbow's displacement divided by the cursor's.
+    /// Ratio of the elbow's displacement to the cursor's.
     pub ratio: f32,
     /// Ratio above which the step is a spike.
     pub limit: f32,
-    /// Part of the displacement by the rotation of the Pointer.
+    /// Part of the displacement by the rotation of the Pointer, in Root space.
     pub turn: Vec3,
-    /// Part in the plane of the arm.
+    /// Part of the displacement in the plane of the arm, in Root space.
     pub bend: Vec3,
-    /// Part about the Pointer, by the twist reference.
+    /// Part of the displacement about the Pointer, by the twist reference, in Root space.
     pub swing: Vec3,
-    /// Cause of the spike; `None` for other steps.
+    /// Cause of the spike; `None` if the step is not a spike.
     pub pop: Option<PopCause>,
 }
 
@@ -105,9 +108,9 @@ pub struct ElbowStep {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PopCause {
-    /// The Pointer passed a singular direction of the twist reference at the angle `nearest`, radians.
+    /// The Pointer passed a singular direction of the twist reference.
     Singular {
-        /// Least angle from the direction, radians.
+        /// Smallest angle between the Pointer and the singular direction in the step, in radians.
         nearest: f32,
     },
     /// The arm became or ceased to be straight.
@@ -131,8 +134,9 @@ impl InputChange {
         Self::Root,
     ];
 
-    /// The first change in the order above; `None` without one. Inputs without effect are ignored: the
-    /// FK angles at influence 1, and the shoulder's position unless the cursor is pinned to the world.
+    /// The first input in [`Self::ALL`] that differs between two steps; `None` if all are equal.
+    /// Inputs without effect are ignored: the FK angles at influence 1, and the shoulder's position
+    /// unless the cursor is pinned to the world.
     pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
         Self::ALL.into_iter().find(|change| change.is_between(before, after))
     }
@@ -173,14 +177,15 @@ impl InputChange {
 }
 
 impl ElbowStep {
-    /// Shortest step of the cursor, as a fraction of L, that is distinct from f32 rounding of the elbow
-    /// of a nearly straight or folded arm. Shorter steps can be accumulated.
+    /// Length of the cursor's step, as a fraction of L, below which the elbow's displacement cannot
+    /// be told from f32 rounding in a nearly straight or folded arm. A caller can accumulate
+    /// shorter steps.
     pub const LEAST: f32 = 1e-3;
-    /// Factor over the expected displacement (see the module).
+    /// Ratio of the elbow's displacement to the expected one above which a step is a spike.
     const SPIKE: f64 = 2.0;
 
-    /// The step between two poses without a [`InputChange`]; `None` for a cursor step shorter than
-    /// [`Self::LEAST`].
+    /// The elbow's step between two poses, for inputs without an [`InputChange`]; `None` if the
+    /// cursor moves by less than [`Self::LEAST`].
     pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
         let went = (after.cursor.as_dvec3() - before.cursor.as_dvec3()).length();
         let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
@@ -207,7 +212,7 @@ impl ElbowStep {
     }
 }
 
-/// The parts turn, bend and swing.
+/// The parts turn, bend and swing of the elbow's displacement.
 fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     let outward = before.outward();
     let transported = TransportedFrame { direction: before.pointer.direction, outward };
@@ -224,6 +229,7 @@ fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
     ]
 }
 
+/// Ratio of the elbow's expected displacement to the cursor's: max(1, σd₁ / max(D, L/5)).
 fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
     const NEAR_SHOULDER: f64 = 0.2;
     let stretch = f64::from(before.pose.stretch.max(after.pose.stretch));
@@ -232,13 +238,14 @@ fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
     (upper / distance.max(NEAR_SHOULDER * sum)).max(1.0)
 }
 
-/// Whether the hand is nearer to the outer limit than to the inner one.
+/// Whether the hand, on average of both poses, is nearer to the outer limit than to the inner one.
 fn is_far_out(before: &PosedArm, after: &PosedArm, sum: f64) -> bool {
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
-/// Least angle between the Pointer and a singular direction of the twist reference.
+/// Smallest angle between the Pointer, from one pose to the other, and a singular direction of the
+/// twist reference, in radians.
 fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {
@@ -248,12 +255,12 @@ fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
         TwistReference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
         TwistReference::Pole(pole) => nearest(pole).min(nearest(-pole)),
         TwistReference::Stereographic(map) => nearest(map.singular()),
-        // Without a previous frame it begins at the stereographic direction.
+        // Without a previous frame, transport begins at the stereographic direction.
         TwistReference::Transport => nearest(Stereographic::default().singular()),
     }
 }
 
-/// Least angle from a direction to the shorter arc between two others, radians.
+/// Smallest angle from the direction `point` to the shorter arc between two directions, in radians.
 fn nearest_on_arc(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     let at_ends = from.angle_between(point).min(to.angle_between(point));
     let Some(normal) = from.cross(to).try_normalize() else {

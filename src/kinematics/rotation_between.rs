@@ -1,20 +1,20 @@
 use glam::{Quat, Vec3A};
 
-use super::normalize::{is_usual, near_1, normalize};
+use super::normalize::{normalize, scaled_near_1, squares_safely};
 
-/// Least rotation from one direction to another, for vectors of any length. The identity if either has
-/// no direction; about any perpendicular axis if they are opposite.
+/// Rotation by the smallest angle that turns one direction to another, for vectors of any length. The
+/// identity if either has no direction; about any perpendicular axis if they are opposite.
 pub(crate) fn rotation_between(from: Vec3A, to: Vec3A) -> Quat {
-    // Of the product of lengths: beyond, the sum below loses digits.
+    // Cosine of the angle; below it, `both + dot` cancels.
     const NEARLY_OPPOSITE: f32 = -0.9;
-    if !(is_usual(from) && is_usual(to)) {
-        let both = near_1(from).zip(near_1(to));
+    if !(squares_safely(from) && squares_safely(to)) {
+        let both = scaled_near_1(from).zip(scaled_near_1(to));
         return both.map_or(Quat::IDENTITY, |(from, to)| rotation_between(from, to));
     }
     let both = (from.length_squared() * to.length_squared()).sqrt();
     let (cross, dot) = (from.cross(to), from.dot(to));
     if dot < NEARLY_OPPOSITE * both {
-        // Half a turn about what is exactly perpendicular, then the little that is left.
+        // Half a turn about an exactly perpendicular axis, then the small remainder.
         let unit = from.normalize();
         let axis = normalize(cross.reject_from_normalized(unit));
         let axis = axis.unwrap_or_else(|| unit.any_orthonormal_vector());
@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn it_brings_every_direction_to_every_other_also_to_the_opposite() {
+    fn every_direction_turns_to_every_other_also_to_its_opposite() {
         for from in directions() {
             for to in directions() {
                 let turned = rotation_between(from, to) * from.normalize();
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_and_huge_vectors_turn_as_others_do() {
+    fn the_length_of_vectors_does_not_change_the_rotation() {
         let (from, to) = (Vec3A::new(1.0, 2.0, -2.0), Vec3A::new(-6.0, 2.0, 3.0));
         for exponents in [(-126, -126), (-126, 120), (120, 120), (-80, 0), (0, -70), (70, 0)] {
             let [one, other] = [exponents.0, exponents.1].map(|power| 2_f32.powi(power));
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_direction_turns_nothing() {
+    fn a_vector_without_a_direction_gives_the_identity() {
         assert_eq!(rotation_between(Vec3A::ZERO, Vec3A::X), Quat::IDENTITY);
         assert_eq!(rotation_between(Vec3A::X, Vec3A::ZERO), Quat::IDENTITY);
     }

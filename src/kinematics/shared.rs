@@ -4,18 +4,20 @@ use std::sync::Arc;
 
 /// A value whose clones share its memory until one of them changes (copy on write).
 ///
-/// Cloning does not allocate, and clones that still share compare equal without comparing values.
+/// Cloning does not allocate, and clones that still share memory compare equal without a comparison
+/// of their values.
 pub struct Shared<T>(Arc<T>);
 
 impl<T> Shared<T> {
-    /// Whether both share one value in memory; two values may still be equal.
+    /// Whether both clones share one value in memory. Values that are not shared may still be
+    /// equal.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
 impl<T: Clone> Shared<T> {
-    /// The value for an edit; copied first if others share it.
+    /// Mutable access to the value, which is copied first if other clones share it.
     pub fn make_mut(&mut self) -> &mut T {
         Arc::make_mut(&mut self.0)
     }

@@ -54,13 +54,13 @@ pub struct SoftReach {
 
 /// An invalid [`SoftReach`].
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("{field} is {value}; it must be {range}")]
+#[error("{field} must be {range}, got {value}")]
 pub struct SoftReachError {
-    /// The field.
+    /// The invalid field.
     pub field: SoftReachField,
     /// The refused value.
     pub value: f32,
-    /// The valid range.
+    /// The valid range, in words.
     pub range: &'static str,
 }
 
@@ -69,25 +69,25 @@ pub struct SoftReachError {
 pub enum SoftReachField {
     /// Softness s.
     Softness,
-    /// Maximum stretch.
+    /// Maximum factor by which the limbs are lengthened.
     MaxStretch,
-    /// Minimum elbow angle φ_min.
+    /// Minimum elbow angle φ_min, in radians.
     MinElbowAngle,
 }
 
-/// Distance of the hand, with stretch and slope.
+/// Distance of the hand from the shoulder, with stretch and slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandDistance {
-    /// D, from the shoulder to the hand.
+    /// D, the distance from the shoulder to the hand.
     pub distance: f32,
     /// σ, the factor by which the limbs are lengthened.
     pub stretch: f32,
-    /// dD/dd, the hand's radial speed per radial speed of the cursor.
+    /// dD/dd, the ratio of the hand's radial speed to the cursor's.
     pub slope: f32,
 }
 
 impl fmt::Display for SoftReachField {
-    /// The field's name.
+    /// The field's name, such as `max_stretch`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Softness => "softness",
@@ -104,8 +104,8 @@ impl Default for SoftReach {
 }
 
 impl SoftReach {
-    /// Soft limits of a softness in [0, 1), a finite `max_stretch` of at least 1, and a
-    /// `min_elbow_angle` in [0, π).
+    /// Soft limits with a softness in [0, 1), a finite `max_stretch` of at least 1, and a
+    /// `min_elbow_angle` in [0, π) radians.
     ///
     /// # Errors
     ///
@@ -120,7 +120,7 @@ impl SoftReach {
             return refused(SoftReachField::Softness, softness, "from 0 to less than 1");
         }
         if !(max_stretch.is_finite() && max_stretch >= 1.0) {
-            return refused(SoftReachField::MaxStretch, max_stretch, "a finite number, 1 or more");
+            return refused(SoftReachField::MaxStretch, max_stretch, "finite and at least 1");
         }
         if !(0.0..core::f32::consts::PI).contains(&min_elbow_angle) {
             return refused(
@@ -147,7 +147,8 @@ impl SoftReach {
         self.min_elbow_angle
     }
 
-    /// Whether the limits are a plain clamp.
+    /// Whether the limits are hard: a plain clamp without softness, stretch and minimum elbow
+    /// angle.
     pub fn is_hard(self) -> bool {
         self == Self::default()
     }
@@ -157,9 +158,11 @@ impl SoftReach {
         SoftLimits::new(self, bones).least as f32
     }
 
-    /// Distance of the cursor for a distance of the hand: the inverse of [`Self::hand_distance`]. The hand
-    /// approaches a soft limit asymptotically: at the limit or beyond, the result is 17 soft zones
-    /// away, which is exact to f32. Where stretch begins, the cursor is at the hand.
+    /// Distance of the cursor from the shoulder for a hand at `distance`: the inverse of
+    /// [`Self::hand_distance`]. The hand approaches a soft limit asymptotically; for a hand at the
+    /// limit or beyond, the result is 17 widths of the soft zone from the zone's start, where the
+    /// hand is at the limit to f32 precision. Where stretch brings the hand to the cursor, the
+    /// result is `distance`.
     #[must_use]
     pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
         let limits = SoftLimits::new(self, bones);
@@ -171,7 +174,8 @@ impl SoftReach {
         if is_stretched_to_it { distance } else { saturate(limits.harden(d / longest).max(d)) }
     }
 
-    /// Distance of the hand for a distance of the cursor from the shoulder (finite, 0 or more).
+    /// Distance of the hand for a cursor at `cursor_distance` (finite, 0 or more) from the
+    /// shoulder.
     #[must_use]
     pub fn hand_distance(self, bones: TwoBone, cursor_distance: f32) -> HandDistance {
         let limits = SoftLimits::new(self, bones);
@@ -180,7 +184,8 @@ impl SoftReach {
         let longest = f64::from(self.max_stretch);
         let stretch =
             if d > limits.outer_join() { (d / distance).clamp(1.0, longest) } else { 1.0 };
-        // Stretched to the cursor, the hand follows it; at the maximum it lags as without stretch.
+        // While stretch brings the hand to the cursor, the hand follows it; at maximum stretch it
+        // lags as without stretch.
         let slope = if 1.0 < stretch && stretch < longest { 1.0 } else { slope * stretch };
         HandDistance {
             distance: saturate(distance * stretch),
@@ -210,17 +215,17 @@ impl SoftLimits {
         Self { least, most, width: 0.5 * f64::from(soft_reach.softness) * (most - least) }
     }
 
-    /// d_a.
+    /// d_a, the distance at which the outer soft zone begins.
     fn outer_join(self) -> f64 {
         self.most - self.width
     }
 
-    /// d_b.
+    /// d_b, the distance at which the inner soft zone begins.
     fn inner_join(self) -> f64 {
         self.least + self.width
     }
 
-    /// d' for d, with its slope.
+    /// The hand's distance d' without stretch for a cursor at distance d, and the slope dd'/dd.
     fn soften(self, d: f64) -> (f64, f64) {
         let Self { least, most, width } = self;
         if width == 0.0 {
@@ -238,7 +243,8 @@ impl SoftLimits {
         }
     }
 
-    /// d for d', the inverse of [`Self::soften`].
+    /// The cursor's distance d for a hand at distance d' without stretch: the inverse of
+    /// [`Self::soften`].
     fn harden(self, softened: f64) -> f64 {
         const ZONES: f64 = 17.0;
         let Self { least, most, width } = self;
@@ -254,7 +260,7 @@ impl SoftLimits {
     }
 }
 
-/// Soft limits before they are checked.
+/// Deserialized soft limits, not yet checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct UncheckedSoftReach {

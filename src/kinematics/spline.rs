@@ -12,9 +12,9 @@
 //!
 //! # What breaks
 //!
-//! A spline overshoots: lengths 1000, 10, 10, 1000 give −114 between the two in the middle. The caller
-//! clamps values with a valid range. Angles must be unwrapped: from 350° to 10° the curve passes
-//! through 180°, from 350° to 370° through 360°.
+//! A spline overshoots: the values 1000, 10, 10, 1000 at equal intervals give −114 between the two
+//! in the middle. The caller clamps values that have a valid range. Angles must be unwrapped: from
+//! 350° to 10° the curve passes through 180°, from 350° to 370° through 360°.
 //!
 //! # Source
 //!
@@ -26,13 +26,14 @@ use core::ops::{Add, Mul, Sub};
 /// A value at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot<V> {
-    /// In seconds; finite.
+    /// Time in seconds; finite.
     pub time: f64,
-    /// The value.
+    /// Value at this time.
     pub value: V,
 }
 
-/// Knots sorted by time, at most one at any time.
+/// A cubic spline through knots sorted by time, with at most one knot per time; constant before the
+/// first and after the last.
 ///
 /// ```
 /// use ik_arm::kinematics::spline::Spline;
@@ -50,13 +51,14 @@ pub struct Spline<V> {
 }
 
 impl<V> Default for Spline<V> {
-    /// Without knots.
+    /// A spline without knots.
     fn default() -> Self {
         Self { knots: Vec::new() }
     }
 }
 
-/// Later knots replace earlier ones at the same time; knots at non-finite times are skipped.
+/// Of several knots at the same time, the last in iteration order is kept; knots at non-finite
+/// times are skipped.
 impl<V: Copy> FromIterator<Knot<V>> for Spline<V> {
     fn from_iter<T: IntoIterator<Item = Knot<V>>>(knots: T) -> Self {
         let mut spline = Self::default();
@@ -73,17 +75,17 @@ impl<V: Copy> Spline<V> {
         &self.knots
     }
 
-    /// Whether there are no knots.
+    /// Whether the spline has no knots.
     pub fn is_empty(&self) -> bool {
         self.knots.is_empty()
     }
 
-    /// Inserts a knot, replacing one at the same time. Ignored if the time is not finite.
+    /// Inserts a knot, or replaces the knot at this time. Does nothing if the time is not finite.
     pub fn insert(&mut self, time: f64, value: V) {
         if !time.is_finite() {
             return;
         }
-        // One time, not two, at −0 and 0.
+        // Adding 0 makes −0 and 0 the same time.
         let knot = Knot { time: time + 0.0, value };
         match self.search(time) {
             Ok(index) => self.knots[index] = knot,
@@ -91,19 +93,20 @@ impl<V: Copy> Spline<V> {
         }
     }
 
-    /// Removes the knot at a time and returns its value.
+    /// Removes the knot at exactly this time and returns its value; `None` if there is no such
+    /// knot.
     pub fn remove(&mut self, time: f64) -> Option<V> {
         let index = self.search(time).ok()?;
         Some(self.knots.remove(index).value)
     }
 
-    /// Value of the knot at exactly this time.
+    /// Value of the knot at exactly this time; `None` if there is no such knot.
     pub fn get(&self, time: f64) -> Option<V> {
         Some(self.knots[self.search(time).ok()?].value)
     }
 
-    /// Value of the last knot at or before a time, for values that do not blend; the first knot's before
-    /// that; `None` without knots.
+    /// Value of the last knot at or before a time, for values that do not blend. Before the first
+    /// knot it is the first knot's value; without knots it is `None`.
     pub fn step(&self, time: f64) -> Option<V> {
         let until = self.knots.partition_point(|knot| knot.time <= time);
         Some(self.knots.get(until.saturating_sub(1))?.value)
@@ -143,7 +146,7 @@ where
         Some(from.value * a + leaving * b + to.value * c + arriving * d)
     }
 
-    /// How fast the value changes at a knot, over a span of time: h·m.
+    /// The tangent h·m at a knot: the rate of change there times the span h of time.
     fn turn(&self, knot: usize, span: f64) -> V {
         let here = self.knots[knot];
         let mirrored = |of: Knot<V>| Knot {
@@ -164,7 +167,7 @@ where
     }
 }
 
-/// What p₁, h·m₁, p₂ and h·m₂ weigh at s from 0 to 1.
+/// Weights of p₁, h·m₁, p₂ and h·m₂ at s from 0 to 1.
 fn hermite(s: f64) -> [f64; 4] {
     let (s2, s3) = (s * s, s * s * s);
     [2.0 * s3 - 3.0 * s2 + 1.0, s3 - 2.0 * s2 + s, 3.0 * s2 - 2.0 * s3, s3 - s2]

@@ -139,7 +139,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
 }
 
 #[test]
-fn what_a_line_leaves_out_is_the_arm_of_the_seed_at_the_origin() {
+fn omitted_fields_default_to_the_original_arm_at_the_origin() {
     let full = concat!(
         r#"{"min_elbow_angle_deg":0,"max_stretch":1,"softness":0,"reference":"limb","#,
         r#""twist_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#
@@ -148,7 +148,7 @@ fn what_a_line_leaves_out_is_the_arm_of_the_seed_at_the_origin() {
 }
 
 #[test]
-fn a_hand_out_of_reach_is_an_answer_and_no_failure() {
+fn an_unreachable_hand_is_a_result_and_not_an_error() {
     assert_eq!(pose(r#"{"hand":[0,600,0]}"#).reach, "too_far");
     assert_eq!(pose(r#"{"hand":[0,60,0]}"#).reach, "too_close");
     assert_eq!(pose(r#"{"hand":[0,0,0]}"#).hand, Vec3::new(100.0, 0.0, 0.0));
@@ -163,7 +163,7 @@ fn each_line_is_solved_on_its_own() {
 }
 
 #[test]
-fn a_huge_spin_is_reduced_exactly_before_it_becomes_radians() {
+fn a_huge_twist_is_reduced_exactly_before_it_becomes_radians() {
     let twisted = |twist: f32| pose(&format!(r#"{{"hand":[250,120,60],"twist_deg":{twist:e}}}"#));
     assert_eq!(twisted(360.0 * 4096.0 + 90.0).elbow, twisted(90.0).elbow);
     assert_eq!(twisted(1e30).elbow, twisted(1e30 % 360.0).elbow);
@@ -180,7 +180,7 @@ fn a_decimal_is_rounded_once() {
 }
 
 #[test]
-fn escaped_keys_and_spaces_anywhere_are_json_like_any_other() {
+fn escaped_keys_and_whitespace_anywhere_are_accepted() {
     let line = "\t { \"h\\u0061nd\" :\t[ 2.5e2 , 120.0,6E+1 ] } ";
     assert_eq!(answers(&solve(line)), answers(&solve(POSE)));
 }
@@ -188,22 +188,22 @@ fn escaped_keys_and_spaces_anywhere_are_json_like_any_other() {
 #[test]
 fn numbers_read_back_to_the_same_f32_as_the_library_gives() {
     let mut random = Random(7);
-    let asked: Vec<Asked> = (0..2000).map(|_| Asked::random(&mut random)).collect();
-    let lines: Vec<String> = asked.iter().map(|asked| asked.line(&mut random)).collect();
+    let query: Vec<Query> = (0..2000).map(|_| Query::random(&mut random)).collect();
+    let lines: Vec<String> = query.iter().map(|query| query.line(&mut random)).collect();
 
     let output = solve(lines.join("\n"));
 
     let answers = answers(&output);
-    assert_eq!(answers.len(), asked.len());
-    for ((asked, line), answer) in asked.iter().zip(&lines).zip(&answers) {
-        asked.check(&serde_json::from_str(answer).unwrap_or_else(|_| panic!("{line}: {answer}")));
+    assert_eq!(answers.len(), query.len());
+    for ((query, line), answer) in query.iter().zip(&lines).zip(&answers) {
+        query.check(&serde_json::from_str(answer).unwrap_or_else(|_| panic!("{line}: {answer}")));
         check_shortest(answer);
     }
 }
 
-/// A random pose, and what the library makes of it.
+/// A random input, compared with the library's result.
 #[derive(Debug)]
-struct Asked {
+struct Query {
     hand: Vec3,
     upper: f32,
     lower: f32,
@@ -211,7 +211,7 @@ struct Asked {
     twist_deg: f32,
 }
 
-impl Asked {
+impl Query {
     fn random(random: &mut Random) -> Self {
         let [upper, lower] = [(); 2].map(|()| random.power_of_ten(-2.0..4.0) as f32);
         if random.below(8) == 0 {
@@ -236,7 +236,7 @@ impl Asked {
         let mut point = |v: Vec3| v.to_array().map(&mut number).join(",");
         let (hand, root) = (point(self.hand), point(self.root));
         let [upper, lower, twist] = [self.upper, self.lower, self.twist_deg].map(number);
-        // What a line leaves out, said.
+        // Omitted fields, written out.
         let as_before = [
             "",
             r#","reference":"limb""#,
@@ -291,7 +291,8 @@ fn check_shortest(answer: &str) {
     }
 }
 
-/// How many digits count. Two shortest forms may be equally near, and differ in the last one.
+/// Number of significant digits. Two shortest forms may be equally near and differ in the last
+/// digit.
 fn digits(number: &str) -> usize {
     let mantissa = number.split('e').next().unwrap_or_default();
     let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
@@ -301,7 +302,7 @@ fn digits(number: &str) -> usize {
 // Bad lines
 
 #[test]
-fn a_line_that_is_not_json_is_told_where() {
+fn a_line_that_is_not_json_is_an_error_with_its_position() {
     for (line, error) in [
         ("hello", "not JSON: expected value, found `hello` (byte 1)"),
         ("{hand:[1,2,3]}", "not JSON: key must be a string, found `hand` (byte 2)"),
@@ -369,7 +370,7 @@ fn a_missing_unknown_or_duplicate_field_is_named() {
 }
 
 #[test]
-fn a_mistyped_field_is_named_with_what_it_is_and_should_be() {
+fn a_field_of_the_wrong_type_is_named_with_both_types() {
     for (field, value, error) in [
         ("upper", "\"2\"", "upper: invalid type: string \"2\", expected a number"),
         ("upper", "null", "upper: invalid type: null, expected a number"),
@@ -391,7 +392,7 @@ fn a_mistyped_field_is_named_with_what_it_is_and_should_be() {
 }
 
 #[test]
-fn a_wrong_count_of_numbers_is_counted() {
+fn a_vector_of_the_wrong_length_is_an_error_with_its_length() {
     for (hand, found) in [
         ("[]", "0 numbers"),
         ("[1]", "1 number"),
@@ -440,27 +441,27 @@ fn a_length_that_is_not_above_0_is_refused() {
 }
 
 #[test]
-fn a_pose_that_leaves_the_numbers_of_the_world_is_refused() {
+fn a_pose_that_overflows_in_world_space_is_refused() {
     assert_eq!(
         refusal(r#"{"hand":[3e38,0,0],"root":[3e38,0,0],"upper":2e38,"lower":2e38}"#),
-        "root: [3e38, 0.0, 0.0] puts the elbow beyond 3.4028235e38; bring it nearer to 0"
+        "root: must keep the elbow within ±3.4028235e38, got [3e38, 0.0, 0.0]"
     );
     assert_eq!(
         refusal(r#"{"hand":[0,-3e38,0],"root":[0,-3e38,0],"upper":1,"lower":3e38}"#),
-        "root: [0.0, -3e38, 0.0] puts the hand beyond 3.4028235e38; bring it nearer to 0"
+        "root: must keep the hand within ±3.4028235e38, got [0.0, -3e38, 0.0]"
     );
 }
 
 #[test]
 fn bytes_that_are_not_utf_8_are_refused() {
-    let why = "which is not UTF-8 there; JSON is written in UTF-8";
-    assert_eq!(refusal(b"{\"hand\xff\":[1,2,3]}"), format!("byte 7 is 0xff, {why}"));
-    assert_eq!(refusal(b"{\"hand\":[1,2,3]}\xc3"), format!("byte 17 is 0xc3, {why}"));
-    assert_eq!(refusal(b"\xff\xfe{\0}\0"), format!("byte 1 is 0xff, {why}"));
+    let rule = "the line must be UTF-8, got";
+    assert_eq!(refusal(b"{\"hand\xff\":[1,2,3]}"), format!("{rule} 0xff as byte 7"));
+    assert_eq!(refusal(b"{\"hand\":[1,2,3]}\xc3"), format!("{rule} 0xc3 as byte 17"));
+    assert_eq!(refusal(b"\xff\xfe{\0}\0"), format!("{rule} 0xff as byte 1"));
 }
 
 #[test]
-fn deep_nesting_is_a_bad_line_and_no_overflow_of_the_stack() {
+fn deep_nesting_is_an_error_and_no_stack_overflow() {
     for opening in ["[", "{\"hand\":", "{\"a\":"] {
         refusal(opening.repeat(60_000 / opening.len()));
     }
@@ -506,7 +507,7 @@ fn a_line_longer_than_64_kib_is_refused_and_the_next_is_solved() {
 }
 
 #[test]
-fn an_error_never_counts_lines_of_its_own() {
+fn messages_have_no_second_line_number() {
     let field = refusal(r#"{"hand":[1,2,3],"x at line 7 column 3":1}"#);
     assert!(field.starts_with("unknown field `x at line 7 column 3`, expected"), "{field}");
     for line in ["x", "{", "{}", "[]", r#"{"hand":1e99}"#, r#"{"hand":[1e99]}"#] {
@@ -531,7 +532,7 @@ fn answers_and_errors_come_in_the_order_of_the_lines() {
 }
 
 #[test]
-fn blank_lines_alone_give_nothing_and_are_no_failure() {
+fn blank_lines_alone_print_nothing_and_are_not_an_error() {
     for input in ["", "\n", "\r\n\r\n", " \t\n  ", "\u{feff}", "\u{feff}\n"] {
         let output = solve(input);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(0), 0), "{input:?}");
@@ -671,20 +672,20 @@ fn a_full_disk_is_a_failure_with_a_message() {
     assert_eq!(nowhere_to_complain.status.code(), Some(1), "and not 101, a panic");
 }
 
-// Anything at all
+// Random input
 
 proptest! {
     #![proptest_config(config(150, 2026))]
 
     #[test]
-    fn whatever_the_bytes_every_line_that_is_not_blank_has_one_answer(input in any_input()) {
+    fn any_bytes_get_one_answer_per_line_that_is_not_blank(input in any_input()) {
         let output = solve(&input);
 
-        let asked = numbers_of_lines_that_are_not_blank(&input);
+        let query = numbers_of_lines_that_are_not_blank(&input);
         let answers = answers(&output);
-        prop_assert_eq!(answers.len(), asked.len());
+        prop_assert_eq!(answers.len(), query.len());
         let mut bad = 0;
-        for (answer, number) in answers.iter().zip(asked) {
+        for (answer, number) in answers.iter().zip(query) {
             let parsed: Value = serde_json::from_str(answer).expect("every answer is JSON");
             if parsed.get("error").is_some() {
                 prop_assert_eq!(error_of(answer).map(|(line, _)| line), Some(number));

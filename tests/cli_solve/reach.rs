@@ -7,9 +7,9 @@ use glam::{DVec3, Vec3};
 use super::{Answer, pose, poses, refusal};
 use crate::common::Random;
 
-/// A line whose hand meets its limits in its own way.
+/// A line with softness, stretch and smallest elbow angle.
 #[derive(Debug)]
-struct Asked {
+struct Query {
     hand: Vec3,
     root: Vec3,
     upper: f32,
@@ -19,7 +19,7 @@ struct Asked {
     min_elbow_angle_deg: f32,
 }
 
-/// What the formulas say of it, in f64.
+/// The expected result by the formulas, in f64.
 #[derive(Debug)]
 struct Twin {
     distance: f64,
@@ -28,7 +28,7 @@ struct Twin {
     longest: f64,
 }
 
-impl Asked {
+impl Query {
     fn line(&self) -> String {
         let Self { hand, root, upper, lower, softness, max_stretch, min_elbow_angle_deg } = self;
         let (hand, root) = (hand.to_array(), root.to_array());
@@ -73,7 +73,7 @@ impl Asked {
         };
         near("distance", f64::from(answer.distance), distance, 5e-7 * l);
 
-        // The elbow and the hand are in the world, where f32 are as coarse as the root is far.
+        // Elbow and hand are in world space, where f32 are coarse far from the origin.
         let coarse = 4.0 * f64::from(f32::EPSILON) * (root.abs().max_element() + l);
         let [elbow, hand] = [answer.elbow, answer.hand].map(|joint| joint.as_dvec3() - root);
         near("hand", hand.length(), distance, 5e-7 * l + coarse);
@@ -95,7 +95,8 @@ impl Asked {
         };
         assert!(reach.is_none_or(|reach| reach == answer.reach), "{reach:?} {self:?}: {answer:?}");
 
-        // The angle by the law of cosines; its cosine, because the angle itself is coarse at 0 and 180°.
+        // The angle by the law of cosines; its cosine, because the angle itself is coarse at 0 and
+        // 180°.
         let [d1, d2] = [self.upper, self.lower].map(|length| stretch * f64::from(length));
         let cos = (d1 * d1 + d2 * d2 - distance * distance) / (2.0 * d1 * d2);
         let ratio = l * l / (d1 * d2);
@@ -105,14 +106,14 @@ impl Asked {
     }
 }
 
-/// One of the two: what matters is often at the edge.
+/// One of two values, often at the edge of a range.
 fn edge_or(random: &mut Random, edge: f32, range: Range<f32>) -> f32 {
     if random.below(3) == 0 { edge } else { random.within(range) }
 }
 
-fn reaching(random: &mut Random) -> Asked {
+fn reaching(random: &mut Random) -> Query {
     let [upper, lower] = [(); 2].map(|()| random.within(20.0..400.0));
-    Asked {
+    Query {
         hand: random.direction() * (upper + lower) * edge_or(random, 0.0, 0.0..2.5),
         root: random.vector(0.8) * [0.0, 1000.0][random.below(2)],
         upper,
@@ -126,8 +127,8 @@ fn reaching(random: &mut Random) -> Asked {
 #[test]
 fn the_hand_meets_its_limits_as_the_formulas_say() {
     let mut random = Random(2);
-    let asked: Vec<Asked> = (0..4000).map(|_| reaching(&mut random)).collect();
-    let lines: Vec<String> = asked.iter().map(Asked::line).collect();
+    let asked: Vec<Query> = (0..4000).map(|_| reaching(&mut random)).collect();
+    let lines: Vec<String> = asked.iter().map(Query::line).collect();
     for (asked, answer) in asked.iter().zip(poses(&lines)) {
         asked.check(&answer);
     }
@@ -174,7 +175,7 @@ fn without_softness_the_hand_stops_at_its_limits() {
 }
 
 #[test]
-fn limbs_stretch_to_the_cursor_as_far_as_they_may() {
+fn limbs_stretch_to_the_cursor_up_to_their_maximum() {
     let stretched = |distance| along_x(distance, r#","max_stretch":1.5"#);
     for (asked, distance, sigma, reach) in [
         (50.0, 100.0, 1.0, "too_close"),
@@ -193,7 +194,7 @@ fn limbs_stretch_to_the_cursor_as_far_as_they_may() {
 }
 
 #[test]
-fn a_soft_arm_that_stretches_is_bent_and_reaches_all_the_same() {
+fn a_soft_arm_that_stretches_stays_bent_and_still_reaches() {
     // d' = 500 − 100/e at 500, and the limbs are as much longer as it is short.
     let answer = along_x(500.0, r#","softness":0.5,"max_stretch":1.5"#);
     let sigma = 500.0 / (500.0 - 100.0 * (-1.0_f64).exp());
@@ -203,7 +204,7 @@ fn a_soft_arm_that_stretches_is_bent_and_reaches_all_the_same() {
 }
 
 #[test]
-fn the_elbow_is_never_closed_more_than_it_may_be() {
+fn the_elbow_angle_is_never_below_its_minimum() {
     for degrees in [0.0, 1.0, 30.0, 90.0, 150.0, 179.0_f32] {
         let open = |distance| along_x(distance, &format!(r#","min_elbow_angle_deg":{degrees}"#));
         let cos = f64::from(degrees).to_radians().cos();
@@ -231,13 +232,13 @@ fn the_elbow_angle_is_180_straight_0_folded_and_90_in_a_right_triangle() {
     assert!((right - 90.0).abs() < 1e-4, "{right}");
 }
 
-// Bad ones
+// Invalid lines
 
 #[test]
 fn a_number_out_of_its_range_is_refused_with_the_range() {
     for (field, range, values) in [
         ("softness", "from 0 to less than 1", ["1", "1.5", "-0.5", "-0.001"]),
-        ("max_stretch", "a finite number, 1 or more", ["0", "0.5", "-2", "0.999"]),
+        ("max_stretch", "finite and at least 1", ["0", "0.5", "-2", "0.999"]),
         ("min_elbow_angle_deg", "from 0 to less than 180°", ["180", "200", "-1", "-0.25"]),
     ] {
         for value in values {
@@ -266,7 +267,7 @@ fn a_number_out_of_its_range_is_refused_with_the_range() {
 }
 
 #[test]
-fn the_largest_and_smallest_of_each_are_right() {
+fn extreme_values_of_each_field_give_finite_poses() {
     for fields in [
         r#""softness":0.99999994"#,
         r#""max_stretch":3.4028235e38"#,

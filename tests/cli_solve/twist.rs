@@ -1,4 +1,4 @@
-//! Twist references, and state that is carried over from line to line.
+//! Twist references, and the state kept from line to line.
 
 use std::f64::consts::PI;
 
@@ -24,18 +24,18 @@ fn pole(pole: Vec3) -> String {
     format!(r#"{{"pole":[{},{},{}]}}"#, pole.x, pole.y, pole.z)
 }
 
-/// Which way the elbow of an arm at the origin stands out from the line through its hand.
+/// Direction from the shoulder-hand line to the elbow, for an arm at the origin.
 fn outward(answer: &Answer) -> DVec3 {
     answer.elbow.as_dvec3().reject_from(answer.hand.as_dvec3()).normalize()
 }
 
-/// How far `to` is turned from `from` about `w`.
+/// Signed angle from `from` to `to` about `w`.
 fn turn(from: DVec3, to: DVec3, w: DVec3) -> f64 {
     w.dot(from.cross(to)).atan2(from.dot(to))
 }
 
 /// Parallel transport by Rodrigues' formula: the least turn from one direction to another.
-fn carried_in_f64(e: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+fn transported_in_f64(e: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let axis = from.cross(to);
     let (sin, cos) = (axis.length(), from.dot(to));
     let axis = axis.normalize_or_zero();
@@ -85,7 +85,7 @@ fn formulas(at: Vec3) -> [Formula; 3] {
 }
 
 #[test]
-fn the_elbow_is_spun_from_the_chosen_direction_and_the_gain_is_that_ones() {
+fn twist_and_gain_are_those_of_the_chosen_reference() {
     let mut random = Random(41);
     let mut requests = Vec::new();
     let mut lines = Vec::new();
@@ -140,7 +140,7 @@ fn a_pole_is_relative_to_the_root() {
 }
 
 #[test]
-fn where_a_reference_is_singular_the_gain_is_null_and_the_elbow_is_the_limbs() {
+fn at_a_singular_direction_the_gain_is_null_and_the_elbow_is_that_of_limb() {
     let hand = Vec3::new(250.0, 120.0, 60.0);
     for (hand, twist_reference) in [
         (Vec3::new(0.0, 400.0, 0.0), r#""limb""#.to_owned()),
@@ -175,7 +175,8 @@ fn beside_a_singular_direction_the_gain_is_a_number() {
 
 // Transport
 
-/// Hands once around a circle that a cone about `axis` makes, back to the first, at changing distances.
+/// Hands once around a circle that a cone about `axis` makes, back to the first, at changing
+/// distances.
 fn around(axis: DVec3, half_angle: f64, steps: usize) -> Vec<Vec3> {
     let (u, v) = axis.any_orthonormal_pair();
     let hand = |step: usize| {
@@ -188,7 +189,7 @@ fn around(axis: DVec3, half_angle: f64, steps: usize) -> Vec<Vec3> {
 }
 
 #[test]
-fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
+fn transport_starts_stereographic_and_continues_from_line_to_line() {
     const STEPS: usize = 90;
     let mut random = Random(5);
     for half_angle in [0.3, 0.8, 1.2, 1.5] {
@@ -202,7 +203,7 @@ fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
         let mut e = on_map(w[0]);
         for (step, answer) in poses.iter().enumerate() {
             if step > 0 {
-                e = carried_in_f64(e, w[step - 1], w[step]);
+                e = transported_in_f64(e, w[step - 1], w[step]);
             }
             let off = turn(e, outward(answer), w[step]).abs();
             assert!(off < 1e-5, "off by {off} after {step} lines around {axis}");
@@ -218,7 +219,7 @@ fn transport_begins_on_the_map_and_is_carried_from_line_to_line() {
 }
 
 #[test]
-fn a_transported_elbow_is_spun_from_what_is_carried_without_the_spin() {
+fn the_twist_is_not_part_of_the_transported_direction() {
     let hands = around(DVec3::new(0.0, 0.6, 0.8), 0.9, 12);
     let lines: Vec<String> = hands.iter().map(|hand| transported(*hand)).collect();
     let twist = |(step, line): (usize, &String)| {
@@ -234,18 +235,18 @@ fn a_transported_elbow_is_spun_from_what_is_carried_without_the_spin() {
     }
 }
 
-/// A few hands whose last elbow is elsewhere than it is without those before.
+/// Hands for which the last elbow depends on the ones before.
 fn way() -> [String; 3] {
     [Vec3::new(-100.0, 50.0, 300.0), Vec3::new(20.0, -310.0, 5.0), Vec3::new(-200.0, 30.0, -240.0)]
         .map(transported)
 }
 
 #[test]
-fn what_is_carried_survives_bad_and_blank_lines() {
+fn the_transported_direction_survives_bad_and_blank_lines() {
     let [first, second, third] = way();
     let whole = answers(&solve(format!("{first}\n{second}\n{third}")));
     let alone = answers(&solve(&third));
-    assert_ne!(whole[2], alone[0], "else nothing is carried");
+    assert_ne!(whole[2], alone[0], "else nothing is transported");
     let long = " ".repeat(70_000);
     for bad in [
         "x",
@@ -281,12 +282,16 @@ fn transport_restarts_after_a_line_with_another_reference() {
         let other = format!(r#"{{"hand":[100,200,300]{other}}}"#);
         let interrupted = answers(&solve(format!("{first}\n{second}\n{other}\n{third}")));
         assert_eq!(interrupted[3..], alone, "{other}");
-        assert_eq!(interrupted[2..3], answers(&solve(&other)), "nor does it see what was carried");
+        assert_eq!(
+            interrupted[2..3],
+            answers(&solve(&other)),
+            "it ignores the transported direction too"
+        );
     }
 }
 
 #[test]
-fn transport_goes_on_across_arms_roots_and_softness() {
+fn transport_continues_across_arms_roots_and_softness() {
     let [first, second, third] = way();
     let changed = second
         .replace('}', r#","upper":900,"lower":30,"root":[5,6,7],"softness":0.5,"twist_deg":77}"#);
@@ -307,7 +312,7 @@ fn a_transported_hand_that_comes_to_the_shoulder_keeps_its_direction() {
 }
 
 #[test]
-fn without_transport_no_line_knows_of_another() {
+fn without_transport_lines_are_independent() {
     let mut random = Random(77);
     let lines: Vec<String> = (0..200)
         .flat_map(|_| {
@@ -333,7 +338,7 @@ fn without_transport_no_line_knows_of_another() {
     assert_eq!(found, forwards);
 }
 
-// Bad ones
+// Invalid lines
 
 #[test]
 fn an_unknown_reference_is_refused_with_the_list_of_references() {
@@ -355,7 +360,7 @@ fn an_unknown_reference_is_refused_with_the_list_of_references() {
 }
 
 #[test]
-fn a_pole_that_is_no_point_is_named_with_what_it_should_be() {
+fn an_invalid_pole_is_named_with_the_expected_type() {
     let range = "must be between -3.4028235e38 and 3.4028235e38";
     for (twist_reference, error) in [
         ("{}", "reference: missing field `pole`".to_owned()),

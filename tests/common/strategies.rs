@@ -39,12 +39,12 @@ pub fn within(what: &str, error: f64, bound: f64) -> TestCaseResult {
 pub struct Case {
     pub arm: TwoBone,
     pub cursor: Vec3,
-    pub spin: f32,
+    pub twist: f32,
 }
 
 impl Case {
     pub fn solve(self) -> TwoBonePose {
-        self.arm.solve(self.cursor, self.spin)
+        self.arm.solve(self.cursor, self.twist)
     }
 }
 
@@ -168,10 +168,10 @@ pub fn anywhere() -> impl Strategy<Value = Case> {
 
 /// Any arm, direction and twist, with the cursor at a radius of so many |δ| plus so many L.
 fn cases(radius: impl Strategy<Value = (f64, f64)>) -> impl Strategy<Value = Case> {
-    (arms(), directions(), radius, -10.0..10.0_f32).prop_map(|(arm, direction, radius, spin)| {
+    (arms(), directions(), radius, -10.0..10.0_f32).prop_map(|(arm, direction, radius, twist)| {
         let (inner, outer) = limits(arm);
         let cursor = (direction * (radius.0 * inner + radius.1 * outer)).as_vec3();
-        Case { arm, cursor, spin }
+        Case { arm, cursor, twist }
     })
 }
 

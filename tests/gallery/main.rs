@@ -1,5 +1,5 @@
-//! Hard-case examples: each does what its sentence says at every frame, compared with an arm posed in
-//! f64.
+//! Hard-case examples: each does what its sentence says at every frame, compared with an arm posed
+//! in f64.
 #![cfg(feature = "document")]
 
 mod pictures;
@@ -54,7 +54,7 @@ fn is_at_its_cursor(arm: &Arm) -> bool {
     pose.reach == Some(Reach::Reached) && pose.hand == arm.cursor_in_root()
 }
 
-// What moves from frame to frame
+// Movement from frame to frame
 
 fn steps(arms: &[Arm], of: impl Fn(&Arm) -> Vec3) -> Vec<f64> {
     let at: Vec<DVec3> = arms.iter().map(|arm| of(arm).as_dvec3()).collect();
@@ -150,10 +150,10 @@ fn along_the_pole_its_elbow_flips_and_the_stereographic_one_does_not() {
 fn exactly_straight_the_target_is_reached_and_the_twist_leaves_the_elbow() {
     let document = opened("exactly-straight");
     let arms = checked(&document);
-    let mut spins = arms.iter().map(|arm| arm.twist).collect::<Vec<_>>();
-    spins.sort_by(f32::total_cmp);
-    spins.dedup();
-    assert!(spins.len() > 100 && spins[spins.len() - 1] > 6.0, "it plays once around");
+    let mut twists = arms.iter().map(|arm| arm.twist).collect::<Vec<_>>();
+    twists.sort_by(f32::total_cmp);
+    twists.dedup();
+    assert!(twists.len() > 100 && twists[twists.len() - 1] > 6.0, "it plays once around");
     for arm in &arms {
         assert!(is_at_its_cursor(arm));
         assert_eq!(arm.cursor_in_root().as_dvec3().length(), f64::from(arm.bones.outer_limit()));
@@ -263,8 +263,8 @@ fn two_bones_in_a_mirror_follow_their_target() {
     within("the hand as it is opened", hand.distance(target.home.as_dvec3()), 1e-4 * length);
     let mut before: Option<[DVec3; 3]> = None;
     for time in times(&document) {
-        let goals = document.skeleton_rig.targets_at(time);
-        let report = chain_ik::solve(&mut skeleton, &goals, &document.skeleton_rig.solver);
+        let targets = document.skeleton_rig.targets_at(time);
+        let report = chain_ik::solve(&mut skeleton, &targets, &document.skeleton_rig.solver);
         assert!(report.expect("it can be solved").converged(), "at {time}");
         let at = points(&skeleton);
         within("the hand", at[2].distance(target.at(time).as_dvec3()), 2e-6 * length);

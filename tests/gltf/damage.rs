@@ -1,4 +1,4 @@
-//! Files that are damaged: each is an error or a document.
+//! Damaged files: each is an error or a document.
 
 use ik_arm::io;
 
@@ -23,7 +23,7 @@ fn open(bytes: &[u8]) {
     }
 }
 
-/// Where the JSON of a `.glb` file ends.
+/// Offset of the end of the JSON in a `.glb` file.
 fn end_of_json(bytes: &[u8]) -> usize {
     20 + u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize
 }
@@ -85,7 +85,7 @@ fn deep_nesting_is_an_error_and_a_deep_tree_is_not() {
 }
 
 #[test]
-fn keys_that_are_read_again_and_again_are_refused_in_time() {
+fn accessors_shared_by_too_many_channels_are_refused_early() {
     let mut text = text::Text::chain();
     let nodes: Vec<_> = (0..10_000).map(|_| serde_json::json!({})).collect();
     text.json["nodes"] = nodes.into();

@@ -1,4 +1,4 @@
-//! What is exported: every example, as it is and with keys.
+//! Documents to export: every example, with and without keys.
 
 use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document, RigKind, Timeline, TwistReferenceKind};
@@ -17,7 +17,7 @@ pub fn glb(document: &Document) -> Vec<u8> {
     io::glb(document, None, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Every example, and what keys and transforms can make of it.
+/// Every example, and variants with keys and transforms.
 pub fn all() -> Vec<(String, Document)> {
     let mut random = Random(20);
     let mut all = vec![("keyed-lengths".to_owned(), keyed_arm(&mut random))];
@@ -27,8 +27,8 @@ pub fn all() -> Vec<(String, Document)> {
         if document.rig == RigKind::Skeleton {
             for variant in 0..4 {
                 let mut keyed = keyed_skeleton(document.clone(), &mut random);
-                let place = transform(&mut random);
-                keyed.skeleton_mut().set_transform(place).expect("finite");
+                let transform = transform(&mut random);
+                keyed.skeleton_mut().set_transform(transform).expect("finite");
                 all.push((format!("{name}-keyed-{variant}"), keyed));
             }
             all.push((format!("{name}-flat"), flat(document.clone())));
@@ -58,7 +58,7 @@ pub fn keyed_arm(random: &mut Random) -> Document {
     document
 }
 
-/// An arm that stretches, goes softly, and is led by its hand and by its angles in turn.
+/// An arm with stretch and softness, switched between IK and FK.
 fn led_arm(random: &mut Random) -> Document {
     let soft_reach = SoftReach::new(0.3, 2.0, 0.5).expect("a softening");
     let arm =
@@ -98,13 +98,13 @@ fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
 }
 
 fn flat(mut document: Document) -> Document {
-    let mut place = document.skeleton().transform();
-    place.matrix3.z_axis = glam::Vec3A::ZERO;
-    document.skeleton_mut().set_transform(place).expect("finite");
+    let mut transform = document.skeleton().transform();
+    transform.matrix3.z_axis = glam::Vec3A::ZERO;
+    document.skeleton_mut().set_transform(transform).expect("finite");
     document
 }
 
-/// Nothing but points, one on the other.
+/// Joints without length, all at one point.
 fn points() -> Document {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     let joint = |name, parent| Joint::new(name, parent, Vec3::ZERO);

@@ -1,4 +1,4 @@
-//! The rules that every exported file keeps.
+//! Rules for every exported file.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -64,7 +64,7 @@ fn every_file_is_written_for_the_validator() {
 // Nodes
 
 #[test]
-fn no_node_has_a_scale_or_a_matrix_and_no_two_have_one_name() {
+fn no_node_has_a_scale_or_a_matrix_and_names_are_unique() {
     each(|name, _, glb| {
         let mut names = HashSet::new();
         for node in glb.nodes() {
@@ -123,7 +123,7 @@ fn joints_have_the_documents_names_and_the_leaves_have_tips() {
 }
 
 #[test]
-fn names_that_are_taken_get_numbers() {
+fn duplicate_names_get_numbers() {
     let (_, document) = all().into_iter().find(|(name, _)| name == "names").expect("there");
     let glb = exported(&document);
     let names: Vec<&str> = (0..glb.nodes().len()).map(|node| glb.name(node)).collect();
@@ -142,7 +142,7 @@ fn an_arm_has_two_joints_and_its_hand() {
 }
 
 #[test]
-fn an_arm_rests_straight_along_x_in_metres_with_y_along_its_bones() {
+fn the_rest_pose_of_an_arm_is_straight_along_x_in_metres_with_y_along_its_bones() {
     let mut document = Document::default();
     document.arm.root = Vec3::new(10.0, 20.0, 30.0);
     let worlds = exported(&document).worlds();
@@ -186,7 +186,7 @@ fn there_is_a_key_in_every_frame_and_time_counts_from_0() {
 }
 
 #[test]
-fn rotations_are_unit_quaternions_each_on_the_side_of_the_one_before() {
+fn rotations_are_unit_quaternions_in_the_hemisphere_of_the_one_before() {
     each(|name, _, glb| {
         for Moving { values, .. } in
             channels(glb).into_iter().filter(|moving| moving.path == "rotation")
@@ -210,7 +210,7 @@ fn every_number_is_finite() {
 }
 
 #[test]
-fn only_what_leaves_its_rest_has_a_channel() {
+fn only_nodes_that_leave_the_rest_pose_have_channels() {
     let mut document = example("ten-joints");
     for joint in 0..document.skeleton().joints().len() {
         document.skeleton_mut().set_rotation(JointId::new(joint), Vec3::ZERO).expect("angles");
@@ -233,7 +233,7 @@ fn only_what_leaves_its_rest_has_a_channel() {
 }
 
 #[test]
-fn other_frames_in_a_second_can_be_asked_for() {
+fn the_frame_rate_of_the_export_can_be_chosen() {
     let document = keyed_arm(&mut Random(5));
     let bytes = io::glb(&document, Some(10), &Progress::default()).expect("it is written");
     let glb = Glb::new(&bytes);
@@ -288,13 +288,13 @@ fn the_mesh_has_the_colours_of_the_limbs_on_screen() {
     }
 }
 
-// What cannot be exported
+// Documents that cannot be exported
 
 #[test]
 fn a_skeleton_without_joints_is_refused() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     *document.skeleton_mut() = Skeleton::default();
-    assert!(refusal(&document).contains("no joints"));
+    assert!(refusal(&document).contains("at least one joint"));
 }
 
 #[test]
@@ -307,7 +307,7 @@ fn a_joint_that_is_too_far_away_is_named() {
     document.metres_per_unit = Some(10.0);
     assert_eq!(
         refusal(&document),
-        "joint \"far\" is farther than 3.4028235e38 m from the origin in the bind pose; bring it \
+        "the position of joint \"far\" must be within ±3.4028235e38 m in the bind pose; bring it \
          nearer, or make metres_per_unit smaller"
     );
 }
@@ -334,7 +334,8 @@ fn huge_and_tiny_skeletons_stay_finite() {
 fn too_many_frames_are_refused_before_they_are_computed() {
     let mut document = keyed_arm(&mut Random(8));
     document.timeline = Timeline { start: 0.0, end: 80_000.0, frame_rate: 1000 };
-    assert!(refusal(&document).starts_with("80000001 frames of 4 joints are too many for a file"));
+    let expected = "a motion of 4 joints must have at most 5000000 frames, got 80000001";
+    assert!(refusal(&document).starts_with(expected));
 }
 
 #[test]

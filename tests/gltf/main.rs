@@ -1,4 +1,4 @@
-//! glTF: what is written is what the document shows, and reads back; what is wrong is refused.
+//! glTF: exports match the document and round trip; invalid files are refused.
 #![cfg(feature = "document")]
 
 #[path = "../common/mod.rs"]

@@ -1,4 +1,4 @@
-//! What is exported and imported again stands where it stood.
+//! Export and import keep positions.
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
@@ -14,7 +14,7 @@ fn reopened(document: &Document) -> Opened {
     io::read("test.glb", &bytes[..], None).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Where the bones begin, and where the arm's hand is, in metres.
+/// Bases of bones, and the arm's hand, in metres.
 fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
     let document = document.evaluate(time);
     let named = match document.rig {
@@ -67,7 +67,7 @@ fn check(name: &str, document: &Document, opened: &Opened) {
             let found = imported(&opened.document, time, joint);
             let Some(found) = found else { panic!("{name} has no joint {joint}") };
             let gap = found.distance(*expected);
-            // Far away single precision is coarse itself.
+            // f32 are coarse far from the origin.
             let largest = expected.abs().max_element();
             let coarse = 2.0 * (largest.next_up() - largest);
             assert!(
@@ -93,7 +93,7 @@ fn every_joint_is_where_it_was_in_every_frame() {
 }
 
 #[test]
-fn what_moves_has_the_length_and_the_frames_that_it_had() {
+fn animations_keep_their_duration_and_frame_rate() {
     for name in ["snake", "human-keyed-0", "keyed-lengths"] {
         let (_, document) = all().into_iter().find(|(other, _)| other == name).expect(name);
         let (was, is) = (document.timeline, reopened(&document).document.timeline);
@@ -102,7 +102,7 @@ fn what_moves_has_the_length_and_the_frames_that_it_had() {
 }
 
 #[test]
-fn what_stands_still_has_no_keys_and_its_pose() {
+fn still_documents_have_no_keys_and_keep_their_pose() {
     for name in ["human", "arm", "degenerate"] {
         let document = example(name);
         let opened = reopened(&document);
@@ -141,7 +141,7 @@ fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
 }
 
 #[test]
-fn a_chain_of_as_many_joints_as_there_can_be_keeps_its_lengths() {
+fn a_chain_of_the_largest_number_of_joints_keeps_its_lengths() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24 };
     let joint = |index: usize| {

@@ -20,7 +20,7 @@ impl Text {
         Self { json, bytes: Vec::new() }
     }
 
-    /// Three joints in a row, each 1 above the one before; a fourth node stands beside them.
+    /// Three joints in a row, each 1 above the one before, and a separate fourth node.
     pub fn chain() -> Self {
         let up = json!([0, 1, 0]);
         let nodes = json!([
@@ -81,7 +81,7 @@ impl Text {
         &self.bytes
     }
 
-    /// As a `.glb` file.
+    /// Bytes of the `.glb` file.
     pub fn binary(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         json["buffers"][0] = json!({ "byteLength": self.bytes.len() });

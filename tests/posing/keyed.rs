@@ -1,4 +1,4 @@
-//! Poses in time.
+//! Keyed poses.
 
 use std::f64::consts::PI;
 

@@ -43,7 +43,7 @@ impl Every {
     }
 }
 
-/// How often each kind was made and how often it was applied instead of asked about.
+/// Numbers of actions of each kind: made, and applied instead of asked about.
 pub struct Counts(Vec<Count>);
 
 #[derive(Clone, Copy, Default)]

@@ -1,4 +1,4 @@
-//! How exactly the hand arrives.
+//! Accuracy of the hand.
 
 use glam::Vec3;
 use ik_arm::kinematics::job::TwoBoneJob;
@@ -30,7 +30,7 @@ fn the_hand_is_within_a_millionth_of_the_chain_at_103_000_random_targets() {
 }
 
 #[test]
-fn within_a_hair_of_its_limits_a_hand_that_is_reached_is_there() {
+fn a_hand_reported_reached_close_to_a_limit_is_at_its_target() {
     let (mut random, mut worst, mut reached) = (Random(2), 0.0_f64, 0);
     for _ in 0..50_000 {
         let skeleton = Skeleton::random(&mut random);

@@ -1,6 +1,7 @@
 //! Start joints with any matrix that has an inverse: sheared, unevenly scaled, mirrored.
 //!
-//! The matrices of a job are taken as they are, in f32. The skeleton is posed anew from them in f64.
+//! The matrices of a job are taken as they are, in f32. The skeleton is posed anew from them in
+//! f64.
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
 use ik_arm::kinematics::job::{TwoBoneCorrection, TwoBoneJob};
@@ -12,7 +13,7 @@ use crate::skeleton::*;
 /// The chain by its matrices alone, in start joint space.
 struct Twin {
     start: DAffine3,
-    /// The middle joint, and the end's place in its space.
+    /// The middle joint, and the end's position in its space.
     middle_ss: DAffine3,
     end_ms: DVec3,
     target_ss: DVec3,
@@ -43,7 +44,7 @@ impl Twin {
         (elbow * DAffine3::from_quat(middle)).transform_point3(self.end_ms)
     }
 
-    /// Where the target is between the limits, clear of both by a millionth of the chain.
+    /// Returns whether the target is between the limits, clear of both by a millionth of the chain.
     fn is_in_reach(&self) -> bool {
         let (distance, clear) = (self.target_ss.length(), 1e-6 * self.length());
         let least = (self.upper - self.lower).abs();
@@ -71,7 +72,8 @@ fn axes(random: &mut Random, condition: f32) -> Mat3 {
     turns[0] * Mat3::from_diagonal(Vec3::new(x * mirror, y, z)) * turns[1]
 }
 
-/// A random chain and target under a start joint; `middle` are the middle joint's axes in its space.
+/// A random chain and target under a start joint; `middle` are the middle joint's axes in its
+/// space.
 fn job(random: &mut Random, start: Mat3, middle: Mat3, share: f64) -> TwoBoneJob {
     let ratio = f64::from(random.within(-30_f32.ln()..30_f32.ln())).exp();
     let (upper, lower) = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio));
@@ -88,7 +90,7 @@ fn job(random: &mut Random, start: Mat3, middle: Mat3, share: f64) -> TwoBoneJob
         ..TwoBoneJob::new(
             Affine3A::from_mat3_translation(start, place),
             Affine3A::from_mat3_translation(start * middle, at(elbow)),
-            // Only its place is used.
+            // Only its position is used.
             Affine3A::from_translation(at(hand)),
             at(target),
         )
@@ -152,7 +154,7 @@ fn the_rotations_under_a_start_matrix_are_those_under_none() {
         let [elbow, hand, target] = points;
         let (pole, hinge) = (whole(8.0), whole(8.0));
         let cross = |a: Vec3, b: Vec3| a.normalize_or_zero().cross(b.normalize_or_zero()).length();
-        // Clear of what makes little differences large: bones and pole in one line.
+        // Away from ill-conditioned cases: bones and pole in one line.
         let is_clear = cross(elbow, hand - elbow).min(cross(pole, target)) > 0.2;
         if start.determinant() == 0.0 || !is_clear {
             continue;
@@ -182,7 +184,7 @@ fn the_rotations_under_a_start_matrix_are_those_under_none() {
 }
 
 #[test]
-fn a_middle_joint_that_rounding_makes_uneven_is_not_called_reached() {
+fn a_middle_joint_that_rounding_makes_uneven_is_not_reported_reached() {
     let (mut random, mut reached, mut missed) = (Random(6), 0, 0);
     for _ in 0..20_000 {
         let start = axes(&mut random, 1e3);

@@ -1,4 +1,4 @@
-//! The cases that break careless jobs: those of ozz-animation's `two_bone_ik_job_tests.cc`, and more.
+//! Edge cases of a job: those of ozz-animation's `two_bone_ik_job_tests.cc`, and more.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -116,7 +116,7 @@ fn without_a_pole_the_start_joint_makes_the_least_turn() {
 }
 
 #[test]
-fn a_pole_on_the_line_to_the_target_is_no_pole() {
+fn a_pole_on_the_line_to_the_target_is_ignored() {
     let skeleton = Skeleton::square();
     for aside in [0.0, 1e-9, 1e-6, 1e-3] {
         for sign in [1.0, -1.0] {
@@ -210,7 +210,7 @@ fn a_mirrored_model_twists_like_its_mirror_image() {
 }
 
 #[test]
-fn a_weight_makes_that_part_of_the_correction() {
+fn a_weight_scales_the_correction() {
     let skeleton = Skeleton::square();
     let at = |weight| {
         let job = skeleton.job(DVec3::X * 2.0);
@@ -226,7 +226,7 @@ fn a_weight_makes_that_part_of_the_correction() {
     let none = at(0.0);
     assert_eq!((none.start_correction, none.middle_correction), (Quat::IDENTITY, Quat::IDENTITY));
     assert_eq!(none.reach, Reach::TooFar);
-    // Nothing is to be done, and it is done.
+    // The target is reached already.
     let job = TwoBoneJob { weight: 0.0, ..skeleton.job(DVec3::new(1.0, 1.0, 0.0)) };
     assert_eq!(run(job).reach, Reach::Reached);
     // As far away as the target, but elsewhere.
@@ -248,7 +248,7 @@ fn a_hinge_axis_the_wrong_way_round_bends_the_limb_to_its_other_side() {
 }
 
 #[test]
-fn a_hinge_axis_that_says_nothing_leaves_the_limb_bent_as_it_is() {
+fn a_hinge_axis_in_the_plane_of_the_limb_is_ignored() {
     let skeleton = Skeleton::square();
     let job = TwoBoneJob { pole: Some(Vec3::Y), ..skeleton.job(DVec3::new(0.5, 1.0, 0.3)) };
     let by_pose = run(TwoBoneJob { hinge: None, ..job });
@@ -270,7 +270,7 @@ fn a_straight_limb_bends_about_its_hinge_axis() {
         same_turn(correction.start_correction, DVec3::Z, FRAC_PI_2);
         same_turn(correction.middle_correction, DVec3::Z, -FRAC_PI_2);
     }
-    // Nothing but the pole says where to, then nothing at all.
+    // Only the pole gives a direction, then nothing does.
     for pole in [Vec3::Y, Vec3::ZERO, Vec3::X] {
         for hinge in [Vec3::ZERO, Vec3::X] {
             let correction =
@@ -357,7 +357,7 @@ fn a_bone_of_length_0_leaves_one_bone_to_point_at_the_target() {
 }
 
 #[test]
-fn any_unit_will_do() {
+fn any_unit_of_length_works() {
     for size in [1e-30, 1e-3, 1e6, 1e30] {
         let parent = DAffine3::from_scale(DVec3::splat(size));
         let local = |v: DVec3| Local::at(v * size);

@@ -1,4 +1,4 @@
-//! What is refused, and what is only just not.
+//! Jobs that are refused, and jobs that are barely accepted.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3, Quat, Vec3};
 use ik_arm::kinematics::job::{JobError, JobField, TwoBoneJob};
@@ -25,7 +25,7 @@ fn a_joint_whose_own_scale_mirrors_one_axis_is_turned_before_it() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_by_name() {
+fn invalid_jobs_are_refused_by_name() {
     let job = Skeleton::square().job(DVec3::X);
     let scaled = |x: f32, y: f32, z: f32| Affine3A::from_scale(Vec3::new(x, y, z));
     let sheared = |by: f64| {
@@ -55,8 +55,8 @@ fn what_cannot_be_done_is_refused_by_name() {
     );
     assert_eq!(
         said(TwoBoneJob { middle: sheared(-1.0), ..job }),
-        "middle has axes that are not perpendicular in start joint space: the cosine between two is \
-         -0.70710677; it must be from -0.001 to 0.001"
+        "middle must have perpendicular axes in start joint space (cosine from -0.001 to 0.001), got a \
+         cosine of -0.70710677"
     );
 
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -73,14 +73,17 @@ fn what_cannot_be_done_is_refused_by_name() {
         for (field, job) in fields {
             assert_eq!(job.run(), Err(JobError::NotFinite { field }));
         }
-        assert!(said(TwoBoneJob { twist: bad, ..job }).ends_with("it must be a finite number"));
+        assert_eq!(
+            said(TwoBoneJob { twist: bad, ..job }),
+            format!("twist must be finite, got {bad}")
+        );
     }
     assert_eq!(
         said(TwoBoneJob { softness: 1.0, ..job }),
-        "softness is 1; it must be from 0 to less than 1"
+        "softness must be from 0 to less than 1, got 1"
     );
     for weight in [-0.1, 1.1] {
-        let expected = format!("weight is {weight}; it must be from 0 to 1");
+        let expected = format!("weight must be from 0 to 1, got {weight}");
         assert_eq!(said(TwoBoneJob { weight, ..job }), expected);
     }
 }
@@ -102,7 +105,7 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
             "start has axes in one plane; its matrix must have an inverse, or scale 0"
         );
     }
-    // Nothing turns under scale 0, whatever the middle joint is.
+    // Nothing turns under scale 0, for any middle joint.
     let start = Affine3A::from_scale(Vec3::ZERO);
     for middle in [Affine3A::from_scale(Vec3::ZERO), flat, job.middle] {
         let correction = run(TwoBoneJob { start, middle, ..job });
@@ -112,7 +115,7 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
         );
         assert!(correction.hand_error.is_finite());
     }
-    // Thin is not flat.
+    // A thin matrix is not singular.
     let parent = DAffine3::from_scale(DVec3::new(1.0, 1e-4, 1.0));
     let skeleton = Skeleton { parent, ..Skeleton::square() };
     let target = parent.transform_point3(DVec3::new(0.2, 0.7, 0.9));
@@ -134,7 +137,7 @@ fn the_end_joints_axes_do_not_matter() {
 }
 
 #[test]
-fn what_is_a_little_uneven_is_exact_in_a_parent_and_not_called_reached_in_a_joint() {
+fn a_slightly_uneven_scale_is_exact_in_a_parent_and_not_reported_reached_in_a_joint() {
     let target = DVec3::new(0.2, 0.9, 0.8);
     let uneven = DVec3::new(1.0, 1.0009, 1.0);
     let parent = DAffine3::from_scale(uneven);
@@ -155,7 +158,7 @@ fn what_is_a_little_uneven_is_exact_in_a_parent_and_not_called_reached_in_a_join
 
 #[test]
 fn a_uniform_scale_in_pieces_is_not_too_uneven() {
-    // What products of rotations and scales make of a matrix in f32 is far from one in a thousand.
+    // Rounding of products of rotations and scales is far below one in a thousand.
     let step = Affine3A::from_scale_rotation_translation(
         Vec3::splat(1.01),
         Quat::from_axis_angle(Vec3::new(1.0, 2.0, 3.0).normalize(), 1.0),

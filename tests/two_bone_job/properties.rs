@@ -1,4 +1,4 @@
-//! What holds for every skeleton.
+//! Properties of a job for every skeleton.
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ proptest! {
         share in -0.5..1.5_f64,
     ) {
         let mut random = Random(seed);
-        let parent = placed(&mut random, far);
+        let parent = model_transform(&mut random, far);
         let skeleton = Skeleton { parent, ..Skeleton::random(&mut random) };
         let direction = random.direction().as_dvec3();
         let target = skeleton.point_in_reach(direction, share);
@@ -30,7 +30,7 @@ proptest! {
             let way = target - start;
             start + way.normalize() * way.length().clamp((upper - lower).abs(), upper + lower)
         };
-        // A target that rounding may take to the start joint's other side says nothing.
+        // Rounding may move such a target to the start joint's other side.
         prop_assume!(target.distance(skeleton.points()[0]) > 1e-2 * skeleton.length());
         let job = TwoBoneJob {
             pole: Some(random.vector(1.0)), hinge: Some(random.vector(1.0)), ..skeleton.job(target)
@@ -38,7 +38,7 @@ proptest! {
         let correction = run(job);
         let [_, _, hand] = skeleton.turned(&correction).points();
         let asked = (target - skeleton.points()[0]).length();
-        // Where the target is nearer than the nearest, its direction's rounding is felt farther out.
+        // Rounding of the direction of a target inside the inner limit is magnified at the limit.
         let lever = (nearest.distance(skeleton.points()[0]) / asked).max(1.0);
         let bound = EXACT * skeleton.length() + lever * skeleton.rounding();
         close("hand", hand.distance(nearest), bound)?;
@@ -49,15 +49,15 @@ proptest! {
     }
 
     #[test]
-    fn the_rotations_are_the_same_wherever_the_model_stands(seed in any::<u64>()) {
+    fn the_rotations_do_not_depend_on_the_models_transform(seed in any::<u64>()) {
         let mut random = Random(seed);
         let own = Skeleton::random(&mut random);
-        let parent = placed(&mut random, 1.0);
-        let placed = Skeleton { parent, ..own };
+        let parent = model_transform(&mut random, 1.0);
+        let moved = Skeleton { parent, ..own };
         let direction = random.direction().as_dvec3();
         let target = own.point_in_reach(direction, random.within(0.1..0.9).into());
         let pole = random.direction();
-        // Clear of the pole's line, and of bones in one line: there a little is felt much.
+        // Away from the pole's line and from bones in one line, which are ill-conditioned.
         prop_assume!(direction.cross(pole.as_dvec3()).length() > 0.2);
         let [shoulder, elbow, hand] = own.points();
         prop_assume!((elbow - shoulder).normalize().cross((hand - elbow).normalize()).length() > 0.2);
@@ -66,20 +66,20 @@ proptest! {
         };
         let here = run(with(&own, target, pole.as_dvec3()));
         let pole = parent.transform_vector3(pole.as_dvec3());
-        let there = run(with(&placed, parent.transform_point3(target), pole));
+        let there = run(with(&moved, parent.transform_point3(target), pole));
         for (a, b) in [(here.start_correction, there.start_correction), (here.middle_correction, there.middle_correction)] {
             close("rotation", apart(a.as_dquat(), b.as_dquat()), 2e-4)?;
         }
     }
 
     #[test]
-    fn it_never_says_reached_of_a_hand_that_is_elsewhere(
+    fn a_hand_that_is_off_its_target_is_never_reported_reached(
         seed in any::<u64>(), share in -0.2..1.2_f64, softness in 0.0..0.9_f32,
         weight in prop_oneof![Just(0.0_f32), 0.0..1.0_f32, 0.999_999..1.0_f32, Just(1.0_f32)],
         far in prop_oneof![Just(0.0_f32), Just(1e4)],
     ) {
         let mut random = Random(seed);
-        let parent = placed(&mut random, far);
+        let parent = model_transform(&mut random, far);
         let skeleton = Skeleton { parent, ..Skeleton::random(&mut random) };
         let here = skeleton.points()[2];
         let direction = random.direction().as_dvec3();
@@ -100,7 +100,7 @@ proptest! {
     }
 
     #[test]
-    fn the_elbow_stands_out_to_the_pole_and_the_twist_turns_it_right_handed(
+    fn the_elbow_points_to_the_pole_and_the_twist_turns_it_right_handed(
         seed in any::<u64>(), share in 0.05..0.95_f64, twist in -3.0..3.0_f32,
     ) {
         let mut random = Random(seed);
@@ -155,7 +155,7 @@ proptest! {
     }
 
     #[test]
-    fn a_weight_goes_that_part_of_both_angles(seed in any::<u64>(), weight in 0.0..1.0_f32) {
+    fn a_weight_scales_both_angles(seed in any::<u64>(), weight in 0.0..1.0_f32) {
         let mut random = Random(seed);
         let skeleton = Skeleton::random(&mut random);
         let target = skeleton.points()[0] + random.vector(1.0).as_dvec3();
@@ -201,7 +201,8 @@ proptest! {
         let turned = skeleton.turned(&correction);
         close("hand", turned.points()[2].distance(target), EXACT * skeleton.length())?;
         let sideways = correction.middle_correction.xyz().truncate().length();
-        // An f32 matrix says where the normal is to 1e-7 of the bend's sine; in line it is not asked.
+        // An f32 matrix says where the normal is to 1e-7 of the bend's sine; in line it is not
+        // asked.
         let blur = 3e-7 / f64::from(bent.sin().abs() as f32).max(1e-3);
         close("axis", f64::from(sideways), blur)?;
         // Opening is a positive turn: from the present angle to the one that is wanted.
@@ -215,7 +216,7 @@ proptest! {
     }
 
     #[test]
-    fn what_needs_no_correction_gets_none(seed in any::<u64>()) {
+    fn a_hand_at_its_target_gets_no_correction(seed in any::<u64>()) {
         let mut random = Random(seed);
         let skeleton = Skeleton::random(&mut random);
         let [start, elbow, hand] = skeleton.points();
@@ -236,7 +237,7 @@ proptest! {
     }
 
     #[test]
-    fn whatever_is_asked_the_answer_is_finite_or_an_error(
+    fn any_input_gives_a_finite_correction_or_an_error(
         numbers in prop::collection::vec(prop_oneof![
             3 => -2.0..2.0_f32, 1 => Just(0.0_f32), 1 => any::<f32>(), 1 => Just(1.0_f32),
             1 => Just(f32::MAX), 1 => Just(f32::MIN_POSITIVE), 1 => Just(1e-45_f32),

@@ -11,7 +11,7 @@ use crate::common::Random;
 /// Error of a hand in units of the chain's length.
 pub const EXACT: f64 = 1e-6;
 
-/// What a skeleton stores: translation, then rotation, then scale.
+/// A stored transform: translation, then rotation, then scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Local {
     pub translation: DVec3,
@@ -104,8 +104,8 @@ impl Skeleton {
         }
     }
 
-    /// How far the hand is from a target after a correction, in start joint space and lengths of the
-    /// chain there.
+    /// Distance of the hand from a target after a correction, in start joint space and lengths of
+    /// the chain there.
     pub fn off_ss(&self, by: &TwoBoneCorrection, target: DVec3) -> f64 {
         let [start, middle, end] = self.joints();
         let to_ss = start.inverse();
@@ -129,7 +129,7 @@ impl Skeleton {
         4.0 * f64::from(f32::EPSILON) * largest.into_iter().fold(0.0, f64::max)
     }
 
-    /// At a share of the way from the nearest to the farthest that the hand can be.
+    /// Point at a fraction of the way from the inner to the outer limit.
     pub fn point_in_reach(&self, direction: DVec3, share: f64) -> DVec3 {
         let (upper, lower) = self.bones();
         let (least, most) = ((upper - lower).abs(), upper + lower);
@@ -142,14 +142,14 @@ pub fn rotation(random: &mut Random) -> DQuat {
     DQuat::from_axis_angle(axis, f64::from(random.within(-3.2..3.2)))
 }
 
-/// The same along each axis, now and then with a mirror.
+/// A uniform scale, sometimes mirrored.
 pub fn scale(random: &mut Random) -> DVec3 {
     let size = f64::from(random.within(-1.0..1.0)).exp();
     DVec3::splat(if random.chance(0.2) { -size } else { size })
 }
 
-/// Where a model may stand: turned, of any size, mirrored, moved by a multiple of its size.
-pub fn placed(random: &mut Random, far: f32) -> DAffine3 {
+/// A random model transform: rotated, scaled, mirrored, translated by a multiple of its size.
+pub fn model_transform(random: &mut Random, far: f32) -> DAffine3 {
     let size = 10_f64.powf(random.within(-3.0..3.0).into());
     let mirror = if random.chance(0.5) { DVec3::new(-1.0, 1.0, 1.0) } else { DVec3::ONE };
     let at = random.vector(far).as_dvec3() * size;

@@ -1,4 +1,4 @@
-//! Without a mouse and without eyes: Tab, names, and what a screen reader asks for.
+//! Keyboard and screen reader: Tab, names, and accessibility actions.
 
 use egui::accesskit::{Action as Ask, Role};
 use egui::{Key, Modifiers, PointerButton, vec2};
@@ -58,13 +58,13 @@ fn a_screen_reader_sets_raises_and_lowers_each_slider() {
 }
 
 #[test]
-fn what_a_screen_reader_asks_for_is_checked_like_all_else() {
+fn values_set_by_a_screen_reader_are_validated() {
     let mut bench = Bench::new();
     for value in [-3.0, 0.0, f64::NAN, f64::INFINITY, 1e300] {
         bench.node(Role::Slider, "Upper length").set_value_accesskit(value);
         bench.frame([]);
         assert_eq!(bench.session().arm(), &Arm::default(), "{value}");
-        assert!(bench.says("must be a finite number above 0"));
+        assert!(bench.says("must be finite and above 0"));
     }
     bench.node(Role::Slider, "Hand x").set_value_accesskit(f64::NAN);
     bench.frame([]);
@@ -111,7 +111,7 @@ fn tab_goes_through_the_controls_in_reading_order_and_back() {
     for _ in 0..80 {
         bench.key(Key::Tab);
         let Some(focused) = bench.focused() else {
-            panic!("Tab leads nowhere after {visited:?}");
+            panic!("Tab focuses nothing after {visited:?}");
         };
         assert_ne!(focused.0, Role::Label, "a label does nothing: {focused:?}");
         if visited.first() == Some(&focused) {
@@ -124,7 +124,7 @@ fn tab_goes_through_the_controls_in_reading_order_and_back() {
         .map(|(role, name)| (*role, name.as_str()))
         .filter(|control| expected.contains(control))
         .partition(|control| control.0 == Role::CheckBox);
-    // The checkboxes stand in two columns, which is no one order of reading.
+    // The checkboxes are in two columns and have no single reading order.
     assert_eq!(boxes.len(), CHECKBOXES.len(), "{boxes:?}");
     expected.retain(|control| control.0 != Role::CheckBox);
     assert_eq!(others, expected);

@@ -1,4 +1,4 @@
-//! The arm posed as an animator does: led by its angles, pinned, its elbow measured from elsewhere.
+//! Posing the arm: FK, pinned hand, twist references.
 
 use egui::accesskit::Role;
 use egui::{PointerButton, Pos2, vec2};
@@ -41,11 +41,11 @@ fn reveal(bench: &mut Bench, role: Role, name: &str) {
 
 fn pole_place(bench: &Bench) -> Pos2 {
     let arm = bench.session().arm();
-    bench.place(arm.root + arm.pole)
+    bench.on_screen(arm.root + arm.pole)
 }
 
 #[test]
-fn fk_takes_over_the_pose_and_ik_takes_it_back() {
+fn switching_between_fk_and_ik_keeps_the_pose() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
     let pose = *bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
@@ -77,7 +77,7 @@ fn ik_settings_are_disabled_in_fk() {
     let rail = bench.rect(Role::Slider, "Hand x");
     bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
     assert_eq!(bits(bench.hand()), bits(before));
-    let cursor = bench.cursor_place();
+    let cursor = bench.cursor_on_screen();
     bench.drag_and_drop(LEFT, cursor, cursor + vec2(40.0, 0.0));
     assert_eq!(bits(bench.hand()), bits(before));
 }
@@ -107,9 +107,9 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
     bench.apply([EditAction::SetBend(0.8)]);
     for grip in [Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
         let ring = bench.session().arm_ring(grip).expect("a ring");
-        let centre = bench.place(ring.centre);
+        let centre = bench.on_screen(ring.centre);
         let before = *bench.session().arm();
-        // The ring is as large on screen wherever it is: around its middle there are places on it.
+        // The ring has a constant size on screen, so this distance from its centre is on it.
         let around = (0..360).map(|step| {
             let angle = (step as f32).to_radians();
             centre + vec2(angle.cos(), angle.sin()) * 1.0
@@ -161,14 +161,17 @@ fn a_pinned_hand_stays_when_the_root_moves() {
     let pose = *bench.session().pose();
     bench.click(Role::CheckBox, "Pinned to world");
     assert!(apart(&pose, bench.session().pose()) < 1e-3);
-    let cursor = bench.cursor_place();
+    let cursor = bench.cursor_on_screen();
     bench.apply([EditAction::PinHand(true)]);
     bench.drag_and_drop(LEFT, cursor, cursor + vec2(-30.0, 20.0));
-    assert!(bench.cursor_place().distance(cursor + vec2(-30.0, 20.0)) < 0.5, "it can be dragged");
+    assert!(
+        bench.cursor_on_screen().distance(cursor + vec2(-30.0, 20.0)) < 0.5,
+        "it can be dragged"
+    );
 }
 
 #[test]
-fn the_elbow_is_measured_from_elsewhere_and_stays() {
+fn changing_the_twist_reference_keeps_the_elbow() {
     let mut bench = Bench::after([EditAction::SetTwist(0.4)]);
     let pose = *bench.session().pose();
     for (name, twist_reference) in [
@@ -209,7 +212,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
 }
 
 #[test]
-fn the_four_references_stand_beside_each_other() {
+fn the_four_twist_references_are_compared() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
     for name in ["Stereographic", "Transport", "Holonomy (elbow turn after a closed loop)"] {
         assert!(bench.says(name), "{name}");

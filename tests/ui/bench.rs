@@ -1,4 +1,4 @@
-//! A window without a window: runs the panels as `src/app/window.rs` does, on a clock of its own.
+//! A test bench: runs the panels as `src/app/window.rs` does, with simulated time and no window.
 
 use std::time::Duration;
 
@@ -98,12 +98,12 @@ impl Bench {
         self.settle();
     }
 
-    /// What the world outside answers, and what it is to do then.
+    /// Applies an action from outside, such as a finished save. Returns the effect.
     pub fn tell(&mut self, action: impl Into<Action>) -> Option<Effect> {
         self.harness.state_mut().session.apply(action)
     }
 
-    /// As [`Self::apply`], for what then moves by itself.
+    /// Like [`Self::apply`], for actions that start movement: does not wait for its end.
     pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
         for action in actions {
             self.harness.state_mut().session.apply(action);
@@ -136,7 +136,7 @@ impl Bench {
         }
         for action in std::mem::take(&mut app.actions) {
             match app.session.apply(action) {
-                // As on a system that has no dialog of its own.
+                // The system has no file dialog.
                 Some(Effect::ChoosePath(dialog)) if app.session.dialog().is_none() => {
                     app.session.apply(ShellAction::OpenDialog(dialog.into()));
                 }
@@ -201,7 +201,7 @@ impl Bench {
         self.node(role, name).rect()
     }
 
-    /// Role and name of what has the keyboard.
+    /// Role and name of the focused widget.
     pub fn focused(&self) -> Option<(Role, String)> {
         let focused = self.harness.root().children_recursive().find(Node::is_focused)?;
         let node = focused.accesskit_node();
@@ -212,20 +212,20 @@ impl Bench {
         self.harness.state().viewport
     }
 
-    /// Where a point of the world is on screen.
-    pub fn place(&self, point: Vec3) -> Pos2 {
+    /// Screen position of a point in world space.
+    pub fn on_screen(&self, point: Vec3) -> Pos2 {
         let rect = self.viewport();
         let projection = self.session().camera().projection(rect.aspect_ratio());
         let at = projection.project(point).expect("before the eye");
         rect.center() + vec2(at.x, -at.y) * rect.size() / 2.0
     }
 
-    pub fn cursor_place(&self) -> Pos2 {
-        self.place(self.session().arm().cursor_in_world())
+    pub fn cursor_on_screen(&self) -> Pos2 {
+        self.on_screen(self.session().arm().cursor_in_world())
     }
 
-    /// A point of the viewport with nothing to take hold of.
-    pub fn empty_place(&self) -> Pos2 {
+    /// A point of the viewport without handles.
+    pub fn empty_point(&self) -> Pos2 {
         self.viewport().left_top() + vec2(40.0, 40.0)
     }
 }
@@ -306,7 +306,7 @@ impl Bench {
         self.settle();
     }
 
-    /// Press at one place, go to the other in steps, and hold.
+    /// Presses at one point, moves to the other in steps, and holds.
     pub fn drag(&mut self, button: PointerButton, from: Pos2, to: Pos2) {
         self.move_to(from);
         self.press(button);

@@ -1,4 +1,4 @@
-//! View → Crowd: many arms in the rig's place, and what they cost.
+//! View → Crowd: many arms instead of the rig, and their times.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use ik_arm::ui::FrameTime;
 
 use crate::bench::Bench;
 
-/// A crowd that stands.
+/// A crowd without movement.
 fn shown() -> Bench {
     let mut bench = Bench::after([ViewAction::AnimateCrowd(false)]);
     bench.choose(&["View", "Crowd"]);
@@ -47,13 +47,13 @@ fn the_slider_goes_from_one_arm_to_a_million_by_tens() {
 }
 
 #[test]
-fn what_solves_it_and_whether_it_moves_are_chosen() {
+fn solver_and_movement_can_be_chosen() {
     let mut bench = shown();
     bench.click(Role::RadioButton, "GPU");
     assert_eq!(crowd(&bench).processor, Processor::Gpu);
     bench.click(Role::RadioButton, "CPU");
     assert_eq!(crowd(&bench).processor, Processor::Cpu);
-    assert!(!bench.asks_for_a_frame(), "a crowd that stands costs nothing");
+    assert!(!bench.asks_for_a_frame(), "a crowd without movement requests no frame");
     bench.apply_moving([ViewAction::AnimateCrowd(true)]);
     for _ in 0..3 {
         bench.wait(0.5);
@@ -67,24 +67,24 @@ fn what_solves_it_and_whether_it_moves_are_chosen() {
 }
 
 #[test]
-fn its_figures_are_those_of_the_machine() {
+fn the_shown_times_are_the_measured_ones() {
     let mut bench = shown();
     assert!(bench.says("–"), "nothing is measured before the first frame");
     let machine = &mut bench.harness.state_mut().machine;
     machine.crowd = Some(CrowdTimes { arms: 1_000, solve: Duration::from_micros(1_250) });
     machine.times.push(FrameTime { encode: Duration::from_millis(10), ..FrameTime::default() });
     bench.frame([]);
-    for figure in ["1.25 ms", "1250.00 ns", "8.75 ms"] {
-        assert!(bench.says(figure), "{figure}");
+    for time in ["1.25 ms", "1250.00 ns", "8.75 ms"] {
+        assert!(bench.says(time), "{time}");
     }
     bench.apply([ViewAction::SetCrowdSize(2_000)]);
     assert!(!bench.says("1.25 ms"), "those were of another crowd");
 }
 
 #[test]
-fn the_hand_cannot_be_taken_hold_of_behind_a_crowd() {
+fn the_hand_cannot_be_grabbed_behind_a_crowd() {
     let mut bench = Bench::after([ViewAction::AnimateCrowd(false)]);
-    let (hand, document) = (bench.cursor_place(), bench.session().document().clone());
+    let (hand, document) = (bench.cursor_on_screen(), bench.session().document().clone());
     bench.choose(&["View", "Crowd"]);
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(60.0, 10.0));
     let camera = bench.session().document().camera;

@@ -1,4 +1,4 @@
-//! Dialogs, and what leaves the window: a picture, a pose.
+//! Dialogs, saved pictures and copied poses.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
@@ -153,7 +153,7 @@ fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
     }
 }
 
-/// What a session puts on the clipboard.
+/// The pose that a session copies to the clipboard.
 fn copied(actions: impl IntoIterator<Item = impl Into<Action>>) -> serde_json::Value {
     let mut bench = Bench::after(actions);
     bench.frame([Event::Copy]);
@@ -163,7 +163,7 @@ fn copied(actions: impl IntoIterator<Item = impl Into<Action>>) -> serde_json::V
 }
 
 #[test]
-fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
+fn a_copied_pose_has_its_twist_reference_and_softness() {
     let soft_reach = SoftReach::new(0.25, 1.5, 0.5).expect("a softening");
     let line = copied([
         EditAction::SetTwistReference(TwistReferenceKind::Pole),
@@ -179,7 +179,7 @@ fn a_copied_pose_says_how_the_elbow_is_measured_and_softened() {
 }
 
 #[test]
-fn a_copied_pose_has_its_elbow_where_only_the_arms_past_says() {
+fn a_copied_pose_keeps_an_elbow_that_depends_on_earlier_poses() {
     // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
     let upwards =
         [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(EditAction::SetHand);

@@ -1,4 +1,4 @@
-//! The document's ways out of the program.
+//! The export dialog.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ fn exported(bench: &mut Bench) -> Export {
 }
 
 #[test]
-fn a_format_gives_the_path_its_ending_and_enter_exports() {
+fn a_format_sets_the_extension_of_the_path_and_enter_exports() {
     for (format, path) in [
         ("BVH", "ik-arm.bvh"),
         ("CSV", "ik-arm.csv"),
@@ -53,7 +53,7 @@ fn a_format_gives_the_path_its_ending_and_enter_exports() {
 }
 
 #[test]
-fn a_path_whose_ending_is_no_format_is_not_exported() {
+fn a_path_with_an_unknown_extension_is_not_exported() {
     let mut bench = asked();
     bench.focus(Role::TextInput, "File");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -65,7 +65,7 @@ fn a_path_whose_ending_is_no_format_is_not_exported() {
 }
 
 #[test]
-fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
+fn a_running_export_shows_its_progress_and_can_be_cancelled() {
     let mut bench = asked();
     bench.click(Role::Button, "Export");
     let export = exported(&mut bench);
@@ -87,7 +87,7 @@ fn an_export_under_way_shows_how_far_it_is_and_can_be_cancelled() {
 }
 
 #[test]
-fn a_document_with_keys_is_saved_opened_again_and_the_same() {
+fn a_document_with_keys_survives_saving_and_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("saved.json");
     let mut bench = Bench::after([

@@ -1,4 +1,4 @@
-//! The first minute with skeletons: what the switch shows, and how one is built by mouse.
+//! First use of skeletons: switching to them, and building one by mouse.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
@@ -20,7 +20,7 @@ fn ends(bench: &Bench) -> Vec<egui::Pos2> {
     let pose = bench.session().skeleton_pose();
     let points = (0..pose.len())
         .flat_map(|joint| [pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))]);
-    points.map(|point| bench.place(point)).collect()
+    points.map(|point| bench.on_screen(point)).collect()
 }
 
 fn new_skeleton() -> Bench {
@@ -84,7 +84,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
     assert_eq!(names(&bench).len(), 2, "a click places the first bone");
     assert!(!bench.says("Click to place the first joint"));
     let tip = bench.session().skeleton_pose().tip(JointId::new(1));
-    assert!(bench.place(tip).distance(centre + vec2(0.0, -120.0)) < 2.0, "where the mouse is");
+    assert!(bench.on_screen(tip).distance(centre + vec2(0.0, -120.0)) < 2.0, "where the mouse is");
 
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench.hold(CTRL);

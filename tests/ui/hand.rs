@@ -10,22 +10,22 @@ use crate::bench::{Bench, SMALL, bits};
 
 const LEFT: PointerButton = PointerButton::Primary;
 
-/// A pose of awkward numbers, so that a bit that changes is seen.
-pub fn odd() -> Bench {
+/// A pose of awkward numbers, so that a changed bit shows.
+pub fn awkward() -> Bench {
     Bench::after([
         EditAction::SetRoot(Vec3::new(12.345_679, -7.654_321, 33.333_332)),
         EditAction::SetHand(Vec3::new(223.456_79, 98.765_43, 71.234_57)),
     ])
 }
 
-/// Where an arrow of 80 points is, or a part of it, on screen: as a person sees it.
+/// Screen position at a fraction of an arrow of 80 points.
 pub fn on_arrow(bench: &Bench, axis: usize, points: f32) -> Pos2 {
-    bench.cursor_place() + along(bench, axis) * points
+    bench.cursor_on_screen() + along(bench, axis) * points
 }
 
 fn on_square(bench: &Bench, axis: usize) -> Pos2 {
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map(|axis| along(bench, axis));
-    bench.cursor_place() + (u + v) * 33.0
+    bench.cursor_on_screen() + (u + v) * 33.0
 }
 
 /// An axis as it lies on screen, one point long where it is seen from the side.
@@ -45,7 +45,7 @@ pub fn grab(bench: &mut Bench, at: Pos2) {
 #[test]
 fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_limits() {
     for mut bench in [Bench::new(), Bench::of_size(SMALL)] {
-        let start = bench.cursor_place();
+        let start = bench.cursor_on_screen();
         grab(&mut bench, start);
         assert_eq!(bench.hand(), Vec3::new(250.0, 120.0, 60.0), "a press alone moves nothing");
         let mut reaches = Vec::new();
@@ -56,11 +56,11 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
         for offset in path {
             let pointer = start + offset;
             bench.move_to(pointer);
-            let seen = bench.cursor_place();
+            let seen = bench.cursor_on_screen();
             assert!(seen.distance(pointer) < 0.05, "{seen} is not under {pointer}");
             let pose = *bench.session().pose();
             if pose.reach == Some(Reach::Reached) {
-                let hand = bench.place(bench.session().arm().root + pose.hand);
+                let hand = bench.on_screen(bench.session().arm().root + pose.hand);
                 assert!(hand.distance(pointer) < 0.05, "{hand} is not under {pointer}");
             } else {
                 let cursor = bench.hand();
@@ -80,80 +80,80 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
 }
 
 #[test]
-fn a_hand_taken_beside_its_middle_keeps_its_distance_from_the_mouse() {
+fn a_hand_grabbed_off_its_centre_keeps_its_distance_from_the_mouse() {
     let mut bench = Bench::new();
-    let (start, beside) = (bench.cursor_place(), vec2(7.0, -5.0));
+    let (start, beside) = (bench.cursor_on_screen(), vec2(7.0, -5.0));
     grab(&mut bench, start + beside);
     for offset in [Vec2::ZERO, vec2(1.0, 0.0), vec2(-50.0, 30.0)] {
         bench.move_to(start + beside + offset);
-        assert!(bench.cursor_place().distance(start + offset) < 0.05);
+        assert!(bench.cursor_on_screen().distance(start + offset) < 0.05);
     }
 }
 
 #[test]
 fn a_click_on_the_hand_changes_no_bit() {
-    let mut bench = odd();
+    let mut bench = awkward();
     let before = *bench.session().arm();
-    let place = bench.cursor_place();
-    bench.click_at(place);
+    let cursor = bench.cursor_on_screen();
+    bench.click_at(cursor);
     assert_eq!(bits(bench.hand()), bits(before.cursor_in_root()));
     assert!(!bench.session().is_editing());
 }
 
 #[test]
-fn a_press_and_its_release_in_one_frame_hold_nothing() {
+fn a_press_and_its_release_in_one_frame_grab_nothing() {
     let mut bench = Bench::new();
-    let place = bench.cursor_place();
-    bench.move_to(place);
+    let cursor = bench.cursor_on_screen();
+    bench.move_to(cursor);
     let events = [true, false].map(|down| bench.button(LEFT, down));
     bench.frame(events);
     assert!(!bench.session().is_editing());
-    bench.move_to(place + vec2(100.0, 0.0));
+    bench.move_to(cursor + vec2(100.0, 0.0));
     assert_eq!(bench.hand(), Vec3::new(250.0, 120.0, 60.0));
-    bench.move_to(bench.empty_place());
+    bench.move_to(bench.empty_point());
     let events = [true, false].map(|down| bench.button(LEFT, down));
     bench.frame(events);
-    bench.move_to(place);
+    bench.move_to(cursor);
     assert_eq!(bench.session().camera(), &Camera::default());
     assert!(bench.session().view_drag().is_none());
 }
 
 #[test]
-fn a_press_with_a_move_in_one_frame_takes_what_was_pressed_and_follows_at_once() {
+fn a_press_and_a_move_in_one_frame_grab_the_pressed_handle_and_drag_it_at_once() {
     let mut bench = Bench::new();
-    let place = bench.cursor_place();
-    bench.move_to(place);
-    let to = place + vec2(90.0, -100.0);
+    let cursor = bench.cursor_on_screen();
+    bench.move_to(cursor);
+    let to = cursor + vec2(90.0, -100.0);
     bench.frame([bench.button(LEFT, true), egui::Event::PointerMoved(to)]);
     assert!(bench.session().point_drag().is_some());
-    assert!(bench.cursor_place().distance(to) < 0.05);
+    assert!(bench.cursor_on_screen().distance(to) < 0.05);
 }
 
 #[test]
-fn a_hand_out_of_reach_is_taken_where_it_is_and_so_is_its_cursor() {
+fn out_of_reach_both_the_hand_and_the_cursor_can_be_dragged() {
     let far = Vec3::new(500.0, 220.0, 300.0);
     for take_cursor in [true, false] {
         let mut bench = Bench::after([
             Action::from(EditAction::SetHand(far)),
             ViewAction::GlideTo(Camera { distance: 1800.0, ..Camera::default() }).into(),
         ]);
-        let hand = bench.place(bench.session().pose().hand);
-        let start = if take_cursor { bench.cursor_place() } else { hand };
+        let hand = bench.on_screen(bench.session().pose().hand);
+        let start = if take_cursor { bench.cursor_on_screen() } else { hand };
         grab(&mut bench, start);
         for offset in [vec2(1.0, 1.0), vec2(8.0, -20.0), vec2(60.0, -90.0)] {
             bench.move_to(start + offset);
-            let seen = bench.cursor_place();
+            let seen = bench.cursor_on_screen();
             assert!(seen.distance(start + offset) < 0.05, "{take_cursor}: {seen}");
         }
     }
 }
 
 #[test]
-fn esc_and_the_right_button_take_a_drag_back() {
+fn esc_and_the_right_button_cancel_a_drag() {
     for by_key in [true, false] {
-        let mut bench = odd();
+        let mut bench = awkward();
         let before = *bench.session().arm();
-        let start = bench.cursor_place();
+        let start = bench.cursor_on_screen();
         bench.drag(LEFT, start, start + vec2(120.0, 90.0));
         assert_ne!(bench.session().arm(), &before);
         if by_key {
@@ -177,12 +177,12 @@ fn esc_and_the_right_button_take_a_drag_back() {
 
 #[test]
 fn a_drag_over_a_panel_goes_on_and_can_be_cancelled_there() {
-    let mut bench = odd();
+    let mut bench = awkward();
     let before = *bench.session().arm();
-    let start = bench.cursor_place();
+    let start = bench.cursor_on_screen();
     let to = pos2(100.0, 300.0);
     bench.drag(LEFT, start, to);
-    assert!(bench.cursor_place().distance(to) < 0.05);
+    assert!(bench.cursor_on_screen().distance(to) < 0.05);
     bench.press(PointerButton::Secondary);
     assert_eq!(bench.session().arm(), &before);
 }
@@ -190,7 +190,7 @@ fn a_drag_over_a_panel_goes_on_and_can_be_cancelled_there() {
 #[test]
 fn an_arrow_moves_its_coordinate_and_no_other_bit() {
     for axis in 0..3 {
-        let mut bench = odd();
+        let mut bench = awkward();
         let before = bench.hand();
         let grabbed = on_arrow(&bench, axis, 62.0);
         bench.move_to(grabbed);
@@ -217,10 +217,10 @@ fn an_arrow_moves_its_coordinate_and_no_other_bit() {
 #[test]
 fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
     for axis in 0..3 {
-        let mut bench = odd();
+        let mut bench = awkward();
         let before = bench.hand();
         let grabbed = on_square(&bench, axis);
-        let start = bench.cursor_place();
+        let start = bench.cursor_on_screen();
         grab(&mut bench, grabbed);
         assert_eq!(
             bench.session().point_drag().map(PointDrag::handle),
@@ -232,18 +232,18 @@ fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
                 let kept = bits(bench.hand())[other] == bits(before)[other];
                 assert_eq!(kept, other == axis, "{axis}: {before} to {}", bench.hand());
             }
-            let seen = bench.cursor_place();
-            // The square is not quite in the hand's place, so perspective shows a little.
+            let seen = bench.cursor_on_screen();
+            // The square is offset from the hand, so perspective has a small effect.
             assert!(seen.distance(start + offset) < 4.0, "{seen} for {}", start + offset);
         }
     }
 }
 
 #[test]
-fn an_arrow_along_the_view_cannot_be_taken() {
+fn an_arrow_along_the_view_cannot_be_grabbed() {
     let mut bench = Bench::after([ViewAction::SetCamera(Camera::default().along(AxisView::Front))]);
-    let place = bench.cursor_place();
-    bench.move_to(place + vec2(17.0, 12.0));
+    let cursor = bench.cursor_on_screen();
+    bench.move_to(cursor + vec2(17.0, 12.0));
     bench.press(LEFT);
     assert!(bench.session().point_drag().is_none_or(|d| d.handle() != PointHandle::Axis(2)));
 }
@@ -252,13 +252,13 @@ fn an_arrow_along_the_view_cannot_be_taken() {
 fn the_mouse_cursor_shows_handles() {
     let mut bench = Bench::new();
     let icon = |bench: &Bench| bench.harness.output().platform_output.cursor_icon;
-    let place = bench.cursor_place();
-    bench.move_to(place);
+    let cursor = bench.cursor_on_screen();
+    bench.move_to(cursor);
     assert_eq!(icon(&bench), CursorIcon::Grab);
     bench.press(LEFT);
     assert_eq!(icon(&bench), CursorIcon::Grabbing);
     bench.release(LEFT);
-    bench.move_to(bench.empty_place());
+    bench.move_to(bench.empty_point());
     bench.settle();
     assert_eq!(icon(&bench), CursorIcon::Default);
 }

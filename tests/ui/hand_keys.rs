@@ -1,4 +1,4 @@
-//! What keys do while the hand is dragged.
+//! Keys during a drag of the hand.
 
 use egui::{Key, Modifiers, PointerButton, vec2};
 use glam::Vec3;
@@ -6,7 +6,7 @@ use ik_arm::document::Camera;
 use ik_arm::session::{Constraint, PointDrag};
 
 use crate::bench::{Bench, bits};
-use crate::hand::{grab, odd, on_arrow};
+use crate::hand::{awkward, grab, on_arrow};
 
 const LEFT: PointerButton = PointerButton::Primary;
 
@@ -14,9 +14,9 @@ const LEFT: PointerButton = PointerButton::Primary;
 fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
     for (axis, key) in [Key::X, Key::Y, Key::Z].into_iter().enumerate() {
         for plane in [false, true] {
-            let mut bench = odd();
+            let mut bench = awkward();
             let before = bench.hand();
-            let start = bench.cursor_place();
+            let start = bench.cursor_on_screen();
             bench.drag(LEFT, start, start + vec2(40.0, 25.0));
             let modifiers = if plane { Modifiers::SHIFT } else { Modifiers::NONE };
             bench.key_with(modifiers, key);
@@ -35,7 +35,7 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
             bench.key_with(modifiers, key);
             assert_eq!(bench.session().point_drag().and_then(PointDrag::constraint), None);
             bench.move_to(start + vec2(61.0, 35.0));
-            assert!(bench.cursor_place().distance(start + vec2(61.0, 35.0)) < 0.05);
+            assert!(bench.cursor_on_screen().distance(start + vec2(61.0, 35.0)) < 0.05);
         }
     }
 }
@@ -43,7 +43,7 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
 #[test]
 fn shift_moves_a_tenth_of_the_way() {
     let mut bench = Bench::new();
-    let (before, start) = (bench.hand(), bench.cursor_place());
+    let (before, start) = (bench.hand(), bench.cursor_on_screen());
     let mut free = Bench::new();
     free.drag(LEFT, start, start + vec2(100.0, 40.0));
     let whole = free.hand() - before;
@@ -63,7 +63,7 @@ fn ctrl_snaps_to_tens_and_with_shift_to_ones() {
     for (modifiers, step) in
         [(Modifiers::COMMAND, 10.0), (Modifiers::COMMAND | Modifiers::SHIFT, 1.0)]
     {
-        let mut bench = odd();
+        let mut bench = awkward();
         let before = bench.hand();
         let grabbed = on_arrow(&bench, 1, 62.0);
         grab(&mut bench, grabbed);
@@ -79,9 +79,9 @@ fn ctrl_snaps_to_tens_and_with_shift_to_ones() {
 #[test]
 fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
     for accept in [true, false] {
-        let mut bench = odd();
+        let mut bench = awkward();
         let before = bench.hand();
-        let start = bench.cursor_place();
+        let start = bench.cursor_on_screen();
         bench.drag(LEFT, start, start + vec2(40.0, 25.0));
         bench.key(Key::Y);
         bench.type_text("-12.58");
@@ -90,7 +90,7 @@ fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
         assert_eq!(bits(bench.hand()), bits(before + Vec3::new(0.0, -12.5, 0.0)));
         assert!(bench.says("typed -12.5"));
         bench.move_to(start + vec2(200.0, 0.0));
-        assert_eq!(bench.hand().y, before.y - 12.5, "the pointer no longer leads");
+        assert_eq!(bench.hand().y, before.y - 12.5, "the mouse no longer moves it");
         bench.key(if accept { Key::Enter } else { Key::Escape });
         let expected = if accept { before - Vec3::new(0.0, 12.5, 0.0) } else { before };
         assert_eq!(bits(bench.hand()), bits(expected));
@@ -105,7 +105,7 @@ fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
 #[test]
 fn typed_numbers_are_for_the_coordinates_that_the_drag_moves() {
     let mut bench = Bench::new();
-    let (before, start) = (bench.hand(), bench.cursor_place());
+    let (before, start) = (bench.hand(), bench.cursor_on_screen());
     grab(&mut bench, start);
     bench.type_text("1,-2,.5");
     assert_eq!(bench.hand(), before + Vec3::new(1.0, -2.0, 0.5));
@@ -116,7 +116,7 @@ fn typed_numbers_are_for_the_coordinates_that_the_drag_moves() {
 #[test]
 fn the_status_line_shows_the_keys_and_the_change_while_the_hand_is_dragged() {
     let mut bench = Bench::new();
-    let start = bench.cursor_place();
+    let start = bench.cursor_on_screen();
     bench.drag(LEFT, start, start + vec2(30.0, 0.0));
     let moved = bench.session().point_drag().expect("held").moved();
     let change = format!("Move freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);

@@ -1,4 +1,4 @@
-//! Nothing is lost: steps back and forth, and questions before changes go.
+//! Undo, redo, and questions before unsaved changes are lost.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
@@ -28,7 +28,7 @@ fn menu(bench: &mut Bench, menu: &str) {
 }
 
 #[test]
-fn ctrl_z_takes_back_one_step_after_the_other_and_redo_does_them_again() {
+fn ctrl_z_undoes_one_step_after_the_other_and_redo_repeats_them() {
     for redo in [(CTRL.plus(SHIFT), Key::Z), (CTRL, Key::Y)] {
         let mut bench = moved();
         let last = bench.session().document().clone();
@@ -70,7 +70,7 @@ fn without_a_step_the_edit_menu_offers_none() {
 #[test]
 fn a_drag_of_the_hand_is_one_step() {
     let mut bench = Bench::new();
-    let hand = bench.cursor_place();
+    let hand = bench.cursor_on_screen();
     bench.drag_and_drop(PointerButton::Primary, hand, hand + egui::vec2(50.0, 20.0));
     assert_ne!(bench.session().document(), &ik_arm::io::new_document());
     bench.key_with(CTRL, Key::Z);
@@ -78,9 +78,9 @@ fn a_drag_of_the_hand_is_one_step() {
 }
 
 #[test]
-fn undo_while_something_is_dragged_takes_the_drag_back() {
+fn undo_during_a_drag_cancels_the_drag() {
     let mut bench = Bench::new();
-    let hand = bench.cursor_place();
+    let hand = bench.cursor_on_screen();
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(50.0, 0.0));
     assert_ne!(bench.session().arm(), &Document::default().arm);
     bench.key_with(CTRL, Key::Z);
@@ -104,7 +104,7 @@ fn a_running_solver_is_one_step() {
 }
 
 #[test]
-fn undo_stops_a_running_solver_and_takes_back_what_it_did() {
+fn undo_stops_a_running_solver_and_undoes_its_run() {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
     let method = Method::TransposeFixed;
@@ -148,7 +148,7 @@ fn hundreds_of_steps_can_be_undone() {
 }
 
 #[test]
-fn what_would_lose_changes_is_asked_about() {
+fn losing_unsaved_changes_needs_confirmation() {
     let example = Example::find("human").expect("there");
     let open = |path: &str| FileAction::Open { path: path.into(), skeleton: None };
     for leaving in
@@ -176,7 +176,7 @@ fn what_would_lose_changes_is_asked_about() {
 }
 
 #[test]
-fn saving_first_goes_on_once_it_is_saved() {
+fn a_file_action_continues_after_saving_first() {
     let mut bench = moved();
     bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
@@ -192,7 +192,7 @@ fn saving_first_goes_on_once_it_is_saved() {
 }
 
 #[test]
-fn what_is_not_saved_stays_open_and_unsaved() {
+fn after_a_failed_save_the_document_stays_open_and_unsaved() {
     let mut bench = moved();
     bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
@@ -209,7 +209,7 @@ fn what_is_not_saved_stays_open_and_unsaved() {
 }
 
 #[test]
-fn a_save_that_was_given_up_does_not_end_the_program_later() {
+fn a_cancelled_save_does_not_end_the_program_later() {
     let mut bench = moved();
     bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
@@ -235,7 +235,7 @@ fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
 }
 
 #[test]
-fn files_that_were_open_are_offered_again() {
+fn recent_files_are_offered_again() {
     let mut bench = Bench::new();
     for name in ["/a/one.json", "/a/two.json", "/a/one.json"] {
         bench.tell(FileAction::Saved(name.into()));
@@ -253,7 +253,7 @@ fn files_that_were_open_are_offered_again() {
 }
 
 #[test]
-fn what_an_earlier_run_kept_is_offered_and_not_saved_yet() {
+fn changes_kept_by_an_earlier_run_are_offered_as_unsaved() {
     let mut document = Document::default();
     document.arm.cursor = Cursor::Root(Vec3::Y * 123.0);
     let dialog =

@@ -1,4 +1,4 @@
-//! That everything can be drawn: the harness stops at a letter that no font has.
+//! Appearance: everything is drawn; the harness panics at a letter that no font has.
 
 use egui::accesskit::Role;
 use egui::{Key, Order, PointerButton, vec2};
@@ -18,7 +18,7 @@ fn in_theme(theme: Theme) -> Bench {
     Bench::after([ShellAction::SetTheme(theme)])
 }
 
-/// Rests the pointer on a widget until its tooltip shows.
+/// Holds the mouse over a widget until its tooltip shows.
 pub fn has_tooltip(bench: &mut Bench, role: Role, name: &str) -> bool {
     bench.move_to(bench.viewport().left_bottom() + vec2(30.0, -30.0));
     bench.wait(0.05);
@@ -88,7 +88,7 @@ fn every_sentence_of_the_status_line_can_be_read() {
     bench.apply([EditAction::SetUpper(-1.0)]);
     bench.apply([EditAction::ResetPose]);
     for key in [Key::X, Key::Y, Key::Z] {
-        let at = bench.cursor_place();
+        let at = bench.cursor_on_screen();
         bench.drag(PointerButton::Primary, at, at + vec2(20.0, 5.0));
         bench.key(key);
         bench.type_text("1");

@@ -1,5 +1,5 @@
-//! The panels and the viewport as a person uses them: widgets are pressed by their names, the
-//! hand is dragged where it is seen, and the session is checked.
+//! Panels and viewport, operated as by a user: the tests press widgets by their names, the
+//! mouse drags the hand on screen, and the session is checked.
 #![cfg(feature = "app")]
 
 mod accessibility;

@@ -10,7 +10,7 @@ use ik_arm::session::EditAction;
 
 use crate::bench::{Bench, bits};
 use crate::panel::SLIDERS;
-use crate::sliders::{is_same_but, odd, value};
+use crate::sliders::{awkward, is_same_but, value};
 
 fn values(arm: &Arm) -> [f32; 9] {
     SLIDERS.map(|slider| value(arm, slider))
@@ -36,7 +36,7 @@ fn typed_values_may_go_beyond_the_thumbs_range() {
 }
 
 #[test]
-fn large_numbers_are_shown_short_and_kept_whole() {
+fn large_numbers_are_shown_rounded_and_kept_exactly() {
     for (number, shown) in [
         (-9_999.9, "-9999.9"),
         (9_999.96, "10000"),
@@ -70,7 +70,7 @@ fn esc_leaves_a_typed_number_alone_and_forgets_it() {
 }
 
 #[test]
-fn what_is_not_a_number_is_not_taken() {
+fn text_that_is_not_a_number_is_ignored() {
     let mut bench = Bench::new();
     for typed in ["", "12x", "nan", "inf", "1e99", "--3"] {
         bench.enter("Hand x", typed);
@@ -79,8 +79,8 @@ fn what_is_not_a_number_is_not_taken() {
 }
 
 #[test]
-fn showing_a_value_does_not_change_it_nor_does_going_through_its_field() {
-    let mut bench = Bench::after(odd());
+fn showing_a_value_or_focusing_its_field_does_not_change_it() {
+    let mut bench = Bench::after(awkward());
     let before = *bench.session().arm();
     bench.wait(0.5);
     assert_eq!(values(bench.session().arm()).map(f32::to_bits), values(&before).map(f32::to_bits));
@@ -115,14 +115,13 @@ fn the_socket_twist_wraps() {
 }
 
 #[test]
-fn a_length_that_no_bone_can_have_is_refused_with_a_word() {
+fn an_invalid_length_is_refused_with_a_message() {
     for (slider, bone) in [("Upper length", "upper"), ("Lower length", "lower")] {
         for typed in ["0", "-5"] {
             let mut bench = Bench::new();
             bench.enter(slider, typed);
             assert_eq!(bench.session().arm(), &Arm::default(), "{slider} {typed}");
-            let message =
-                format!("The {bone} length is {typed}; it must be a finite number above 0");
+            let message = format!("The {bone} length must be finite and above 0, got {typed}");
             assert_eq!(bench.session().message(), Some(message.as_str()));
             assert!(bench.shows(Role::Alert, &message), "the status line says it");
             assert_eq!(

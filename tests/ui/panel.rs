@@ -86,7 +86,7 @@ fn the_whole_left_panel_is_in_sight_at_1280_by_800() {
 }
 
 #[test]
-fn the_menus_hold_what_they_should() {
+fn the_menus_have_the_expected_items() {
     for (menu, items) in MENUS {
         let mut bench = Bench::new();
         assert!(!items.iter().any(|item| bench.says(item) && *item != "Cursor"), "{menu} is open");
@@ -101,7 +101,7 @@ fn the_menus_hold_what_they_should() {
 }
 
 #[test]
-fn each_checkbox_flips_its_layer_and_no_other() {
+fn each_checkbox_toggles_its_overlay_and_no_other() {
     let mut bench = Bench::new();
     for (name, layer) in CHECKBOXES {
         for _ in 0..2 {
@@ -142,7 +142,7 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
 }
 
 #[test]
-fn reset_all_resets_everything_but_what_the_user_likes() {
+fn reset_all_resets_everything_but_the_preferences() {
     let actions = [
         Action::from(EditAction::SetLower(77.0)),
         EditAction::ShowOverlay(Overlay::Axes, false).into(),

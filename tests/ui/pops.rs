@@ -1,4 +1,4 @@
-//! Spikes of the elbow by name, with what helps as a button.
+//! Pops of the elbow by name, with a button for each fix.
 
 use egui::accesskit::Role;
 use egui::{PointerButton, Vec2, vec2};
@@ -27,7 +27,7 @@ fn from_the_front() -> Bench {
 
 fn drag(bench: &mut Bench, from: Vec3, to: Vec3, steps: u16) {
     bench.apply([EditAction::SetHand(from)]);
-    let (start, end) = (bench.place(from), bench.place(to));
+    let (start, end) = (bench.on_screen(from), bench.on_screen(to));
     bench.move_to(start);
     bench.press(LEFT);
     for step in 1..=steps {
@@ -52,14 +52,14 @@ fn softened(softness: f32) -> SoftReach {
 }
 
 #[test]
-fn at_first_it_says_what_to_do() {
+fn without_data_the_section_says_what_to_do() {
     let bench = from_the_front();
     assert!(bench.says("Drag the hand or press play"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
 
 #[test]
-fn a_calm_drag_is_said_to_be_calm() {
+fn a_drag_without_pops_is_reported_as_such() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(300.0, 0.0, 0.0), Vec3::new(200.0, 150.0, 0.0), 20);
     assert!(bench.says("No pops"));
@@ -67,7 +67,7 @@ fn a_calm_drag_is_said_to_be_calm() {
 }
 
 #[test]
-fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
+fn a_hand_dragged_over_the_top_pops_at_the_pole_until_stereographic_is_used() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"));
@@ -83,7 +83,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_the_map_is_taken() {
 }
 
 #[test]
-fn behind_the_body_the_map_pops_until_the_elbow_is_carried_along() {
+fn behind_the_body_stereographic_pops_until_transport_is_used() {
     let mut bench = from_the_front();
     bench.apply([EditAction::SetTwistReference(TwistReferenceKind::Stereographic)]);
     let behind = |bench: &mut Bench| {
@@ -119,7 +119,7 @@ fn a_hand_dragged_to_the_inner_limit_pops_there() {
 }
 
 #[test]
-fn a_hand_dragged_past_the_shoulder_has_no_button_but_a_reason() {
+fn a_hand_dragged_past_the_shoulder_has_an_explanation_and_no_fix() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0), 20);
     assert!(bench.says("Shoulder: the Cursor passed the shoulder"));
@@ -127,7 +127,7 @@ fn a_hand_dragged_past_the_shoulder_has_no_button_but_a_reason() {
 }
 
 #[test]
-fn one_remedy_is_offered_once() {
+fn the_same_fix_is_offered_once() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     over_the_top(&mut bench);
@@ -136,7 +136,7 @@ fn one_remedy_is_offered_once() {
 }
 
 #[test]
-fn other_changes_are_told_apart_from_pops() {
+fn other_input_changes_are_distinguished_from_pops() {
     let mut bench = from_the_front();
     bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
     assert!(bench.says("Dotted lines, not pops: lengths, Socket twist changed"));
@@ -144,7 +144,7 @@ fn other_changes_are_told_apart_from_pops() {
 }
 
 #[test]
-fn another_document_has_popped_nowhere() {
+fn opening_another_document_clears_the_pops() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     let document = Box::new(Document::default());

@@ -17,7 +17,7 @@ fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
     bench
 }
 
-/// Where the plot is, whatever it says.
+/// Rectangle of the plot.
 fn plot(bench: &Bench) -> Rect {
     let plots = bench.harness.query_all_by_label_contains("Reach curve: ");
     let mut images = plots.filter(|node| node.accesskit_node().role() == Role::Image);
@@ -25,7 +25,7 @@ fn plot(bench: &Bench) -> Rect {
 }
 
 #[test]
-fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
+fn the_position_of_the_cursor_on_the_arms_curve_is_stated() {
     // The soft zone is 0.2·(500 − 100)/2 = 40 wide.
     let soft = 500.0 - 40.0 * (-1.0_f64).exp();
     for (softness, stretch, asked, actual, slope) in [
@@ -45,7 +45,7 @@ fn it_says_where_the_cursor_is_on_the_arms_own_curve() {
 }
 
 #[test]
-fn its_lines_are_named_and_examples_are_called_that() {
+fn lines_are_labelled_and_examples_are_marked_as_such() {
     for (softness, stretch, names, note) in [
         (
             0.0,
@@ -76,7 +76,7 @@ fn its_lines_are_named_and_examples_are_called_that() {
 }
 
 #[test]
-fn it_says_when_the_hand_does_not_lead_alone() {
+fn a_note_appears_when_fk_has_influence() {
     let mut bench = bench(0.0, 1.0, 300.0);
     assert!(!bench.says("Shown for IK alone"));
     bench.apply([EditAction::SetInfluence(0.5)]);
@@ -111,7 +111,7 @@ fn hovering_reads_the_curve_at_the_mouse() {
 }
 
 #[test]
-fn what_is_far_or_tiny_does_not_upset_it() {
+fn extreme_hands_and_lengths_are_plotted() {
     let mut bench = bench(0.2, 1.5, 300.0);
     for hand in [Vec3::ZERO, Vec3::X * 1e30, Vec3::MAX, Vec3::splat(1e-30)] {
         bench.apply([EditAction::SetHand(hand)]);

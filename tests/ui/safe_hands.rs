@@ -1,5 +1,5 @@
-//! Nothing that a person types goes astray: dialogs take the keyboard, keys mean what they meant when
-//! they were pressed, and what is only looked at is no change.
+//! Input goes where it is meant: dialogs take the keyboard, keys have the state of the moment when
+//! they were pressed, and view changes are not unsaved changes.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
@@ -40,7 +40,7 @@ fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selec
         (CTRL, Key::E, "File"),
     ] {
         let mut bench = human();
-        bench.click_at(bench.empty_place());
+        bench.click_at(bench.empty_point());
         bench.settle();
         let before = bench.session().clone();
         bench.key_with(modifiers, key);
@@ -62,7 +62,7 @@ fn a_joint_is_named_after_a_click_on_it() {
     let joint = joint_named(&bench, "head");
     let tip = bench.session().skeleton_pose().tip(JointId::new(joint.index()));
     let base = bench.session().skeleton_pose().base(JointId::new(joint.index()));
-    bench.click_at(bench.place(base.lerp(tip, 0.5)));
+    bench.click_at(bench.on_screen(base.lerp(tip, 0.5)));
     bench.settle();
     assert_eq!(bench.session().selected(), Some(joint));
     let joints = bench.session().skeleton_pose().len();
@@ -80,7 +80,7 @@ fn a_joint_is_named_after_a_click_on_it() {
 fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_into_it() {
     let mut bench = human();
     bench.apply([SelectAction::Joints(vec![JointId::new(3)])]);
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     bench.apply([SelectAction::Joints(vec![JointId::new(3)])]);
     let press = |key| Event::Key {
         key,
@@ -99,10 +99,10 @@ fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_int
 }
 
 #[test]
-fn nothing_behind_an_open_question_answers() {
+fn nothing_behind_an_open_dialog_reacts() {
     let mut bench = human();
     bench.apply([EditAction::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     bench.key_with(CTRL, Key::Q);
     bench.settle();
     assert!(matches!(bench.session().dialog(), Some(Dialog::Unsaved { .. })));
@@ -118,8 +118,8 @@ fn nothing_behind_an_open_question_answers() {
     bench.settle();
     assert_eq!(bench.session(), &before);
     assert_eq!(bench.effects(), []);
-    let place = bench.empty_place();
-    bench.drag_and_drop(PointerButton::Primary, place, place + egui::vec2(100.0, 60.0));
+    let empty = bench.empty_point();
+    bench.drag_and_drop(PointerButton::Primary, empty, empty + egui::vec2(100.0, 60.0));
     bench.settle();
     assert_eq!(bench.session().camera(), before.camera());
 
@@ -139,7 +139,7 @@ fn nothing_behind_an_open_question_answers() {
 #[test]
 fn a_key_has_the_modifiers_that_were_held_when_it_was_pressed() {
     let mut bench = Bench::new();
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     bench.settle();
     let key = |pressed| Event::Key {
         key: Key::Num1,
@@ -163,7 +163,7 @@ fn a_key_has_the_modifiers_that_were_held_when_it_was_pressed() {
 fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
     let mut bench = human();
     bench.apply([SelectAction::Joints(vec![JointId::new(4)])]);
-    let at = bench.empty_place();
+    let at = bench.empty_point();
     bench.move_to(at);
     let count = bench.session().skeleton_pose().len();
     let button = |pressed| Event::PointerButton {
@@ -183,7 +183,7 @@ fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
 }
 
 #[test]
-fn what_is_only_looked_at_is_no_unsaved_change() {
+fn view_changes_are_not_unsaved_changes() {
     for look in [
         Action::from(ShellAction::SetTheme(Theme::Light)),
         EditAction::ShowOverlay(Overlay::SingularityGlobe, true).into(),
@@ -202,7 +202,7 @@ fn what_is_only_looked_at_is_no_unsaved_change() {
 }
 
 #[test]
-fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
+fn an_edit_is_unsaved_whatever_view_changes_come_before_and_after() {
     let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::SingularityGlobe, true)]);
     bench.apply([
         EditAction::SetTwist(0.5),
@@ -222,7 +222,7 @@ fn a_change_is_unsaved_whatever_is_looked_at_before_and_after() {
 }
 
 #[test]
-fn after_a_limit_the_reading_says_what_was_turned() {
+fn the_reading_of_a_ring_shows_the_angle_after_limits() {
     let mut bench = human();
     let joint = joint_named(&bench, "left_shin");
     bench.apply([SelectAction::Joints(vec![joint])]);
@@ -256,7 +256,7 @@ fn after_a_limit_the_reading_says_what_was_turned() {
 }
 
 #[test]
-fn the_solver_panel_and_the_status_line_are_of_the_pose_that_is_shown() {
+fn the_solver_panel_and_the_status_line_describe_the_shown_pose() {
     let example = Example::find("ten-joints").expect("there");
     let mut bench = Bench::after([FileAction::OpenExample(example)]);
     let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
@@ -306,7 +306,7 @@ fn deleting_a_joint_asks_what_becomes_of_its_children() {
     };
     let before = (names(&bench), places(&bench));
     bench.apply([SelectAction::Joints(vec![shoulder])]);
-    bench.click_at(bench.empty_place() + egui::vec2(0.0, 1.0));
+    bench.click_at(bench.empty_point() + egui::vec2(0.0, 1.0));
     bench.apply([SelectAction::Joints(vec![shoulder])]);
     bench.key(Key::Delete);
     bench.settle();
@@ -438,10 +438,10 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
 }
 
 #[test]
-fn enter_in_the_frame_of_the_key_that_asks_is_the_answer() {
+fn enter_in_the_frame_of_the_key_that_opens_a_question_answers_it() {
     let mut bench = human();
     bench.apply([EditAction::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     let key = |key, modifiers| Event::Key {
         key,
         physical_key: None,
@@ -481,7 +481,7 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
 }
 
 #[test]
-fn a_view_that_is_on_its_way_is_saved_as_it_will_be() {
+fn a_gliding_camera_is_saved_at_its_destination() {
     let mut bench = Bench::new();
     let back = bench.session().camera().along(ik_arm::document::AxisView::Back);
     bench.apply_moving([ViewAction::GlideTo(back)]);

@@ -1,4 +1,4 @@
-//! Keys and typed numbers beside a skeleton: what has the keyboard gets them, and nothing else.
+//! Keys and typed numbers with a skeleton: only the focused widget receives them.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -90,7 +90,7 @@ fn escape_closes_a_menu_and_leaves_the_selection() {
 }
 
 #[test]
-fn going_through_a_number_changes_no_bit_of_what_it_stands_for() {
+fn focusing_a_number_field_changes_no_bit_of_its_value() {
     let mut bench = tree();
     let joint = bench.session().selected().expect("one");
     let target = bench.session().skeleton_rig().targets[0];
@@ -144,7 +144,7 @@ fn a_number_can_be_typed_with_its_unit() {
 }
 
 #[test]
-fn what_is_not_a_number_changes_no_field() {
+fn text_that_is_not_a_number_changes_no_field() {
     for typed in ["nan", "inf", "", "x"] {
         let mut bench = tree();
         let before = bench.session().document().clone();
@@ -180,7 +180,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
 }
 
 #[test]
-fn keys_do_nothing_where_there_is_nothing_to_do_it_to() {
+fn keys_do_nothing_without_joints() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
     bench.apply([EditAction::DeleteJoints(vec![JointId::new(0)])]);
@@ -249,7 +249,7 @@ fn the_list_of_keys_fits_a_small_window() {
 }
 
 #[test]
-fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
+fn follow_path_can_be_switched_off_as_its_tooltip_says() {
     let mut bench = example("snake");
     bench.node(Role::CheckBox, "Follow path").scroll_to_me();
     bench.settle();
@@ -262,7 +262,7 @@ fn what_a_tooltip_tells_to_switch_off_can_be_switched_off() {
 }
 
 #[test]
-fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
+fn a_long_name_does_not_widen_the_panel() {
     let mut bench = Bench::of_size(SMALL);
     bench.choose(&["File", "New skeleton"]);
     bench.click(Role::Button, "Add child");
@@ -283,7 +283,7 @@ fn a_long_name_leaves_the_panel_as_wide_as_it_was() {
 }
 
 #[test]
-fn a_race_says_of_every_solver_how_it_ended() {
+fn a_race_shows_the_result_of_every_solver() {
     let mut bench = tree();
     bench.apply_moving([SolverAction::Compare(true)]);
     bench.wait(4.0);

@@ -1,4 +1,4 @@
-//! The skeleton in the panels: built, turned, given targets and solved, by the names of widgets.
+//! The skeleton's panels: building, rotating, targets and solving.
 
 use core::f32::consts::FRAC_PI_2;
 
@@ -67,7 +67,7 @@ fn the_rig_is_chosen_at_the_top_and_the_other_is_kept() {
 }
 
 #[test]
-fn a_new_skeleton_is_a_locked_point_on_which_children_are_hung_one_on_the_other() {
+fn a_new_skeleton_is_a_locked_root_and_a_chain_can_be_added_to_it() {
     let bench = built();
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "joint_2"]);
     let skeleton = &bench.session().skeleton();
@@ -86,7 +86,7 @@ fn a_new_skeleton_is_a_locked_point_on_which_children_are_hung_one_on_the_other(
 }
 
 #[test]
-fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
+fn a_joint_can_be_renamed_but_not_to_a_name_in_use() {
     let mut bench = built();
     bench.click(Role::Button, "Rename…");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -102,7 +102,7 @@ fn a_joint_is_renamed_and_keeps_a_name_that_is_taken_from_being_given_twice() {
 #[test]
 fn a_name_may_have_letters_of_any_script_and_letters_that_no_font_has() {
     let mut bench = built();
-    // Boxes where there is no font for them.
+    // Letters that no font has are boxes.
     bench.harness.ctx.set_missing_glyph_policy(MissingGlyphPolicy::Tofu);
     for name in ["Hüfte", "左手", "\u{10fffd}"] {
         bench.click(Role::Button, "Rename…");
@@ -116,7 +116,7 @@ fn a_name_may_have_letters_of_any_script_and_letters_that_no_font_has() {
 }
 
 #[test]
-fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
+fn a_joint_is_deleted_with_its_subtree_and_its_parent_is_selected() {
     let mut bench = built();
     select(&mut bench, "joint_1");
     bench.click(Role::Button, "Delete");
@@ -133,7 +133,7 @@ fn a_joint_is_deleted_with_all_that_hangs_from_it_and_its_parent_is_selected() {
 }
 
 #[test]
-fn without_a_selection_what_needs_one_is_disabled() {
+fn controls_that_need_a_selection_are_disabled_without_one() {
     let mut bench = built();
     bench.apply([SelectAction::Joints(Vec::new())]);
     for name in ["Delete", "Rename…", "Add target"] {
@@ -145,7 +145,7 @@ fn without_a_selection_what_needs_one_is_disabled() {
 }
 
 #[test]
-fn a_joint_hangs_from_the_parent_that_is_chosen_and_stays_where_it_is() {
+fn a_reparented_joint_stays_where_it_is() {
     let mut bench = built();
     let (base, tip) = {
         let pose = bench.session().skeleton_pose();
@@ -161,7 +161,7 @@ fn a_joint_hangs_from_the_parent_that_is_chosen_and_stays_where_it_is() {
 }
 
 #[test]
-fn a_slider_turns_a_joint_and_all_that_hangs_from_it_and_nothing_else() {
+fn a_slider_turns_a_joint_with_its_subtree_and_nothing_else() {
     let mut bench = built();
     select(&mut bench, "joint_1");
     let before = bench.session().skeleton_pose().clone();
@@ -233,7 +233,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
 }
 
 #[test]
-fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
+fn a_step_is_one_iteration_and_reset_restores_the_pose() {
     let mut bench = example("two-targets");
     let before = bench.session().skeleton().clone();
     for iterations in 1..=3 {
@@ -248,7 +248,7 @@ fn a_step_is_one_iteration_and_reset_gives_back_the_pose_before() {
 }
 
 #[test]
-fn escape_takes_back_what_a_running_solver_has_done() {
+fn escape_cancels_a_running_solver() {
     let mut bench = example("ten-joints");
     bench.apply([EditAction::SetSolver({
         let solver = bench.session().skeleton_rig().solver;
@@ -265,7 +265,7 @@ fn escape_takes_back_what_a_running_solver_has_done() {
 }
 
 #[test]
-fn a_target_that_is_switched_off_is_not_minded() {
+fn a_disabled_target_is_ignored() {
     let mut bench = example("two-targets");
     bench.click(Role::CheckBox, "Target of left_3");
     assert!(!bench.session().skeleton_rig().targets[0].enabled);
@@ -310,7 +310,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
 }
 
 #[test]
-fn a_moving_target_goes_around_while_the_time_goes_on_and_the_solver_follows() {
+fn a_moving_target_moves_during_playback_and_the_solver_follows() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
     bench.click_at(bench.rect(Role::ComboBox, "Motion").center());
@@ -388,7 +388,7 @@ fn the_tree_selects_one_more_or_none_and_follows_the_arrow_keys() {
 fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
-    let empty = bench.empty_place();
+    let empty = bench.empty_point();
     bench.move_to(empty);
     bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
     bench.key(Key::A);
@@ -423,7 +423,7 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
 }
 
 #[test]
-fn a_bone_is_made_longer_and_what_sits_on_its_tip_goes_with_it() {
+fn lengthening_a_bone_moves_the_children_on_its_tip() {
     let mut bench = built();
     select(&mut bench, "joint_1");
     bench.click(Role::SpinButton, "Length");

@@ -1,4 +1,4 @@
-//! The skeleton in the viewport: selected, posed, turned and brought to targets by the mouse.
+//! The skeleton in the viewport: selecting, posing, rotating and solving by mouse.
 
 use core::f32::consts::PI;
 
@@ -48,14 +48,14 @@ fn tip(bench: &Bench, name: &str) -> Vec3 {
 }
 
 fn tip_place(bench: &Bench, name: &str) -> Pos2 {
-    bench.place(tip(bench, name))
+    bench.on_screen(tip(bench, name))
 }
 
 /// The middle of a bone, on screen.
 fn bone_place(bench: &Bench, name: &str) -> Pos2 {
     let pose = bench.session().skeleton_pose();
     let joint = joint(bench, name);
-    bench.place(
+    bench.on_screen(
         pose.base(JointId::new(joint.index())).midpoint(pose.tip(JointId::new(joint.index()))),
     )
 }
@@ -69,24 +69,24 @@ fn ring_place(bench: &Bench, axis: usize, radius: f32, angle: f32) -> Pos2 {
     let rect = bench.viewport();
     let projection = bench.session().camera().projection(rect.aspect_ratio());
     let unit = projection.half_height_at(ring.centre) / (rect.height() / 2.0);
-    bench.place(ring.centre + (u * angle.cos() + v * angle.sin()) * radius * unit)
+    bench.on_screen(ring.centre + (u * angle.cos() + v * angle.sin()) * radius * unit)
 }
 
 #[test]
-fn a_click_selects_the_bone_that_it_hits_and_one_beside_all_selects_none() {
+fn a_click_on_a_bone_selects_it_and_a_click_beside_all_selects_none() {
     let mut bench = bench();
     for name in ["b", "d", "a", "c"] {
         let at = bone_place(&bench, name);
         bench.click_at(at);
         assert_eq!(bench.session().selection(), [joint(&bench, name)]);
     }
-    let empty = bench.empty_place();
+    let empty = bench.empty_point();
     bench.click_at(empty);
     assert!(bench.session().selection().is_empty());
 }
 
 #[test]
-fn shift_and_a_click_add_a_bone_or_take_it_away() {
+fn shift_click_adds_a_bone_to_the_selection_or_removes_it() {
     let mut bench = bench();
     let places = ["a", "b", "c"].map(|name| bone_place(&bench, name));
     bench.click_at(places[0]);
@@ -99,22 +99,22 @@ fn shift_and_a_click_add_a_bone_or_take_it_away() {
 }
 
 #[test]
-fn a_turned_view_keeps_the_selection() {
+fn orbiting_the_view_keeps_the_selection() {
     let mut bench = bench();
     let at = bone_place(&bench, "b");
     bench.click_at(at);
-    let empty = bench.empty_place();
+    let empty = bench.empty_point();
     bench.drag_and_drop(LEFT, empty, empty + vec2(120.0, 40.0));
     assert_eq!(bench.session().selection(), [joint(&bench, "b")]);
 }
 
 #[test]
-fn the_bone_under_the_mouse_is_pointed_out() {
+fn the_bone_under_the_mouse_is_highlighted() {
     let mut bench = bench();
     let at = bone_place(&bench, "c");
     bench.move_to(at);
     assert_eq!(bench.session().hovered(), Some(joint(&bench, "c")));
-    let empty = bench.empty_place();
+    let empty = bench.empty_point();
     bench.move_to(empty);
     assert_eq!(bench.session().hovered(), None);
 }
@@ -145,7 +145,7 @@ fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
 }
 
 #[test]
-fn escape_takes_a_pose_back_bit_for_bit() {
+fn escape_restores_the_pose_bit_for_bit() {
     let mut bench = bench();
     let before = bench.session().skeleton_rig().clone();
     let start = tip_place(&bench, "c");
@@ -170,7 +170,7 @@ fn a_tip_comes_back_to_where_it_was_when_the_mouse_does() {
 }
 
 #[test]
-fn a_root_that_is_a_point_moves_with_all_that_hangs_from_it() {
+fn a_root_that_is_a_point_moves_with_its_subtree() {
     let mut bench = bench();
     let (root, before) = (tip_place(&bench, "root"), tip(&bench, "c"));
     bench.drag_and_drop(LEFT, root, root + vec2(60.0, 25.0));
@@ -188,7 +188,7 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
         let mut bench = bench();
         let b = joint(&bench, "b");
         bench.apply([SelectAction::Joints(vec![b])]);
-        // Where nothing else can be taken.
+        // At a point without other handles.
         let grip = |bench: &mut Bench, from: f32| {
             let at = ring_place(bench, axis, 56.0, from);
             bench.move_to(at);
@@ -252,7 +252,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
         }
         bench.move_to(pointer);
         let target = bench.session().skeleton_rig().targets[0].home;
-        assert!(bench.place(target).distance(pointer) < 0.1);
+        assert!(bench.on_screen(target).distance(pointer) < 0.1);
         assert!(tip(&bench, "c").distance(target) < 0.01, "the tip follows");
     }
     bench.release(LEFT);
@@ -269,7 +269,7 @@ fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
     assert_eq!(bench.session().skeleton(), &before);
     bench.apply([SolverAction::Run(true)]);
     bench.wait(2.0);
-    assert!(!bench.session().is_running(), "it rests when it is there");
+    assert!(!bench.session().is_running(), "it stops at the target");
     let report = bench.session().solver_run().expect("it ran").report();
     assert!(report.converged() && report.iterations > 0, "{report:?}");
     bench.settle();
@@ -281,7 +281,7 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
     let c = joint(&bench, "c");
     bench.apply([Action::from(EditAction::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
     let home = bench.session().skeleton_rig().targets[0].home;
-    let start = bench.place(home);
+    let start = bench.on_screen(home);
     let camera = bench.session().camera();
     let projection = camera.projection(bench.viewport().aspect_ratio());
     let up = vec2(0.0, -Vec3::Y.dot(projection.up.normalize()));
@@ -292,22 +292,22 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
 }
 
 #[test]
-fn a_moving_target_is_dragged_along_its_way() {
+fn dragging_a_moving_target_moves_its_path() {
     let mut bench = bench();
     let c = joint(&bench, "c");
     bench.apply([EditAction::AddTarget(c)]);
     let mut target = bench.session().skeleton_rig().targets[0];
     target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
     bench.apply([Action::from(EditAction::SetTarget(target)), PlaybackAction::SetTime(1.0).into()]);
-    let start = bench.place(target.at(1.0));
+    let start = bench.on_screen(target.at(1.0));
     bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));
     let dragged = bench.session().skeleton_rig().targets[0];
-    assert!(bench.place(dragged.at(1.0)).distance(start + vec2(30.0, 0.0)) < 0.1);
+    assert!(bench.on_screen(dragged.at(1.0)).distance(start + vec2(30.0, 0.0)) < 0.1);
     assert_eq!(dragged.motion, target.motion);
 }
 
 #[test]
-fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_mouse() {
+fn ctrl_click_adds_a_bone_from_the_selected_tip_to_the_mouse() {
     let mut bench = bench();
     let c = joint(&bench, "c");
     bench.apply([SelectAction::Joints(vec![c])]);
@@ -318,5 +318,5 @@ fn control_and_a_click_add_a_bone_from_the_selected_tip_to_the_mouse() {
     let (pose, rig) = (bench.session().skeleton_pose(), bench.session().skeleton_rig());
     assert_eq!(rig.skeleton.joints()[added.index()].parent, Some(c));
     assert!(pose.base(added).distance(from) < 1e-5);
-    assert!(bench.place(pose.tip(added)).distance(at) < 0.1);
+    assert!(bench.on_screen(pose.tip(added)).distance(at) < 0.1);
 }

@@ -31,7 +31,7 @@ pub fn value(arm: &Arm, slider: &str) -> f32 {
     }
 }
 
-/// What `arm` holds, apart from where it last faced, which follows from the rest.
+/// The arm's settings without its last pointer, which follows from them.
 pub fn is_same_but(slider: &str, a: &Arm, b: &Arm) -> bool {
     SLIDERS
         .into_iter()
@@ -40,7 +40,7 @@ pub fn is_same_but(slider: &str, a: &Arm, b: &Arm) -> bool {
 }
 
 /// A pose of awkward numbers, some beyond every thumb's range.
-pub fn odd() -> [EditAction; 5] {
+pub fn awkward() -> [EditAction; 5] {
     [
         EditAction::SetHand(Vec3::new(123.456_79, -987.654_3, 0.1)),
         EditAction::SetRoot(Vec3::new(-1_234.567_9, 0.333_333_34, 1e-7)),
@@ -101,8 +101,8 @@ fn a_click_on_a_rail_goes_there() {
 }
 
 #[test]
-fn esc_takes_a_rails_drag_back_and_moving_on_changes_nothing() {
-    let mut bench = Bench::after(odd());
+fn esc_cancels_the_drag_of_a_rail_and_further_movement_changes_nothing() {
+    let mut bench = Bench::after(awkward());
     let before = *bench.session().arm();
     let (from, to) = (on_rail(&bench, "Hand x", 0.4), on_rail(&bench, "Hand x", 0.7));
     bench.drag(PointerButton::Primary, from, to);
@@ -118,7 +118,7 @@ fn esc_takes_a_rails_drag_back_and_moving_on_changes_nothing() {
 }
 
 #[test]
-fn esc_takes_a_press_on_a_rail_back() {
+fn esc_cancels_a_press_on_a_rail() {
     let mut bench = Bench::new();
     bench.move_to(on_rail(&bench, "Hand x", 0.2));
     bench.press(PointerButton::Primary);
@@ -151,7 +151,7 @@ fn space_and_enter_on_a_rail_change_nothing() {
 }
 
 #[test]
-fn esc_takes_the_drag_of_a_number_back_too() {
+fn esc_cancels_the_drag_of_a_number_too() {
     let mut bench = Bench::new();
     let at = bench.rect(Role::SpinButton, "Hand z value").center();
     bench.drag(PointerButton::Primary, at, at + egui::vec2(40.0, 0.0));
@@ -166,7 +166,7 @@ fn esc_takes_the_drag_of_a_number_back_too() {
 fn a_double_click_on_rail_or_label_resets() {
     for slider in SLIDERS {
         for on_label in [false, true] {
-            let mut bench = Bench::after(odd());
+            let mut bench = Bench::after(awkward());
             let before = *bench.session().arm();
             let rail = bench.rect(Role::Slider, slider);
             let label = pos2(rail.left() - 30.0, rail.center().y);

@@ -1,4 +1,4 @@
-//! Help → Statistics: what frames cost, and that showing it costs none.
+//! Help → Statistics: times of frames; showing them requests no frame.
 
 use std::time::Duration;
 
@@ -68,7 +68,7 @@ fn the_help_menu_opens_the_statistics_and_esc_closes_them() {
 }
 
 #[test]
-fn every_part_has_its_median_and_its_slowest() {
+fn every_part_shows_its_median_and_its_slowest_time() {
     let bench = opened(LARGE, machine(240, true));
     // The median frame has a unit of 1.12 ms, the slowest of 3.
     for (part, median, slowest) in [
@@ -81,33 +81,33 @@ fn every_part_has_its_median_and_its_slowest() {
         ("GPU", "2.800", "7.500"),
     ] {
         let row = bench.rect(Role::Label, part);
-        for figure in [median, slowest] {
-            let figure = bench.rect(Role::Label, figure);
-            assert!((figure.center().y - row.center().y).abs() < 3.0, "{part}: {figure:?}");
+        for number in [median, slowest] {
+            let number = bench.rect(Role::Label, number);
+            assert!((number.center().y - row.center().y).abs() < 3.0, "{part}: {number:?}");
         }
     }
-    for figure in ["60", "57", "12", "3", "10,871", "1,234,567"] {
-        assert!(bench.shows(Role::Label, figure), "{figure}");
+    for number in ["60", "57", "12", "3", "10,871", "1,234,567"] {
+        assert!(bench.shows(Role::Label, number), "{number}");
     }
     assert!(bench.shows(Role::Label, "Test adapter (of tests)"));
     assert!(bench.shows(Role::Label, "Backend: vulkan"));
 }
 
 #[test]
-fn an_adapter_without_a_clock_is_said_to_have_none() {
+fn an_adapter_without_timestamps_is_reported() {
     let bench = opened(LARGE, machine(10, false));
     assert!(bench.shows(Role::Label, "not measured by this adapter"));
 }
 
 #[test]
-fn before_the_first_frame_there_is_nothing_to_tell() {
+fn before_the_first_frame_there_is_nothing_to_show() {
     let bench = opened(LARGE, Machine::default());
     assert!(bench.says("Frame times: no frame drawn yet"));
     assert!(bench.shows(Role::Label, "–"));
 }
 
 #[test]
-fn nothing_moves_when_the_figures_change_their_widths() {
+fn nothing_moves_when_the_numbers_change_their_widths() {
     let places = |bench: &Bench| {
         let names = ["Solve", "Total", "GPU", "Frames per second", "Bytes uploaded"];
         names.map(|name| bench.rect(Role::Label, name))
@@ -128,13 +128,13 @@ fn nothing_moves_when_the_figures_change_their_widths() {
 }
 
 #[test]
-fn the_statistics_ask_for_no_frame_and_the_rest_goes_on_beside_them() {
+fn the_statistics_request_no_frame_and_do_not_block_the_window() {
     let mut bench = opened(LARGE, machine(240, true));
     assert!(!bench.asks_for_a_frame());
     bench.wait(1.0);
     assert!(!bench.asks_for_a_frame());
     let before = bench.hand();
-    let at = bench.cursor_place();
+    let at = bench.cursor_on_screen();
     assert!(at.x < bench.rect(Role::Label, "Solve").left(), "the hand is not hidden");
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
     assert_ne!(bench.hand(), before, "the hand is dragged");
@@ -165,7 +165,7 @@ fn the_statistics_look_as_they_did() {
     for theme in [Theme::Dark, Theme::Light] {
         let mut bench = opened(LARGE, machine(240, true));
         bench.apply([ShellAction::SetTheme(theme)]);
-        bench.move_to(bench.empty_place());
+        bench.move_to(bench.empty_point());
         bench.settle();
         let options = SnapshotOptions::new()
             .threshold(2.0)

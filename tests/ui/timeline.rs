@@ -1,4 +1,4 @@
-//! The timeline by the pointer: times and keys are dragged where they are seen.
+//! The timeline by mouse: dragging times and keys.
 
 use std::time::{Duration, Instant};
 
@@ -52,8 +52,8 @@ pub fn key_of_hand(bench: &Bench, time: f64) -> Pos2 {
     bench.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center()
 }
 
-/// Where a time is on the ruler, told from two keys of the hand.
-fn place(bench: &Bench, time: f64) -> Pos2 {
+/// Screen position of a time on the ruler, from two keys of the hand.
+fn ruler_position(bench: &Bench, time: f64) -> Pos2 {
     let (a, b) = (key_of_hand(bench, 1.0).x, key_of_hand(bench, 2.0).x);
     pos2(a + (time - 1.0) as f32 * (b - a), bench.rect(Role::Slider, "Timeline ruler").center().y)
 }
@@ -76,10 +76,10 @@ fn the_key_button_keys_hand_and_twist_of_an_arm() {
 }
 
 #[test]
-fn the_time_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
+fn the_playhead_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     let mut bench = keyed();
     let document = bench.session().document().clone();
-    let (from, to) = (place(&bench, 1.01), place(&bench, 3.495));
+    let (from, to) = (ruler_position(&bench, 1.01), ruler_position(&bench, 3.495));
     bench.drag(PointerButton::Primary, from, to);
     assert_eq!(bench.session().time(), Timeline::default().snapped(3.495));
     bench.hold(Modifiers::COMMAND);
@@ -91,21 +91,21 @@ fn the_time_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     bench.move_to(pos2(-5000.0, to.y));
     assert_eq!(bench.session().time(), 0.0);
     bench.release(PointerButton::Primary);
-    bench.move_to(place(&bench, 3.0));
+    bench.move_to(ruler_position(&bench, 3.0));
     assert_eq!(bench.session().time(), 0.0, "it is let go");
     assert_eq!(bench.session().document(), &document);
     assert_eq!(bench.session().undo_label(), Some("Key Socket twist"), "it is no step");
 }
 
 #[test]
-fn esc_takes_the_time_back() {
+fn esc_restores_the_time() {
     let mut bench = keyed();
     bench.apply([PlaybackAction::SetTime(0.5)]);
-    bench.drag(PointerButton::Primary, place(&bench, 1.0), place(&bench, 4.0));
+    bench.drag(PointerButton::Primary, ruler_position(&bench, 1.0), ruler_position(&bench, 4.0));
     assert_eq!(bench.session().time(), 4.0);
     bench.key(Key::Escape);
     assert_eq!(bench.session().time(), 0.5);
-    bench.move_to(place(&bench, 2.0));
+    bench.move_to(ruler_position(&bench, 2.0));
     bench.release(PointerButton::Primary);
     assert_eq!(bench.session().time(), 0.5);
 }
@@ -132,7 +132,7 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
 }
 
 #[test]
-fn ctrl_lets_a_key_go_between_frames() {
+fn ctrl_moves_a_key_between_frames() {
     let mut bench = keyed();
     let (from, to) = (key_of_hand(&bench, 2.0), key_of_hand(&bench, 2.0) + vec2(7.0, 0.0));
     bench.drag(PointerButton::Primary, from, to);
@@ -144,7 +144,7 @@ fn ctrl_lets_a_key_go_between_frames() {
 }
 
 #[test]
-fn esc_takes_a_drag_of_keys_back_and_they_stay_selected() {
+fn esc_cancels_a_drag_of_keys_and_they_stay_selected() {
     let mut bench = keyed();
     let before = bench.session().document().clone();
     let from = key_of_hand(&bench, 2.0);
@@ -160,7 +160,7 @@ fn esc_takes_a_drag_of_keys_back_and_they_stay_selected() {
 }
 
 #[test]
-fn a_click_selects_a_key_and_shift_adds_another_or_takes_it_out() {
+fn a_click_selects_a_key_and_shift_adds_another_or_removes_it() {
     let mut bench = keyed();
     bench.click_at(key_of_hand(&bench, 1.0));
     assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 1.0)]);
@@ -211,7 +211,7 @@ fn a_box_selects_what_is_in_it() {
 #[test]
 fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
     let mut bench = keyed();
-    let at = pos2(place(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
+    let at = pos2(ruler_position(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
     bench.double_click_at(at);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
     assert_eq!(bench.session().time(), 3.0);
@@ -225,7 +225,7 @@ fn spline() -> Spline<Vec3> {
 }
 
 #[test]
-fn the_hand_goes_along_the_spline_while_it_is_played() {
+fn the_hand_follows_the_spline_during_playback() {
     let mut bench = keyed();
     bench.apply([PlaybackAction::SetTime(1.2)]);
     bench.click_at(bench.rect(Role::Button, "Play").center());
@@ -242,11 +242,11 @@ fn the_hand_goes_along_the_spline_while_it_is_played() {
     bench.click_at(bench.rect(Role::Button, "Pause").center());
     bench.settle();
     let time = bench.session().time();
-    assert_eq!(time, Timeline::default().snapped(time), "it stands on a frame");
+    assert_eq!(time, Timeline::default().snapped(time), "it is on a frame");
 }
 
 #[test]
-fn half_the_speed_goes_half_as_far() {
+fn at_half_speed_playback_goes_half_as_far() {
     let mut bench = keyed();
     bench.click(Role::SpinButton, "Speed");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -278,7 +278,7 @@ fn at_its_end_playback_loops_or_stops() {
 }
 
 #[test]
-fn buttons_lead_to_the_ends_and_from_key_to_key() {
+fn buttons_go_to_the_ends_and_from_key_to_key() {
     let mut bench = keyed();
     for (name, time) in [
         ("Next key", 1.0),
@@ -317,12 +317,16 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
 }
 
 #[test]
-fn the_frame_rate_is_chosen_and_another_one_of_a_file_is_shown() {
+fn the_frame_rate_can_be_chosen_and_an_unlisted_one_of_a_file_is_shown() {
     let mut bench = keyed();
     bench.click(Role::ComboBox, "Frame rate");
     bench.click(Role::Button, "24 fps");
     assert_eq!(bench.session().document().timeline.frame_rate, 24);
-    bench.drag_and_drop(PointerButton::Primary, place(&bench, 1.0), place(&bench, 1.5));
+    bench.drag_and_drop(
+        PointerButton::Primary,
+        ruler_position(&bench, 1.0),
+        ruler_position(&bench, 1.5),
+    );
     let frames = bench.session().time() * 24.0;
     assert!((frames - frames.round()).abs() < 1e-9);
     let timeline = Timeline { frame_rate: 25, ..Timeline::default() };
@@ -340,7 +344,7 @@ fn type_into(bench: &mut Bench, field: &str, text: &str) {
 }
 
 #[test]
-fn start_and_end_are_typed_and_what_cannot_be_is_said() {
+fn start_and_end_can_be_typed_and_invalid_values_are_refused() {
     let mut bench = keyed();
     type_into(&mut bench, "End", "5.1");
     type_into(&mut bench, "Start", "-0.7 s");
@@ -424,7 +428,7 @@ fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
     let key = key_of_hand(&bench, 2.0);
     right_click(&mut bench, key);
     bench.click(Role::Button, "Copy keys");
-    let empty = pos2(place(&bench, 3.0).x, key.y);
+    let empty = pos2(ruler_position(&bench, 3.0).x, key.y);
     right_click(&mut bench, empty);
     bench.click(Role::Button, "Paste here");
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
@@ -440,7 +444,7 @@ fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
 }
 
 #[test]
-fn a_screen_reader_selects_keys_and_goes_through_the_time() {
+fn a_screen_reader_selects_keys_and_scrubs() {
     let mut bench = keyed();
     bench.node(Role::Button, "Key of Hand at 5.00 s").click_accesskit();
     bench.settle();
@@ -455,9 +459,9 @@ fn a_screen_reader_selects_keys_and_goes_through_the_time() {
 }
 
 #[test]
-fn the_curves_can_be_dragged_through_the_time() {
+fn dragging_in_the_graph_editor_scrubs() {
     let mut bench = keyed();
-    let (from, to) = (place(&bench, 1.0), place(&bench, 4.0));
+    let (from, to) = (ruler_position(&bench, 1.0), ruler_position(&bench, 4.0));
     bench.click(Role::Button, "Graph editor");
     assert!(bench.session().preferences().curves);
     let middle = bench.rect(Role::Image, "Curves of Hand, Socket twist").center().y;
@@ -501,7 +505,7 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
 
 /// Only the rows in sight are laid out.
 #[test]
-fn ten_thousand_channels_are_scrolled_in_no_time() {
+fn ten_thousand_channels_scroll_quickly() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     for joint in document.skeleton().joints().len()..5_000 {
         let joint = Joint::new(&format!("j{joint}"), Some(JointId::new(0)), Vec3::ONE);

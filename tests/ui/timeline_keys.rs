@@ -1,4 +1,4 @@
-//! The timeline by the keyboard.
+//! The timeline by keyboard.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
@@ -17,7 +17,7 @@ fn is_keyed(bench: &Bench, channel: Channel) -> bool {
 }
 
 #[test]
-fn k_keys_what_is_worked_on_and_shift_k_all() {
+fn k_keys_the_active_channels_and_shift_k_all() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.key(Key::K);
     assert!(is_keyed(&bench, Channel::Hand) && is_keyed(&bench, Channel::Twist));
@@ -115,7 +115,7 @@ fn arrows_go_from_frame_to_frame_and_from_key_to_key_once_the_timeline_was_click
 }
 
 #[test]
-fn from_between_frames_the_arrows_lead_to_the_next_one() {
+fn between_frames_the_arrows_go_to_the_next_frame() {
     let mut bench = keyed();
     bench.focus(Role::Slider, "Timeline ruler");
     bench.apply([PlaybackAction::SetTime(1.01)]);
@@ -127,7 +127,7 @@ fn from_between_frames_the_arrows_lead_to_the_next_one() {
 }
 
 #[test]
-fn delete_takes_the_selected_keys_away() {
+fn delete_removes_the_selected_keys() {
     for key in [Key::Delete, Key::Backspace] {
         let mut bench = keyed();
         bench.click_at(key_of_hand(&bench, 2.0));
@@ -167,7 +167,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
 }
 
 #[test]
-fn copied_keys_are_pasted_to_where_the_time_is() {
+fn copied_keys_are_pasted_at_the_playhead() {
     let mut bench = keyed();
     bench.click_at(key_of_hand(&bench, 1.0));
     bench.hold(Modifiers::SHIFT);

@@ -1,4 +1,4 @@
-//! The timeline as it is seen: in both themes and in windows of all sizes.
+//! Appearance of the timeline in both themes and in windows of all sizes.
 
 use egui::accesskit::Role;
 use egui::{Rect, Vec2};
@@ -13,7 +13,7 @@ use ik_arm::session::{
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::looks::has_tooltip;
 
-/// An arm that is keyed at three times, in the middle of it.
+/// An arm with keys at three times, between them.
 pub fn animated() -> Vec<Action> {
     let keyed = |time, hand, twist: f32| {
         [
@@ -119,7 +119,7 @@ fn no_control_is_cut_and_none_overlaps_another_in_any_window() {
 }
 
 #[test]
-fn nothing_in_the_timeline_moves_when_the_time_goes_on() {
+fn no_control_of_the_timeline_moves_when_the_time_changes() {
     let mut bench = bench(LARGE, Actions::new());
     let places = |bench: &Bench| CONTROLS.map(|(role, name)| bench.rect(role, name));
     let before = places(&bench);
@@ -171,7 +171,7 @@ fn every_control_of_the_timeline_has_a_tooltip() {
 }
 
 #[test]
-fn what_cannot_act_is_disabled() {
+fn controls_that_cannot_act_are_disabled() {
     let disabled =
         |bench: &Bench, name: &str| bench.node(Role::Button, name).accesskit_node().is_disabled();
     let mut bench = Bench::with_timeline(LARGE);

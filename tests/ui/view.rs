@@ -1,4 +1,4 @@
-//! The view: turned, moved and zoomed by mouse and by the corner axes.
+//! The view: orbit, pan and zoom by mouse and by the corner axes.
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
@@ -17,11 +17,11 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const ALT: Modifiers = Modifiers::ALT;
 const NONE: Modifiers = Modifiers::NONE;
 
-/// What dragging with a button does to the view.
+/// Camera after dragging with a button.
 fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Option<CameraMotion> {
     let before = *bench.session().camera();
     let arm = *bench.session().arm();
-    let at = bench.empty_place();
+    let at = bench.empty_point();
     bench.hold(modifiers);
     bench.drag(button, at, at + vec2(60.0, 45.0));
     let motion = bench.session().view_drag().map(|drag| drag.motion);
@@ -50,7 +50,7 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
 }
 
 #[test]
-fn each_navigation_preset_turns_moves_and_zooms_with_its_own_buttons() {
+fn each_navigation_preset_orbits_pans_and_zooms_with_its_own_buttons() {
     use CameraMotion::{Orbit, Pan, Zoom};
     use Navigation::{Blender, Default, Maya, Trackpad};
     let table: [(Navigation, [Option<CameraMotion>; 5]); 4] = [
@@ -74,9 +74,9 @@ fn each_navigation_preset_turns_moves_and_zooms_with_its_own_buttons() {
 }
 
 #[test]
-fn alt_turns_the_view_even_over_a_handle() {
+fn alt_orbits_the_view_even_over_a_handle() {
     let mut bench = Bench::new();
-    let hand = bench.cursor_place();
+    let hand = bench.cursor_on_screen();
     bench.hold(ALT);
     bench.drag_and_drop(Primary, hand, hand + vec2(80.0, 10.0));
     assert_ne!(bench.session().camera().yaw, Camera::default().yaw);
@@ -84,9 +84,9 @@ fn alt_turns_the_view_even_over_a_handle() {
 }
 
 #[test]
-fn turning_moves_with_the_mouse_keeps_the_horizon_and_returns_to_perspective() {
+fn orbiting_follows_the_mouse_keeps_the_horizon_and_returns_to_perspective() {
     let mut bench = Bench::after([ViewAction::SetCamera(Camera::default().along(AxisView::Front))]);
-    let at = bench.empty_place();
+    let at = bench.empty_point();
     bench.drag(Primary, at, at + vec2(0.0, 4000.0));
     let camera = bench.session().camera();
     assert!(!camera.orthographic);
@@ -98,15 +98,15 @@ fn turning_moves_with_the_mouse_keeps_the_horizon_and_returns_to_perspective() {
 }
 
 #[test]
-fn panning_keeps_what_is_taken_under_the_mouse() {
+fn panning_keeps_the_grabbed_point_under_the_mouse() {
     let mut bench = Bench::new();
     let target = bench.session().camera().target;
-    let at = bench.place(target);
+    let at = bench.on_screen(target);
     let offset = vec2(-120.0, 75.0);
     // Off the handles, and the target follows by the same step.
     let beside = at - vec2(250.0, 150.0);
     bench.drag(Secondary, beside, beside + offset);
-    assert!(bench.place(target).distance(at + offset) < 0.05);
+    assert!(bench.on_screen(target).distance(at + offset) < 0.05);
 }
 
 #[test]
@@ -114,23 +114,23 @@ fn the_wheel_zooms_to_the_mouse() {
     let mut bench = Bench::new();
     let (_, right, up) = bench.session().camera().basis();
     let point = bench.session().camera().target + right * 180.0 - up * 90.0;
-    let at = bench.place(point);
+    let at = bench.on_screen(point);
     bench.move_to(at);
     for lines in [1.0, 3.0, -2.0] {
         let before = bench.session().camera().distance;
         bench.wheel(lines);
         let factor = bench.session().camera().distance / before;
         assert_eq!(factor < 1.0, lines > 0.0);
-        assert!(bench.place(point).distance(at) < 0.05, "{}", bench.place(point));
+        assert!(bench.on_screen(point).distance(at) < 0.05, "{}", bench.on_screen(point));
     }
     let before = bench.session().camera().distance;
     bench.frame([Event::Zoom(2.0)]);
     assert!((bench.session().camera().distance - before / 2.0).abs() < 0.1);
-    assert!(bench.place(point).distance(at) < 0.1);
+    assert!(bench.on_screen(point).distance(at) < 0.1);
 }
 
 #[test]
-fn the_wheel_over_a_panel_leaves_the_view() {
+fn the_wheel_over_a_panel_does_not_zoom_the_view() {
     let mut bench = Bench::new();
     let over = bench.rect(Role::Slider, "Hand x").center();
     bench.move_to(over);
@@ -139,10 +139,10 @@ fn the_wheel_over_a_panel_leaves_the_view() {
 }
 
 #[test]
-fn on_a_trackpad_scrolling_turns_with_shift_moves_and_with_ctrl_zooms() {
+fn on_a_trackpad_scrolling_orbits_pans_with_shift_and_zooms_with_ctrl() {
     let mut bench = Bench::after([ShellAction::SetNavigation(Navigation::Trackpad)]);
     let before = Camera::default();
-    bench.move_to(bench.empty_place());
+    bench.move_to(bench.empty_point());
     bench.scroll(vec2(2.0, 1.0));
     let turned = *bench.session().camera();
     assert!(turned.yaw != before.yaw && turned.pitch != before.pitch);
@@ -158,10 +158,10 @@ fn on_a_trackpad_scrolling_turns_with_shift_moves_and_with_ctrl_zooms() {
 }
 
 #[test]
-fn esc_takes_a_turn_of_the_view_back() {
+fn esc_cancels_an_orbit_of_the_view() {
     for button in [Primary, Secondary] {
         let mut bench = Bench::new();
-        let at = bench.empty_place();
+        let at = bench.empty_point();
         bench.drag(button, at, at + vec2(150.0, 90.0));
         assert_ne!(bench.session().camera(), &Camera::default());
         bench.key(Key::Escape);
@@ -176,11 +176,11 @@ fn esc_takes_a_turn_of_the_view_back() {
 fn a_double_click_on_the_background_resets_the_view_and_on_the_hand_frames_the_arm() {
     let elsewhere = Camera { yaw: 2.0, distance: 1500.0, ..Camera::default() };
     let mut bench = Bench::after([ViewAction::SetCamera(elsewhere)]);
-    bench.double_click_at(bench.empty_place());
+    bench.double_click_at(bench.empty_point());
     assert_eq!(bench.session().camera(), &Camera::default());
     let arm = *bench.session().arm();
     bench.wait(1.0);
-    bench.double_click_at(bench.cursor_place());
+    bench.double_click_at(bench.cursor_on_screen());
     assert_eq!(bench.session().camera().target, arm.bounds(bench.session().pose()).0);
     assert_eq!(bench.session().arm(), &arm);
 }
@@ -206,7 +206,7 @@ fn the_corner_axes_look_along_their_axis_when_their_ends_are_clicked() {
 }
 
 #[test]
-fn dragging_the_corner_axes_turns_the_view() {
+fn dragging_the_corner_axes_orbits_the_view() {
     let mut bench = Bench::after([ShellAction::SetNavigation(Navigation::Blender)]);
     let at = bench.rect(Role::Button, "View from the top").center();
     bench.drag_and_drop(Primary, at, at + Vec2::new(70.0, -10.0));

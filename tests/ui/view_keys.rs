@@ -45,7 +45,7 @@ fn five_toggles_f_frames_the_arm_home_frames_all() {
         assert_eq!(bench.session().camera().target, centre, "{key:?}");
         let (_, right, up) = bench.session().camera().basis();
         for side in [right, -right, up, -up] {
-            assert!(bench.viewport().contains(bench.place(centre + side * radius)), "{key:?}");
+            assert!(bench.viewport().contains(bench.on_screen(centre + side * radius)), "{key:?}");
         }
     }
 }
@@ -72,7 +72,7 @@ fn view_keys_do_nothing_while_a_field_or_a_slider_has_the_keyboard() {
 fn a_click_into_the_viewport_gives_it_the_keyboard() {
     let mut bench = Bench::new();
     bench.focus(Role::Slider, "Hand x");
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     bench.key(Key::Num7);
     bench.settle();
     assert_eq!(bench.session().camera(), &Camera::default().along(AxisView::Top));
@@ -107,7 +107,7 @@ fn any_input_ends_a_glide() {
     let end = Camera::default().along(AxisView::Top);
     let gliding = || {
         let mut bench = Bench::new();
-        bench.move_to(bench.empty_place());
+        bench.move_to(bench.empty_point());
         bench.key(Key::Num7);
         bench.wait(0.05);
         assert!(bench.session().is_gliding());
@@ -155,13 +155,13 @@ fn the_view_menu_does_what_the_keys_do() {
 }
 
 #[test]
-fn arrow_keys_turn_and_move_the_view_that_has_the_keyboard_and_plus_and_minus_zoom() {
+fn arrow_keys_orbit_and_pan_the_focused_view_and_plus_and_minus_zoom() {
     let mut bench = Bench::new();
     bench.key(Key::ArrowRight);
     assert_eq!(bench.session().camera(), &Camera::default(), "without the keyboard it stays");
 
     let mut bench = Bench::new();
-    bench.click_at(bench.empty_place());
+    bench.click_at(bench.empty_point());
     let before = *bench.session().camera();
     bench.key(Key::ArrowRight);
     let turned = *bench.session().camera();

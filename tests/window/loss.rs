@@ -9,7 +9,8 @@ use crate::screen::{Program, SIZE, changed, wait_for};
 /// A point where a click gives no widget the keyboard.
 const NOWHERE: egui::Pos2 = egui::pos2(640.0, 12.0);
 
-/// The screen that is expected after the device was created again, with no widget hovered or focused.
+/// The screen that is expected after the device was created again, with no widget hovered or
+/// focused.
 fn expected(program: &Program) -> RgbImage {
     program.click(NOWHERE);
     program.at_rest()
@@ -32,7 +33,7 @@ fn assert_comes_back(program: &Program, before: &RgbImage) {
     });
 }
 
-/// Whether all pixels above the status line are equal.
+/// Returns whether all pixels above the status line are equal.
 fn is_same_above_the_status(a: &RgbImage, b: &RgbImage) -> bool {
     const STATUS: u32 = 30;
     let mut pixels = a.enumerate_pixels().zip(b.pixels());

@@ -1,7 +1,7 @@
 //! Drives the program by keyboard and mouse, and waits for pictures on the screen.
 //!
-//! No helper sleeps for a fixed time: each waits for a frame, a picture or a state, and panics after
-//! [`PATIENCE`] with the condition, and a screenshot in a file.
+//! No helper sleeps for a fixed time: each waits for a frame, a picture or a state, and panics
+//! after [`PATIENCE`] with the condition, and a screenshot in a file.
 
 use std::cell::RefCell;
 use std::io::{BufRead as _, BufReader};
@@ -19,7 +19,7 @@ use nix::unistd::Pid;
 /// Size of screen and window, in pixels.
 pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
-/// A screen unchanged for this long is at rest. Shorter than the blink of a text cursor.
+/// A screen unchanged for this long counts as settled. Shorter than the blink of a text cursor.
 const REST: Duration = Duration::from_millis(300);
 const POLL: Duration = Duration::from_millis(50);
 
@@ -176,7 +176,7 @@ impl Program {
         self.log.lock().expect("no panic").iter().filter(|line| is_error(line)).count()
     }
 
-    /// Whether a frame was drawn after the last logged error.
+    /// Returns whether a frame was drawn after the last logged error.
     pub fn has_drawn_since_error(&self) -> bool {
         let log = self.log.lock().expect("no panic");
         log.iter().rev().take_while(|line| !is_error(line)).any(|line| is_frame(line))

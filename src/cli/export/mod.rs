@@ -29,8 +29,8 @@ Frames run from the start of the file's timeline to its end. A file without moti
 Whatever the format cannot hold is listed on stderr. Ctrl+C cancels: no file is written, and the
 exit code is 130."#)]
 pub struct ExportArgs {
-    /// File to export: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
-    /// standard input
+    /// File to export: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -
+    /// reads standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// File to write
@@ -105,7 +105,7 @@ pub fn run(args: &ExportArgs) -> ExitCode {
 
 impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
-        // Checked first: a long file would be read for nothing.
+        // Checked first, so that no file is read for nothing.
         self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
         let document = open::open(&self.file, self.skeleton.as_deref())?.document;
         let progress = Arc::new(Progress::default());

@@ -77,7 +77,7 @@ enum PoseCommandError {
     Arm(String),
     #[error("{file}: {error}")]
     Solve { file: String, error: SolveError },
-    #[error("{file}: joint {name:?} must lie within ±3.4028235e38")]
+    #[error("{file}: the position of joint {name:?} must be within ±3.4028235e38")]
     Overflow { file: String, name: String },
     #[error("cannot write to standard output: {0}")]
     Write(#[from] io::Error),

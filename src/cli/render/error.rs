@@ -20,7 +20,7 @@ pub enum RenderCommandError {
     #[error(transparent)]
     Crowd(#[from] CrowdError),
     #[error(
-        "the lengths of a crowd's arms must be within {min:e} and {max:e}, got {upper} and {lower}"
+        "the lengths of a crowd's arms must be between {min:e} and {max:e}, got {upper} and {lower}"
     )]
     CrowdLength { min: f32, max: f32, upper: f32, lower: f32 },
     #[error(transparent)]

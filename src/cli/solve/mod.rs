@@ -1,5 +1,5 @@
-//! `ik-arm solve`: arm poses as JSON Lines. Each line is solved by itself, unless its twist reference is
-//! transport.
+//! `ik-arm solve`: arm poses as JSON Lines. Each line is solved by itself, unless its twist
+//! reference is transport.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -30,8 +30,8 @@ Each line out is a pose, with elbow and hand in the world:
   {"reach":"reached|too_far|too_close","elbow":[x,y,z],"hand":[x,y,z],"distance":D,
    "theta_z_deg":…,"theta_y_deg":…,"theta_e_deg":…,"along":…,"out":…,
    "reference_gain":…,"elbow_angle_deg":…}
-distance is from the shoulder to that hand. reference_gain is the largest ratio of the elbow's turn to
-the turn of the hand's direction; it is null where that has no bound.
+distance is from the shoulder to that hand. reference_gain is the largest ratio of the elbow's turn
+to the turn of the hand's direction; it is null where that has no bound.
 A bad line gives {"line":N,"error":"…"} in its place; the exit code is then 1."#)]
 pub struct SolveArgs {
     /// File with one JSON object per line; - reads standard input
@@ -67,7 +67,7 @@ enum SolveCommandError {
 /// Solves every line and returns the number of invalid ones.
 fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, SolveCommandError> {
     let mut output = BufWriter::new(output);
-    let mut past = None;
+    let mut previous = None;
     let mut invalid = 0;
     loop {
         // The next read may block, and the program that writes the lines may wait for the answers.
@@ -78,7 +78,7 @@ fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, SolveCo
         if line.is_blank() {
             continue;
         }
-        let written = match solve_line(line.content, &mut past) {
+        let written = match solve_line(line.content, &mut previous) {
             Ok(answer) => write_line(&mut output, &answer),
             Err(error) => {
                 invalid += 1;
@@ -143,8 +143,8 @@ impl LineReader {
         }
     }
 
-    /// Reads one line and returns false at the end of the input. Only the start of a line that is too
-    /// long is kept.
+    /// Reads one line and returns false at the end of the input. Only the start of a line that is
+    /// too long is kept.
     fn read_line(&mut self) -> io::Result<bool> {
         let longest = LineError::MAX_LENGTH + b"\r\n".len();
         self.line.clear();

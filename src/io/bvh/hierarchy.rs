@@ -11,7 +11,7 @@ pub struct BvhNode {
     pub parent: Option<usize>,
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
-    /// The tip of its bone, from an End Site.
+    /// The tip of its bone, from its End Site.
     pub end: Option<Vec3>,
 }
 
@@ -48,7 +48,7 @@ pub fn read(text: &mut Scanner<'_>) -> Result<Vec<BvhNode>, TextError> {
         let word = text.word();
         let is_done = match hierarchy.open.last().copied() {
             None => hierarchy.outside(word, text)?,
-            Some(OpenBlock::Joint { node, has }) => hierarchy.in_joint(word, text, node, has)?,
+            Some(OpenBlock::Joint { node, seen }) => hierarchy.in_joint(word, text, node, seen)?,
             Some(OpenBlock::End { node, end }) => hierarchy.in_end(word, text, node, end)?,
         };
         if is_done {
@@ -66,7 +66,7 @@ struct Hierarchy {
 
 #[derive(Clone, Copy)]
 enum OpenBlock {
-    Joint { node: usize, has: JointKeywords },
+    Joint { node: usize, seen: JointKeywords },
     End { node: usize, end: Option<Vec3> },
 }
 
@@ -79,7 +79,7 @@ struct JointKeywords {
 }
 
 impl Hierarchy {
-    /// Returns whether the hierarchy is complete.
+    /// Reads a word outside all blocks. Returns whether the hierarchy is complete.
     fn outside(&mut self, word: Token<'_>, text: &mut Scanner<'_>) -> Result<bool, TextError> {
         if word.is("ROOT") {
             self.add(text, word, None)?;
@@ -97,29 +97,29 @@ impl Hierarchy {
         word: Token<'_>,
         text: &mut Scanner<'_>,
         index: usize,
-        has: JointKeywords,
+        seen: JointKeywords,
     ) -> Result<bool, TextError> {
         let node = &mut self.nodes[index];
-        let wrong = |reason: &str| Err(TextError::new(word.at, &node.name, reason));
-        let mut now = has;
+        let error = |reason: &str| Err(TextError::new(word.at, &node.name, reason));
+        let mut updated = seen;
         if word.is("OFFSET") {
-            if has.offset {
-                return wrong("this joint has a second OFFSET");
+            if seen.offset {
+                return error("must have one OFFSET, got a second");
             }
             node.offset = point(text, &node.name)?;
-            now.offset = true;
+            updated.offset = true;
         } else if word.is("CHANNELS") {
-            if has.channels {
-                return wrong("this joint has a second CHANNELS");
+            if seen.channels {
+                return error("must have one CHANNELS, got a second");
             }
-            if has.children {
-                return wrong("CHANNELS must be before the joint's children");
+            if seen.children {
+                return error("CHANNELS must be before the joint's children");
             }
             node.channels = channels(text, &node.name)?;
-            now.channels = true;
+            updated.channels = true;
         } else if word.is("JOINT") {
-            now.children = true;
-            self.set(OpenBlock::Joint { node: index, has: now });
+            updated.children = true;
+            self.set(OpenBlock::Joint { node: index, seen: updated });
             self.add(text, word, Some(index))?;
             return Ok(false);
         } else if word.is("End") {
@@ -131,16 +131,16 @@ impl Hierarchy {
             self.open.push(OpenBlock::End { node: index, end: None });
             return Ok(false);
         } else if word.text == "}" {
-            if !has.offset {
-                return wrong("OFFSET is missing");
+            if !seen.offset {
+                return error("must have an OFFSET");
             }
             self.open.pop();
             return Ok(false);
         } else {
             let expected = "expected OFFSET, CHANNELS, JOINT, End Site or }";
-            return wrong(&format!("{}, {expected}", word.found()));
+            return error(&format!("{}, {expected}", word.found()));
         }
-        self.set(OpenBlock::Joint { node: index, has: now });
+        self.set(OpenBlock::Joint { node: index, seen: updated });
         Ok(false)
     }
 
@@ -181,15 +181,15 @@ impl Hierarchy {
     ) -> Result<(), TextError> {
         let name = text.name();
         if name.text.is_empty() {
-            let reason = format!("a name is missing after {}", keyword.text);
+            let reason = format!("{} must be followed by a name", keyword.text);
             return Err(TextError::new(name.at, "", reason));
         }
         if self.nodes.len() >= Skeleton::MOST_JOINTS {
-            let reason = format!("a skeleton has at most {} joints", Skeleton::MOST_JOINTS);
+            let reason = format!("the skeleton must have at most {} joints", Skeleton::MOST_JOINTS);
             return Err(TextError::new(name.at, name.text, reason));
         }
         brace(text, name.text)?;
-        self.open.push(OpenBlock::Joint { node: self.nodes.len(), has: JointKeywords::default() });
+        self.open.push(OpenBlock::Joint { node: self.nodes.len(), seen: JointKeywords::default() });
         self.nodes.push(BvhNode {
             name: name.text.to_owned(),
             at: name.at,
@@ -219,7 +219,7 @@ fn channels(text: &mut Scanner<'_>, joint: &str) -> Result<Vec<BvhChannel>, Text
     let count = text.word();
     let number = count.whole(joint)?;
     if number > BvhChannel::ALL.len() {
-        let reason = format!("must be from 0 to 6 channels, got {number}");
+        let reason = format!("must have 0 to 6 channels, got {number}");
         return Err(TextError::new(count.at, joint, reason));
     }
     let mut channels = Vec::with_capacity(number);
@@ -232,7 +232,11 @@ fn channels(text: &mut Scanner<'_>, joint: &str) -> Result<Vec<BvhChannel>, Text
             return Err(TextError::new(word.at, joint, reason));
         };
         if channels.contains(&channel) {
-            return Err(TextError::new(word.at, joint, format!("CHANNELS must have {name} once")));
+            return Err(TextError::new(
+                word.at,
+                joint,
+                format!("CHANNELS must have {name} once, got a second"),
+            ));
         }
         channels.push(channel);
     }

@@ -4,7 +4,7 @@
 //! HIERARCHY
 //! ROOT NAME                       or several
 //! {
-//!     OFFSET x y z                from the parent's base, without rotations
+//!     OFFSET x y z                from the parent's base, in the bind pose
 //!     CHANNELS n …                of Xposition Yposition Zposition Xrotation Yrotation Zrotation
 //!     JOINT NAME { … }            any number, as a root
 //!     End Site { OFFSET x y z }   tip of a bone without children
@@ -15,20 +15,21 @@
 //! …                               a line for each frame: all channels in their order
 //! ```
 //!
-//! Angles are degrees. A joint's rotation is the product of its rotation channels in their order, the
-//! first one outermost; its position channels replace its offset.
+//! Angles are degrees. A joint's rotation is the product of its rotation channels in their order,
+//! the first one outermost; its position channels replace its offset.
 //!
-//! # Out
+//! # Export
 //!
-//! One root with position channels; Z, Y, X rotations, the order of a joint's angles, unwrapped from
-//! frame to frame. The skeleton's transform is in the offsets, the root's position and the rotations:
-//! see [`transform`]. Several roots become children of a new root at the skeleton's origin.
+//! The file has one root with position channels. Rotation channels are Z, Y, X, the order of a
+//! joint's angles, and are unwrapped from frame to frame. The skeleton's transform is applied to
+//! the offsets, the root's position and the rotations: see [`transform`]. Several roots become
+//! children of a new root at the skeleton's origin.
 //!
-//! # In
+//! # Import
 //!
-//! Channels in any order and number. The bone of a joint goes to its End Site, to its only child, or to
-//! the middle of its children, all at the first frame. Values that change become keys; constant ones
-//! become the skeleton's own.
+//! Channels can have any order and number. The bone of a joint goes to its End Site, to its only
+//! child, or to the middle of its children, all at the first frame. Values that change become keys;
+//! constant ones are set on the skeleton.
 
 mod angles;
 mod hierarchy;

@@ -19,7 +19,7 @@ pub struct FrameTiming {
     step: Option<f64>,
 }
 
-/// Reads the text after the word MOTION, with a warning about it.
+/// Reads the text after the word MOTION. Text after the last frame gives a warning.
 pub fn read(
     text: &mut Scanner<'_>,
     nodes: &[BvhNode],
@@ -30,24 +30,25 @@ pub fn read(
     let channels: Vec<(&BvhNode, BvhChannel)> =
         nodes.iter().flat_map(|node| node.channels.iter().map(move |it| (node, *it))).collect();
     let width = channels.len();
-    // The count may be far larger than the file: a number takes a digit and a space.
-    let most = text.left().div_ceil(2);
-    let mut values = Vec::with_capacity(frames.saturating_mul(width).min(most));
+    // The header can claim more frames than the file has: a number takes a digit and a space.
+    let max_values = text.remaining().div_ceil(2);
+    let mut values = Vec::with_capacity(frames.saturating_mul(width).min(max_values));
     for frame in 0..if width == 0 { 0 } else { frames } {
         let Some(line) = text.line() else {
-            let reason = format!("must be the number of frames, {frame}, got {frames}");
+            let reason =
+                format!("Frames must be {frame}, the number of lines that follow, got {frames}");
             return Err(TextError::new(count.at, "", reason));
         };
         read_frame(line, frame, &channels, &mut values)?;
     }
-    let odd = text.line().map(|line| {
+    let warning = text.line().map(|line| {
         TextError::new(
             line.at,
             "",
             format!("ignored: text after the {frames} frames of the header"),
         )
     });
-    Ok((MotionData { frames, width, values, timing }, odd))
+    Ok((MotionData { frames, width, values, timing }, warning))
 }
 
 fn labelled<'a>(text: &mut Scanner<'a>, label: &[&str]) -> Result<Token<'a>, TextError> {
@@ -75,9 +76,9 @@ fn read_frame(
             );
             return Err(TextError::new(line.end(), &node.name, reason));
         };
-        let value = word.number(&node.name).map_err(|fault| {
-            let reason = format!("{} of frame {frame}: {}", channel.name(), fault.reason);
-            TextError { reason, ..fault }
+        let value = word.number(&node.name).map_err(|error| {
+            let reason = format!("{} of frame {frame}: {}", channel.name(), error.reason);
+            TextError { reason, ..error }
         })?;
         values.push(value);
     }
@@ -97,7 +98,7 @@ impl MotionData {
     }
 
     /// The values of `width` adjacent channels in every frame.
-    pub fn of(&self, start: usize, width: usize) -> impl Iterator<Item = &[f32]> + Clone {
+    pub fn channels(&self, start: usize, width: usize) -> impl Iterator<Item = &[f32]> + Clone {
         let rows = self.values.chunks_exact(self.width.max(1));
         rows.map(move |row| row.get(start..start + width).unwrap_or_default())
     }
@@ -116,8 +117,9 @@ impl FrameTiming {
         let timing = Self::new(step);
         let end = timing.time(frames.saturating_sub(1));
         if end > Timeline::MAX_TIME {
-            let farthest = Timeline::MAX_TIME;
-            let reason = format!("must last at most {farthest} s, got {frames} frames of {step} s");
+            let max_time = Timeline::MAX_TIME;
+            let reason =
+                format!("motion must last at most {max_time} s, got {frames} frames of {step} s");
             return Err(TextError::new(word.at, "", reason));
         }
         Ok(timing)
@@ -133,7 +135,7 @@ impl FrameTiming {
         Self { frame_rate, step: (!is_whole).then_some(step) }
     }
 
-    /// In seconds.
+    /// Time of a frame, in seconds.
     pub fn time(&self, frame: usize) -> f64 {
         match self.step {
             None => frame as f64 / f64::from(self.frame_rate),

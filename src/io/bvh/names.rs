@@ -6,18 +6,18 @@ pub fn distinct(names: &[String]) -> Vec<String> {
     let is_first: Vec<bool> = names.iter().map(|name| taken.insert(name)).collect();
     let mut taken: HashSet<String> = names.iter().cloned().collect();
     let mut numbers: HashMap<&str, usize> = HashMap::new();
-    let mut name = |name: &str, number: &mut usize| loop {
+    let mut numbered = |name: &str, number: &mut usize| loop {
         *number += 1;
-        let numbered = format!("{name}_{number}");
-        if taken.insert(numbered.clone()) {
-            return numbered;
+        let candidate = format!("{name}_{number}");
+        if taken.insert(candidate.clone()) {
+            return candidate;
         }
     };
     let pairs = names.iter().zip(is_first);
     pairs
         .map(|(stem, is_first)| match is_first {
             true => stem.clone(),
-            false => name(stem, numbers.entry(stem).or_insert(1)),
+            false => numbered(stem, numbers.entry(stem).or_insert(1)),
         })
         .collect()
 }

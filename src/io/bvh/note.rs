@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// A loss in exporting to BVH.
+/// Content of a document that BVH cannot hold.
 pub enum BvhNote<'a> {
     /// The skeleton's transform has uneven scale, shear or zero scale.
     Uneven,
@@ -14,8 +14,8 @@ impl fmt::Display for BvhNote<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Uneven => f.write_str(
-                "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations only: the \
-                 nearest rotations are written",
+                "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations \
+                 only: the nearest rotations are written",
             ),
             Self::Length(limb) => write!(
                 f,
@@ -23,7 +23,7 @@ impl fmt::Display for BvhNote<'_> {
                  first frame is written"
             ),
             Self::Offsets(joints) => {
-                /// The rest is counted.
+                /// Most names that are listed; further joints are only counted.
                 const MOST: usize = 10;
                 let named: Vec<_> =
                     joints.iter().take(MOST).map(|name| format!("{name:?}")).collect();
@@ -35,8 +35,8 @@ impl fmt::Display for BvhNote<'_> {
                 let change = if joints.len() == 1 { "changes" } else { "change" };
                 write!(
                     f,
-                    " {change} in time, but BVH offsets are constant except for a single root: those of \
-                     the first frame are written"
+                    " {change} in time, but BVH offsets are constant except for a single root: \
+                     those of the first frame are written"
                 )
             }
         }

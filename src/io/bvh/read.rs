@@ -5,7 +5,7 @@ use super::hierarchy::{self, BvhChannel, BvhNode};
 use super::motion::{self, MotionData};
 use super::names::distinct;
 use super::text::{Scanner, TextError};
-use super::unit::METRES;
+use super::unit::METRES_PER_UNIT;
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
@@ -19,27 +19,27 @@ pub fn is_bvh(text: &str) -> bool {
 
 /// Reads the skeleton of a file. Its name is that of the first root.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
-    let wrong = |fault: TextError| {
-        let remark = source.remark_about(fault.at, &fault.joint, &fault.reason);
+    let open_error = |error: TextError| {
+        let remark = source.remark_about(error.at, &error.joint, &error.reason);
         OpenError::Content { file: source.name().to_owned(), remark }
     };
     let mut text = Scanner::new(source.text());
-    let mut nodes = hierarchy::read(&mut text).map_err(wrong)?;
-    let (motion, odd) = motion::read(&mut text, &nodes).map_err(wrong)?;
+    let mut nodes = hierarchy::read(&mut text).map_err(open_error)?;
+    let (motion, warning) = motion::read(&mut text, &nodes).map_err(open_error)?;
     let skeletons: Vec<_> = nodes.iter().take(1).map(|root| root.name.clone()).collect();
     if let Some(name) = name.filter(|name| !skeletons.iter().any(|other| other == name)) {
         let file = source.name().to_owned();
         return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: skeletons });
     }
     let mut warnings = rename(source, &mut nodes);
-    warnings.extend(odd.map(|odd| source.remark_about(odd.at, &odd.joint, &odd.reason)));
-    let document = document(&nodes, &motion).map_err(wrong)?;
+    warnings.extend(warning.map(|it| source.remark_about(it.at, &it.joint, &it.reason)));
+    let document = document(&nodes, &motion).map_err(open_error)?;
     Ok(Opened { order: document.skeleton().ids().collect(), document, warnings, skeletons })
 }
 
 /// Renames joints that have the name of another one, with a warning each.
 fn rename(source: &Source, nodes: &mut [BvhNode]) -> Vec<Remark> {
-    /// Finding the position of each searches the text.
+    /// Bounds the time, because finding the position of each searches the text.
     const MOST: usize = 20;
     let names: Vec<_> = nodes.iter().map(|node| node.name.clone()).collect();
     let mut remarks = Vec::new();
@@ -49,7 +49,7 @@ fn rename(source: &Source, nodes: &mut [BvhNode]) -> Vec<Remark> {
             continue;
         }
         if remarks.len() < MOST {
-            let reason = format!("must be unique; this joint is renamed to {name:?}");
+            let reason = format!("joint names must be unique; renamed to {name:?}");
             remarks.push(source.remark_about(node.at, &node.name, &reason));
         } else {
             more += 1;
@@ -68,15 +68,15 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     let mut joints = Vec::with_capacity(nodes.len());
     let mut start = 0;
     for (index, node) in nodes.iter().enumerate() {
-        let FirstFrame { offset, rotation } = key(&mut keys, index, node, motion, start);
-        let seed = Joint::new(&node.name, node.parent.map(JointId::new), Vec3::ZERO);
-        joints.push(Joint { offset, rotation, ..seed });
+        let FirstFrame { offset, rotation } = add_keys(&mut keys, index, node, motion, start);
+        let default = Joint::new(&node.name, node.parent.map(JointId::new), Vec3::ZERO);
+        joints.push(Joint { offset, rotation, ..default });
         start += node.channels.len();
     }
     for (joint, axis) in axes(nodes, &joints).into_iter().enumerate() {
-        let seed = Joint::new("", None, axis);
+        let default = Joint::new("", None, axis);
         joints[joint].axis = axis;
-        joints[joint].radius = seed.radius.min(f32::MAX);
+        joints[joint].radius = default.radius.min(f32::MAX);
     }
     let at = nodes.first().map_or(0, |root| root.at);
     let skeleton =
@@ -88,18 +88,18 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
         skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
-        metres_per_unit: Some(METRES),
+        metres_per_unit: Some(METRES_PER_UNIT),
         ..Document::default()
     })
 }
 
-/// From the first frame to the last; the default for a single frame.
+/// The timeline from the first frame to the last; of the default length for a single frame.
 fn timeline(motion: &MotionData) -> Timeline {
-    let usual = Timeline::default();
+    let default = Timeline::default();
     let timing = motion.timing;
     let end = timing.time(motion.frames().saturating_sub(1));
     let timeline = Timeline { start: 0.0, end, frame_rate: timing.frame_rate };
-    if timeline.is_valid() { timeline } else { Timeline { end: usual.end, ..timeline } }
+    if timeline.is_valid() { timeline } else { Timeline { end: default.end, ..timeline } }
 }
 
 /// A joint's offset and angles at the first frame.
@@ -109,21 +109,21 @@ struct FirstFrame {
 }
 
 /// Adds keys for the values of a joint that change. `start` is the index of its first channel.
-fn key(
+fn add_keys(
     keys: &mut Keys,
     joint: usize,
     node: &BvhNode,
     motion: &MotionData,
     start: usize,
 ) -> FirstFrame {
-    let rows = motion.of(start, node.channels.len());
+    let rows = motion.channels(start, node.channels.len());
     let Some(first) = rows.clone().next() else {
         return FirstFrame { offset: node.offset, rotation: Vec3::ZERO };
     };
-    let changes = |is_one: fn(&BvhChannel) -> bool| {
-        let of = |row: &[f32], index: usize| row.get(index).copied();
-        let chosen = || (0..node.channels.len()).filter(|index| is_one(&node.channels[*index]));
-        rows.clone().any(|row| chosen().any(|index| of(row, index) != of(first, index)))
+    let changes = |is_kind: fn(&BvhChannel) -> bool| {
+        let value = |row: &[f32], index: usize| row.get(index).copied();
+        let chosen = || (0..node.channels.len()).filter(|index| is_kind(&node.channels[*index]));
+        rows.clone().any(|row| chosen().any(|index| value(row, index) != value(first, index)))
     };
     if changes(|channel| matches!(channel, BvhChannel::Position(_))) {
         for (frame, row) in rows.clone().enumerate() {
@@ -135,7 +135,7 @@ fn key(
     let rotation = angles.as_vec3();
     if changes(|channel| matches!(channel, BvhChannel::Rotation(_))) {
         for (frame, row) in rows.enumerate() {
-            angles = angles::nearest(turn(node, row), angles);
+            angles = angles::nearest(rotation_of(node, row), angles);
             let time = motion.timing.time(frame);
             keys.insert(document::Channel::Rotation(JointId::new(joint)), time, angles.as_vec3());
         }
@@ -155,21 +155,21 @@ fn offset(node: &BvhNode, row: &[f32]) -> Vec3 {
 }
 
 /// The product of a joint's rotations, in the order of its channels.
-fn turn(node: &BvhNode, row: &[f32]) -> DMat3 {
-    let mut turn = DMat3::IDENTITY;
+fn rotation_of(node: &BvhNode, row: &[f32]) -> DMat3 {
+    let mut product = DMat3::IDENTITY;
     for (channel, value) in node.channels.iter().zip(row) {
         let angle = f64::from(*value).to_radians();
-        turn *= match channel {
+        product *= match channel {
             BvhChannel::Rotation(0) => DMat3::from_rotation_x(angle),
             BvhChannel::Rotation(1) => DMat3::from_rotation_y(angle),
             BvhChannel::Rotation(_) => DMat3::from_rotation_z(angle),
             BvhChannel::Position(_) => DMat3::IDENTITY,
         };
     }
-    turn
+    product
 }
 
-/// The joint's angles at the first frame: those of the file if its order is Z, Y, X.
+/// The joint's angles at the first frame; those of the file, unchanged, if its order is Z, Y, X.
 fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
     /// In degrees. Larger angles are too coarse in f32 radians.
     const MANY_TURNS: f32 = 36_000.0;
@@ -181,12 +181,12 @@ fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
             order.push(*axis);
         }
     }
-    let is_ours = order.is_sorted_by(|a, b| a > b);
-    if is_ours { angles } else { angles::nearest(turn(node, row), DVec3::ZERO) }
+    let is_zyx = order.is_sorted_by(|a, b| a > b);
+    if is_zyx { angles } else { angles::nearest(rotation_of(node, row), DVec3::ZERO) }
 }
 
-/// The joints' bones at the first frame: to an End Site, else to the only child or the middle of the
-/// children, else of length 0.
+/// The joints' bones at the first frame: to an End Site, else to the only child or the middle of
+/// the children, else of length 0.
 fn axes(nodes: &[BvhNode], joints: &[Joint]) -> Vec<Vec3> {
     let mut sums = vec![(DVec3::ZERO, 0_u32); joints.len()];
     for joint in joints {

@@ -16,19 +16,20 @@ pub struct BvhRig {
 
 enum BvhRigKind {
     Arm,
-    /// The joint of each node; `None` for the new root above several ones.
+    /// The joint of each node; `None` for the root added above several roots.
     Skeleton(Vec<Option<usize>>),
 }
 
 /// The pose of a rig in one frame, in units of the scene.
 #[derive(Clone, Debug)]
 pub struct BvhPose {
-    /// The offset of each node from its parent without rotations; of the first one, its world position.
+    /// The offset of each node from its parent in the bind pose; of the first one, its world
+    /// position.
     pub offsets: Vec<DVec3>,
-    /// The tip of each leaf's bone without rotations.
+    /// The tip of each leaf's bone in the bind pose.
     pub ends: Vec<Option<DVec3>>,
     /// The rotation of each node relative to its parent, in world axes.
-    pub turns: Vec<DMat3>,
+    pub rotations: Vec<DMat3>,
 }
 
 impl BvhRig {
@@ -54,14 +55,14 @@ impl BvhRig {
                 None => roots.push(index),
             }
         }
-        let is_held = roots.len() > 1;
+        let has_several_roots = roots.len() > 1;
         let (mut nodes, mut parents, mut names) = (Vec::new(), Vec::new(), Vec::new());
-        if is_held {
+        if has_several_roots {
             (nodes, parents, names) =
                 (vec![None], vec![None], vec![skeleton.free_name("skeleton")]);
         }
-        let holder = is_held.then_some(0);
-        let mut next: Vec<_> = roots.iter().rev().map(|root| (*root, holder)).collect();
+        let added_root = has_several_roots.then_some(0);
+        let mut next: Vec<_> = roots.iter().rev().map(|root| (*root, added_root)).collect();
         while let Some((joint, parent)) = next.pop() {
             let node = nodes.len();
             nodes.push(Some(joint));
@@ -108,18 +109,18 @@ impl BvhRig {
         let ends = ends.map(|(node, is_leaf)| joint(node).filter(|_| is_leaf).map(end)).collect();
         let local = |node| joint(node).map_or(DMat3::IDENTITY, local_rotation);
         let locals: Vec<DMat3> = nodes.iter().map(local).collect();
-        BvhPose { offsets, ends, turns: transform.turns(&self.parents, &locals) }
+        BvhPose { offsets, ends, rotations: transform.rotations(&self.parents, &locals) }
     }
 }
 
 /// [`Joint::local_rotation`] in f64.
 fn local_rotation(joint: &Joint) -> DMat3 {
-    let turned = angles::matrix(joint.rotation.as_dvec3());
+    let rotation = angles::matrix(joint.rotation.as_dvec3());
     if joint.frame == Mat3::IDENTITY {
-        return turned;
+        return rotation;
     }
     let frame = joint.frame.as_dmat3();
-    frame * turned * frame.transpose()
+    frame * rotation * frame.transpose()
 }
 
 /// Two bones along +x; the elbow is a hinge about z.
@@ -135,7 +136,7 @@ fn arm(arm: &Arm) -> BvhPose {
     BvhPose {
         offsets: vec![arm.root.as_dvec3(), bone(bones.upper())],
         ends: vec![None, Some(bone(bones.lower()))],
-        turns: vec![
+        rotations: vec![
             limb * socket * DMat3::from_rotation_z(upper),
             DMat3::from_rotation_z(lower - upper),
         ],

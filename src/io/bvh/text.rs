@@ -71,8 +71,8 @@ impl<'a> Scanner<'a> {
         (!word.text.is_empty()).then(|| Token { text: word.text.trim_end(), ..word })
     }
 
-    /// Number of bytes left.
-    pub fn left(&self) -> usize {
+    /// Number of bytes that are not read yet.
+    pub fn remaining(&self) -> usize {
         self.text.len() - self.at
     }
 
@@ -93,13 +93,13 @@ impl<'a> Scanner<'a> {
 impl<'a> Token<'a> {
     /// The words of a line.
     pub fn words(self) -> impl Iterator<Item = Self> {
-        let mut left = self;
+        let mut remaining = self;
         std::iter::from_fn(move || {
-            let trimmed = left.text.trim_start();
-            let at = left.at + left.text.len() - trimmed.len();
+            let trimmed = remaining.text.trim_start();
+            let at = remaining.at + remaining.text.len() - trimmed.len();
             let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
             let (text, rest) = trimmed.split_at_checked(end)?;
-            left = Self { text: rest, at: at + end };
+            remaining = Self { text: rest, at: at + end };
             (!text.is_empty()).then_some(Self { text, at })
         })
     }
@@ -114,15 +114,15 @@ impl<'a> Token<'a> {
     }
 
     pub fn number(self, joint: &str) -> Result<f32, TextError> {
-        let wrong = |reason| TextError::new(self.at, joint, reason);
+        let error = |reason| TextError::new(self.at, joint, reason);
         let number: f64 = match self.text.parse() {
             Ok(number) => number,
-            Err(_) => return Err(wrong(format!("{}, expected a number", self.found()))),
+            Err(_) => return Err(error(format!("{}, expected a number", self.found()))),
         };
         if (number as f32).is_finite() {
             return Ok(number as f32);
         }
-        Err(wrong(format!("must be between ±3.4028235e38, got {}", self.text)))
+        Err(error(format!("must be within ±3.4028235e38, got {}", self.text)))
     }
 
     pub fn whole(self, joint: &str) -> Result<usize, TextError> {

@@ -4,25 +4,26 @@ use nalgebra::Matrix3;
 /// A skeleton's transform M · p + t, decomposed for a format that has rotations only.
 ///
 /// If M = s·Q with Q orthogonal (possibly a mirror), a rotation R in the skeleton is the rotation
-/// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists: the joints
-/// get the rotations W that bring M nearest to M·G, where G is a joint's rotation in the skeleton.
+/// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists: the
+/// joints get the rotations W that bring M nearest to M·G, where G is a joint's rotation in the
+/// skeleton.
 pub struct SkeletonTransform {
     matrix: DMat3,
     translation: DVec3,
     /// Q, if it exists.
-    turn: Option<DMat3>,
+    orthogonal: Option<DMat3>,
 }
 
 impl SkeletonTransform {
     pub fn new(transform: Affine3A) -> Self {
         let matrix = Mat3::from(transform.matrix3).as_dmat3();
         let translation = transform.translation.as_dvec3();
-        Self { matrix, translation, turn: turn(matrix) }
+        Self { matrix, translation, orthogonal: orthogonal(matrix) }
     }
 
     /// Whether rotations in the skeleton are rotations in the world.
     pub fn is_even(&self) -> bool {
-        self.turn.is_some()
+        self.orthogonal.is_some()
     }
 
     pub fn origin(&self) -> DVec3 {
@@ -33,27 +34,30 @@ impl SkeletonTransform {
         self.matrix * vector
     }
 
-    /// Rotations relative to the parents in world axes, from rotations in the skeleton. Parents come
-    /// first.
-    pub fn turns(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
-        if let Some(turn) = self.turn {
-            return locals.iter().map(|local| turn * *local * turn.transpose()).collect();
+    /// Rotations relative to the parents in world axes, from rotations in the skeleton. Parents
+    /// come first.
+    pub fn rotations(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
+        if let Some(orthogonal) = self.orthogonal {
+            return locals
+                .iter()
+                .map(|local| orthogonal * *local * orthogonal.transpose())
+                .collect();
         }
-        let (mut globals, mut worlds, mut turns) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut globals, mut worlds, mut rotations) = (Vec::new(), Vec::new(), Vec::new());
         for (local, parent) in locals.iter().zip(parents) {
-            let above = |of: &[DMat3]| parent.map_or(DMat3::IDENTITY, |parent| of[parent]);
-            let global = above(&globals) * *local;
+            let parent_of = |all: &[DMat3]| parent.map_or(DMat3::IDENTITY, |parent| all[parent]);
+            let global = parent_of(&globals) * *local;
             let world = nearest(self.matrix * global * self.matrix.transpose());
-            turns.push(above(&worlds).transpose() * world);
+            rotations.push(parent_of(&worlds).transpose() * world);
             globals.push(global);
             worlds.push(world);
         }
-        turns
+        rotations
     }
 }
 
 /// Q of a matrix s·Q.
-fn turn(matrix: DMat3) -> Option<DMat3> {
+fn orthogonal(matrix: DMat3) -> Option<DMat3> {
     /// Tolerance for right angles and equal lengths, as for frames of joints.
     const EVEN: f64 = 1e-5;
     let square = matrix.transpose() * matrix;
@@ -98,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_and_scaled_place_is_even_and_a_stretched_one_is_not() {
+    fn a_mirrored_and_scaled_transform_is_even_and_a_stretched_one_is_not() {
         let turned = Affine3A::from_rotation_x(0.7) * Affine3A::from_rotation_z(2.0);
         let scaled = |x, y, z| Affine3A::from_scale((x, y, z).into()) * turned;
         assert!(SkeletonTransform::new(scaled(-0.3, 0.3, 0.3)).is_even());

@@ -12,14 +12,14 @@ pub enum BvhUnit {
     Scene,
 }
 
-/// Length of a unit that is read.
-pub const METRES: f32 = 0.01;
+/// Length in metres of the unit of a file that is read, taken to be a centimetre.
+pub const METRES_PER_UNIT: f32 = 0.01;
 
 impl BvhUnit {
     /// Length of a unit of the document, in this unit.
     pub fn per_unit(self, document: &Document) -> f64 {
         let per_metre = match self {
-            Self::Centimetres => METRES.recip(),
+            Self::Centimetres => METRES_PER_UNIT.recip(),
             Self::Metres => 1.0,
             Self::Scene => return 1.0,
         };

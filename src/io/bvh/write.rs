@@ -25,32 +25,32 @@ pub fn to_bvh(
 ) -> Result<Exported, MotionError> {
     let frames = ExportFrames::of_pose(document, fps)?;
     let rig = BvhRig::new(document).ok_or(MotionError::NoJoints)?;
-    MotionError::if_too_much(frames.count(), 3 + 3 * rig.names.len())?;
+    MotionError::check_size(frames.count(), 3 + 3 * rig.names.len())?;
     let mut playback = FrameEvaluator::new(document);
-    let mut moving = LostMotion::default();
-    let mut motion = BvhWriter::new(&rig, unit.per_unit(document));
+    let mut lost = LostMotion::default();
+    let mut writer = BvhWriter::new(&rig, unit.per_unit(document));
     let mut text = String::new();
     let mut first: Option<BvhPose> = None;
     for frame in 0..frames.count() {
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         let posed = playback.at(time);
-        let place = SkeletonTransform::new(posed.skeleton().transform());
-        let pose = rig.pose(posed, &place, time);
+        let transform = SkeletonTransform::new(posed.skeleton().transform());
+        let pose = rig.pose(posed, &transform, time);
         let first = match &first {
             Some(first) => first,
             None => {
-                text = motion.hierarchy(&pose)?;
+                text = writer.hierarchy(&pose)?;
                 motion_header(&mut text, &frames);
-                moving = LostMotion::new(document, &place, &pose);
+                lost = LostMotion::new(document, &transform, &pose);
                 first.insert(pose.clone())
             }
         };
-        moving.compare(first, &pose);
-        motion.frame(&mut text, &pose)?;
+        lost.compare(first, &pose);
+        writer.frame(&mut text, &pose)?;
     }
     progress.step(frames.count(), frames.count())?;
-    Ok(Exported { bytes: text.into_bytes(), notes: moving.notes(&rig) })
+    Ok(Exported { bytes: text.into_bytes(), notes: lost.notes(&rig) })
 }
 
 fn motion_header(text: &mut String, frames: &ExportFrames) {
@@ -87,7 +87,7 @@ impl<'a> BvhWriter<'a> {
             line(&mut text, depth, &format!("{kind} {name}"));
             line(&mut text, depth, "{");
             let offset = if parent.is_none() { DVec3::ZERO } else { pose.offsets[node] };
-            line(&mut text, depth + 1, &format!("OFFSET{}", self.place(node, offset)?));
+            line(&mut text, depth + 1, &format!("OFFSET{}", self.vector(node, offset)?));
             let channels = match parent {
                 None => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
                 Some(_) => "3 Zrotation Yrotation Xrotation",
@@ -96,7 +96,7 @@ impl<'a> BvhWriter<'a> {
             if let Some(end) = pose.ends[node] {
                 line(&mut text, depth + 1, "End Site");
                 line(&mut text, depth + 1, "{");
-                line(&mut text, depth + 2, &format!("OFFSET{}", self.place(node, end)?));
+                line(&mut text, depth + 2, &format!("OFFSET{}", self.vector(node, end)?));
                 line(&mut text, depth + 1, "}");
             }
             open.push(node);
@@ -110,35 +110,35 @@ impl<'a> BvhWriter<'a> {
     fn frame(&mut self, text: &mut String, pose: &BvhPose) -> Result<(), MotionError> {
         let root = pose.offsets.first().copied().unwrap_or_default();
         let start = text.len();
-        text.push_str(&self.place(0, root)?);
-        for (angles, turn) in self.angles.iter_mut().zip(&pose.turns) {
-            *angles = angles::nearest(*turn, *angles);
+        text.push_str(&self.vector(0, root)?);
+        for (angles, rotation) in self.angles.iter_mut().zip(&pose.rotations) {
+            *angles = angles::nearest(*rotation, *angles);
             for angle in [angles.z, angles.y, angles.x] {
-                push(text, degrees(angle));
+                push_number(text, degrees(angle));
             }
         }
-        // A space precedes each number.
+        // The space in front of the first number.
         text.remove(start);
         text.push('\n');
         Ok(())
     }
 
-    /// Three numbers, each after a space.
-    fn place(&self, node: usize, place: DVec3) -> Result<String, MotionError> {
-        let place = (place * self.scale).as_vec3();
-        if !place.is_finite() {
+    /// The three numbers of a vector, each after a space. Errors name the node.
+    fn vector(&self, node: usize, vector: DVec3) -> Result<String, MotionError> {
+        let vector = (vector * self.scale).as_vec3();
+        if !vector.is_finite() {
             let joint = self.rig.names.get(node).cloned().unwrap_or_default();
             return Err(MotionError::TooFar { joint });
         }
         let mut text = String::new();
-        for number in place.to_array() {
-            push(&mut text, number);
+        for number in vector.to_array() {
+            push_number(&mut text, number);
         }
         Ok(text)
     }
 }
 
-/// In f32, so that 90 stays 90.
+/// Converts to f32, so that 90 stays 90.
 fn degrees(radians: f64) -> f32 {
     /// Smaller angles are rounding.
     const ROUNDING: f32 = 1e-9;
@@ -147,11 +147,11 @@ fn degrees(radians: f64) -> f32 {
 }
 
 /// Writes the fewest digits that parse to the same f32; never −0.
-fn push(text: &mut String, number: f32) {
+fn push_number(text: &mut String, number: f32) {
     let _ = write!(text, " {}", number + 0.0);
 }
 
-/// Indentation is bounded, because deep hierarchies would be mostly tabs.
+/// Writes an indented line. Indentation is bounded, because deep hierarchies would be mostly tabs.
 fn line(text: &mut String, depth: usize, line: &str) {
     const DEEPEST: usize = 32;
     text.extend(std::iter::repeat_n('\t', depth.min(DEEPEST)));
@@ -169,11 +169,11 @@ struct LostMotion {
 }
 
 impl LostMotion {
-    fn new(document: &Document, place: &SkeletonTransform, pose: &BvhPose) -> Self {
+    fn new(document: &Document, transform: &SkeletonTransform, pose: &BvhPose) -> Self {
         let is_arm = document.rig == RigKind::Arm;
         Self {
             is_arm,
-            is_uneven: !is_arm && !place.is_even(),
+            is_uneven: !is_arm && !transform.is_even(),
             offsets: vec![false; pose.offsets.len()],
             ends: vec![false; pose.ends.len()],
         }

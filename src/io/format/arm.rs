@@ -108,7 +108,7 @@ impl ArmFields {
             (None, Some(JsonPoint(cursor))) => Cursor::Root(cursor),
             (None, None) => default.cursor,
         };
-        let arm = Arm {
+        let mut arm = Arm {
             cursor,
             twist: number(self.twist, default.twist),
             root: self.root.map_or(default.root, |JsonPoint(root)| root),
@@ -119,7 +119,6 @@ impl ArmFields {
             )?,
             ..default
         };
-        let mut arm = arm;
         arm.ik_state.pointer = Pointer::towards(arm.cursor_in_root(), Pointer::default());
         if let Some(JsonObject(fields)) = &self.twist_reference {
             fields.set(&mut arm, &at.clone().key("twist_reference"))?;
@@ -158,7 +157,8 @@ impl FacingFields {
         let (direction, heading) = (direction?, heading?.truncate());
         let flat = Vec2::new(direction.x, direction.z);
         if flat.length() > UNIT_TOLERANCE && flat.normalize().distance(heading) > UNIT_TOLERANCE {
-            let reason = "must be `direction` as seen from above";
+            let [x, z] = self.heading.0;
+            let reason = format!("must be `direction` as seen from above, got [{x}, {z}]");
             return Err(FieldError::new(at.clone().key("heading"), reason));
         }
         Ok(Pointer { direction, heading })
@@ -195,7 +195,8 @@ impl TransportedFields {
         let direction = unit_vector(at.clone().key("direction"), self.direction.0)?;
         let outward = unit_vector(at.clone().key("outward"), self.outward.0)?;
         if self.direction.0.dot(self.outward.0).abs() > UNIT_TOLERANCE {
-            let reason = "must be perpendicular to `direction`";
+            let [x, y, z] = self.outward.0.to_array();
+            let reason = format!("must be perpendicular to `direction`, got [{x}, {y}, {z}]");
             return Err(FieldError::new(at.clone().key("outward"), reason));
         }
         Ok(TransportedFrame { direction, outward })

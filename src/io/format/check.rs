@@ -36,7 +36,7 @@ pub fn from_1_to(at: JsonPath, Whole(count): Whole, max: u32) -> Result<u32, Fie
     }
 }
 
-/// A vector of length 1. One within rounding keeps its bits; others are normalized.
+/// A vector of length 1. Its bits are kept if the length is 1 within rounding.
 pub fn unit_vector(at: JsonPath, vector: Vec3) -> Result<Vec3, FieldError> {
     const ROUNDING: f32 = 1e-6;
     let length = vector.length();
@@ -53,7 +53,7 @@ pub fn joint(at: JsonPath, Whole(joint): Whole, joints: usize) -> Result<usize, 
         return Ok(index);
     }
     let rule = match joints {
-        0 => "the skeleton has no joints".to_owned(),
+        0 => "must be a joint, but the skeleton has none".to_owned(),
         1 => "must be 0, the only joint".to_owned(),
         _ => format!("must be a joint from 0 to {}", joints - 1),
     };

@@ -97,8 +97,7 @@ impl DocumentFields {
     }
 }
 
-/// The camera of a file without one. The default camera for an arm of any size, as in version 1,
-/// where switching to the arm frames it.
+/// The camera of a file without one. An arm of any size gets the same camera, as in version 1.
 fn default_camera(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     match rig {
         RigKind::Arm => Camera::default(),

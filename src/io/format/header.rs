@@ -1,4 +1,4 @@
-//! The first two fields, which tell whether and how the others are read.
+//! The first two fields: the name of the format and its version.
 
 use serde::Deserialize;
 
@@ -28,7 +28,7 @@ impl Header {
             return Ok(version);
         }
         let reason = if version > VERSION {
-            format!("version {version} needs a newer ik-arm; this one reads up to {VERSION}")
+            format!("must be from 1 to {VERSION}, got {version}, which needs a newer ik-arm")
         } else {
             format!("must be from 1 to {VERSION}, got {version}")
         };

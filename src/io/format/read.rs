@@ -15,7 +15,7 @@ pub fn read(source: &Source) -> Result<Opened, OpenError> {
             1 => read_fields(&source.translated(version_1::translated(source.text()))),
             _ => read_fields(source),
         },
-        // Reading all fields reports the reason, and more exactly.
+        // Reading all fields fails, too, and reports the exact field.
         Err(_) => read_fields(source),
     }
 }
@@ -37,8 +37,8 @@ fn read_fields(source: &Source) -> Result<Opened, OpenError> {
 
 fn unknown(field: &JsonPath) -> String {
     let mut keys = field.keys().rev();
-    let (name, around) = (keys.next().unwrap_or_default(), keys.next().unwrap_or_default());
-    match version_1::renamed(around, name) {
+    let (name, parent) = (keys.next().unwrap_or_default(), keys.next().unwrap_or_default());
+    match version_1::renamed(parent, name) {
         Some(new) => format!("unknown field, ignored; version {VERSION} calls it `{new}`"),
         None => "unknown field, ignored".to_owned(),
     }

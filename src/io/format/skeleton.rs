@@ -62,7 +62,7 @@ impl SkeletonFields {
             let joint = fields.joint(&joints);
             if is_beyond_limits(&joint) {
                 let field = at_joints.clone().index(index).key("rotation");
-                warnings.push(field, "is beyond the joint's limits; clamped");
+                warnings.push(field, "must be within the joint's limits; clamped");
             }
             joints.push(joint);
         }
@@ -79,7 +79,7 @@ impl SkeletonFields {
     }
 }
 
-/// The field that an error of a skeleton is about.
+/// The invalid field of a skeleton.
 fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -> JsonPath {
     let at = |joint: usize| at_joints.clone().index(joint);
     match error {
@@ -94,8 +94,8 @@ fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -
             let empty = names.iter().position(|name| name.trim().is_empty());
             at(empty.unwrap_or_default()).key("name")
         }
-        SkeletonError::Name(twice) => {
-            let mut same = (0..names.len()).filter(|index| names[*index] == *twice);
+        SkeletonError::Name(repeated) => {
+            let mut same = (0..names.len()).filter(|index| names[*index] == *repeated);
             at(same.nth(1).unwrap_or_default()).key("name")
         }
         _ => at_joints,
@@ -105,7 +105,7 @@ fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -
 impl JointFields {
     fn new(joint: &Joint) -> Self {
         let frame = joint.frame.to_cols_array();
-        // Bits, so that −0 is written.
+        // Compares bits, so that −0 is written.
         let is_identity =
             frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
         let [x, y, z] =
@@ -123,11 +123,11 @@ impl JointFields {
         }
     }
 
-    /// A joint without an offset sits on the tip of its parent, one of `before`.
-    fn joint(self, before: &[Joint]) -> Joint {
+    /// A joint without an offset is at the tip of its parent, which is in `preceding`.
+    fn joint(self, preceding: &[Joint]) -> Joint {
         let parent = self.parent.map(|Whole(parent)| parent as usize);
         let axis = self.axis.map_or(Vec3::ZERO, |JsonPoint(axis)| axis);
-        let parent_tip = parent.and_then(|parent| Some(before.get(parent)?.axis));
+        let parent_tip = parent.and_then(|parent| Some(preceding.get(parent)?.axis));
         let default = Joint::new(&self.name, parent.map(JointId::new), axis);
         let limits = self.limits.map(|JsonObject(limits)| limits).unwrap_or_default();
         Joint {

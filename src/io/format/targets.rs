@@ -1,4 +1,5 @@
-//! Fields of targets, of the solver and of path following, and conversions from and to a document's.
+//! Fields of targets, of the solver and of path following, and conversions from and to a
+//! document's.
 
 use std::collections::HashSet;
 
@@ -47,7 +48,7 @@ pub struct FollowPathFields {
     period: JsonNumber,
 }
 
-/// Adds the targets of a file to a rig that has its skeleton.
+/// Adds the targets of a file to a rig that has its skeleton already.
 pub fn add_targets(
     rig: &mut SkeletonRig,
     targets: Vec<JsonObject<TargetFields>>,

@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-/// UniqueNames that are taken, each with the number that may make the next one of it.
+/// Names that are taken, each with the number to try next when it is asked for again.
 #[derive(Default)]
 pub struct UniqueNames(HashMap<String, usize>);
 
@@ -13,7 +13,7 @@ impl<const N: usize> From<[&str; N]> for UniqueNames {
 const FIRST: usize = 2;
 
 impl UniqueNames {
-    /// Takes the name, or if it is taken, the name with a number.
+    /// Takes and returns the name, with a number if it is taken already.
     pub fn free(&mut self, name: &str) -> String {
         let mut free = name.to_owned();
         let mut number = self.0.get(name).copied();

@@ -26,7 +26,7 @@ pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, Fie
     }
     let root = file.base.0 + file.base_offset.0;
     if !root.is_finite() {
-        let reason = "base and base_offset add up to more than 3.4028235e38";
+        let reason = "base + base_offset must be within ±3.4028235e38";
         return Err(FieldError::new(at.clone().key("base_offset"), reason));
     }
     let joints = bones.iter().map(|&index| joint(file, index, root, &order)).collect();
@@ -40,10 +40,10 @@ pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, Fie
     Ok(SkeletonWithOrder { skeleton, order })
 }
 
-/// The bones with parents before their children, otherwise in the same order. Fails with a bone whose
-/// parent is invalid, and the reason.
+/// The bones with parents before their children, otherwise in the same order. Fails with a bone
+/// whose parent is invalid, and the reason.
 fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String)> {
-    let mut first = Vec::with_capacity(parents.len());
+    let mut sorted = Vec::with_capacity(parents.len());
     let mut is_placed = vec![false; parents.len()];
     let mut path_of = vec![None; parents.len()];
     for start in 0..parents.len() {
@@ -55,11 +55,10 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String
             next = parents[bone];
             match next {
                 Some(parent) if parent >= parents.len() => {
-                    let count = counted(parents.len());
-                    return Err((bone, format!("there is no bone {parent}; {count}")));
+                    return Err((bone, index_rule(parents.len(), parent)));
                 }
                 Some(parent) if path_of[parent] == Some(start) => {
-                    let reason = format!("bone {parent} is a descendant of bone {bone}");
+                    let reason = format!("must not be a descendant of bone {bone}, got {parent}");
                     return Err((bone, reason));
                 }
                 Some(parent) if is_placed[parent] => next = None,
@@ -68,17 +67,18 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String
         }
         for bone in path.into_iter().rev() {
             is_placed[bone] = true;
-            first.push(bone);
+            sorted.push(bone);
         }
     }
-    Ok(first)
+    Ok(sorted)
 }
 
-pub fn counted(bones: usize) -> String {
+/// The error of an index that is not one of `bones` bones.
+pub fn index_rule(bones: usize, index: usize) -> String {
     match bones {
-        0 => "there are none".to_owned(),
-        1 => "there is only bone 0".to_owned(),
-        _ => format!("they are 0 to {}", bones - 1),
+        0 => format!("must be a bone, but there are none, got {index}"),
+        1 => format!("must be 0, the only bone, got {index}"),
+        _ => format!("must be a bone from 0 to {}, got {index}", bones - 1),
     }
 }
 
@@ -86,13 +86,13 @@ fn joint(file: &Js3dSkeleton, index: usize, root: Vec3, order: &[JointId]) -> Jo
     let JsonObject(bone) = &file.bones[index];
     let JsonPoint(axis) = bone.extent;
     let parent = bone.parent();
-    let seed = Joint::new(&format!("bone_{index}"), parent.map(|parent| order[parent]), axis);
+    let default = Joint::new(&format!("bone_{index}"), parent.map(|parent| order[parent]), axis);
     Joint {
         offset: parent.map_or(root, |parent| file.bones[parent].0.extent.0),
         rotation: radians(bone.pose.0.as_dvec3()).as_vec3(),
         frame: bone.frame().as_mat3(),
-        radius: bone.radius.map_or(seed.radius.min(f32::MAX), |JsonNumber(radius)| radius),
-        ..seed
+        radius: bone.radius.map_or(default.radius.min(f32::MAX), |JsonNumber(radius)| radius),
+        ..default
     }
 }
 
@@ -101,17 +101,17 @@ fn radians(degrees: DVec3) -> DVec3 {
 }
 
 impl Js3dBone {
-    /// A, in which the bone's angles are measured: y along the bone, x as near to the skeleton's x
-    /// as can be and then turned by the roll.
+    /// The frame in which the bone's angles are measured: y along the bone, x as near as possible
+    /// to the skeleton's x, then turned by the roll.
     ///
-    /// In f64, in which no f32's square is too large or too small.
+    /// In f64, so that squares of f32 numbers neither overflow nor underflow.
     pub fn frame(&self) -> DMat3 {
         let y = self.extent.0.as_dvec3().try_normalize().unwrap_or(DVec3::Y);
-        // (1, 0, 0) − y_x·y, without a difference of near equals.
-        let beside = DVec3::new(y.y * y.y + y.z * y.z, -y.x * y.y, -y.x * y.z);
-        let flat = beside.try_normalize().unwrap_or(DVec3::Z);
+        // (1, 0, 0) − y_x·y, without cancellation.
+        let perpendicular = DVec3::new(y.y * y.y + y.z * y.z, -y.x * y.y, -y.x * y.z);
+        let unrolled = perpendicular.try_normalize().unwrap_or(DVec3::Z);
         let (sin, cos) = f64::from(self.roll.0).to_radians().sin_cos();
-        let x = flat * cos - flat.cross(y) * sin;
+        let x = unrolled * cos - unrolled.cross(y) * sin;
         DMat3::from_cols(x, y, x.cross(y))
     }
 }

@@ -9,9 +9,10 @@
 //! scene.transforms.*                 parent, translation, rotation [x, y, z, w], scale
 //! ```
 //!
-//! SkeletonWithOrder count from 0 in the file's order, and a parent may come after its children; 4294967295 is
-//! none. The angles of a bone are measured in the frame [`Js3dBone::frame`](file::Js3dBone::frame). The
-//! skeleton has the transform of the first instance of its mesh.
+//! Bones count from 0 in the file's order, and a parent may come after its children; the parent
+//! 4294967295 stands for none. The angles of a bone are measured in the frame
+//! [`Js3dBone::frame`](file::Js3dBone::frame). The skeleton has the transform of the first instance
+//! of its mesh.
 
 mod bones;
 mod file;
@@ -50,8 +51,9 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
             None => source.error(&no_skeleton()),
         });
     };
-    let mut odd = FieldWarnings::default();
-    let (rig, order) = rig(&scene, chosen, skeleton, &mut odd).map_err(|w| source.error(&w))?;
+    let mut warnings = FieldWarnings::default();
+    let (rig, order) =
+        rig(&scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
     let camera = rig.default_camera();
     Ok(Opened {
         document: Document {
@@ -60,7 +62,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
             camera,
             ..Document::default()
         },
-        warnings: source.warnings(&odd),
+        warnings: source.warnings(&warnings),
         order,
         skeletons: names,
     })
@@ -75,16 +77,16 @@ fn rig(
     scene: &Js3dScene,
     name: &str,
     file: &Js3dSkeleton,
-    odd: &mut FieldWarnings,
+    warnings: &mut FieldWarnings,
 ) -> Result<(SkeletonRig, Vec<JointId>), FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
-    let place = transform::of_mesh(scene, name, odd)?;
+    let transform = transform::of_mesh(scene, name, warnings)?;
     let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
-    skeleton.set_transform(place.as_affine3a()).map_err(|error| {
+    skeleton.set_transform(transform.as_affine3a()).map_err(|error| {
         FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
     let mut rig = SkeletonRig::new(skeleton);
-    rig.targets = targets(&at, file, place, &order, rig.default_path_radius(), odd)?;
+    rig.targets = targets(&at, file, transform, &order, rig.default_path_radius(), warnings)?;
     Ok((rig, order))
 }
 
@@ -92,29 +94,29 @@ fn rig(
 fn targets(
     at: &JsonPath,
     file: &Js3dSkeleton,
-    place: DAffine3,
+    transform: DAffine3,
     order: &[JointId],
-    circle: f32,
-    odd: &mut FieldWarnings,
+    path_radius: f32,
+    warnings: &mut FieldWarnings,
 ) -> Result<Vec<Target>, FieldError> {
     let at_handle = |handle| at.clone().key("handles").index(handle);
-    // Targets with their handles, and the index of each joint's own.
+    // Targets with their handles, and the index of each joint's target.
     let mut targets: Vec<(usize, Target)> = Vec::new();
-    let mut own = vec![None; order.len()];
+    let mut target_of = vec![None; order.len()];
     for (handle, JsonObject(file)) in file.handles.iter().flatten().enumerate() {
-        let target = target(&at_handle(handle), file, place, order, circle)?;
-        let Some(own) = own[target.joint.index()] else {
-            own[target.joint.index()] = Some(targets.len());
+        let target = target(&at_handle(handle), file, transform, order, path_radius)?;
+        let Some(index) = target_of[target.joint.index()] else {
+            target_of[target.joint.index()] = Some(targets.len());
             targets.push((handle, target));
             continue;
         };
-        let (mut counts, mut ignored) = (targets[own], (handle, target));
-        if target.enabled && !counts.1.enabled {
-            std::mem::swap(&mut counts, &mut ignored);
+        let (mut used, mut ignored) = (targets[index], (handle, target));
+        if target.enabled && !used.1.enabled {
+            std::mem::swap(&mut used, &mut ignored);
         }
-        let reason = format!("ignored; handle {} of the same bone is used", counts.0);
-        odd.push(at_handle(ignored.0), reason);
-        targets[own] = counts;
+        let reason = format!("ignored; handle {} of the same bone is used", used.0);
+        warnings.push(at_handle(ignored.0), reason);
+        targets[index] = used;
     }
     Ok(targets.into_iter().map(|(_, target)| target).collect())
 }
@@ -122,20 +124,20 @@ fn targets(
 fn target(
     at: &JsonPath,
     handle: &Js3dHandle,
-    place: DAffine3,
+    transform: DAffine3,
     order: &[JointId],
-    circle: f32,
+    path_radius: f32,
 ) -> Result<Target, FieldError> {
     let bone = handle.bone.0 as usize;
     let joint = order.get(bone).copied().ok_or_else(|| {
-        let reason = format!("there is no bone {bone}; {}", bones::counted(order.len()));
+        let reason = bones::index_rule(order.len(), bone);
         FieldError::new(at.clone().key("bone"), reason)
     })?;
-    let home = place.transform_point3(handle.target.0.as_dvec3()).as_vec3();
+    let home = transform.transform_point3(handle.target.0.as_dvec3()).as_vec3();
     if !home.is_finite() {
-        let reason = "is beyond 3.4028235e38 in the world; bring it nearer to 0";
+        let reason = "must be within ±3.4028235e38 in the world";
         return Err(FieldError::new(at.clone().key("target"), reason));
     }
     let enabled = handle.enabled.unwrap_or(true);
-    Ok(Target { enabled, ..Target::new(joint, home, circle) })
+    Ok(Target { enabled, ..Target::new(joint, home, path_radius) })
 }

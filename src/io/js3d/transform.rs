@@ -11,7 +11,7 @@ use crate::io::value::{JsonNumbers, JsonPoint};
 pub fn of_mesh(
     scene: &Js3dScene,
     mesh: &str,
-    odd: &mut FieldWarnings,
+    warnings: &mut FieldWarnings,
 ) -> Result<DAffine3, FieldError> {
     let instances = &scene.instances.0.skinned_meshes.0;
     let at = JsonPath::root().key("scene").key("instances").key("skinned_meshes");
@@ -21,8 +21,8 @@ pub fn of_mesh(
         return Ok(DAffine3::IDENTITY);
     };
     for (other, _) in of_mesh {
-        let reason = format!("{mesh:?} stands where {name:?} is; this instance is ignored");
-        odd.push(at.clone().key(other), reason);
+        let reason = format!("ignored; instance {name:?} of the same mesh is used");
+        warnings.push(at.clone().key(other), reason);
     }
     match &instance.transform {
         Some(transform) => world(scene, transform, at.key(name).key("transform")),
@@ -30,40 +30,47 @@ pub fn of_mesh(
     }
 }
 
-/// World transform: the product of a transform and all its ancestors. `field` is the one that names it.
+/// World transform: the product of a transform and all its ancestors. `field` has its name.
 fn world(scene: &Js3dScene, name: &str, field: JsonPath) -> Result<DAffine3, FieldError> {
-    let mut place = DAffine3::IDENTITY;
+    let mut product = DAffine3::IDENTITY;
     let (mut next, mut field) = (Some(name), field);
     let transforms: HashMap<_, _> =
         scene.transforms.0.iter().map(|(name, transform)| (name.as_str(), transform)).collect();
     let mut seen = HashSet::new();
     while let Some(name) = next {
         if !seen.insert(name) {
-            return Err(FieldError::new(field, format!("transform {name:?} is its own ancestor")));
+            return Err(FieldError::new(
+                field,
+                format!("transform must not be its own ancestor, got {name:?}"),
+            ));
         }
         let Some(transform) = transforms.get(name) else {
-            return Err(FieldError::new(field, format!("there is no transform called {name:?}")));
+            return Err(FieldError::new(
+                field,
+                format!("must be the name of a transform, got {name:?}"),
+            ));
         };
         let at = JsonPath::root().key("scene").key("transforms").key(name);
-        place = local(&at, transform)? * place;
-        if !place.as_affine3a().is_finite() {
-            return Err(FieldError::new(at, "overflows 3.4028235e38 in the world"));
+        product = local(&at, transform)? * product;
+        if !product.as_affine3a().is_finite() {
+            return Err(FieldError::new(at, "must be within ±3.4028235e38 in the world"));
         }
         field = at.key("parent");
         next = transform.parent.as_deref();
     }
-    Ok(place)
+    Ok(product)
 }
 
 fn local(at: &JsonPath, transform: &Js3dTransform) -> Result<DAffine3, FieldError> {
     let Js3dTransform { translation, rotation, scale, .. } = transform;
-    let or =
-        |point: &Option<JsonPoint>, usual: DVec3| point.map_or(usual, |JsonPoint(p)| p.as_dvec3());
+    let or = |point: &Option<JsonPoint>, default: DVec3| {
+        point.map_or(default, |JsonPoint(p)| p.as_dvec3())
+    };
     let rotation = match rotation {
         Some(JsonNumbers(rotation)) => {
-            let turn = DVec4::from_array(rotation.map(f64::from)).try_normalize();
-            turn.map(DQuat::from_vec4).ok_or_else(|| {
-                let reason = "must not be four zeros; [0, 0, 0, 1] is no rotation";
+            let unit = DVec4::from_array(rotation.map(f64::from)).try_normalize();
+            unit.map(DQuat::from_vec4).ok_or_else(|| {
+                let reason = "must not be four zeros; the identity is [0, 0, 0, 1]";
                 FieldError::new(at.clone().key("rotation"), reason)
             })?
         }

@@ -7,14 +7,14 @@ use thiserror::Error;
 use crate::io::error::shortened;
 use crate::kinematics::two_bone::LengthError;
 
-/// The reason why a line has no pose. `place` is empty, or a field, a colon and a space.
+/// The reason why a line has no pose. Messages start with the `prefix` of the field, if known.
 #[derive(Debug, Error)]
 pub enum LineError {
     /// The line is longer than [`LineError::MAX_LENGTH`].
     #[error("the line must be at most {} KiB long", LineError::MAX_LENGTH >> 10)]
     TooLong,
     /// The line is not UTF-8.
-    #[error("byte {at} is {byte:#04x}, which is not UTF-8 there; JSON is written in UTF-8")]
+    #[error("the line must be UTF-8, got {byte:#04x} as byte {at}")]
     NotUtf8 {
         /// Position of the first invalid byte in the line, from 1.
         at: usize,
@@ -22,28 +22,28 @@ pub enum LineError {
         byte: u8,
     },
     /// The line is not JSON.
-    #[error("{place}not JSON: {reason} (byte {at})")]
+    #[error("{prefix}not JSON: {reason} (byte {at})")]
     NotJson {
-        /// Field, colon and space; or empty.
-        place: String,
+        /// The field, a colon and a space; or empty.
+        prefix: String,
         /// The parser's message.
         reason: String,
         /// Number of bytes read when the parser found the error.
         at: usize,
     },
     /// The line is JSON but not a request: a field is missing, unknown or invalid.
-    #[error("{place}{reason}")]
+    #[error("{prefix}{reason}")]
     NotARequest {
-        /// Field, colon and space; or empty.
-        place: String,
+        /// The field, a colon and a space; or empty.
+        prefix: String,
         /// The rule that is broken.
         reason: String,
     },
     /// A number overflows.
-    #[error("{place}must be between -3.4028235e38 and 3.4028235e38, got {number}")]
+    #[error("{prefix}must be between -3.4028235e38 and 3.4028235e38, got {number}")]
     OutOfRange {
-        /// Field, colon and space; or empty.
-        place: String,
+        /// The field, a colon and a space; or empty.
+        prefix: String,
         /// The number as the line has it.
         number: String,
     },
@@ -61,7 +61,7 @@ pub enum LineError {
         range: &'static str,
     },
     /// The elbow or the hand overflows in world space.
-    #[error("root: {:?} puts the {joint} beyond 3.4028235e38; bring it nearer to 0", .root.to_array())]
+    #[error("root: must keep the {joint} within ±3.4028235e38, got {:?}", .root.to_array())]
     OutOfWorld {
         /// `elbow` or `hand`.
         joint: &'static str,
@@ -70,7 +70,7 @@ pub enum LineError {
     },
 }
 
-/// Fields of earlier versions, and what they are called now.
+/// Field names of earlier versions, and the current ones.
 const RENAMED: [(&str, &str); 3] = [
     ("elbow_spin_deg", "twist_deg"),
     ("swivel", "reference"),
@@ -93,23 +93,23 @@ impl LineError {
 
     pub(super) fn not_a_request(line: &str, path: &Path, error: &serde_json::Error) -> Self {
         let reason = renamed(without_position(error));
-        let place = place(path, &reason);
+        let prefix = prefix(path, &reason);
         // serde_json identifies this error by its text alone.
         if reason == "number out of range" {
             let number = word_around(line, error.column()).to_owned();
-            return Self::OutOfRange { place, number };
+            return Self::OutOfRange { prefix, number };
         }
         if error.is_data() {
-            return Self::NotARequest { place, reason };
+            return Self::NotARequest { prefix, reason };
         }
-        Self::not_json(line, place, error)
+        Self::not_json(line, prefix, error)
     }
 
-    pub(super) fn not_json(line: &str, place: String, error: &serde_json::Error) -> Self {
+    pub(super) fn not_json(line: &str, prefix: String, error: &serde_json::Error) -> Self {
         let (reason, at) = (without_position(error), error.column());
         match word_around(line, at) {
-            "" => Self::NotJson { place, reason, at },
-            word => Self::NotJson { place, reason: format!("{reason}, found `{word}`"), at },
+            "" => Self::NotJson { prefix, reason, at },
+            word => Self::NotJson { prefix, reason: format!("{reason}, found `{word}`"), at },
         }
     }
 }
@@ -124,17 +124,17 @@ fn renamed(reason: String) -> String {
     }
 }
 
-/// The parser's positions always have line 1.
+/// The error's text without its position, in which the line is always 1.
 fn without_position(error: &serde_json::Error) -> String {
     let position = format!(" at line {} column {}", error.line(), error.column());
     let text = error.to_string();
     text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
-/// The field that an error is about, unless it is unknown or the reason names it.
-fn place(path: &Path, reason: &str) -> String {
-    let known = path.iter().len() > 0 && !path.iter().any(|s| matches!(s, Segment::Unknown));
-    if !known || reason.contains(&format!("`{path}`")) {
+/// The prefix of the invalid field; empty if the field is unknown or the reason names it.
+fn prefix(path: &Path, reason: &str) -> String {
+    let is_known = path.iter().len() > 0 && !path.iter().any(|s| matches!(s, Segment::Unknown));
+    if !is_known || reason.contains(&format!("`{path}`")) {
         return String::new();
     }
     format!("{path}: ")

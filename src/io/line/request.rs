@@ -93,7 +93,7 @@ impl Request {
     }
 }
 
-/// A request that is an object. The derived code alone accepts an array, too.
+/// A request. Without this wrapper, serde's derived code would accept an array, too.
 struct RequestObject(Request);
 
 impl<'de> Deserialize<'de> for RequestObject {

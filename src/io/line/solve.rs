@@ -4,8 +4,8 @@ use super::previous::PreviousLine;
 use super::request::Request;
 use crate::kinematics::twist::TwistReference;
 
-/// Solves one line of `ik-arm solve`, given without its line ending. `previous` is the state after the
-/// last valid line, and becomes the state after this one; an invalid line leaves it unchanged.
+/// Solves one line of `ik-arm solve`, given without its line ending. `previous` is the state after
+/// the last valid line, and becomes the state after this one; an invalid line leaves it unchanged.
 ///
 /// # Errors
 ///

@@ -16,7 +16,7 @@ pub struct ArmBatch<'a> {
 }
 
 impl<'a> ArmBatch<'a> {
-    /// A batch of as many arms as the arrays have numbers.
+    /// A batch of as many arms as each array has numbers. Cursors are in Root space.
     ///
     /// # Errors
     ///
@@ -55,12 +55,13 @@ impl<'a> ArmBatch<'a> {
         self.cursor[0].len()
     }
 
-    /// Whether there are no arms.
+    /// Whether the batch has no arms.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Solves all arms on this thread without allocating.
+    /// Solves all arms on this thread without allocating. Writes elbows and hands to `positions`
+    /// and, if given, the limbs' rotations to `rotations`.
     ///
     /// # Errors
     ///
@@ -98,7 +99,7 @@ impl<'a> ArmBatch<'a> {
         Ok(())
     }
 
-    /// The arms of a range.
+    /// The batch of a range of the arms.
     pub(super) fn part(&self, arms: Range<usize>) -> Self {
         let of = |array: &'a [f32]| &array[arms.clone()];
         Self {
@@ -118,7 +119,7 @@ impl<'a> ArmBatch<'a> {
         }
     }
 
-    /// Solves into outputs of the right length.
+    /// Solves into outputs whose lengths have been checked.
     pub(super) fn solve_into(
         &self,
         positions: &mut BatchPositions<'_>,
@@ -172,7 +173,8 @@ impl<'a> ArmBatch<'a> {
         }
     }
 
-    /// Solves for normal numbers, then again for any finite ones if some were not normal.
+    /// Solves by the fast path, which is right for normal numbers; if some numbers are not normal,
+    /// solves again by the path for all finite numbers.
     fn solve_bones<const SAME: bool>(
         &self,
         bones: [&[f32]; 2],
@@ -186,7 +188,8 @@ impl<'a> ArmBatch<'a> {
     }
 }
 
-/// Checks all values, which is faster than to stop at the first invalid one.
+/// Whether all values are finite and above 0. Checking all of them is faster than stopping at the
+/// first invalid one.
 fn are_lengths(values: &[f32]) -> bool {
     values.iter().fold(true, |are, value| are & (*value > 0.0) & (*value < f32::INFINITY))
 }

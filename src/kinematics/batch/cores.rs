@@ -6,11 +6,12 @@ use super::error::BatchError;
 use super::kernel::BLOCK;
 use super::output::{BatchPositions, BatchRotations};
 
-/// Most arms of a task: many blocks, so that a task costs little beside solving them.
+/// Maximum number of arms of a task. They are many blocks, so that starting a task costs little
+/// beside solving its arms.
 const TASK: usize = 8 * BLOCK;
 
 impl ArmBatch<'_> {
-    /// As [`Self::solve`], on the threads of [`rayon`], with the same bits.
+    /// As [`Self::solve`], on the threads of [`rayon`]. Results are bit-identical.
     ///
     /// # Errors
     ///

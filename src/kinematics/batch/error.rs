@@ -8,12 +8,12 @@ use crate::kinematics::two_bone::LengthError;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BatchError {
-    /// An array has another length than the cursors' x.
+    /// An array has not the length of the cursors' x.
     #[error("{array} has {len} numbers; the cursors' x has {arms}, and there must be as many")]
     Len {
         /// The array.
         array: BatchArray,
-        /// Its length.
+        /// Length of the array.
         len: usize,
         /// Number of arms, the length of the cursors' x.
         arms: usize,
@@ -23,7 +23,7 @@ pub enum BatchError {
     Bone {
         /// Index of the arm.
         arm: usize,
-        /// The bone and its length.
+        /// The bone and its invalid length.
         source: LengthError,
     },
 }

@@ -3,7 +3,7 @@ use crate::kinematics::two_bone::TwoBone;
 /// Bone lengths of a batch.
 #[derive(Clone, Copy, Debug)]
 pub enum BatchBones<'a> {
-    /// The same for all arms.
+    /// The same bones for all arms.
     Same(TwoBone),
     /// Lengths of each arm, finite and above 0.
     Each {

@@ -1,21 +1,21 @@
 //! The closed form for many arms: plain code over slices that the compiler vectorises for common
-//! instruction sets; the widest that the machine has is chosen at run time.
+//! instruction sets. The widest set that the machine has is chosen at run time.
 //!
-//! No result depends on the vector width: no fused multiply-add, no reordered sum, no approximate
-//! reciprocal. So every machine and every part of a batch gives the same bits.
+//! No result depends on the vector width: there is no fused multiply-add, no reordered sum and no
+//! approximate reciprocal. So every machine and every division of a batch gives the same bits.
 
 use glam::{Mat3, Vec3};
 use multiversion::multiversion;
 
 use crate::kinematics::two_bone::{ClosedForm, Pointer, ScaledBones, TwoBone};
 
-/// Number of arms that are solved before they are copied to the outputs.
+/// Number of arms that are solved before their results are copied to the outputs.
 ///
-/// A block stays in the cache. A copy of whole pages does not read what it overwrites; stores from the
-/// middle of a computation do.
+/// A block stays in the cache. Copying whole pages does not read the memory that is overwritten;
+/// single stores during the computation do.
 pub(super) const BLOCK: usize = 2048;
 
-/// One number of each arm in a block, aligned to the widest vectors.
+/// An array with one number for each arm of a block, aligned to the widest vectors.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct BlockArray(pub [f32; BLOCK]);
@@ -30,7 +30,7 @@ const MAX_RATIO: f32 = 8.0;
 
 /// Results of a block of arms.
 pub(super) trait Block {
-    /// Stores an arm's results. Returns whether they are correct without `ANY`.
+    /// Stores an arm's results. Returns whether these are correct if `ANY` is not set.
     fn keep<const ANY: bool>(&mut self, arm: usize, solved: &ClosedForm, hand: Vec3) -> bool;
 }
 
@@ -47,11 +47,12 @@ pub(super) struct PoseBlock {
     pub lower: [BlockArray; 4],
 }
 
-/// Solves arms: with `ANY` for all finite numbers, without for normal ones. Returns whether all were
-/// normal; without `ANY` the results are wrong otherwise.
+/// Solves the arms of a block. With `ANY`, the results are correct for all finite numbers; without
+/// `ANY`, only if the function returns `true`: all numbers are normal, and every [`Block::keep`]
+/// returned `true`.
 ///
-/// With `SAME` all arms have the first bones. All slices are as long as the cursors' x, at most a
-/// block.
+/// With `SAME`, all arms have the bones that are first in `bones`. All other slices are as long as
+/// the cursors' x, at most a block.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+avx512bw",
     "x86_64+avx2",
@@ -119,7 +120,8 @@ fn put<const N: usize>(arrays: &mut [BlockArray; N], arm: usize, values: [f32; N
     }
 }
 
-/// The rotations of the upper and the lower limb, as quaternions: +x along the limb, +z the hinge.
+/// Quaternions (x, y, z, w) of the upper and the lower limb's rotation: +x is along the limb, +z
+/// along the hinge axis. If `is_uneven`, directions of the limbs are normalized.
 #[inline(always)]
 fn rotations(solved: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
     let ClosedForm { pointer, outward, distance, along, out, scaled, .. } = *solved;
@@ -139,8 +141,8 @@ fn rotations(solved: &ClosedForm, is_uneven: bool) -> [[f32; 4]; 2] {
     ]
 }
 
-/// Normalizes a cosine and sine, which lose digits for a limb that is much shorter than the other. A
-/// limb whose direction is lost points along the Pointer.
+/// Normalizes a cosine and a sine, which lose digits for a limb that is much shorter than the other
+/// limb. A limb whose direction is lost points along the Pointer.
 #[inline(always)]
 fn unit_angle(cos: f32, sin: f32) -> (f32, f32) {
     let square = cos * cos + sin * sin;
@@ -152,14 +154,14 @@ fn unit_angle(cos: f32, sin: f32) -> (f32, f32) {
     }
 }
 
-/// (x, y, z, w) of a rotation, w ≥ 0.
+/// Unit quaternion (x, y, z, w) of a rotation matrix, with w ≥ 0.
 ///
-/// From its largest part, whose square is at least ¼, so that nothing cancels (S. W. Shepperd,
-/// *Quaternion from Rotation Matrix*, 1978).
+/// Computed from its largest component, whose square is at least ¼, so that nothing cancels (S. W.
+/// Shepperd, *Quaternion from Rotation Matrix*, 1978).
 #[inline(always)]
 fn quaternion(m: Mat3) -> [f32; 4] {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
-    // Four times the products of two parts each.
+    // Four times the product of two components each.
     let [xw, yw, zw] = [y.z - z.y, z.x - x.z, x.y - y.x];
     let [xy, xz, yz] = [x.y + y.x, z.x + x.z, y.z + z.y];
     let xx = 1.0 + x.x - y.y - z.z;

@@ -1,7 +1,7 @@
-//! Batches of two-bone arms, each solved as by [`two_bone`](super::two_bone).
+//! Batches of two-bone arms; each arm is solved as by [`two_bone`](super::two_bone).
 //!
-//! Arrays hold one number of each arm (a structure of arrays), so that one instruction computes 4, 8 or
-//! 16 arms; the instruction set is chosen at run time.
+//! Each array holds one number for each arm (a structure of arrays), so that one instruction
+//! computes 4, 8 or 16 arms. The instruction set is chosen at run time.
 //!
 //! ```
 //! use ik_arm::kinematics::batch::{
@@ -28,25 +28,28 @@
 //!
 //! # Results
 //!
-//! Bit-identical to [`TwoBone::solve`](super::two_bone::TwoBone::solve) of each arm alone, for every
-//! division of the batch, number of threads and machine. (Machines differ in their own cosine: batches
-//! that must agree between machines take cosines and sines instead of angles.) A hand is the cursor
-//! where that is reached, bit for bit; else it is on a limit sphere.
+//! Results are bit-identical to [`TwoBone::solve`](super::two_bone::TwoBone::solve) of each arm
+//! alone, for every division of the batch, number of threads and machine. (The cosine function
+//! differs between machines: batches that must agree between machines take cosines and sines
+//! instead of angles.) A hand is at its cursor, bit for bit, if the cursor is reached; otherwise
+//! the hand is on a limit sphere.
 //!
-//! Root space, right-handed, radians; the lengths of one arm share any one unit.
+//! Everything is in Root space, right-handed; angles are radians, and the lengths of one arm share
+//! any one unit.
 //!
 //! # What breaks
 //!
-//! A number that is not finite makes its own arm meaningless and no other. An arm has no previous
-//! [`Pointer`](super::two_bone::Pointer): a cursor at the shoulder has the direction +x, one straight
-//! above or below it has no yaw.
+//! A number that is not finite makes the results of its own arm meaningless, and of no other arm.
+//! An arm has no previous [`Pointer`](super::two_bone::Pointer): the Pointer of a cursor at the
+//! shoulder is along +x, and a cursor straight above or below the shoulder has a yaw of 0.
 //!
 //! # Speed
 //!
-//! `docs/performance.md` compares it with a copy of the same bytes. Normal numbers, from about 1e-9 to
-//! 1e9, take the fast path. A block of 2,048 arms with other numbers, or with a cursor straight above,
-//! below or at its shoulder, is solved again for any finite number, at half the speed. So is a block
-//! with a bone more than eight times as long as the other, if rotations are wanted.
+//! `docs/performance.md` compares the time of a batch with that of copying the same number of
+//! bytes. Normal numbers, from about 1e-9 to 1e9, take the fast path. A block of 2,048 arms with
+//! other numbers, or with a cursor straight above, below or at its shoulder, is solved a second
+//! time by a path for all finite numbers, which halves the speed. With rotations, so is a block in
+//! which one bone of an arm is more than eight times as long as the other.
 
 mod arm_batch;
 mod array;

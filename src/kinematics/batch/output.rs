@@ -3,7 +3,7 @@ use core::ops::Range;
 use super::array::{PointsMut, QuaternionsMut};
 use super::kernel::{BlockArray, PoseBlock, PositionBlock};
 
-/// Elbows and hands to write, in Root space.
+/// Arrays to which elbows and hands are written, in Root space.
 #[derive(Debug)]
 pub struct BatchPositions<'a> {
     /// Positions of the elbows.
@@ -12,7 +12,8 @@ pub struct BatchPositions<'a> {
     pub hand: PointsMut<'a>,
 }
 
-/// Rotations of the limbs to write, in Root space: +x is along the limb, +z the hinge; w ≥ 0.
+/// Arrays to which the limbs' rotations are written, in Root space: +x is along the limb, +z along
+/// the hinge axis; w ≥ 0.
 #[derive(Debug)]
 pub struct BatchRotations<'a> {
     /// Rotations of the upper limbs.
@@ -22,7 +23,7 @@ pub struct BatchRotations<'a> {
 }
 
 impl BatchPositions<'_> {
-    /// Copies the arms of a block.
+    /// Copies the results of a block to the range `arms`.
     pub(super) fn copy_from(&mut self, block: &PositionBlock, arms: Range<usize>) {
         let Self { elbow, hand } = self;
         copy(&block.elbow, [&mut *elbow.x, &mut *elbow.y, &mut *elbow.z], arms.clone());
@@ -31,7 +32,7 @@ impl BatchPositions<'_> {
 }
 
 impl BatchRotations<'_> {
-    /// Copies the arms of a block.
+    /// Copies the results of a block to the range `arms`.
     pub(super) fn copy_from(&mut self, block: &PoseBlock, arms: Range<usize>) {
         for (values, QuaternionsMut { x, y, z, w }) in
             [(&block.upper, &mut self.upper), (&block.lower, &mut self.lower)]

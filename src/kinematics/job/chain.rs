@@ -2,45 +2,48 @@ use glam::{Affine3A, DMat3, DQuat, DVec3};
 
 use super::error::{JobError, JobField, check_similarity};
 
-/// The three joints in start joint space, in its own unit.
+/// The three joints of a job in start joint space, in the unit of this space.
 pub(super) struct JointChain {
-    /// The start joint, in model space.
+    /// Position of the start joint, in model space.
     start: DVec3,
-    /// M_s: the start joint's axes in model space. Where they have scale 0, no joint can turn, and start
-    /// joint space is model space.
+    /// M_s: the start joint's axes in model space, as columns. If they have scale 0, this is the
+    /// identity: no joint can turn, and start joint space is model space.
     axes: DMat3,
     /// M_s⁻¹.
     axes_inverse: DMat3,
+    /// Whether the start joint's axes have a scale other than 0.
     can_turn: bool,
-    /// u, from start to middle.
+    /// u, the vector from the start joint to the middle joint.
     upper_ss: DVec3,
-    /// l, from middle to end.
+    /// l, the vector from the middle joint to the end joint.
     lower_ss: DVec3,
-    /// M_s⁻¹·M_m: the middle joint's axes; 0 where no joint can turn.
+    /// M_s⁻¹·M_m: the middle joint's axes, as columns; 0 if no joint can turn.
     middle_ss: DMat3,
-    /// Rotation from middle joint space to start joint space without scale and mirror, for axes. (A
-    /// rotation about an axis is the opposite rotation about the axis's mirror image.)
+    /// Rotation that takes axes of turns from middle joint space to start joint space: that of
+    /// `middle_ss`, without its scale and mirror. (A mirrored turn about an axis is the opposite
+    /// turn about the mirrored axis.)
     pub middle_turn: DQuat,
-    /// About an ulp of the joints' largest model space coordinate, along the axis that magnifies it
-    /// most.
+    /// Rounding of the joints' positions: about an ulp of their largest model space coordinate,
+    /// times the largest factor by which M_s⁻¹ lengthens an axis.
     rounding_ss: f64,
 }
 
-/// The two bones in start joint space, in units of the chain's length.
+/// Vectors along the two bones in start joint space, divided by the chain's length `unit`.
 pub(super) struct LimbBones {
     pub upper_ss: DVec3,
     pub lower_ss: DVec3,
-    /// The chain's length in start joint space.
+    /// The chain's length, in start joint space.
     pub unit: f64,
-    /// Whether both bones have a length and the middle joint can turn the lower one.
+    /// Whether both bones have lengths above 0 and the middle joint can turn the lower bone.
     pub is_jointed: bool,
-    /// Displacement of a joint by the rounding of its coordinates.
+    /// Displacement of a joint by the rounding of its coordinates, in chain lengths.
     pub rounding: f64,
 }
 
 impl JointChain {
-    /// Refuses a start joint whose matrix has no inverse (scale 0 is accepted), and a middle joint
-    /// whose axes are uneven or skew in start joint space.
+    /// The chain of the start, middle and end joint, given in model space. Refuses a start joint
+    /// whose matrix has no inverse (scale 0 is accepted), and a middle joint whose axes are uneven
+    /// or skew in start joint space.
     pub fn new(joints: [Affine3A; 3]) -> Result<Self, JobError> {
         let [start_axes, middle_axes, _] = joints.map(|joint| joint.matrix3.as_dmat3());
         let [start, middle, end] = joints.map(|joint| joint.translation.as_dvec3());
@@ -66,27 +69,28 @@ impl JointChain {
         })
     }
 
-    /// L.
+    /// The chain's length L, in start joint space.
     pub fn length_ss(&self) -> f64 {
         self.upper_ss.length() + self.lower_ss.length()
     }
 
-    /// A model space point.
+    /// Converts a point from model space to start joint space.
     pub fn point_ss(&self, point: DVec3) -> DVec3 {
         self.vector_ss(point - self.start)
     }
 
-    /// A model space vector.
+    /// Converts a vector from model space to start joint space.
     pub fn vector_ss(&self, vector: DVec3) -> DVec3 {
         self.axes_inverse * vector
     }
 
-    /// A vector's length in model space.
+    /// Length in model space of a vector in start joint space.
     pub fn length_in_model(&self, vector_ss: DVec3) -> f64 {
         (self.axes * vector_ss).length()
     }
 
-    /// The bones; `None` where there is nothing to turn, or no joint can turn.
+    /// The two bones; `None` if the start joint cannot turn, or if the chain neither bends nor
+    /// points in a direction.
     pub fn limb(&self) -> Option<LimbBones> {
         let unit = self.length_ss();
         let (upper_ss, lower_ss) = (self.upper_ss / unit, self.lower_ss / unit);
@@ -99,7 +103,8 @@ impl JointChain {
         (self.can_turn && (is_jointed || can_point)).then_some(limb)
     }
 
-    /// The hand after both joints are turned, by the given matrices.
+    /// Position of the hand in start joint space after the turns `start` and `middle` of the
+    /// joints, computed by the job's matrices.
     pub fn hand_ss(&self, start: DQuat, middle: DQuat) -> DVec3 {
         let lower_ss = if self.middle_ss == DMat3::ZERO {
             self.lower_ss
@@ -111,19 +116,19 @@ impl JointChain {
 }
 
 impl LimbBones {
-    /// d₁ and d₂.
+    /// The bones' lengths d₁ and d₂, in chain lengths.
     pub fn lengths(&self) -> (f64, f64) {
         (self.upper_ss.length(), self.lower_ss.length())
     }
 
-    /// The uncorrected hand, from the start joint.
+    /// Position of the uncorrected hand relative to the start joint.
     pub fn hand_ss(&self) -> DVec3 {
         self.upper_ss + self.lower_ss
     }
 }
 
-/// The inverse; `None` for a condition number above a million, where rounding an axis to f32 moves
-/// points by some percent.
+/// Inverse of a matrix; `None` for a condition number above a million, where rounding an axis to
+/// f32 moves points by some percent.
 fn inverse(axes: DMat3) -> Option<DMat3> {
     const WORST_CONDITION: f64 = 1e6;
     if axes.determinant() == 0.0 {
@@ -138,8 +143,8 @@ fn longest_axis(axes: DMat3) -> f64 {
     axes.x_axis.length().max(axes.y_axis.length()).max(axes.z_axis.length())
 }
 
-/// The nearest rotation to axes, without scale and mirror: the polar decomposition by Newton's
-/// iteration, which converges quadratically.
+/// The rotation nearest to a matrix, without scale and mirror: its polar decomposition by Newton's
+/// iteration, which converges quadratically. The identity for the zero matrix.
 fn nearest_turn(axes: DMat3) -> DQuat {
     const STEPS: usize = 3;
     if axes == DMat3::ZERO {

@@ -9,14 +9,14 @@ use crate::kinematics::saturate::saturate;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// A matrix or a vector is not finite (of `end` only the translation counts).
+    /// A matrix or a vector is not finite. (Of `end` only the translation counts.)
     #[error("{field} is not finite; each of its numbers must be")]
     NotFinite {
-        /// The field.
+        /// The matrix or vector.
         field: JobField,
     },
-    /// The start joint's axes are in one plane or on one line (to a condition number of 1e6), and are
-    /// not all 0.
+    /// The start joint's axes are in one plane or on one line (their condition number is above
+    /// 1e6), and are not all 0.
     #[error("{field} has axes in one plane; its matrix must have an inverse, or scale 0")]
     NotInvertible {
         /// The matrix, [`JobField::Start`].
@@ -36,8 +36,8 @@ pub enum JobError {
     },
     /// In start joint space, the middle joint is sheared.
     #[error(
-        "{field} has axes that are not perpendicular in start joint space: the cosine between two is \
-         {cosine}; it must be from -0.001 to 0.001"
+        "{field} must have perpendicular axes in start joint space (cosine from -0.001 to 0.001), got \
+         a cosine of {cosine}"
     )]
     SkewAxes {
         /// The matrix, [`JobField::Middle`].
@@ -47,13 +47,13 @@ pub enum JobError {
         cosine: f32,
     },
     /// A number is outside its range.
-    #[error("{field} is {value}; it must be {range}")]
+    #[error("{field} must be {range}, got {value}")]
     OutOfRange {
-        /// The number.
+        /// The field that holds the number.
         field: JobField,
-        /// The refused value.
+        /// The refused number.
         value: f32,
-        /// The valid range.
+        /// The valid range, in words.
         range: &'static str,
     },
 }
@@ -69,20 +69,20 @@ pub enum JobField {
     End,
     /// Target of the end joint.
     Target,
-    /// Direction of the middle joint.
+    /// Direction in which the middle joint lies.
     Pole,
-    /// Axis of the middle joint.
+    /// Hinge axis of the middle joint.
     Hinge,
-    /// Angle about the line to the target.
+    /// Twist angle about the line to the target.
     Twist,
     /// Softness of the limits.
     Softness,
-    /// Fraction of the correction.
+    /// Fraction of the correction to apply.
     Weight,
 }
 
 impl fmt::Display for JobField {
-    /// The field's name.
+    /// The field's name in lower case.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Start => "start",
@@ -98,7 +98,8 @@ impl fmt::Display for JobField {
     }
 }
 
-/// Refuses axes other than a similarity's: a rotation and an even scale (or 0), mirrored or not.
+/// Refuses a matrix that is not a similarity: a rotation with an even scale (or 0), mirrored or
+/// not.
 pub(super) fn check_similarity(field: JobField, axes: DMat3) -> Result<(), JobError> {
     const DIFFERENT: f64 = 1e-3;
     let lengths = [axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length()];

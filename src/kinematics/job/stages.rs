@@ -11,13 +11,14 @@ use crate::kinematics::two_bone::TwoBone;
 pub(super) struct BentLimb {
     /// Rotation of the lower bone about the middle joint.
     pub turn_ss: DQuat,
-    /// x̂, from the start joint to the hand; a unit vector.
+    /// x̂, the unit vector from the start joint to the hand.
     hand_ss: DVec3,
-    /// The side that the elbow is on, perpendicular to x̂; `None` for a limb that cannot bend.
+    /// Unit vector perpendicular to x̂ on the side of the elbow; `None` for a limb that cannot
+    /// bend.
     outward_ss: Option<DVec3>,
 }
 
-/// D, the hand's distance for a target's.
+/// D, the hand's distance from the start joint for a target at the distance `target`.
 pub(super) fn soften(limb: &LimbBones, target: f64, soft_reach: SoftReach) -> f64 {
     let (upper, lower) = limb.lengths();
     let hard = target.clamp((upper - lower).abs(), upper + lower);
@@ -36,7 +37,7 @@ pub(super) fn soften(limb: &LimbBones, target: f64, soft_reach: SoftReach) -> f6
     f64::from(softened).clamp((upper - lower).abs(), upper + lower)
 }
 
-/// Opens or closes the middle joint until the hand is at a distance.
+/// Opens or closes the middle joint until the hand is at `distance` from the start joint.
 pub(super) fn middle_joint(
     limb: &LimbBones,
     distance: f64,
@@ -73,7 +74,9 @@ pub(super) fn middle_joint(
     BentLimb { turn_ss, hand_ss, outward_ss: Some(axis_ss.cross(hand_ss).normalize()) }
 }
 
-/// Turns the bent limb until the hand points at the target and the elbow at the pole.
+/// Rotation of the start joint that points the bent limb's hand at the target and its elbow in the
+/// direction of the pole, and then turns the limb by `twist` (radians) about the line to the
+/// target.
 pub(super) fn start_joint(
     bend: &BentLimb,
     target_ss: Option<DVec3>,
@@ -93,7 +96,7 @@ pub(super) fn start_joint(
     (DQuat::from_axis_angle(towards, twist) * to_pole).normalize()
 }
 
-/// Fraction of a rotation by its smaller angle, with w ≥ 0.
+/// The rotation `turn` by the fraction `part` of its angle, which is at most 180°; w ≥ 0.
 pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     if part >= 1.0 {
@@ -105,7 +108,8 @@ pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     DQuat::from_vec4((axis * sin).extend(cos))
 }
 
-/// φ by its half angle: exact for straight and folded limbs.
+/// Inner angle φ of the middle joint for a hand at `distance`, computed by half the angle: exact
+/// for straight and folded limbs.
 fn inner_angle(upper: f64, lower: f64, distance: f64) -> f64 {
     let (sum, difference) = (upper + lower, upper - lower);
     let open = (distance - difference) * (distance + difference);
@@ -113,8 +117,8 @@ fn inner_angle(upper: f64, lower: f64, distance: f64) -> f64 {
     2.0 * open.max(0.0).sqrt().atan2(closed.max(0.0).sqrt())
 }
 
-/// The normal of the plane of the bones, about which a positive turn opens them; `None` where they are
-/// in one line, to within rounding.
+/// Unit normal of the plane of the bones, about which a positive turn opens the limb; `None` if the
+/// bones are in one line, to within rounding.
 fn normal(limb: &LimbBones, upper_ss: DVec3, lower_ss: DVec3) -> Option<DVec3> {
     const IN_LINE: f64 = 1e-3;
     let (upper, lower) = limb.lengths();
@@ -123,14 +127,15 @@ fn normal(limb: &LimbBones, upper_ss: DVec3, lower_ss: DVec3) -> Option<DVec3> {
     (normal_ss.length() > IN_LINE + blurred).then(|| normal_ss.normalize())
 }
 
-/// The normal, negated to the hinge axis's side.
+/// The normal, negated if the hinge axis is on its other side.
 fn on_side_of(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> DVec3 {
     const IN_PLANE: f64 = 1e-3;
     let is_opposite = hinge_ss.is_some_and(|hinge| hinge.dot(normal_ss) < -IN_PLANE);
     if is_opposite { -normal_ss } else { normal_ss }
 }
 
-/// Axis about which bones in one line bend, perpendicular to them.
+/// Unit axis, perpendicular to the bones, about which bones in one line bend: by the hinge axis,
+/// else towards the pole, else arbitrary.
 fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>) -> DVec3 {
     const ALONG: f64 = 1e-3;
     let across = |axis: DVec3| {
@@ -141,8 +146,8 @@ fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>
     hinge_ss.and_then(across).or_else(to_pole).unwrap_or_else(|| upper_ss.any_orthonormal_vector())
 }
 
-/// x̂. Near the start joint it comes from the closed form: there the bones have nearly the same length,
-/// and oₑ is nearly d₁.
+/// x̂, the direction of the hand. For a hand near the start joint it is computed by the closed
+/// form: there both bones have nearly the same length, and oₑ is nearly d₁.
 fn hand_direction(hand_ss: DVec3, upper_ss: DVec3, axis_ss: DVec3, distance: f64) -> DVec3 {
     const NEAR: f64 = 1e-6;
     if distance > NEAR {
@@ -155,13 +160,15 @@ fn hand_direction(hand_ss: DVec3, upper_ss: DVec3, axis_ss: DVec3, distance: f64
     (upper_ss * along - axis_ss.cross(upper_ss) * out).normalize()
 }
 
-/// The rotation of a frame with a direction as its x and another, perpendicular one as its y.
+/// The rotation that maps +x to the unit vector `x`, and +y to the unit vector `y`, which is
+/// perpendicular to `x`.
 fn frame(x: DVec3, y: DVec3) -> DQuat {
     let z = x.cross(y).normalize();
     DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize()
 }
 
-/// Least rotation from one unit vector to another; about any perpendicular axis if they are opposite.
+/// Rotation by the smallest angle from one unit vector to another; about any perpendicular axis if
+/// they are opposite.
 fn least_rotation(from: DVec3, to: DVec3) -> DQuat {
     const OPPOSITE: f64 = 1e-6;
     let nearness = 1.0 + from.dot(to);

@@ -8,43 +8,45 @@ use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::Reach;
 
-/// Three joints of a skeleton, a target for the last, and how to reach it. The result is a
-/// [`TwoBoneCorrection`].
+/// Three joints of a skeleton, a target for the end joint, and options for reaching it.
+/// [`Self::run`] returns a [`TwoBoneCorrection`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TwoBoneJob {
-    /// The start joint (shoulder, hip), in model space.
+    /// Transform of the start joint (shoulder, hip) to model space.
     pub start: Affine3A,
-    /// The middle joint (elbow, knee), in model space.
+    /// Transform of the middle joint (elbow, knee) to model space.
     pub middle: Affine3A,
-    /// The end joint (hand, foot), in model space. Only its translation is used.
+    /// Transform of the end joint (hand, foot) to model space. Only its translation is used.
     pub end: Affine3A,
     /// Target of the end joint, a point in model space.
     pub target: Vec3,
-    /// Direction (not a point) of the middle joint from the line to the target, in model space; any
-    /// length. For a pole that is a point, give that point less the start joint's. Without one, or
-    /// with length 0, the start joint makes the least rotation.
+    /// Direction (not a point) from the line between start joint and target to the middle joint, in
+    /// model space and of any length. For a pole that is a point, give the point minus the start
+    /// joint's position. With `None` or length 0, the start joint turns by the smallest angle.
     pub pole: Option<Vec3>,
-    /// Axis about which a positive turn opens the middle joint, in the middle joint's space; any
-    /// length. Without one, or with length 0, the limb keeps the side to which it is bent.
+    /// Axis about which a positive turn opens the middle joint, in the middle joint's space and of
+    /// any length. With `None` or length 0, the limb keeps the side to which it is bent.
     pub hinge: Option<Vec3>,
-    /// Angle of the limb about the line from start to target, from the pole (without one, from the
-    /// least rotation): radians, right-handed from start to target in start joint space.
-    /// Where that is mirrored in the model, it is left-handed there.
+    /// Angle in radians by which the limb is turned about the line from the start joint to the
+    /// target, measured from the pole or, without a pole, from the smallest turn of the start
+    /// joint. It is right-handed about the direction to the target in start joint space, and so
+    /// left-handed in model space if the start joint's matrix mirrors.
     pub twist: f32,
     /// Softness s of the limits, from 0 to less than 1: see [`SoftReach`]. Bones do not stretch.
     pub softness: f32,
-    /// Fraction of the correction, from 0 (exactly none) to 1.
+    /// Fraction of the correction to apply, from 0 (exactly none) to 1.
     pub weight: f32,
 }
 
 /// A correction of weight 1.
 #[derive(Default)]
 struct FullCorrection {
-    /// Δ₁ and Δ₂.
+    /// Δ₁.
     start: DQuat,
+    /// Δ₂.
     middle: DQuat,
-    /// Distance that the hand stays from the target, in lengths of the chain.
+    /// Distance from the target at which the limits keep the hand, in chain lengths.
     left: f64,
 }
 
@@ -69,9 +71,9 @@ impl TwoBoneJob {
     /// # Errors
     ///
     /// [`JobError`] for numbers that are not finite, a start joint whose matrix has no inverse, a
-    /// middle joint whose axes, in start joint space, differ in length or from perpendicular by more
-    /// than one in a thousand (scale 0 of either is accepted), a softness outside [0, 1) and a weight
-    /// outside [0, 1].
+    /// middle joint whose axes, in start joint space, differ in length or deviate from
+    /// perpendicular by more than one in a thousand (scale 0 of either joint is accepted), a
+    /// softness outside [0, 1) and a weight outside [0, 1].
     pub fn run(&self) -> Result<TwoBoneCorrection, JobError> {
         let soft_reach = self.checked()?;
         let chain = JointChain::new([self.start, self.middle, self.end])?;
@@ -80,7 +82,7 @@ impl TwoBoneJob {
         Ok(self.measured(&chain, part(full.start), part(full.middle), full.left))
     }
 
-    /// The correction of weight 1; `None` where there is nothing to turn.
+    /// The correction of weight 1; `None` if there is nothing to turn.
     fn solve(&self, chain: &JointChain, soft_reach: SoftReach) -> Option<FullCorrection> {
         let limb = chain.limb()?;
         let target_ss = chain.point_ss(self.target.as_dvec3()) / limb.unit;
@@ -99,7 +101,8 @@ impl TwoBoneJob {
         })
     }
 
-    /// The correction with the reach of the hand, by the rotations as they are returned.
+    /// The correction by two rotations in f32, with the reach of the hand that these rotations
+    /// give.
     fn measured(
         &self,
         chain: &JointChain,
@@ -107,7 +110,8 @@ impl TwoBoneJob {
         middle: Quat,
         left: f64,
     ) -> TwoBoneCorrection {
-        // Rounding of the middle joint's axes and of the rotations to f32; and of the limits alone.
+        // In chain lengths: rounding of the middle joint's axes and of the rotations to f32; and
+        // rounding of the limits alone.
         const NEAR: f64 = 7e-7;
         const AT_LIMIT: f64 = 2e-7;
         let target_ss = chain.point_ss(self.target.as_dvec3());
@@ -124,7 +128,7 @@ impl TwoBoneJob {
         TwoBoneCorrection { start_correction: start, middle_correction: middle, reach, hand_error }
     }
 
-    /// The soft limits, of finite numbers in their ranges.
+    /// Checks that all numbers are finite and in their ranges, and returns the soft limits.
     fn checked(&self) -> Result<SoftReach, JobError> {
         let are_finite = [
             (JobField::Start, self.start.is_finite()),
@@ -138,7 +142,7 @@ impl TwoBoneJob {
             return Err(JobError::NotFinite { field });
         }
         if !self.twist.is_finite() {
-            return Err(out_of_range(JobField::Twist, self.twist, "a finite number"));
+            return Err(out_of_range(JobField::Twist, self.twist, "finite"));
         }
         if !(0.0..=1.0).contains(&self.weight) {
             return Err(out_of_range(JobField::Weight, self.weight, "from 0 to 1"));

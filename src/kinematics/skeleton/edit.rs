@@ -4,7 +4,7 @@ use super::{Joint, JointField, JointId, JointRemap, Skeleton, SkeletonError, Ske
 
 /// Editing. An edit that fails leaves the skeleton unchanged.
 impl Skeleton {
-    /// Adds a joint at the end and returns its index.
+    /// Adds a joint after all others and returns its index.
     ///
     /// # Errors
     ///
@@ -21,8 +21,9 @@ impl Skeleton {
         Ok(added)
     }
 
-    /// Default bone vector for a child of `parent`: that of the nearest ancestor with a bone, else
-    /// upwards with the length of the longest bone, or 1.
+    /// Default bone vector for a new child of `parent`: that of the nearest joint with a bone, from
+    /// `parent` towards the root. Without such a joint it is upwards (+y), as long as the longest
+    /// bone of the skeleton, or of length 1 if there is none.
     pub fn next_axis(&self, parent: JointId) -> Vec3 {
         let like = self.ancestors(parent).find_map(|joint| {
             let axis = self.joint(joint)?.axis;
@@ -34,7 +35,7 @@ impl Skeleton {
         })
     }
 
-    /// An unused joint name that begins with `stem`.
+    /// An unused joint name: `stem`, or, if that is taken, `stem` with another number at its end.
     pub fn free_name(&self, stem: &str) -> String {
         let taken = |name: &str| self.find(name).is_some();
         if !stem.is_empty() && !taken(stem) {
@@ -49,7 +50,7 @@ impl Skeleton {
     ///
     /// # Errors
     ///
-    /// [`SkeletonError::NoJoint`], and the skeleton is unchanged.
+    /// [`SkeletonError::NoJoint`] for an index without a joint.
     pub fn remove(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         for joint in joints {
             self.known(*joint)?;
@@ -72,13 +73,14 @@ impl Skeleton {
         Ok(JointRemap(remap))
     }
 
-    /// Removes joints and attaches their children to the next ancestor that stays, or makes them
-    /// roots. No child moves: limits that would keep one from its new angles are widened.
+    /// Removes joints and attaches their children to the next ancestor that stays, or makes the
+    /// children roots. No child moves: if a child's limits exclude its new angles, they are
+    /// widened.
     ///
     /// # Errors
     ///
-    /// [`SkeletonError::NoJoint`]; [`SkeletonError::NotFinite`] if the new offset or rotation of a child
-    /// overflows.
+    /// [`SkeletonError::NoJoint`] for an index without a joint; [`SkeletonError::NotFinite`] if the
+    /// new offset or rotation of a child overflows.
     pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         for joint in joints {
             self.known(*joint)?;
@@ -104,8 +106,8 @@ impl Skeleton {
         self.remove(joints)
     }
 
-    /// Offset and angles with which a joint would keep its transform as a child of `parent`; the
-    /// angles are those nearest to `near`.
+    /// Offset and Euler angles with which a joint would keep its transform as a child of `parent`
+    /// (`None`: as a root). Of all equivalent angles, these are the ones nearest to `near`.
     ///
     /// # Panics
     ///
@@ -119,7 +121,7 @@ impl Skeleton {
         self.placed_under_in(&self.pose_in_skeleton(), joint, parent, near)
     }
 
-    /// [`Skeleton::placed_under`] with the pose in the skeleton's own space.
+    /// [`Skeleton::placed_under`] for a given pose in skeleton space.
     pub(crate) fn placed_under_in(
         &self,
         pose: &SkeletonPose,
@@ -133,8 +135,8 @@ impl Skeleton {
         (local.translation.into(), like.angles_of(local.matrix3))
     }
 
-    /// Moves a joint with its descendants to another parent; `None` makes it a root. It keeps its
-    /// transform in the world within its limits.
+    /// Moves a joint with its descendants to another parent; `None` makes the joint a root. The
+    /// joint keeps its transform in the world as far as its limits allow.
     ///
     /// # Errors
     ///
@@ -148,7 +150,7 @@ impl Skeleton {
         for index in [Some(joint), parent].into_iter().flatten() {
             self.known(index)?;
         }
-        if let Some(parent) = parent.filter(|parent| self.hangs_from(*parent, joint)) {
+        if let Some(parent) = parent.filter(|parent| self.is_in_subtree(*parent, joint)) {
             return Err(SkeletonError::Cycle { joint, parent });
         }
         let near = self[joint].rotation;
@@ -165,7 +167,7 @@ impl Skeleton {
     /// # Errors
     ///
     /// [`SkeletonError::NoJoint`]; [`SkeletonError::NoName`] for an empty name;
-    /// [`SkeletonError::Name`] for another joint's.
+    /// [`SkeletonError::Name`] for the name of another joint.
     pub fn rename(&mut self, joint: JointId, name: &str) -> Result<(), SkeletonError> {
         self.known(joint)?;
         self.check_name(name, joint)?;
@@ -173,7 +175,7 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Sets a joint's Euler angles, clamped to its limits.
+    /// Sets a joint's Euler angles in radians, clamped to its limits.
     ///
     /// # Errors
     ///
@@ -197,7 +199,7 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Edits a joint; changes of its name and parent are ignored. Its rotation is clamped to its
+    /// Edits a joint. Changes of its name and parent are ignored; its rotation is clamped to its
     /// limits.
     ///
     /// # Errors
@@ -219,8 +221,9 @@ impl Skeleton {
         Ok(())
     }
 
-    /// Writes rotation and offset without checks. Ignored if they are not finite, which happens when
-    /// squares of bones from about 1e19 overflow.
+    /// Edits a joint without checks; ignored for an index without a joint. If rotation or offset
+    /// are not finite afterwards, both keep their old values; that happens when the squares of bone
+    /// lengths above about 1e19 overflow.
     pub(crate) fn write_local(&mut self, joint: JointId, change: impl FnOnce(&mut Joint)) {
         let Some(joint) = self.joints.get_mut(joint.index()) else { return };
         let joint = joint.make_mut();
@@ -243,7 +246,7 @@ impl Skeleton {
         }
     }
 
-    /// Restores parents-before-children order, otherwise stable.
+    /// Sorts the joints so that parents precede their children, keeping the order otherwise.
     fn sort(&mut self) -> JointRemap {
         let mut order = Vec::with_capacity(self.joints.len());
         let mut remap: Vec<Option<JointId>> = vec![None; self.joints.len()];

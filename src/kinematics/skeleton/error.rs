@@ -6,11 +6,11 @@ use thiserror::Error;
 use super::JointId;
 use super::joint_id::MOST_JOINTS;
 
-/// An invalid skeleton or edit.
+/// An invalid skeleton, or an invalid edit of one.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SkeletonError {
-    /// The index is not one of the skeleton.
+    /// The skeleton has no joint with this index.
     #[error("there is no joint {0}")]
     NoJoint(JointId),
     /// The parent does not precede the joint.
@@ -30,19 +30,19 @@ pub enum SkeletonError {
         parent: JointId,
     },
     /// The name is empty.
-    #[error("a joint needs a name")]
+    #[error("the name of a joint must not be empty")]
     NoName,
-    /// The name is already taken.
-    #[error("two joints are called {0:?}; names must differ")]
+    /// The name is already taken by another joint.
+    #[error("names of joints must be unique, got {0:?} twice")]
     Name(String),
     /// A vector is not finite.
     #[error("the {field} of joint {joint} must be finite, got {value}")]
     NotFinite {
         /// The joint.
         joint: JointId,
-        /// The vector.
+        /// The field that holds the vector.
         field: JointField,
-        /// Its value.
+        /// The vector.
         value: Vec3,
     },
     /// The radius is negative or not finite.
@@ -67,22 +67,22 @@ pub enum SkeletonError {
     Limit {
         /// The joint.
         joint: JointId,
-        /// The axis of the angle.
+        /// The axis of the limited angle.
         axis: RotationAxis,
-        /// The lower bound.
+        /// The lower bound, in radians.
         min: f32,
-        /// The upper bound.
+        /// The upper bound, in radians.
         max: f32,
     },
     /// There are more than [`Skeleton::MOST_JOINTS`](super::Skeleton::MOST_JOINTS) joints.
-    #[error("a skeleton has at most {MOST_JOINTS} joints")]
+    #[error("a skeleton must have at most {MOST_JOINTS} joints")]
     TooMany,
     /// The transform is not finite.
     #[error("the skeleton's transform must be finite")]
     Transform,
 }
 
-/// A vector of a [`Joint`](super::Joint).
+/// A vector field of a [`Joint`](super::Joint).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum JointField {

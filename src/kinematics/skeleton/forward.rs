@@ -4,7 +4,8 @@ use super::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// Forward kinematics. For several joints use [`Skeleton::pose`], which visits each joint once.
 impl Skeleton {
-    /// Transform from the joint's base, before its rotation R, to the world.
+    /// Transform to the world from the joint's space before its rotation R, which has its origin at
+    /// the joint's base.
     ///
     /// # Panics
     ///
@@ -49,12 +50,14 @@ impl Skeleton {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local())
     }
 
-    /// [`Skeleton::pose`] into an existing pose, which allocates only if it is too small.
+    /// Writes [`Skeleton::pose`] into an existing pose. Allocates only if that has too little
+    /// memory.
     pub fn write_pose(&self, pose: &mut SkeletonPose) {
         self.write_pose_with(pose, |_, joint| joint.local());
     }
 
-    /// [`Skeleton::write_pose`] with other local transforms, given by index and joint, parents first.
+    /// [`Skeleton::write_pose`] with local transforms by `local`, which is called with each joint's
+    /// index and the joint, parents first.
     pub(crate) fn write_pose_with(
         &self,
         pose: &mut SkeletonPose,

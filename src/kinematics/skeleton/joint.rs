@@ -9,12 +9,13 @@ use super::{
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// Unique within the skeleton.
+    /// Name, unique within the skeleton.
     pub name: String,
     /// The parent, which precedes the joint; `None` for a root.
     pub parent: Option<JointId>,
-    /// Vector from the parent's base to this joint's, in the parent's space; from the skeleton's
-    /// origin for a root. Equal to the parent's axis, it puts the joint on the parent's tip.
+    /// Vector from the parent's base to this joint's base, in the parent's space; for a root, from
+    /// the skeleton's origin. An offset equal to the parent's axis puts the joint on the parent's
+    /// tip.
     pub offset: Vec3,
     /// The bone's vector from base to tip, in the joint's own space. Zero for a joint without a bone.
     pub axis: Vec3,
@@ -22,11 +23,11 @@ pub struct Joint {
     pub rotation: Vec3,
     /// The frame A in which the angles are measured: a right-handed orthonormal basis as columns.
     pub frame: Mat3,
-    /// Range of each angle.
+    /// Range of each angle, in the order x, y, z; `None` for an unlimited angle.
     pub limits: [Option<Limit>; 3],
     /// Whether solvers leave the rotation unchanged.
     pub locked: bool,
-    /// The bone's radius when drawn.
+    /// Radius with which the bone is drawn, in skeleton units.
     pub radius: f32,
 }
 
@@ -51,7 +52,7 @@ impl Joint {
         self.rotation_by(self.rotation)
     }
 
-    /// R by other Euler angles.
+    /// The rotation R for other Euler angles.
     pub(crate) fn rotation_by(&self, angles: Vec3) -> Mat3A {
         let rotation = JointAngles(angles).matrix();
         if self.frame == Mat3::IDENTITY {
@@ -61,7 +62,8 @@ impl Joint {
         frame * rotation * frame.transpose()
     }
 
-    /// Unit axis about which the angle x, y or z (0, 1, 2) rotates, in the space of the joint's base:
+    /// Unit axis about which the angle about x, y or z (`axis` 0, 1 or 2) rotates, in the space of
+    /// the joint's base:
     /// A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
     pub fn rotation_axis(&self, axis: usize) -> Vec3 {
         (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
@@ -77,19 +79,20 @@ impl Joint {
         Affine3A::from_translation(self.offset)
     }
 
-    /// Angles of `rotation` (in the space of the joint's base) nearest to the present ones. They may
-    /// violate the limits.
+    /// Euler angles of `rotation`, which is in the space of the joint's base. Of all equivalent
+    /// angles, these are the ones nearest to the joint's present angles. They may violate the
+    /// limits.
     pub fn angles_of(&self, rotation: Mat3A) -> Vec3 {
         let frame = Mat3A::from(self.frame);
         nearest_angles(frame.transpose() * rotation * frame, self.rotation)
     }
 
-    /// `rotation` clamped to the limits.
+    /// The Euler angles `rotation` clamped to the limits.
     pub fn clamped(&self, rotation: Vec3) -> Vec3 {
         clamp_to_limits(&self.limits, rotation)
     }
 
-    /// Widens the limits as far as needed to contain these angles.
+    /// Widens the limits just enough to contain `angles`.
     pub fn widen_limits(&mut self, angles: Vec3) {
         for (limit, angle) in self.limits.iter_mut().zip(angles.to_array()) {
             if let Some(Limit { min, max }) = limit {

@@ -5,10 +5,10 @@ pub(super) const MOST_JOINTS: usize = 10_000;
 
 /// The index of a joint in its skeleton.
 ///
-/// It means nothing without the skeleton: edits that move joints return a
-/// [`JointRemap`](super::JointRemap). For an index that a skeleton does not have,
+/// An index is valid only for its own skeleton, and only until an edit moves joints; such an edit
+/// returns a [`JointRemap`](super::JointRemap). For an index that a skeleton does not have,
 ///
-/// - lookups and tree queries return `None` or nothing,
+/// - lookups return `None`, and tree queries find nothing,
 /// - edits and solvers return an error and change nothing,
 /// - indexing and transforms panic, as indexing a slice does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,7 +39,7 @@ impl From<JointId> for usize {
     }
 }
 
-/// The index alone.
+/// Writes the index as a plain number.
 impl fmt::Display for JointId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)

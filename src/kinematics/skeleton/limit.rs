@@ -10,7 +10,7 @@ pub struct Limit {
     pub max: f32,
 }
 
-/// Angles clamped to limits.
+/// The angles in `rotation`, clamped to their limits; `None` does not limit an angle.
 pub(crate) fn clamp_to_limits(limits: &[Option<Limit>; 3], rotation: Vec3) -> Vec3 {
     let mut clamped = rotation;
     for (axis, limit) in limits.iter().enumerate() {

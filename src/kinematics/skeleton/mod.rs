@@ -1,6 +1,7 @@
 //! Joint trees with Euler angles, and their forward kinematics.
 //!
-//! A skeleton is a forest, parents before children in memory. A joint is a ball joint with one bone:
+//! A skeleton is a forest of joints, in which parents precede their children. A joint is a ball
+//! joint with one bone:
 //!
 //! ```text
 //!   parent's base        base                     tip
@@ -16,8 +17,8 @@
 //! skeleton space to the world and may mirror and scale. The bind pose is the skeleton as built,
 //! before any rotation.
 //!
-//! Angles are radians. Offsets, axes and radii are in skeleton units; positions in the world are
-//! called so.
+//! Angles are radians. Offsets, axes and radii are in skeleton units; positions in the world are in
+//! world units.
 //!
 //! # Source
 //!

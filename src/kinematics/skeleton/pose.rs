@@ -3,7 +3,8 @@ use glam::{Affine3A, Vec3};
 use super::{Joint, JointId};
 use crate::kinematics::Shared;
 
-/// Transforms of all joints. Overflow is clamped to ±`f32::MAX`.
+/// Transforms of all joints to one space, the world or skeleton space. Overflow is clamped to
+/// ±`f32::MAX`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkeletonPose {
     joints: Vec<PosedJoint>,
@@ -26,7 +27,7 @@ impl SkeletonPose {
         pose
     }
 
-    /// [`SkeletonPose::new`] into existing memory.
+    /// [`SkeletonPose::new`] into the pose's existing memory.
     pub(super) fn refill(
         &mut self,
         joints: &[Shared<Joint>],
@@ -53,7 +54,7 @@ impl SkeletonPose {
         self.joints.len()
     }
 
-    /// Whether there are no joints.
+    /// Whether the pose has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
@@ -63,7 +64,7 @@ impl SkeletonPose {
         (0..self.len()).map(JointId::new)
     }
 
-    /// Transform from the joint's own space to the pose's.
+    /// Transform from the joint's own space to the space of the pose.
     ///
     /// # Panics
     ///
@@ -72,7 +73,7 @@ impl SkeletonPose {
         self.joints[joint.index()].full
     }
 
-    /// Position of the bone's base.
+    /// Position of the bone's base, in the space of the pose.
     ///
     /// # Panics
     ///
@@ -81,7 +82,7 @@ impl SkeletonPose {
         self.full(joint).translation.into()
     }
 
-    /// Position of the bone's tip.
+    /// Position of the bone's tip, in the space of the pose.
     ///
     /// # Panics
     ///
@@ -90,7 +91,7 @@ impl SkeletonPose {
         self.joints[joint.index()].tip
     }
 
-    /// All bases and tips.
+    /// Positions of all bases and tips, in the space of the pose.
     pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
         self.joints.iter().flat_map(|posed| [posed.full.translation.into(), posed.tip])
     }

@@ -4,14 +4,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Joint, Skeleton};
 
-/// A skeleton before it is checked.
+/// A skeleton as it is serialized; unchecked when it is deserialized.
 #[derive(Serialize, Deserialize)]
 struct UncheckedSkeleton {
     joints: Vec<Joint>,
     transform: Affine3A,
 }
 
-/// As `joints` and `transform`.
+/// Serializes the fields `joints` and `transform`.
 impl Serialize for Skeleton {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let joints = self.joints().iter().map(|joint| Joint::clone(joint)).collect();
@@ -19,7 +19,7 @@ impl Serialize for Skeleton {
     }
 }
 
-/// Refuses invalid skeletons.
+/// Refuses an invalid skeleton.
 impl<'de> Deserialize<'de> for Skeleton {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let UncheckedSkeleton { joints, transform } = Deserialize::deserialize(deserializer)?;

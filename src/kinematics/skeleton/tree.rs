@@ -69,12 +69,12 @@ impl Skeleton {
         Ok(skeleton)
     }
 
-    /// All joints, parents before children. Clones of a skeleton share them.
+    /// All joints, parents before children. Clones of the skeleton share their memory.
     pub fn joints(&self) -> &[Shared<Joint>] {
         &self.joints
     }
 
-    /// The joint of an index; `None` if there is none.
+    /// The joint with this index; `None` if the skeleton has no such joint.
     pub fn joint(&self, joint: JointId) -> Option<&Joint> {
         self.joints.get(joint.index()).map(|joint| &**joint)
     }
@@ -91,7 +91,7 @@ impl Skeleton {
         self.joints.iter().enumerate().map(|(index, joint)| (JointId::new(index), &**joint))
     }
 
-    /// The joint of a name.
+    /// Index of the joint with this name; `None` if the skeleton has no such joint.
     pub fn find(&self, name: &str) -> Option<JointId> {
         self.joints.iter().position(|joint| joint.name == name).map(JointId::new)
     }
@@ -107,9 +107,9 @@ impl Skeleton {
         std::iter::successors(first, |joint| self.joint(*joint)?.parent)
     }
 
-    /// Whether `joint` is `ancestor` or one of its descendants.
-    pub fn hangs_from(&self, joint: JointId, ancestor: JointId) -> bool {
-        self.ancestors(joint).any(|above| above == ancestor)
+    /// Whether `joint` is in the subtree of `root`: `root` itself or one of its descendants.
+    pub fn is_in_subtree(&self, joint: JointId, root: JointId) -> bool {
+        self.ancestors(joint).any(|above| above == root)
     }
 
     /// Transform from skeleton space to the world.
@@ -117,12 +117,12 @@ impl Skeleton {
         self.transform
     }
 
-    /// Replaces the transform from skeleton space to the world. A singular one (a scale of 0) is
-    /// allowed here and refused by solvers.
+    /// Replaces the transform from skeleton space to the world. A singular transform (a scale of 0)
+    /// is allowed here and refused by solvers.
     ///
     /// # Errors
     ///
-    /// [`SkeletonError::Transform`] if it is not finite.
+    /// [`SkeletonError::Transform`] if the transform is not finite.
     pub fn set_transform(&mut self, transform: Affine3A) -> Result<(), SkeletonError> {
         if !transform.is_finite() {
             return Err(SkeletonError::Transform);

@@ -3,7 +3,8 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-/// A [`TwistReference`](super::TwistReference) without its pole or map, for choices and names.
+/// Kind of a [`TwistReference`](super::TwistReference), without its pole or map; for choices and
+/// names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(
     feature = "serde",
@@ -16,22 +17,22 @@ pub enum TwistReferenceKind {
     Limb,
     /// Direction towards a point of Root space.
     Pole,
-    /// Stereographic map.
+    /// Stereographic map of directions.
     Stereographic,
     /// The previous direction, parallel-transported.
     Transport,
 }
 
-/// A text that names no twist reference.
+/// Error for a text that is not the name of a twist reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("twist reference must be limb, pole, stereographic or transport")]
 pub struct UnknownTwistReference;
 
 impl TwistReferenceKind {
-    /// All kinds, in the order of panels.
+    /// All kinds, in the order in which panels list them.
     pub const ALL: [Self; 4] = [Self::Limb, Self::Pole, Self::Stereographic, Self::Transport];
 
-    /// Name as a label.
+    /// Name for labels, such as "Limb".
     pub fn name(self) -> &'static str {
         match self {
             Self::Limb => "Limb",
@@ -57,7 +58,7 @@ impl fmt::Display for TwistReferenceKind {
 impl FromStr for TwistReferenceKind {
     type Err = UnknownTwistReference;
 
-    /// Inverse of [`Display`](fmt::Display).
+    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display).
     fn from_str(text: &str) -> Result<Self, UnknownTwistReference> {
         match text {
             "limb" => Ok(Self::Limb),

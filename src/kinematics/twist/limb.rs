@@ -11,8 +11,8 @@ pub fn angle_from_limb(pointer: Pointer, outward: Vec3) -> f32 {
     outward.dot(limb.z_axis).atan2(outward.dot(limb.y_axis))
 }
 
-/// The twist ψ, in [0, 2π), measured from another reference without moving the elbow. `from` and `to`
-/// are the references' angles from the Limb frame's +y.
+/// The twist ψ, in [0, 2π), that keeps the elbow in place when the twist reference changes. `from`
+/// and `to` are the angles of the old and the new reference from the Limb frame's +y.
 #[must_use]
 pub fn remeasured(twist: f32, from: f32, to: f32) -> f32 {
     wrapped_to_turn(f64::from(twist) + f64::from(from) - f64::from(to))

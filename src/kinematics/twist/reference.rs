@@ -8,7 +8,7 @@ use super::stereographic::{Stereographic, unit};
 use super::transported_frame::TransportedFrame;
 use crate::kinematics::two_bone::Pointer;
 
-/// Origin of the twist angle.
+/// Direction from which the twist angle is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -16,20 +16,20 @@ use crate::kinematics::two_bone::Pointer;
     serde(rename_all = "snake_case")
 )]
 pub enum TwistReference {
-    /// The Limb frame's +y: up, less its part along the Pointer.
+    /// The Limb frame's +y: the part of up (+y of Root space) that is perpendicular to the Pointer.
     #[default]
     Limb,
-    /// Direction towards a point of Root space.
+    /// Direction towards the pole, a point in Root space.
     Pole(Vec3),
-    /// Stereographic map, singular in one direction only.
+    /// Direction by a stereographic map, which is singular in one direction only.
     Stereographic(Stereographic),
-    /// The previous direction, parallel-transported along the Pointer's least rotation.
+    /// The previous direction, parallel-transported by the smallest rotation to the new Pointer.
     Transport,
 }
 
 impl TwistReference {
-    /// e₀, a unit vector perpendicular to the Pointer. Where the reference is singular, it is that of
-    /// the transported `last` frame, else the Limb frame's +y.
+    /// e₀, a unit vector perpendicular to the Pointer. Where the reference is singular, e₀ is
+    /// transported from the frame `last` or, without one, is the Limb frame's +y.
     #[must_use]
     pub fn outward(self, pointer: Pointer, last: Option<TransportedFrame>) -> Vec3 {
         let w = unit(pointer.direction);
@@ -37,7 +37,7 @@ impl TwistReference {
             Self::Limb => Some(pointer.limb_frame().y_axis.as_dvec3()),
             Self::Pole(pole) => towards(pole, w),
             Self::Stereographic(map) => map.outward(w),
-            // Without a previous frame it begins at the stereographic direction.
+            // Without a previous frame, transport begins at the stereographic direction.
             Self::Transport if last.is_none() => Stereographic::default().outward(w),
             Self::Transport => None,
         };
@@ -64,7 +64,7 @@ impl TwistReference {
         let w = unit(pointer.direction);
         let gain = match self {
             Self::Limb => w.y.abs() / w.x.hypot(w.z),
-            // Rounding of the Pointer moves a pole on its line slightly off it.
+            // Rounding of the Pointer moves a pole on the Pointer's line slightly off this line.
             Self::Pole(pole) if towards(pole, w).is_none() => f64::INFINITY,
             Self::Pole(pole) => {
                 let pole = pole.as_dvec3();
@@ -79,7 +79,7 @@ impl TwistReference {
         if gain.is_nan() { f32::INFINITY } else { gain as f32 }
     }
 
-    /// The reference without its pole or map.
+    /// The kind of the reference, without its pole or map.
     pub fn kind(self) -> TwistReferenceKind {
         match self {
             Self::Limb => TwistReferenceKind::Limb,
@@ -97,8 +97,8 @@ impl fmt::Display for TwistReference {
     }
 }
 
-/// Unit vector from the Pointer towards a pole; `None` for a pole on the Pointer's line or at the
-/// shoulder.
+/// Unit vector perpendicular to the Pointer `w`, towards a pole; `None` for a pole on the Pointer's
+/// line or at the shoulder.
 fn towards(pole: Vec3, w: DVec3) -> Option<DVec3> {
     const ON_LINE: f64 = 1e-6;
     let pole = pole.as_dvec3().try_normalize()?;

@@ -12,20 +12,21 @@ use thiserror::Error;
 pub struct Stereographic {
     /// R, the singular direction, chosen where the hand never goes.
     singular: Vec3,
-    /// V.
+    /// V, which is e₀ at the Pointer opposite to R.
     up: Vec3,
 }
 
 impl Default for Stereographic {
-    /// R behind the body, −x; V up.
+    /// R is −x, behind the body; V is +y, up.
     fn default() -> Self {
         Self { singular: Vec3::NEG_X, up: Vec3::Y }
     }
 }
 
 impl Stereographic {
-    /// A map that is singular along `singular` (any length but 0) and whose e₀ is `up` at the opposite
-    /// Pointer; `None` if the two are parallel or have no direction.
+    /// A map that is singular along `singular` (any length but 0). At the opposite Pointer, e₀ is
+    /// `up`, made perpendicular to `singular`. `None` if the two are parallel or one of them has no
+    /// direction.
     pub fn new(singular: Vec3, up: Vec3) -> Option<Self> {
         let singular = singular.as_dvec3().try_normalize()?;
         let up = up.as_dvec3().reject_from_normalized(singular).try_normalize()?;
@@ -37,25 +38,25 @@ impl Stereographic {
         self.singular
     }
 
-    /// The direction V, which is e₀ at −R.
+    /// The direction V, which is e₀ at the Pointer −R.
     pub fn up(self) -> Vec3 {
         self.up
     }
 
-    /// e₀ for a Pointer; `None` along R.
+    /// e₀ for a Pointer in the direction `w`; `None` if that is R.
     pub(super) fn outward(self, w: DVec3) -> Option<DVec3> {
         let k = (w - unit(self.singular)).cross(unit(self.up));
         k.cross(w).try_normalize()
     }
 }
 
-/// Unit vector in f64. Near R the map's e₀ is a difference of second order: there the rounded length
-/// of an f32 direction would rotate it.
+/// The direction as a unit vector in f64. Near R, e₀ is a difference of second order, which would
+/// be rotated by the rounded length of an f32 unit vector.
 pub(super) fn unit(direction: Vec3) -> DVec3 {
     direction.as_dvec3().normalize()
 }
 
-/// Directions before they are checked.
+/// Deserialized directions, not yet checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct UncheckedMap {
@@ -63,7 +64,7 @@ struct UncheckedMap {
     up: Vec3,
 }
 
-/// Directions that are parallel, or have length 0.
+/// Error for directions that are parallel or have length 0.
 #[cfg(feature = "serde")]
 #[derive(Debug, Error)]
 #[error("the directions `singular` and `up` must have lengths above 0 and not be parallel")]

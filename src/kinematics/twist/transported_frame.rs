@@ -3,8 +3,9 @@ use glam::{DVec3, Vec3};
 use super::stereographic::{Stereographic, unit};
 use crate::kinematics::two_bone::Pointer;
 
-/// A Pointer with its twist reference: the state of [`TwistReference::Transport`](super::TwistReference::Transport), which also resolves
-/// the other references where they are singular.
+/// A Pointer with its twist reference: the state of
+/// [`TwistReference::Transport`](super::TwistReference::Transport). It also replaces the other
+/// references where they are singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TransportedFrame {
@@ -15,7 +16,7 @@ pub struct TransportedFrame {
 }
 
 impl TransportedFrame {
-    /// Initial frame of a pose without a previous one: the stereographic direction.
+    /// The first frame, for a pose without a previous pose: e₀ is the stereographic direction.
     #[must_use]
     pub fn new(pointer: Pointer) -> Self {
         let outward = Stereographic::default().outward(unit(pointer.direction));
@@ -23,9 +24,9 @@ impl TransportedFrame {
         Self { direction: pointer.direction, outward }
     }
 
-    /// Parallel transport to another Pointer, by the least rotation between the two:
-    /// e₀' = e₀ − (e₀·ŵ')/(1 + ŵ·ŵ')·(ŵ + ŵ'). Between opposite Pointers e₀ stays, made
-    /// perpendicular again.
+    /// The frame, parallel-transported to the Pointer `direction` by the smallest rotation between
+    /// the two Pointers: e₀' = e₀ − (e₀·ŵ')/(1 + ŵ·ŵ')·(ŵ + ŵ'). If the Pointers are opposite, e₀
+    /// is kept, except that it is made perpendicular to ŵ'.
     #[must_use]
     pub fn to(self, direction: Vec3) -> Self {
         const OPPOSITE: f64 = 1e-6;
@@ -40,8 +41,9 @@ impl TransportedFrame {
         Self { direction, outward: outward.as_vec3() }
     }
 
-    /// Angle about the Pointer from this e₀ to another's, in (−π, π]. For the two ends of a closed path
-    /// it is the path's holonomy, the solid angle that the path encloses.
+    /// Angle about the Pointer of `other` from this frame's e₀, transported there, to the e₀ of
+    /// `other`, in (−π, π]. For the two ends of a closed path it is the path's holonomy, the solid
+    /// angle that the path encloses.
     #[must_use]
     pub fn turn_to(self, other: Self) -> f32 {
         let from = self.to(other.direction).outward.as_dvec3();

@@ -44,9 +44,9 @@ pub enum Bone {
 
 /// An invalid bone length.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("{bone} length is {value}; it must be a finite number above 0")]
+#[error("{bone} length must be finite and above 0, got {value}")]
 pub struct LengthError {
-    /// The bone.
+    /// The bone with the invalid length.
     pub bone: Bone,
     /// The refused length.
     pub value: f32,
@@ -77,7 +77,8 @@ impl TwoBone {
         self.lower
     }
 
-    /// The bones scaled by `factor`, clamped to finite lengths; unchanged for an invalid factor.
+    /// The bones scaled by `factor`, with lengths of at most `f32::MAX`. The bones are unchanged if
+    /// a scaled length is not above 0.
     #[must_use]
     pub fn stretched(self, factor: f32) -> Self {
         let length = |length: f32| (length * factor).min(f32::MAX);
@@ -104,7 +105,7 @@ impl fmt::Display for Bone {
     }
 }
 
-/// Lengths before they are checked.
+/// Deserialized lengths, not yet checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct UncheckedBones {

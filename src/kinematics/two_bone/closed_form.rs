@@ -1,9 +1,11 @@
-//! The closed form for one arm in straight-line code: no call, no loop, and no branch that a compiler
-//! could not turn into a select, so that [`batch`](crate::kinematics::batch) can vectorise it.
+//! The closed form for one arm in straight-line code: no call, no loop, and no branch that a
+//! compiler cannot turn into a select, so that [`batch`](crate::kinematics::batch) can vectorise
+//! it.
 //!
-//! With `ANY` it is correct for every finite number; without, only for normal ones, and
-//! [`ClosedForm::is_normal`] says whether they were: [`ScaledCursor`] then does not scale, and no
-//! result overflows. For normal numbers both give the same bits.
+//! Numbers are normal if sums and products of their squares neither overflow nor underflow. With
+//! `ANY`, the code is correct for all finite numbers. Without `ANY`, [`ScaledCursor`] does not
+//! scale and overflow is not clamped, so that the code is correct only if all numbers are normal,
+//! which [`ClosedForm::is_normal`] tells. For normal numbers both give the same bits.
 
 use glam::Vec3;
 
@@ -14,24 +16,28 @@ use super::pose::TwoBonePose;
 use super::reach::Reach;
 use crate::kinematics::normalize::power_of_two_near;
 
-/// Below this fraction of the arm length the bones must be equal, and the hand is at the shoulder.
+/// Distance of the hand, as a fraction of the arm length, below which the bones must be equal and
+/// the hand is at the shoulder.
 const AT_SHOULDER: f32 = 1e-30;
 
 /// Elbow and hand by the closed form, in Root space.
 #[derive(Clone, Copy)]
 pub(crate) struct ClosedForm {
     pub elbow: Vec3,
-    /// The hand, without the exact cursor where that is reached: see [`Self::hand_or`].
+    /// Position of the hand computed from the elbow. It may differ from a reached cursor by
+    /// rounding; [`Self::hand_or`] returns the cursor then.
     pub hand: Vec3,
     pub reach: Reach,
-    /// Whether all numbers were normal.
+    /// Whether all numbers were normal: see the module.
     pub is_normal: bool,
     pub pointer: Pointer,
-    /// Unit vector from the Pointer to the side that the elbow is on.
+    /// Unit vector perpendicular to the Pointer, on the side of the elbow.
     pub outward: Vec3,
-    /// D, h_e and o_e, in `scaled.unit`s.
+    /// D, the hand's distance from the shoulder, in units of `scaled.unit`.
     pub distance: f32,
+    /// h_e, the elbow's x in Socket space, in units of `scaled.unit`.
     pub along: f32,
+    /// o_e, the elbow's y in Socket space, in units of `scaled.unit`.
     pub out: f32,
     pub scaled: ScaledBones,
 }
@@ -41,10 +47,11 @@ pub(crate) struct ClosedForm {
 pub(crate) struct ScaledBones {
     pub upper: f32,
     pub lower: f32,
-    /// L and δ.
+    /// L = d₁ + d₂.
     sum: f32,
+    /// δ = d₁ − d₂.
     difference: f32,
-    /// Length of 1 in the caller's unit, a power of two.
+    /// Length in the caller's unit that is 1 here, a power of two.
     pub unit: f32,
     /// Reciprocal of `unit`.
     pub scale: f32,
@@ -66,7 +73,8 @@ impl ClosedForm {
         Self { is_normal: is_normal & solved.is_normal, ..solved }
     }
 
-    /// The arm with its hand at a distance, clamped to the limits.
+    /// The arm with its hand in the direction of `pointer`. The distance `wanted`, in units of
+    /// `scaled.unit`, is clamped to the limits.
     #[inline(always)]
     pub fn at<const ANY: bool>(
         scaled: ScaledBones,
@@ -102,7 +110,7 @@ impl ClosedForm {
         }
     }
 
-    /// The cursor where it is reached, else the hand on a limit sphere.
+    /// The cursor, bit for bit, if it is reached; otherwise the hand on a limit sphere.
     #[inline(always)]
     pub fn hand_or(&self, cursor: Vec3) -> Vec3 {
         if self.reach == Reach::Reached { cursor } else { self.hand }
@@ -132,7 +140,7 @@ impl ScaledBones {
         Self { upper, lower, sum: upper + lower, difference: upper - lower, unit, scale }
     }
 
-    /// (h_e, o_e).
+    /// The elbow (h_e, o_e) in Socket space for a hand at `distance`, in scaled units.
     #[inline(always)]
     fn elbow_in_socket<const ANY: bool>(self, distance: f32) -> (f32, f32) {
         let Self { upper, sum, difference, .. } = self;
@@ -142,21 +150,22 @@ impl ScaledBones {
         let is_ahead = ahead <= behind;
         let missing = if is_ahead { ahead } else { behind };
         let along = upper - missing;
-        // With the same `missing`, its rounding leaves h_e² + o_e² at d₁².
+        // Both h_e and o_e use `missing`, so that its rounding keeps h_e² + o_e² = d₁².
         let out = (missing * (upper + along)).sqrt();
         let along = if is_ahead { along } else { -along };
         if ANY && distance < AT_SHOULDER { (0.0, upper) } else { (along, out) }
     }
 }
 
-/// `f32::clamp` without its check of the limits, whose panic would prevent vectorisation.
+/// Clamps like `f32::clamp`, but without its check of the limits, whose panic would prevent
+/// vectorisation.
 #[inline(always)]
 fn between(value: f32, least: f32, most: f32) -> f32 {
     let value = if value > least { value } else { least };
     if value < most { value } else { most }
 }
 
-/// Converts to the caller's unit; overflow is clamped to ±f32::MAX.
+/// Converts to the caller's unit. With `ANY`, overflow is clamped to ±f32::MAX.
 #[inline(always)]
 fn in_units<const ANY: bool>(v: Vec3, unit: f32) -> Vec3 {
     let v = v * unit;

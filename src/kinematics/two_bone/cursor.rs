@@ -3,18 +3,19 @@ use glam::{Vec2, Vec3};
 use super::pointer::Pointer;
 use crate::kinematics::normalize::power_of_two_near;
 
-/// Squares of normal numbers: their sums and products neither overflow nor underflow. 2⁻⁶⁴ and 2⁶⁴.
+/// Range of squared lengths of normal vectors, 2⁻⁶⁴ to 2⁶⁴: sums and products of two such squares
+/// neither overflow nor underflow.
 const NORMAL: [f32; 2] = [5.421_011e-20, 1.844_674_4e19];
 
-/// A cursor as seen from the shoulder.
+/// Direction and distance of a cursor from the shoulder.
 #[derive(Clone, Copy)]
 pub(super) struct ScaledCursor {
     pub pointer: Pointer,
-    /// Distance in `unit`s.
+    /// Distance in units of `unit`.
     pub distance: f32,
-    /// Length of 1, a power of two.
+    /// Length in the caller's unit that is 1 in `distance`, a power of two.
     pub unit: f32,
-    /// Whether all numbers were normal.
+    /// Whether the squared lengths were in the range `NORMAL`.
     pub is_normal: bool,
 }
 
@@ -30,7 +31,8 @@ impl ScaledCursor {
         };
         let (near, near_flat) = (cursor * scale, flat * flat_scale);
         let distance = near.length();
-        // A division rounds once, a reciprocal and a product twice: it shows in the upper length.
+        // A division rounds once, a product with a reciprocal twice. The second rounding would show
+        // in the upper bone's length.
         let direction = near / distance;
         let heading = near_flat * (1.0 / near_flat.length());
         let pointer = if ANY && cursor == Vec3::ZERO {
@@ -45,15 +47,15 @@ impl ScaledCursor {
 }
 
 impl Pointer {
-    /// Direction and heading of the cursor. A cursor at the shoulder keeps the last direction, one
-    /// straight above or below it the last heading.
+    /// The Pointer towards `cursor`, in Root space. For a cursor at the shoulder it is `last`; for
+    /// a cursor straight above or below the shoulder it has the heading of `last`.
     #[must_use]
     pub fn towards(cursor: Vec3, last: Self) -> Self {
         ScaledCursor::new::<true>(cursor, last).pointer
     }
 }
 
-/// Whether the least and the largest of some squares are normal.
+/// Whether a set of squares is in the range `NORMAL`, by its smallest and its largest square.
 #[inline(always)]
 pub(super) fn is_normal(least: f32, most: f32) -> bool {
     (least >= NORMAL[0]) & (most <= NORMAL[1])

@@ -26,21 +26,20 @@
 //! oₑ = √(min(a, b) · (d₁ + |hₑ|))
 //! ```
 //!
-//! No arc cosine and no tangent stands between the cursor and the elbow, and nothing cancels. hₑ and
-//! oₑ come from the same one of a and b, the smaller, so hₑ² + oₑ² = d₁² whatever its rounding. So
-//! the pose is as exact near a straight or folded arm as anywhere else: limb lengths and hand hold
-//! to 3e-7·L. The textbook form (d₁² − d₂² + D²)/2D misses by 3e-4·L when one bone is thirty times
-//! the other. The elbow itself is ill-conditioned where the arm is nearly straight or folded,
-//! whatever the formula: there oₑ moves like √(L − D).
-//!
+//! The elbow is computed from the cursor without arc cosine or tangent, and nothing cancels. hₑ and
+//! oₑ are both computed from the smaller of a and b, so that hₑ² + oₑ² = d₁² whatever the rounding
+//! of that number. The pose is therefore as exact near a straight or folded arm as anywhere else:
+//! limb lengths and the hand's position are within 3e-7·L. The textbook form (d₁² − d₂² + D²)/2D is
+//! off by 3e-4·L when one bone is thirty times as long as the other. The elbow itself is
+//! ill-conditioned where the arm is nearly straight or folded, whatever the formula: there oₑ moves
+//! like √(L − D).
 //! # What breaks
 //!
 //! - The elbow's reference direction is the Limb frame's +y. It is singular where the Pointer is
-//!   vertical: a hand that passes over ±y turns the elbow around. Straight up or
-//!   down the frame's yaw is the previous pose's ([`Pointer`]).
-//! - A cursor at the shoulder has no direction; it takes the previous pose's.
-//!
-//! # Sources
+//! - The elbow's reference direction is the Limb frame's +y. It is singular where the Pointer is
+//!   vertical: the elbow turns around when the hand passes over ±y. Where the Pointer points
+//!   straight up or down, the frame takes the yaw of the previous pose ([`Pointer`]).
+//! - A cursor at the shoulder has no direction: the arm keeps the direction of the previous pose.
 //!
 //! E. Palmieri, *IK-Rigging in three.js*, 2014, section 2 (hierarchy, θ_z, θ_y, θ_e); R. Juckett,
 //! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles

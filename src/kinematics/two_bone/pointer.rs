@@ -1,27 +1,27 @@
 use glam::{Mat3, Vec2, Vec3};
 
 /// Direction and yaw of the Pointer, the axis from the shoulder through the hand. A caller keeps it
-/// from one pose to the next to resolve a cursor without a direction (at the shoulder) or without a
-/// yaw (straight above or below it).
+/// from one pose to the next: it supplies the direction for a cursor at the shoulder, and the yaw
+/// for a cursor straight above or below the shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pointer {
     /// Unit vector ŵ from the shoulder to the hand.
     pub direction: Vec3,
-    /// Cosine and sine of the yaw θ_z: the direction seen from above, as (x, z), of unit length.
+    /// Cosine and sine of the yaw θ_z: the (x, z) part of the direction, normalised.
     pub heading: Vec2,
 }
 
 impl Default for Pointer {
-    /// Along Root's +x.
+    /// A Pointer along +x of Root space.
     fn default() -> Self {
         Self { direction: Vec3::X, heading: Vec2::X }
     }
 }
 
 impl Pointer {
-    /// The Limb's rotation, R_y(−θ_z)·R_z(θ_y): its +x is the Pointer, its +y the side of
-    /// the elbow at ψ = 0, its +z horizontal.
+    /// The rotation of the Limb frame, R_y(−θ_z)·R_z(θ_y): +x is along the Pointer, +y is the side
+    /// of the elbow at ψ = 0, and +z is horizontal.
     #[inline(always)]
     #[must_use]
     pub fn limb_frame(self) -> Mat3 {

@@ -5,18 +5,19 @@ use glam::Vec3;
 use super::pointer::Pointer;
 use super::reach::Reach;
 
-/// A posed arm, in Root space. The same D feeds every field.
+/// A posed arm, in Root space. All fields are computed from the same hand distance D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TwoBonePose {
     /// Position of the elbow.
     pub elbow: Vec3,
-    /// Position of the hand: the cursor when it is [`Reach::Reached`], else on a limit sphere.
+    /// Position of the hand. With hard limits it is the cursor if that is reached, otherwise a
+    /// point on a limit sphere.
     pub hand: Vec3,
-    /// Position of the hand relative to the cursor; `None` for a pose without a cursor, such as one
-    /// of joint angles.
+    /// Whether the hand reaches the cursor; `None` for a pose without a cursor, such as one made
+    /// from joint angles.
     pub reach: Option<Reach>,
-    /// D, from shoulder to hand.
+    /// D, the distance from shoulder to hand.
     pub distance: f32,
     /// h_e, the elbow's x in Socket space, along the Pointer; negative when the lower bone reaches
     /// back past the shoulder.
@@ -28,7 +29,7 @@ pub struct TwoBonePose {
     pub twist: f32,
     /// Factor by which the bones are lengthened; 1 without stretch.
     pub stretch: f32,
-    /// Direction and yaw of the Pointer. Keep it for the next
+    /// Direction and yaw of the Pointer. Pass it to the next
     /// [`TwoBone::solve_from`](super::TwoBone::solve_from).
     pub pointer: Pointer,
 }
@@ -39,32 +40,32 @@ impl TwoBonePose {
         self.pointer.heading.y.atan2(self.pointer.heading.x)
     }
 
-    /// θ_y, the Pointer's angle above the xz-plane: `atan2(y, h_c)`, in [−π/2, π/2].
+    /// θ_y, the Pointer's angle above the xz-plane: `atan2(y, hypot(x, z))`, in [−π/2, π/2].
     pub fn pitch(&self) -> f32 {
         let Vec3 { x, y, z } = self.pointer.direction;
         y.atan2(x.hypot(z))
     }
 
-    /// Unit vector perpendicular to the Pointer towards the elbow; defined for a straight or folded arm
-    /// too.
+    /// Unit vector perpendicular to the Pointer, on the side of the elbow; defined for a straight
+    /// or folded arm, too.
     pub fn outward(&self) -> Vec3 {
         let limb = self.pointer.limb_frame();
         let (sin, cos) = self.twist.sin_cos();
         limb.y_axis * cos + limb.z_axis * sin
     }
 
-    /// Angle about this pose's Pointer from its elbow to another pose's, in (−π, π].
+    /// Angle about this pose's Pointer from this elbow to the elbow of `other`, in (−π, π].
     pub fn elbow_turn_to(&self, other: &Self) -> f32 {
         let (w, from, to) = (self.pointer.direction, self.outward(), other.outward());
         w.dot(from.cross(to)).atan2(from.dot(to))
     }
 
-    /// θ_e, the angle at the shoulder between Pointer and upper bone, in [0, π].
+    /// θ_e, the angle at the shoulder between the Pointer and the upper bone, in [0, π].
     pub fn shoulder_angle(&self) -> f32 {
         self.out.atan2(self.along)
     }
 
-    /// φ, the inner angle at the elbow: π straight, 0 folded.
+    /// φ, the inner angle at the elbow, in [0, π]: π for a straight arm, 0 for a folded one.
     pub fn elbow_angle(&self) -> f32 {
         let at_hand = self.out.atan2(self.distance - self.along);
         PI - self.shoulder_angle() - at_hand

@@ -9,7 +9,8 @@ impl TwoBone {
     /// Poses the hand at `cursor` (Root space) with the elbow turned by `twist` (ψ, radians,
     /// right-handed about the Pointer) from the Limb frame's +y.
     ///
-    /// A cursor without a direction takes [`Pointer::default`]; see [`Self::solve_from`].
+    /// A cursor at the shoulder or straight above or below it takes its direction or yaw from
+    /// [`Pointer::default`]; see [`Self::solve_from`].
     ///
     /// # Panics
     ///
@@ -20,8 +21,8 @@ impl TwoBone {
         self.solve_from(cursor, twist, Pointer::default())
     }
 
-    /// As [`Self::solve`], with the previous pose's [`Pointer`] for a cursor at the shoulder
-    /// (direction) or straight above or below it (yaw).
+    /// As [`Self::solve`], with the previous pose's [`Pointer`] as `last`: a cursor at the shoulder
+    /// takes its direction, and a cursor straight above or below the shoulder takes its yaw.
     #[must_use]
     pub fn solve_from(self, cursor: Vec3, twist: f32, last: Pointer) -> TwoBonePose {
         debug_assert!(cursor.is_finite(), "cursor is {cursor}");
@@ -32,8 +33,8 @@ impl TwoBone {
         TwoBonePose { hand: solved.hand_or(cursor), reach: Some(solved.reach), ..pose }
     }
 
-    /// The pose with the hand at `distance`, clamped to the limits, in the direction of `pointer`. It
-    /// has no cursor, so its reach is `None`.
+    /// Poses the hand in the direction of `pointer` at `distance` from the shoulder, clamped to the
+    /// limits. The pose has no cursor, so its reach is `None`.
     ///
     /// # Panics
     ///

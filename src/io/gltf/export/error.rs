@@ -2,16 +2,16 @@ use thiserror::Error;
 
 use crate::io::progress::Cancelled;
 
-/// The reason why a document has no glTF.
+/// The reason why a document cannot be exported to glTF.
 #[derive(Debug, Error)]
 pub enum GlbError {
     /// The skeleton has no joints.
-    #[error("the skeleton has no joints; add one before it is exported")]
+    #[error("the skeleton must have at least one joint")]
     NoJoints,
     /// The position of a joint overflows in metres.
     #[error(
-        "joint {joint:?} is farther than 3.4028235e38 m from the origin{}; bring it nearer, or make \
-         metres_per_unit smaller",
+        "the position of joint {joint:?} must be within ±3.4028235e38 m{}; bring it nearer, or \
+         make metres_per_unit smaller",
         at(*time)
     )]
     TooFar {
@@ -20,11 +20,11 @@ pub enum GlbError {
         /// In seconds; `None` in the bind pose.
         time: Option<f64>,
     },
-    /// The motion has more than [`GlbError::MAX_FRAMES`] frames or [`GlbError::MAX_SAMPLES`] samples.
+    /// The motion has more than [`GlbError::MAX_FRAMES`] frames or [`GlbError::MAX_SAMPLES`]
+    /// samples.
     #[error(
-        "{frames} frames of {joints} joints are too many for a file; at most {} joints in {} frames \
-         are possible: ask for fewer frames in a second, or for a shorter time",
-        GlbError::MAX_SAMPLES / joints,
+        "a motion of {joints} joints must have at most {} frames, got {frames}; export a shorter \
+         time or fewer frames per second",
         GlbError::MAX_FRAMES.min(GlbError::MAX_SAMPLES / joints)
     )]
     TooLong {
@@ -45,9 +45,9 @@ pub enum GlbError {
 }
 
 impl GlbError {
-    /// Most transforms of joints in all frames; each takes 28 bytes.
+    /// Maximum number of joint transforms in all frames; each takes 28 bytes.
     pub const MAX_SAMPLES: usize = 20_000_000;
-    /// Beyond this, two frames can have the same 32-bit time.
+    /// Maximum number of frames. Above it, two frames can have the same 32-bit time.
     pub const MAX_FRAMES: usize = 1 << 23;
 }
 

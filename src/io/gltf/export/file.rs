@@ -31,24 +31,24 @@ pub fn write(
         generator: Some(concat!("ik-arm ", env!("CARGO_PKG_VERSION")).to_owned()),
         ..Asset::default()
     };
-    let [armature, figure] = add_nodes(&mut writer, bones);
+    let [armature, mesh_node] = add_nodes(&mut writer, bones);
     let mesh = add_mesh(&mut writer, limbs);
     let skin = add_skin(&mut writer, bones, armature);
-    if let Some(node) = writer.root.nodes.get_mut(figure.value()) {
+    if let Some(node) = writer.root.nodes.get_mut(mesh_node.value()) {
         (node.mesh, node.skin) = (Some(mesh), Some(skin));
     }
     add_animation(&mut writer, motion);
     writer.root.scenes = vec![Scene {
         name: None,
-        nodes: vec![armature, figure],
+        nodes: vec![armature, mesh_node],
         extensions: None,
         extras: Extras::default(),
     }];
     writer.root.scene = Some(Index::new(0));
-    packed(writer)
+    to_glb(writer)
 }
 
-fn packed(mut writer: GltfWriter) -> Result<Vec<u8>, GlbError> {
+fn to_glb(mut writer: GltfWriter) -> Result<Vec<u8>, GlbError> {
     writer.root.buffers = vec![Buffer {
         byte_length: writer.bytes.len().into(),
         name: None,
@@ -62,31 +62,31 @@ fn packed(mut writer: GltfWriter) -> Result<Vec<u8>, GlbError> {
     Ok(Glb { header, json: json.into(), bin: Some(writer.bytes.into()) }.to_vec()?)
 }
 
-/// Adds the joints with the same indices as in `bones`. Returns the node above them and the node of the
-/// mesh, which follow.
+/// Adds the joints with the same indices as in `bones`. Returns the node above them and the node of
+/// the mesh, which follow.
 fn add_nodes(writer: &mut GltfWriter, bones: &JointNodes) -> [Index<Node>; 2] {
     let mut children = vec![Vec::new(); bones.nodes.len()];
     let mut roots = Vec::new();
     for (index, node) in bones.nodes.iter().enumerate() {
         node.parent.map_or(&mut roots, |parent| &mut children[parent]).push(node_index(index));
     }
-    let some = |children: Vec<Index<Node>>| (!children.is_empty()).then_some(children);
-    for ((node, rest), children) in bones.nodes.iter().zip(&bones.rest).zip(children) {
+    let non_empty = |children: Vec<Index<Node>>| (!children.is_empty()).then_some(children);
+    for ((node, bind_pose), children) in bones.nodes.iter().zip(&bones.bind_pose).zip(children) {
         writer.root.push(Node {
             name: Some(node.name.clone()),
-            children: some(children),
-            translation: Some(rest.translation.as_vec3().to_array()),
-            rotation: Some(UnitQuaternion(rest.rotation.as_quat().to_array())),
+            children: non_empty(children),
+            translation: Some(bind_pose.translation.as_vec3().to_array()),
+            rotation: Some(UnitQuaternion(bind_pose.rotation.as_quat().to_array())),
             ..Node::default()
         });
     }
     let armature = Node {
         name: Some(JointNodes::ARMATURE.to_owned()),
-        children: some(roots),
+        children: non_empty(roots),
         ..Node::default()
     };
-    let figure = Node { name: Some(JointNodes::MESH.to_owned()), ..Node::default() };
-    [armature, figure].map(|node| writer.root.push(node))
+    let mesh_node = Node { name: Some(JointNodes::MESH.to_owned()), ..Node::default() };
+    [armature, mesh_node].map(|node| writer.root.push(node))
 }
 
 fn node_index(node: usize) -> Index<Node> {
@@ -156,14 +156,14 @@ fn matte(colour: [u8; 3]) -> Material {
 
 /// Linear value of an sRGB component.
 fn linear(srgb: u8) -> f32 {
-    let part = f32::from(srgb) / 255.0;
-    if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    let value = f32::from(srgb) / 255.0;
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 fn add_skin(writer: &mut GltfWriter, bones: &JointNodes, armature: Index<Node>) -> Index<Skin> {
     let mut worlds: Vec<DAffine3> = Vec::with_capacity(bones.nodes.len());
-    for (node, rest) in bones.nodes.iter().zip(&bones.rest) {
-        let local = DAffine3::from_rotation_translation(rest.rotation, rest.translation);
+    for (node, bind_pose) in bones.nodes.iter().zip(&bones.bind_pose) {
+        let local = DAffine3::from_rotation_translation(bind_pose.rotation, bind_pose.translation);
         worlds.push(node.parent.map_or(local, |parent| worlds[parent] * local));
     }
     let inverse = |world: &DAffine3| DMat4::from(world.inverse()).as_mat4().to_cols_array();
@@ -212,7 +212,7 @@ struct Recorder<'a> {
     animation: &'a mut Animation,
     input: Index<Accessor>,
     view: Index<buffer::View>,
-    /// The byte that the view begins at.
+    /// The first byte of the view.
     start: usize,
 }
 

@@ -30,17 +30,17 @@ impl LimbMesh {
     pub fn new(rig: &GltfRig, bones: &JointNodes) -> Result<Self, GlbError> {
         let mut limbs = Self::default();
         let tips = bones.tips();
-        for (index, (bone, placed)) in rig.bones.iter().zip(&rig.rest).enumerate() {
+        for (index, (bone, placed)) in rig.bones.iter().zip(&rig.bind_pose).enumerate() {
             let part = &mut limbs.parts[bone.shade];
-            let turn = placed.frame();
+            let rotation = placed.frame();
             let length = placed.along.length();
             let tip = tips[index].unwrap_or(index);
             let [thick, thin] = bone.radii;
-            part.add_ball(placed.base, turn, thick * BALL, index);
+            part.add_ball(placed.base, rotation, thick * BALL, index);
             if length > 0.0 {
-                part.add_cone(placed.base, turn, length, bone.radii, [index, tip]);
+                part.add_cone(placed.base, rotation, length, bone.radii, [index, tip]);
                 if bone.is_leaf {
-                    part.add_ball(placed.base + placed.along, turn, thin * BALL, tip);
+                    part.add_ball(placed.base + placed.along, rotation, thin * BALL, tip);
                 }
             }
             if !part.is_finite() {
@@ -57,7 +57,7 @@ impl MeshPart {
     fn add_cone(
         &mut self,
         base: DVec3,
-        turn: DMat3,
+        rotation: DMat3,
         length: f64,
         radii: [f64; 2],
         joints: [usize; 2],
@@ -68,9 +68,9 @@ impl MeshPart {
         for side in 0..SIDES {
             let (sin, cos) = (f64::from(side) / f64::from(SIDES) * TAU).sin_cos();
             let out = DVec3::new(cos, 0.0, sin);
-            let normal = turn * (out + DVec3::Y * slope).normalize();
+            let normal = rotation * (out + DVec3::Y * slope).normalize();
             for (end, height) in [0.0, length].into_iter().enumerate() {
-                let at = base + turn * (out * radii[end] + DVec3::Y * height);
+                let at = base + rotation * (out * radii[end] + DVec3::Y * height);
                 self.add_vertex(at, normal, joints[end]);
             }
             let [low, next] = [2 * side, 2 * ((side + 1) % SIDES)].map(|vertex| first + vertex);
@@ -78,13 +78,13 @@ impl MeshPart {
         }
     }
 
-    /// Poles on its frame's y.
-    fn add_ball(&mut self, centre: DVec3, turn: DMat3, radius: f64, joint: usize) {
+    /// A ball with its poles on its frame's y.
+    fn add_ball(&mut self, centre: DVec3, rotation: DMat3, radius: f64, joint: usize) {
         const SIDES: u32 = 8;
         const RINGS: u32 = 3;
         let first = self.first();
         let mut add = |height: f64, out: f64, angle: f64| {
-            let normal = turn * DVec3::new(out * angle.cos(), height, out * angle.sin());
+            let normal = rotation * DVec3::new(out * angle.cos(), height, out * angle.sin());
             self.add_vertex(centre + normal * radius, normal, joint);
         };
         add(1.0, 0.0, 0.0);
@@ -118,10 +118,10 @@ impl MeshPart {
         u32::try_from(self.positions.len()).unwrap_or_default()
     }
 
-    /// Whether the last vertices are finite.
+    /// Whether the vertices of the last bone are finite.
     fn is_finite(&self) -> bool {
-        const MOST_OF_A_BONE: usize = 76;
-        let last = self.positions.iter().rev().take(MOST_OF_A_BONE);
+        const MAX_VERTICES_OF_BONE: usize = 76;
+        let last = self.positions.iter().rev().take(MAX_VERTICES_OF_BONE);
         last.flatten().all(|number| number.is_finite())
     }
 }

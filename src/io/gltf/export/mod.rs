@@ -16,14 +16,13 @@ use motion::JointAnimation;
 use nodes::JointNodes;
 use rig::GltfRig;
 
-/// The shown rig as a `.glb` file: joints, a mesh that goes with them, and its motion at so many
-/// frames in a second (1 to 1000), or as many as the timeline has. Lengths are metres, and no node
+/// The shown rig as a `.glb` file: joints, a skinned mesh, and the motion at `frames_per_second`,
+/// clamped from 1 to 1000; by default at the timeline's frame rate. Lengths are metres, and no node
 /// has a scale.
 ///
 /// # Errors
 ///
-/// If there are no joints, if numbers of 32 bits cannot say where one is, if there are too many
-/// frames, or if the job is to stop.
+/// Fails without joints, if a position overflows, with too many frames, or if cancelled.
 pub fn glb(
     document: &Document,
     frames_per_second: Option<u32>,

@@ -40,19 +40,20 @@ impl JointAnimation {
         let mut rotations: Vec<_> = (0..joints).map(empty).collect();
         let empty = |node| JointTrack { node, values: Vec::with_capacity(frames) };
         let mut translations: Vec<_> = (0..joints).map(empty).collect();
-        let mut before: Vec<DQuat> = bones.rest.iter().map(|rest| rest.rotation).collect();
+        let mut previous: Vec<DQuat> =
+            bones.bind_pose.iter().map(|bind_pose| bind_pose.rotation).collect();
         for frame in 0..frames {
             progress.step(frame, frames)?;
             let time = timeline.time(frame);
             for (node, local) in bones.locals(&rig.at(time), Some(time))?.iter().enumerate() {
-                let rotation = same_side(before[node], local.rotation);
-                before[node] = rotation;
+                let rotation = same_side(previous[node], local.rotation);
+                previous[node] = rotation;
                 rotations[node].values.push(rotation.as_quat().to_array());
                 translations[node].values.push(local.translation.as_vec3().to_array());
             }
         }
-        rotations.retain(|track| track.turns(&bones.rest[track.node]));
-        translations.retain(|track| track.moves(&bones.rest[track.node]));
+        rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
+        translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
         let rate = f64::from(timeline.frame_rate);
         let times = (0..frames).map(|frame| (frame as f64 / rate) as f32).collect();
         Ok(Self { times, rotations, translations })
@@ -68,26 +69,26 @@ const LEAST: f64 = 1e-6;
 
 impl JointTrack<4> {
     /// Whether the rotation ever leaves the bind pose.
-    fn turns(&self, rest: &RigidTransform) -> bool {
+    fn turns(&self, bind_pose: &RigidTransform) -> bool {
         self.values.iter().any(|value| {
             let rotation = DQuat::from_array(value.map(f64::from));
-            let gap = same_side(rest.rotation, rotation) - rest.rotation;
-            2.0 * gap.length() > LEAST
+            let difference = same_side(bind_pose.rotation, rotation) - bind_pose.rotation;
+            2.0 * difference.length() > LEAST
         })
     }
 }
 
 impl JointTrack<3> {
-    fn moves(&self, rest: &RigidTransform) -> bool {
+    fn moves(&self, bind_pose: &RigidTransform) -> bool {
         self.values.iter().any(|value| {
-            let place = DVec3::from_array(value.map(f64::from));
-            let size = place.length().max(rest.translation.length());
-            place.distance(rest.translation) > LEAST * size
+            let translation = DVec3::from_array(value.map(f64::from));
+            let size = translation.length().max(bind_pose.translation.length());
+            translation.distance(bind_pose.translation) > LEAST * size
         })
     }
 }
 
-/// A quaternion or its negative, which is the same rotation, whichever is nearer to `before`.
-fn same_side(before: DQuat, rotation: DQuat) -> DQuat {
-    if before.dot(rotation) < 0.0 { -rotation } else { rotation }
+/// A quaternion or its negative, which is the same rotation, whichever is nearer to `previous`.
+fn same_side(previous: DQuat, rotation: DQuat) -> DQuat {
+    if previous.dot(rotation) < 0.0 { -rotation } else { rotation }
 }

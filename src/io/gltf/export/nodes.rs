@@ -8,14 +8,14 @@ use crate::io::gltf::names::UniqueNames;
 pub struct JointNodes {
     pub nodes: Vec<JointNode>,
     /// Transforms in the bind pose.
-    pub rest: Vec<RigidTransform>,
+    pub bind_pose: Vec<RigidTransform>,
 }
 
 pub struct JointNode {
     /// Unique.
     pub name: String,
     pub parent: Option<usize>,
-    /// The bone whose base or tip it is at.
+    /// The bone at whose base or tip the node is.
     pub bone: usize,
     pub is_tip: bool,
 }
@@ -45,8 +45,8 @@ impl JointNodes {
             let name = names.free(&format!("{}_tip", nodes[bone].name));
             nodes.push(JointNode { name, parent: Some(bone), bone, is_tip: true });
         }
-        let mut bones = Self { nodes, rest: Vec::new() };
-        bones.rest = bones.locals(&rig.rest, None)?;
+        let mut bones = Self { nodes, bind_pose: Vec::new() };
+        bones.bind_pose = bones.locals(&rig.bind_pose, None)?;
         Ok(bones)
     }
 
@@ -59,25 +59,26 @@ impl JointNodes {
         tips
     }
 
-    /// Transforms relative to the parents, for bones placed so at a time in seconds.
+    /// Transforms relative to the parents, from placements of the bones at a time in seconds.
     pub fn locals(
         &self,
-        placed: &[BonePlacement],
+        placements: &[BonePlacement],
         time: Option<f64>,
     ) -> Result<Vec<RigidTransform>, GlbError> {
-        let frames: Vec<DMat3> = placed.iter().map(BonePlacement::frame).collect();
+        let frames: Vec<DMat3> = placements.iter().map(BonePlacement::frame).collect();
         let local = |node: &JointNode| {
-            let BonePlacement { base, along, .. } = placed[node.bone];
+            let BonePlacement { base, along, .. } = placements[node.bone];
             let local = match node.parent {
                 _ if node.is_tip => RigidTransform {
                     translation: DVec3::Y * along.length(),
                     rotation: DQuat::IDENTITY,
                 },
                 Some(parent) => {
-                    let above = frames[parent].transpose();
+                    let parent_inverse = frames[parent].transpose();
                     RigidTransform {
-                        translation: above * (base - placed[parent].base),
-                        rotation: DQuat::from_mat3(&(above * frames[node.bone])).normalize(),
+                        translation: parent_inverse * (base - placements[parent].base),
+                        rotation: DQuat::from_mat3(&(parent_inverse * frames[node.bone]))
+                            .normalize(),
                     }
                 }
                 None => RigidTransform {

@@ -17,7 +17,7 @@ pub struct GltfRig {
     /// Parents before their children.
     pub bones: Vec<RigBone>,
     /// Placements in the bind pose.
-    pub rest: Vec<BonePlacement>,
+    pub bind_pose: Vec<BonePlacement>,
 }
 
 /// The constant part of a bone.
@@ -59,16 +59,16 @@ impl GltfRig {
             document: document.clone(),
             metres_per_unit,
             bones: Vec::new(),
-            rest: Vec::new(),
+            bind_pose: Vec::new(),
         };
         match document.rig {
             RigKind::Arm => {
-                rig.rest = rig.metric(straight_arm(document));
+                rig.bind_pose = rig.metric(straight_arm(document));
                 rig.bones = rig.limbs();
             }
             RigKind::Skeleton => {
                 let skeleton = document.skeleton();
-                rig.rest = rig.metric(placed(skeleton, |_| DMat3::IDENTITY));
+                rig.bind_pose = rig.metric(placements(skeleton, |_| DMat3::IDENTITY));
                 rig.bones = rig.joints(skeleton.joints());
             }
         }
@@ -77,12 +77,14 @@ impl GltfRig {
 
     /// Placements of all bones at a time, in seconds.
     pub fn at(&mut self, time: f64) -> Vec<BonePlacement> {
-        // `at` would copy all keys for every frame.
+        // `Document::evaluate` would copy all keys for every frame.
         self.document.apply_keys(time);
         let document = &self.document;
         self.metric(match document.rig {
             RigKind::Arm => posed_arm(document),
-            RigKind::Skeleton => placed(&document.skeleton_rig.skeleton_at(time), turned),
+            RigKind::Skeleton => {
+                placements(&document.skeleton_rig.skeleton_at(time), local_rotation)
+            }
         })
     }
 
@@ -92,12 +94,12 @@ impl GltfRig {
     }
 
     /// Converts the document's units to metres.
-    fn metric(&self, mut placed: Vec<BonePlacement>) -> Vec<BonePlacement> {
-        for bone in &mut placed {
+    fn metric(&self, mut placements: Vec<BonePlacement>) -> Vec<BonePlacement> {
+        for bone in &mut placements {
             bone.base *= self.metres_per_unit;
             bone.along *= self.metres_per_unit;
         }
-        placed
+        placements
     }
 
     fn limbs(&self) -> Vec<RigBone> {
@@ -145,16 +147,20 @@ impl GltfRig {
             parent: joint.parent.map(JointId::index),
             has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
             is_leaf: are_leaves[index],
-            radii: radii(f64::from(joint.radius) * metres, self.rest[index].along.length(), reach),
+            radii: radii(
+                f64::from(joint.radius) * metres,
+                self.bind_pose[index].along.length(),
+                reach,
+            ),
             shade: depths[index] % 2,
         };
         joints.iter().enumerate().map(bone).collect()
     }
 }
 
-/// Radii at base and tip: the bone's own radius, clamped so that it looks like a bone on a skeleton of
-/// such a reach. All in metres.
-fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
+/// Radii at base and tip, in metres: the joint's radius, clamped relative to the bone's length and
+/// the skeleton's reach.
+fn radii(radius: f64, length: f64, reach: f64) -> [f64; 2] {
     const THICKEST: (f64, f64) = (0.45, 0.028);
     const POINT: f64 = 0.02;
     const TAPER: f64 = 0.6;
@@ -163,35 +169,35 @@ fn radii(own: f64, length: f64, reach: f64) -> [f64; 2] {
         0.0 => POINT * reach,
         length => (THICKEST.0 * length).min(THICKEST.1 * reach),
     };
-    let radius = own.min(thickest).max(0.25 * thickest);
+    let radius = radius.min(thickest).max(0.25 * thickest);
     [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
 }
 
-/// R, orthogonal in f64: f32 rounding would add up along a long chain.
-fn turned(joint: &Joint) -> DMat3 {
+/// A joint's rotation, orthogonal in f64: f32 rounding would add up along a long chain.
+fn local_rotation(joint: &Joint) -> DMat3 {
     let rotation = joint.local_rotation().as_dmat3();
     DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
 }
 
-fn placed(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
+fn placements(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
     let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
     for joint in skeleton.joints() {
-        let above =
+        let parent =
             joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent.index()]);
         full.push(
-            above * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
+            parent * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
         );
     }
-    let place = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
+    let placement = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
         base: full.translation,
         along: full.matrix3 * joint.axis.as_dvec3(),
         x: full.matrix3.x_axis,
         y: full.matrix3.y_axis,
     };
-    skeleton.iter().zip(full).map(place).collect()
+    skeleton.iter().zip(full).map(placement).collect()
 }
 
-/// The arm along the Root's +x, with the hinge of an unrotated Socket.
+/// The bind pose of the arm: straight along the Root's +x, bending about z.
 fn straight_arm(document: &Document) -> Vec<BonePlacement> {
     limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
 }
@@ -201,20 +207,20 @@ fn posed_arm(document: &Document) -> Vec<BonePlacement> {
     let pose = arm.pose();
     let rig: ArmRig = arm.rig(&pose);
     let socket = rig.local(ArmPart::Limb) * rig.local(ArmPart::Socket);
-    let turn = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
+    let rotation = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
     let bones = arm.bones.stretched(pose.stretch);
-    limbs(arm, bones, [turn(ArmPart::UpperLimb), turn(ArmPart::LowerLimb)])
+    limbs(arm, bones, [rotation(ArmPart::UpperLimb), rotation(ArmPart::LowerLimb)])
 }
 
 /// Placements of the limbs by their rotations. A limb is along x and bends about z.
-fn limbs(arm: &Arm, bones: TwoBone, turns: [DMat3; 2]) -> Vec<BonePlacement> {
+fn limbs(arm: &Arm, bones: TwoBone, rotations: [DMat3; 2]) -> Vec<BonePlacement> {
     let lengths = [bones.upper(), bones.lower()].map(f64::from);
     let mut base = arm.root.as_dvec3();
-    let limb = |(turn, length): (DMat3, f64)| {
-        let along = turn.x_axis.normalize_or(DVec3::X) * length;
-        let limb = BonePlacement { base, along, x: turn.z_axis, y: turn.x_axis };
+    let limb = |(rotation, length): (DMat3, f64)| {
+        let along = rotation.x_axis.normalize_or(DVec3::X) * length;
+        let limb = BonePlacement { base, along, x: rotation.z_axis, y: rotation.x_axis };
         base += along;
         limb
     };
-    turns.into_iter().zip(lengths).map(limb).collect()
+    rotations.into_iter().zip(lengths).map(limb).collect()
 }

@@ -1,24 +1,21 @@
-/// The bytes that a text in base64 (RFC 4648) stands for, or what is wrong with it.
+/// Decodes base64 (RFC 4648). The error is a reason.
 pub fn decode(text: &str) -> Result<Vec<u8>, String> {
     let digits = text.trim_end_matches('=').as_bytes();
     let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 2);
-    for (index, four) in digits.chunks(4).enumerate() {
+    for (group_index, group) in digits.chunks(4).enumerate() {
         let mut bits = 0_u32;
-        for (place, digit) in four.iter().enumerate() {
+        for (index, digit) in group.iter().enumerate() {
             let value = value(*digit).ok_or_else(|| {
-                let at = 4 * index + place + 1;
-                format!(
-                    "character {at} of its data is {:?}, which is not of base64",
-                    *digit as char
-                )
+                let at = 4 * group_index + index + 1;
+                format!("data must be base64, got {:?} as character {at}", *digit as char)
             })?;
-            bits |= value << (18 - 6 * place);
+            bits |= value << (18 - 6 * index);
         }
-        if four.len() == 1 {
-            return Err("its data ends within a byte; base64 is cut there".to_owned());
+        if group.len() == 1 {
+            return Err("data must be base64, got an end within a byte".to_owned());
         }
-        let [_, three @ ..] = bits.to_be_bytes();
-        bytes.extend(three.iter().take(four.len() - 1));
+        let [_, bytes_of_group @ ..] = bits.to_be_bytes();
+        bytes.extend(bytes_of_group.iter().take(group.len() - 1));
     }
     Ok(bytes)
 }

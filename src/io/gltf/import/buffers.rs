@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Component, Path};
 
 use super::base64;
-use super::file::{GltfBuffer, GltfFile};
+use super::file::{GltfBuffer, GltfFile, index_rule};
 use crate::io::error::OpenError;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
@@ -14,25 +14,28 @@ use crate::io::source::Source;
 pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 
 impl<'a> GltfBuffers<'a> {
-    /// Reads buffers from the binary chunk, data URIs or files beside the file. Fails if they are larger
-    /// together than the largest file.
+    /// Reads buffers from the binary chunk, data URIs or files in the same folder. Fails if they
+    /// have more than [`OpenError::MAX_BYTES`] together.
     pub fn read(source: &'a Source, file: &GltfFile, needed: &[usize]) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
-        let mut left = OpenError::MAX_BYTES;
+        let mut remaining = OpenError::MAX_BYTES;
         for &index in needed {
             let at = JsonPath::root().key("buffers").index(index);
-            let (Some(buffer), Some(place)) = (file.buffers.0.get(index), buffers.0.get_mut(index))
+            let (Some(buffer), Some(slot)) = (file.buffers.0.get(index), buffers.0.get_mut(index))
             else {
-                return Err(FieldError::new(at, "there is no such buffer"));
+                return Err(FieldError::new(
+                    at,
+                    index_rule("buffers", file.buffers.0.len(), index),
+                ));
             };
             let length = u64::from(buffer.length.0);
-            if length > left {
-                let most = OpenError::MAX_BYTES >> 20;
-                let reason = format!("makes more than {most} MB with those before it");
+            if length > remaining {
+                let max = OpenError::MAX_BYTES >> 20;
+                let reason = format!("must add up to at most {max} MB with those before it");
                 return Err(FieldError::new(at.key("byteLength"), reason));
             }
-            left -= length;
-            *place = Some(bytes(source, index, buffer, &at)?);
+            remaining -= length;
+            *slot = Some(bytes(source, index, buffer, &at)?);
         }
         Ok(buffers)
     }
@@ -53,19 +56,21 @@ fn bytes<'a>(
     let mut bytes = match (&buffer.uri, source.binary()) {
         (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
         (None, _) => {
-            let reason = "is not there; only the first buffer of a .glb file can be without one";
+            let reason = "must be given, except for the first buffer of a .glb file";
             return Err(FieldError::new(at_uri, reason));
         }
         (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
-            Some(data) => inline(data).map_err(|reason| FieldError::new(at_uri, reason))?,
+            Some(data) => {
+                decode_data_uri(data).map_err(|reason| FieldError::new(at_uri, reason))?
+            }
             None => {
-                beside(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?
+                read_file(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?
             }
         }),
     };
     if bytes.len() < length {
-        let there = bytes.len();
-        let reason = format!("is {length}, but the buffer has {there} bytes");
+        let size = bytes.len();
+        let reason = format!("must be at most {size}, the size of the buffer, got {length}");
         return Err(FieldError::new(at.clone().key("byteLength"), reason));
     }
     match &mut bytes {
@@ -75,33 +80,33 @@ fn bytes<'a>(
     Ok(bytes)
 }
 
-fn inline(data: &str) -> Result<Vec<u8>, String> {
+fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     let Some((kind, data)) = data.split_once(',') else {
-        return Err("has no comma, after which its data would be".to_owned());
+        return Err("must have a comma before its data".to_owned());
     };
     if !kind.ends_with(";base64") {
-        return Err("is data that is not in base64; it must be data:…;base64,…".to_owned());
+        return Err(format!("must be data:…;base64,…, got data:{kind},…"));
     }
     base64::decode(data)
 }
 
-/// The bytes of a file beside the one that is read.
-fn beside(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> {
+/// The bytes of a file in the folder of the glTF file.
+fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> {
     let Some(folder) = source.folder() else {
         return Err(format!(
-            "{uri:?} is another file, and it is not known where; open the file by its name, or use \
-             a .glb file"
+            "must not be another file if the folder is unknown, got {uri:?}; open the file by its \
+             path, or use a .glb file"
         ));
     };
-    let name = unescaped(uri).ok_or_else(|| format!("{uri:?} is not the name of a file"))?;
+    let name = unescaped(uri).ok_or_else(|| format!("must be the name of a file, got {uri:?}"))?;
     let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     if name.contains([':', '\\', '\0']) || !Path::new(&name).components().all(is_plain) {
-        return Err(format!("{uri:?} is not allowed; a buffer must be in the file's own folder"));
+        return Err(format!("must be in the file's own folder, got {uri:?}"));
     }
     let path = folder.join(name);
     let failed = |error| format!("{} cannot be read: {error}", path.display());
     if !fs::metadata(&path).map_err(failed)?.is_file() {
-        return Err(format!("{} is not a file", path.display()));
+        return Err(format!("must be a file, got {}", path.display()));
     }
     let mut bytes = Vec::new();
     let file = fs::File::open(&path).map_err(failed)?;

@@ -1,4 +1,4 @@
-//! What stands in a file, as far as skeletons and their motions go.
+//! Fields of a file that concern skeletons and their motions.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -105,12 +105,16 @@ pub struct GltfBuffer {
     pub uri: Option<String>,
 }
 
-/// Objects in a row: no more than a file of some sense has, so that one of none takes no more memory
-/// than there is.
+/// An array of objects. Its length is limited, so that a malicious file cannot exhaust the memory.
 pub struct List<T>(pub Vec<T>);
 
+/// The error of an index that is not below `count`, the number of `items`.
+pub fn index_rule(items: &str, count: usize, index: usize) -> String {
+    format!("must be below {count}, the number of {items}, got {index}")
+}
+
 impl<T> List<T> {
-    const LONGEST: usize = 200_000;
+    const MAX_LENGTH: usize = 200_000;
 }
 
 impl<T> Default for List<T> {
@@ -127,15 +131,15 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
             type Value = List<T>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a row of objects: [{…}, …]")
+                f.write_str("an array of objects: [{…}, …]")
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<List<T>, A::Error> {
                 let mut list = Vec::new();
                 while let Some(JsonObject(entry)) = row.next_element()? {
-                    if list.len() == List::<T>::LONGEST {
-                        let most = List::<T>::LONGEST;
-                        return Err(A::Error::custom(format!("at most {most} are possible")));
+                    if list.len() == List::<T>::MAX_LENGTH {
+                        let max = List::<T>::MAX_LENGTH;
+                        return Err(A::Error::custom(format!("must have at most {max} entries")));
                     }
                     list.push(entry);
                 }

@@ -28,13 +28,13 @@ use rig::ImportedRig;
 use skins::{SkinJoints, at_skin};
 use tracks::NodeTracks;
 
-/// Most transforms of nodes in all frames.
+/// Maximum number of node transforms in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
 
 /// Reads the skeleton of the skin called `name`, or of the first skin.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let JsonObject(file) = source.parse::<JsonObject<GltfFile>>(|_| {})?;
-    check(&file).map_err(|wrong| source.error(&wrong))?;
+    check(&file).map_err(|error| source.error(&error))?;
     let names = skins::names(&file);
     let chosen = match name {
         Some(name) => names.iter().position(|other| other == name),
@@ -47,12 +47,12 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
             names,
         });
     };
-    let mut odd = FieldWarnings::default();
-    let opened = opened(source, &file, index, skin, &mut odd);
-    let (ImportedRig { document, kept }, order) = opened.map_err(|wrong| source.error(&wrong))?;
+    let mut warnings = FieldWarnings::default();
+    let imported = import(source, &file, index, skin, &mut warnings);
+    let (ImportedRig { document, kept }, order) = imported.map_err(|error| source.error(&error))?;
     Ok(Opened {
         document,
-        warnings: source.warnings(&odd),
+        warnings: source.warnings(&warnings),
         order: order.into_iter().filter_map(|joint| kept[joint]).map(JointId::new).collect(),
         skeletons: names,
     })
@@ -61,43 +61,43 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
 fn check(file: &GltfFile) -> Result<(), FieldError> {
     let JsonObject(asset) = &file.asset;
     if asset.version.split('.').next() != Some("2") {
-        let reason = format!("is {:?}; only glTF 2 is known", asset.version);
+        let reason = format!("must be 2 or 2.x, got {:?}", asset.version);
         return Err(FieldError::new(JsonPath::root().key("asset").key("version"), reason));
     }
     if file.skins.0.is_empty() {
-        let reason = "there is none; joints are those of a skin";
+        let reason = "must have at least one skin";
         return Err(FieldError::new(JsonPath::root().key("skins"), reason));
     }
     Ok(())
 }
 
-fn opened(
+fn import(
     source: &Source,
     file: &GltfFile,
     index: usize,
     skin: &GltfSkin,
-    odd: &mut FieldWarnings,
+    warnings: &mut FieldWarnings,
 ) -> Result<(ImportedRig, Vec<usize>), FieldError> {
     let nodes = NodeTree::new(file)?;
-    let joints = SkinJoints::new(file, &nodes, index, skin)?;
-    let mut stage = NodePoser::new(&nodes, &joints);
-    let rest = stage.rest()?;
-    let mut list = rig::joints(file, &joints, &rest);
+    let skin_joints = SkinJoints::new(file, &nodes, index, skin)?;
+    let mut poser = NodePoser::new(&nodes, &skin_joints);
+    let bind_pose = poser.bind_pose()?;
+    let mut joints = rig::joints(file, &skin_joints, &bind_pose);
     let at = JsonPath::root().key("animations");
     if file.animations.0.len() > 1 {
-        let reason = "the first animation is read, the others are not";
-        odd.push(at.clone().index(1), reason);
+        let reason = "ignored; only the first animation is read";
+        warnings.push(at.clone().index(1), reason);
     }
     let (motions, timeline) = match file.animations.0.first() {
         None => (Vec::new(), None),
         Some(first) => {
             let at = at.index(0);
-            animate(source, file, &nodes, (first, &at), &mut stage, &mut list, &rest)?
+            animate(source, file, &nodes, (first, &at), &mut poser, &mut joints, &bind_pose)?
         }
     };
-    let built = rig::build(list, &motions, timeline);
+    let built = rig::build(joints, &motions, timeline);
     let built = built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
-    Ok((built, joints.order))
+    Ok((built, skin_joints.order))
 }
 
 fn animate(
@@ -105,27 +105,27 @@ fn animate(
     file: &GltfFile,
     nodes: &NodeTree,
     (animation, at): (&GltfAnimation, &JsonPath),
-    stage: &mut NodePoser<'_>,
+    poser: &mut NodePoser<'_>,
     joints: &mut [Joint],
-    rest: &[JointPlacement],
+    bind_pose: &[JointPlacement],
 ) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
-    let chosen = tracks::chosen(animation, at, nodes, &stage.is_needed())?;
-    let buffers = tracks::buffers(source, file, &chosen)?;
-    let tracks = NodeTracks::new(file, &buffers, &chosen)?;
-    let Some((start, _)) = clip::ends(&tracks) else {
+    let channels = tracks::used_channels(animation, at, nodes, &poser.is_needed())?;
+    let buffers = tracks::buffers(source, file, &channels)?;
+    let tracks = NodeTracks::new(file, &buffers, &channels)?;
+    let Some((start, _)) = clip::time_range(&tracks) else {
         return Ok((Vec::new(), None));
     };
     let timeline = clip::timeline(&tracks, at)?;
     let frames = timeline.map_or(1, |timeline| timeline.frames());
-    if frames.saturating_mul(stage.len()) > MOST_SAMPLES {
-        let nodes = stage.len();
+    if frames.saturating_mul(poser.len()) > MOST_SAMPLES {
+        let nodes = poser.len();
         let reason = format!(
-            "moves {nodes} nodes in {frames} frames; at most {} frames are possible",
+            "must have at most {} frames of {nodes} nodes, got {frames}",
             MOST_SAMPLES / nodes
         );
         return Err(FieldError::new(at.clone(), reason));
     }
     let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-    let motions = motion::sample(stage, &tracks, sampled, frames, joints, rest)?;
+    let motions = motion::sample(poser, &tracks, sampled, frames, joints, bind_pose)?;
     Ok((motions, timeline))
 }

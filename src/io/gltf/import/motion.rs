@@ -64,9 +64,9 @@ impl<'a> NodePoser<'a> {
         is_needed
     }
 
-    /// Placements of the joints without an animation.
-    pub fn rest(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
-        self.placed()
+    /// Placements of the joints in the bind pose.
+    pub fn bind_pose(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
+        self.placements()
     }
 
     /// Placements of the joints in an animation at a time, in seconds.
@@ -76,54 +76,60 @@ impl<'a> NodePoser<'a> {
         time: f64,
     ) -> Result<Vec<JointPlacement>, FieldError> {
         tracks.pose(time, &mut self.locals);
-        self.placed()
+        self.placements()
     }
 
-    fn placed(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
+    fn placements(&mut self) -> Result<Vec<JointPlacement>, FieldError> {
         for &node in &self.needed {
-            let above = self.nodes.parents[node];
-            let above = above.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
-            self.worlds[node] = above * self.locals[node].affine();
+            let parent = self.nodes.parents[node];
+            let parent_world = parent.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
+            self.worlds[node] = parent_world * self.locals[node].affine();
         }
-        let place = |node: &usize| {
+        let placement = |node: &usize| {
             let DAffine3 { matrix3, translation: base } = self.worlds[*node];
             if !base.as_vec3().is_finite() {
-                let reason = "is beyond 3.4028235e38 m in the world; bring it nearer to 0";
+                let reason = "must be within ±3.4028235e38 m in the world";
                 return Err(FieldError::new(at_node(*node), reason));
             }
             Ok(JointPlacement { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
         };
-        self.joints.nodes.iter().map(place).collect()
+        self.joints.nodes.iter().map(placement).collect()
     }
 }
 
 /// Motions of all joints, frame by frame.
 pub fn sample(
-    stage: &mut NodePoser<'_>,
+    poser: &mut NodePoser<'_>,
     tracks: &NodeTracks<'_>,
     timeline: Timeline,
     frames: usize,
     joints: &mut [Joint],
-    rest: &[JointPlacement],
+    bind_pose: &[JointPlacement],
 ) -> Result<Vec<JointMotion>, FieldError> {
     let mut motions: Vec<JointMotion> = joints.iter().map(|_| JointMotion::default()).collect();
     for frame in 0..frames {
-        let placed = stage.at(tracks, timeline.time(frame))?;
-        let turns: Vec<DMat3> =
-            placed.iter().zip(rest).map(|(now, rest)| now.frame * rest.frame.transpose()).collect();
+        let placements = poser.at(tracks, timeline.time(frame))?;
+        let rotations: Vec<DMat3> = placements
+            .iter()
+            .zip(bind_pose)
+            .map(|(now, bind)| now.frame * bind.frame.transpose())
+            .collect();
         for (index, motion) in motions.iter_mut().enumerate() {
             let joint = &mut joints[index];
-            let (above, origin) = match joint.parent {
-                Some(parent) => (turns[parent.index()].transpose(), placed[parent.index()].base),
+            let (parent_inverse, origin) = match joint.parent {
+                Some(parent) => {
+                    (rotations[parent.index()].transpose(), placements[parent.index()].base)
+                }
                 None => (DMat3::IDENTITY, DVec3::ZERO),
             };
-            let offset = (above * (placed[index].base - origin)).as_vec3();
+            let offset = (parent_inverse * (placements[index].base - origin)).as_vec3();
             if !offset.is_finite() {
-                let reason = "is beyond 3.4028235e38 m from its parent; bring it nearer";
-                return Err(FieldError::new(at_node(stage.joints.nodes[index]), reason));
+                let reason = "must be within ±3.4028235e38 m of its parent";
+                return Err(FieldError::new(at_node(poser.joints.nodes[index]), reason));
             }
             // Unwrapped: the angles nearest to those of the last frame.
-            joint.rotation = joint.angles_of(Mat3A::from((above * turns[index]).as_mat3()));
+            joint.rotation =
+                joint.angles_of(Mat3A::from((parent_inverse * rotations[index]).as_mat3()));
             motion.rotations.push(joint.rotation);
             motion.offsets.push(offset);
         }

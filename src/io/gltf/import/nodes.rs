@@ -1,6 +1,6 @@
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
-use super::file::{GltfFile, GltfNode};
+use super::file::{GltfFile, GltfNode, index_rule};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::JsonNumbers;
@@ -58,15 +58,16 @@ impl NodeTree {
 fn parents(nodes: &[GltfNode]) -> Result<Vec<Option<usize>>, FieldError> {
     let mut parents = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
-        for (place, child) in node.children.iter().flatten().enumerate() {
-            let wrong =
-                |reason| FieldError::new(at_node(index).key("children").index(place), reason);
+        for (position, child) in node.children.iter().flatten().enumerate() {
+            let error =
+                |reason| FieldError::new(at_node(index).key("children").index(position), reason);
             let child = child.0 as usize;
             match parents.get_mut(child) {
-                None => return Err(wrong(format!("there is no node {child}"))),
+                None => return Err(error(index_rule("nodes", nodes.len(), child))),
                 Some(Some(other)) => {
-                    let reason = format!("node {child} is already a child of node {other}");
-                    return Err(wrong(reason));
+                    let reason =
+                        format!("node {child} must have one parent, got {other} and {index}");
+                    return Err(error(reason));
                 }
                 Some(parent) => *parent = Some(index),
             }
@@ -87,7 +88,7 @@ fn order(nodes: &[GltfNode], parents: &[Option<usize>]) -> Result<Vec<usize>, Fi
         let mut is_placed = vec![false; nodes.len()];
         order.iter().for_each(|node| is_placed[*node] = true);
         let node = is_placed.iter().position(|is_placed| !is_placed).unwrap_or_default();
-        return Err(FieldError::new(at_node(node), "is its own ancestor"));
+        return Err(FieldError::new(at_node(node), "must not be its own ancestor"));
     }
     Ok(order)
 }
@@ -96,8 +97,8 @@ fn local(index: usize, node: &GltfNode) -> Result<NodeTransform, FieldError> {
     if let Some(matrix) = &node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.0.map(f64::from));
         if matrix.row(3) != DVec4::W {
-            let reason =
-                "the last number of its first three columns must be 0, that of the fourth 1";
+            let row = matrix.row(3).to_array();
+            let reason = format!("last row must be [0, 0, 0, 1], got {row:?}");
             return Err(FieldError::new(at_node(index).key("matrix"), reason));
         }
         return Ok(NodeTransform::Matrix(DAffine3::from_mat4(matrix)));
@@ -105,7 +106,7 @@ fn local(index: usize, node: &GltfNode) -> Result<NodeTransform, FieldError> {
     let rotation = match node.rotation {
         None => DQuat::IDENTITY,
         Some(JsonNumbers(rotation)) => unit(rotation.map(f64::from)).ok_or_else(|| {
-            let reason = "must not be four zeros; [0, 0, 0, 1] is no rotation";
+            let reason = "must not be four zeros; the identity is [0, 0, 0, 1]";
             FieldError::new(at_node(index).key("rotation"), reason)
         })?,
     };

@@ -7,18 +7,18 @@ use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
-/// All joints in the bind pose, in world space, without rotations and without bones.
-pub fn joints(file: &GltfFile, joints: &SkinJoints, rest: &[JointPlacement]) -> Vec<Joint> {
+/// All joints in the bind pose, in world space; their bones are not set yet.
+pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]) -> Vec<Joint> {
     let mut names = UniqueNames::default();
     let joint = |(index, node): (usize, &usize)| {
         let name = file.nodes.0.get(*node).and_then(|node| node.name.as_deref());
         let name = name.filter(|name| !name.trim().is_empty());
         let name = names.free(name.unwrap_or(&format!("joint_{index}")));
         let parent = joints.parents[index];
-        let origin = parent.map_or(glam::DVec3::ZERO, |parent| rest[parent].base);
+        let origin = parent.map_or(glam::DVec3::ZERO, |parent| bind_pose[parent].base);
         Joint {
-            offset: (rest[index].base - origin).as_vec3(),
-            frame: rest[index].frame.as_mat3(),
+            offset: (bind_pose[index].base - origin).as_vec3(),
+            frame: bind_pose[index].frame.as_mat3(),
             ..Joint::new(&name, parent.map(JointId::new), Vec3::ZERO)
         }
     };
@@ -34,7 +34,7 @@ impl JointMotion {
         self.rotations.iter().any(|angles| (*angles - first).abs().max_element() > 2.0 * LEAST)
     }
 
-    /// Whether the joint's offset changes, on a skeleton of such a size.
+    /// Whether the joint's offset changes. `size` is the length of the skeleton's longest offset.
     fn moves(&self, size: f32) -> bool {
         let first = self.offsets.first().copied().unwrap_or_default();
         let least = LEAST * first.length().max(1e-3 * size);
@@ -42,10 +42,11 @@ impl JointMotion {
     }
 }
 
-/// A document with the joints in the pose of the first frame, and keys for those that move. `kept` has
-/// the index of every joint, or `None` for one that was the tip of its parent's bone.
+/// An imported skeleton with its motion.
 pub struct ImportedRig {
+    /// The joints in the pose of the first frame, and keys for those that move.
     pub document: Document,
+    /// The index of every joint; `None` for one that is only the tip of its parent's bone.
     pub kept: Vec<Option<usize>>,
 }
 
@@ -54,8 +55,8 @@ pub fn build(
     motions: &[JointMotion],
     timeline: Option<Timeline>,
 ) -> Result<ImportedRig, SkeletonError> {
-    let rest: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
-    let size = rest.iter().map(|offset| offset.length()).fold(0.0, f32::max);
+    let bind_offsets: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
+    let size = bind_offsets.iter().map(|offset| offset.length()).fold(0.0, f32::max);
     for (joint, motion) in joints.iter_mut().zip(motions) {
         joint.offset = motion.offsets.first().copied().unwrap_or(joint.offset);
         joint.rotation = motion.rotations.first().copied().unwrap_or(joint.rotation);
@@ -66,7 +67,7 @@ pub fn build(
         .map(|(index, _)| motions.get(index).is_some_and(|motion| motion.moves(size)))
         .collect();
     let are_tips = tips(&joints, &moves);
-    give_bones(&mut joints, &rest, &are_tips);
+    give_bones(&mut joints, &bind_offsets, &are_tips);
     let mut kept = Vec::with_capacity(joints.len());
     let mut next = 0;
     for is_tip in &are_tips {
@@ -78,12 +79,12 @@ pub fn build(
         document.timeline = timeline;
         add_keys(&mut document, motions, &moves, &kept);
     }
-    let mut left = Vec::with_capacity(next);
+    let mut kept_joints = Vec::with_capacity(next);
     for (mut joint, is_tip) in joints.into_iter().zip(are_tips) {
         joint.parent = joint.parent.and_then(|parent| kept[parent.index()].map(JointId::new));
-        left.extend((!is_tip).then_some(joint));
+        kept_joints.extend((!is_tip).then_some(joint));
     }
-    document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(left)?);
+    document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(kept_joints)?);
     document.camera = document.skeleton_rig.default_camera();
     Ok(ImportedRig { document, kept })
 }
@@ -103,9 +104,9 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     joints.iter().enumerate().map(is_tip).collect()
 }
 
-/// Sets bones: to a joint's tip, else to its only child, else to the child along the joint's y axis,
-/// else to the middle of the children.
-fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
+/// Sets bones: to a joint's tip, else to its only child, else to the child along the joint's y
+/// axis, else to the middle of the children.
+fn give_bones(joints: &mut [Joint], bind_offsets: &[Vec3], are_tips: &[bool]) {
     const ALONG: f32 = 0.999;
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
     for (index, joint) in joints.iter().enumerate() {
@@ -115,12 +116,12 @@ fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
     }
     for (index, children) in children.into_iter().enumerate() {
         let y = joints[index].frame.y_axis;
-        let is_along = |child: &&usize| rest[**child].normalize_or_zero().dot(y) > ALONG;
+        let is_along = |child: &&usize| bind_offsets[**child].normalize_or_zero().dot(y) > ALONG;
         let tip = children.iter().find(|child| are_tips[**child]);
         let axis = match tip.or_else(|| children.iter().find(is_along)) {
             Some(child) if are_tips[*child] => joints[*child].offset,
-            Some(child) => rest[*child],
-            None => middle(children.iter().map(|child| rest[*child])),
+            Some(child) => bind_offsets[*child],
+            None => middle(children.iter().map(|child| bind_offsets[*child])),
         };
         let joint = &mut joints[index];
         joint.radius = Joint::new("", None, axis).radius;
@@ -131,8 +132,8 @@ fn give_bones(joints: &mut [Joint], rest: &[Vec3], are_tips: &[bool]) {
 /// The mean of the offsets that are not zero.
 fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
     let offsets: Vec<Vec3> = offsets.filter(|offset| *offset != Vec3::ZERO).collect();
-    let part = 1.0 / offsets.len().max(1) as f32;
-    offsets.into_iter().map(|offset| offset * part).sum()
+    let weight = 1.0 / offsets.len().max(1) as f32;
+    offsets.into_iter().map(|offset| offset * weight).sum()
 }
 
 fn add_keys(

@@ -1,5 +1,5 @@
 use super::buffers::GltfBuffers;
-use super::file::{GltfAccessor, GltfBufferView, GltfFile};
+use super::file::{GltfAccessor, GltfBufferView, GltfFile, index_rule};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 
@@ -54,32 +54,34 @@ fn at_view(index: usize) -> JsonPath {
     JsonPath::root().key("bufferViews").index(index)
 }
 
-/// An accessor and its buffer view.
-fn found(
+/// An accessor, its buffer view and the index of the view.
+fn find_accessor(
     file: &GltfFile,
     index: usize,
 ) -> Result<(&GltfAccessor, &GltfBufferView, usize), FieldError> {
     let accessor = file.accessors.0.get(index);
-    let accessor =
-        accessor.ok_or_else(|| FieldError::new(at_accessor(index), "there is no such accessor"))?;
+    let accessor = accessor.ok_or_else(|| {
+        let reason = index_rule("accessors", file.accessors.0.len(), index);
+        FieldError::new(at_accessor(index), reason)
+    })?;
     let at = at_accessor(index).key("bufferView");
     let Some(view) = accessor.view.filter(|_| accessor.sparse.is_none()) else {
-        let reason = "is sparse or without a buffer view; only plain accessors are known";
+        let reason = "must have a buffer view and must not be sparse";
         return Err(FieldError::new(at_accessor(index), reason));
     };
-    let place = view.0 as usize;
-    let view = file.views.0.get(place);
-    let view =
-        view.ok_or_else(|| FieldError::new(at, format!("there is no buffer view {place}")))?;
-    Ok((accessor, view, place))
+    let view_index = view.0 as usize;
+    let view = file.views.0.get(view_index).ok_or_else(|| {
+        FieldError::new(at, index_rule("buffer views", file.views.0.len(), view_index))
+    })?;
+    Ok((accessor, view, view_index))
 }
 
 /// The buffer of an accessor.
 pub fn buffer_of(file: &GltfFile, index: usize) -> Result<usize, FieldError> {
-    let (_, GltfBufferView { buffer, .. }, view) = found(file, index)?;
+    let (_, GltfBufferView { buffer, .. }, view) = find_accessor(file, index)?;
     let buffer = buffer.0 as usize;
     if buffer >= file.buffers.0.len() {
-        let reason = format!("there is no buffer {buffer}");
+        let reason = index_rule("buffers", file.buffers.0.len(), buffer);
         return Err(FieldError::new(at_view(view).key("buffer"), reason));
     }
     Ok(buffer)
@@ -93,34 +95,34 @@ impl<'a> AccessorRows<'a> {
         index: usize,
         shape: &str,
     ) -> Result<Self, FieldError> {
-        let (accessor, view, view_index) = found(file, index)?;
+        let (accessor, view, view_index) = find_accessor(file, index)?;
         let at = || at_accessor(index);
         let component = Component::new(accessor.component.0).ok_or_else(|| {
             let code = accessor.component.0;
-            let reason = format!("is {code}; it must be 5120 to 5123, 5125 or 5126");
+            let reason = format!("must be 5120 to 5123, 5125 or 5126, got {code}");
             FieldError::new(at().key("componentType"), reason)
         })?;
         if accessor.shape != shape {
-            let reason = format!("is {:?}; it must be {shape:?} there", accessor.shape);
+            let reason = format!("must be {shape:?}, got {:?}", accessor.shape);
             return Err(FieldError::new(at().key("type"), reason));
         }
         let row = width(shape) * component.size();
-        let viewed = viewed(buffers, view, view_index)?;
+        let view_bytes = view_bytes(buffers, view, view_index)?;
         let stride = stride(view, view_index, row)?;
         let offset = accessor.offset.map_or(0, |offset| offset.0 as usize);
         let count = accessor.count.0 as usize;
         let end = match count.checked_sub(1) {
-            Some(before) => before.checked_mul(stride).and_then(|n| n.checked_add(row)),
+            Some(last) => last.checked_mul(stride).and_then(|n| n.checked_add(row)),
             None => Some(0),
         };
         let bytes = end
             .and_then(|end| Some(offset..end.checked_add(offset)?))
-            .and_then(|range| viewed.get(range));
+            .and_then(|range| view_bytes.get(range));
         let bytes = bytes.ok_or_else(|| {
             let reason = format!(
-                "is {count}, of {stride} bytes each, from byte {offset} on; bufferViews[{view_index}] \
-                 has only {} bytes",
-                viewed.len()
+                "must fit into the {} bytes of bufferViews[{view_index}], got {count} of {stride} \
+                 bytes each from byte {offset} on",
+                view_bytes.len()
             );
             FieldError::new(at().key("count"), reason)
         })?;
@@ -175,7 +177,7 @@ fn width(shape: &str) -> usize {
 }
 
 /// The bytes of a view. Fails if its buffer is too short.
-fn viewed<'a>(
+fn view_bytes<'a>(
     buffers: &'a GltfBuffers<'_>,
     view: &GltfBufferView,
     index: usize,
@@ -185,9 +187,9 @@ fn viewed<'a>(
     let length = view.length.0 as usize;
     offset.checked_add(length).and_then(|end| buffer.get(offset..end)).ok_or_else(|| {
         let reason = format!(
-            "is {length}, from byte {offset} on; buffers[{}] has only {} bytes",
-            view.buffer.0,
-            buffer.len()
+            "must fit into the {} bytes of buffers[{}], got {length} from byte {offset} on",
+            buffer.len(),
+            view.buffer.0
         );
         FieldError::new(at_view(index).key("byteLength"), reason)
     })
@@ -197,7 +199,7 @@ fn stride(view: &GltfBufferView, index: usize, row: usize) -> Result<usize, Fiel
     let Some(stride) = view.stride else { return Ok(row) };
     let stride = stride.0 as usize;
     if !(4..=252).contains(&stride) || stride < row {
-        let reason = format!("is {stride}; it must be 4 to 252, and {row} or more for its values");
+        let reason = format!("must be from 4 to 252 and at least {row}, got {stride}");
         return Err(FieldError::new(at_view(index).key("byteStride"), reason));
     }
     Ok(stride)

@@ -35,7 +35,8 @@ impl Interpolation {
     }
 }
 
-/// Tolerance for a time to be a key's, in seconds: files have 32-bit times, some with few decimals.
+/// Largest distance from a key at which a time counts as the key's, in seconds: files have 32-bit
+/// times, some with few decimals.
 pub fn tolerance(time: f64) -> f64 {
     const LEAST: f64 = 1e-4;
     const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
@@ -43,9 +44,9 @@ pub fn tolerance(time: f64) -> f64 {
 }
 
 /// Index of a row among a cubic spline's three.
-const ARRIVING: usize = 0;
+const IN_TANGENT: usize = 0;
 const VALUE: usize = 1;
-const LEAVING: usize = 2;
+const OUT_TANGENT: usize = 2;
 
 impl<'a> KeySampler<'a> {
     pub fn new(
@@ -59,24 +60,25 @@ impl<'a> KeySampler<'a> {
         let shape = if part == AnimatedPart::Rotation { "VEC4" } else { "VEC3" };
         let values = AccessorRows::new(file, buffers, output, shape)?;
         if !times.is_float() {
-            let reason = "times must be floats: 5126";
+            let reason = "must be 5126 (float) for times";
             return Err(FieldError::new(at_accessor(input).key("componentType"), reason));
         }
         if !(values.is_float() || part == AnimatedPart::Rotation && values.is_normalized()) {
             let reason =
-                "values must be floats, 5126; rotations can be normalized integers as well";
+                "must be 5126 (float) for values; rotations may also be normalized integers";
             return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
         }
         if times.len() == 0 {
             return Err(FieldError::new(
                 at_accessor(input).key("count"),
-                "is 0; there must be a time",
+                "must be 1 or more, got 0",
             ));
         }
-        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        if values.len() != each * times.len() {
+        let values_per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        if values.len() != values_per_key * times.len() {
             let (count, times) = (values.len(), times.len());
-            let reason = format!("is {count}; it must be {each} for each of the {times} times");
+            let reason =
+                format!("must be {values_per_key} for each of the {times} times, got {count}");
             return Err(FieldError::new(at_accessor(output).key("count"), reason));
         }
         Ok(Self { times, values, part, interpolation })
@@ -88,22 +90,22 @@ impl<'a> KeySampler<'a> {
             let time = self.time(key);
             let follows = key == 0 || self.time(key - 1) < time;
             if !(time.is_finite() && follows) {
-                let reason =
-                    format!("time {key} is {time}; times must be finite and above those before");
+                let reason = format!("times must be finite and increase, got {time} as time {key}");
                 return Err(FieldError::new(at_accessor(input), reason));
             }
         }
         for row in 0..self.values.len() {
             let value: [f64; 4] = self.values.row(row);
             if !value.into_iter().take(self.width()).all(f64::is_finite) {
-                let reason = format!("value {row} has a number that is not finite");
+                let reason =
+                    format!("value {row} must be finite, got {:?}", &value[..self.width()]);
                 return Err(FieldError::new(at_accessor(output), reason));
             }
         }
         if self.part == AnimatedPart::Rotation {
             for key in 0..self.len() {
                 if unit(self.row(key, VALUE)).is_none() {
-                    let reason = format!("rotation {key} is four zeros, which turn nothing");
+                    let reason = format!("rotation {key} must not be four zeros");
                     return Err(FieldError::new(at_accessor(output), reason));
                 }
             }
@@ -123,31 +125,31 @@ impl<'a> KeySampler<'a> {
     }
 
     pub fn point(&self, time: f64) -> DVec3 {
-        let (key, part) = self.place(time);
+        let (key, fraction) = self.locate(time);
         let at = |key| DVec3::from_array(self.row(key, VALUE));
-        match part {
+        match fraction {
             None => at(key),
-            Some(part) if self.interpolation == Interpolation::CubicSpline => {
-                self.cubic(key, part).truncate()
+            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
+                self.cubic(key, fraction).truncate()
             }
-            Some(part) => at(key).lerp(at(key + 1), part),
+            Some(fraction) => at(key).lerp(at(key + 1), fraction),
         }
     }
 
     pub fn rotation(&self, time: f64) -> DQuat {
-        let (key, part) = self.place(time);
+        let (key, fraction) = self.locate(time);
         let at = |key| unit(self.row(key, VALUE)).unwrap_or_default();
-        match part {
+        match fraction {
             None => at(key),
-            Some(part) if self.interpolation == Interpolation::CubicSpline => {
-                unit(self.cubic(key, part).to_array()).unwrap_or_else(|| at(key))
+            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
+                unit(self.cubic(key, fraction).to_array()).unwrap_or_else(|| at(key))
             }
-            Some(part) => at(key).slerp(at(key + 1), part).normalize(),
+            Some(fraction) => at(key).slerp(at(key + 1), fraction).normalize(),
         }
     }
 
     /// The key at or before a time, and the fraction of the way to the next, if between two.
-    fn place(&self, time: f64) -> (usize, Option<f64>) {
+    fn locate(&self, time: f64) -> (usize, Option<f64>) {
         let near = tolerance(time);
         let (mut until, mut after) = (0, self.len());
         while until < after {
@@ -176,9 +178,9 @@ impl<'a> KeySampler<'a> {
         };
         let (s2, s3) = (s * s, s * s * s);
         row(key, VALUE) * (2.0 * s3 - 3.0 * s2 + 1.0)
-            + row(key, LEAVING) * (span * (s3 - 2.0 * s2 + s))
+            + row(key, OUT_TANGENT) * (span * (s3 - 2.0 * s2 + s))
             + row(key + 1, VALUE) * (3.0 * s2 - 2.0 * s3)
-            + row(key + 1, ARRIVING) * (span * (s3 - s2))
+            + row(key + 1, IN_TANGENT) * (span * (s3 - s2))
     }
 
     /// The values of a key.

@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use super::file::{GltfFile, GltfSkin};
+use super::file::{GltfFile, GltfSkin, index_rule};
 use super::nodes::NodeTree;
 use crate::io::field_error::FieldError;
 use crate::io::gltf::names::UniqueNames;
@@ -47,38 +47,39 @@ impl SkinJoints {
     ) -> Result<Self, FieldError> {
         let at = at_skin(index).key("joints");
         if skin.joints.is_empty() {
-            return Err(FieldError::new(at, "must have a joint"));
+            return Err(FieldError::new(at, "must have at least one joint"));
         }
         // Tips are joints in the file, but not in the skeleton.
         if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
             return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
         }
         let mut seen = HashSet::new();
-        for (place, joint) in skin.joints.iter().enumerate() {
+        for (position, joint) in skin.joints.iter().enumerate() {
             let joint = joint.0 as usize;
-            let wrong = |reason| FieldError::new(at.clone().index(place), reason);
+            let error = |reason| FieldError::new(at.clone().index(position), reason);
             if joint >= file.nodes.0.len() {
-                return Err(wrong(format!("there is no node {joint}")));
+                return Err(error(index_rule("nodes", file.nodes.0.len(), joint)));
             }
             if !seen.insert(joint) {
-                return Err(wrong(format!("node {joint} is already a joint")));
+                return Err(error(format!("joints must be unique, got node {joint} twice")));
             }
         }
         let listed: Vec<usize> = skin.joints.iter().map(|joint| joint.0 as usize).collect();
         Ok(Self::sorted(nodes, &listed))
     }
 
-    /// SkinJoints in an order in which parents come before their children, and otherwise as it was.
+    /// Sorts the joints so that parents come before their children, otherwise in the listed order.
     fn sorted(nodes: &NodeTree, listed: &[usize]) -> Self {
-        let above = nearest_above(nodes, listed);
+        let parent_of = nearest_listed_ancestors(nodes, listed);
         let mut joint_of = vec![None; nodes.parents.len()];
         let mut joints = Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new() };
         for &node in listed {
             let unplaced = |node: &usize| joint_of[*node].is_none();
-            let path = std::iter::successors(Some(node), |node| above[*node]).take_while(unplaced);
+            let path =
+                std::iter::successors(Some(node), |node| parent_of[*node]).take_while(unplaced);
             for node in path.collect::<Vec<_>>().into_iter().rev() {
                 joint_of[node] = Some(joints.nodes.len());
-                joints.parents.push(above[node].and_then(|above| joint_of[above]));
+                joints.parents.push(parent_of[node].and_then(|parent| joint_of[parent]));
                 joints.nodes.push(node);
             }
         }
@@ -88,13 +89,13 @@ impl SkinJoints {
 }
 
 /// For each node, its nearest listed ancestor.
-fn nearest_above(nodes: &NodeTree, listed: &[usize]) -> Vec<Option<usize>> {
+fn nearest_listed_ancestors(nodes: &NodeTree, listed: &[usize]) -> Vec<Option<usize>> {
     let mut is_listed = vec![false; nodes.parents.len()];
     listed.iter().for_each(|node| is_listed[*node] = true);
-    let mut above = vec![None; nodes.parents.len()];
+    let mut ancestors = vec![None; nodes.parents.len()];
     for &node in &nodes.order {
-        above[node] = nodes.parents[node]
-            .and_then(|parent| if is_listed[parent] { Some(parent) } else { above[parent] });
+        ancestors[node] = nodes.parents[node]
+            .and_then(|parent| if is_listed[parent] { Some(parent) } else { ancestors[parent] });
     }
-    above
+    ancestors
 }

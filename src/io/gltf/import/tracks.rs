@@ -1,7 +1,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::buffers::GltfBuffers;
-use super::file::{GltfAnimation, GltfChannel, GltfFile};
+use super::file::{GltfAnimation, GltfChannel, GltfFile, index_rule};
 use super::nodes::{NodeTransform, NodeTree, TransformParts, at_node};
 use super::part::AnimatedPart;
 use super::sampler::{Interpolation, KeySampler};
@@ -19,7 +19,7 @@ struct NodeTrack<'a> {
     sampler: KeySampler<'a>,
 }
 
-/// An animation channel that is used, with its field and its accessors.
+/// An animation channel that is used, with the path of its animation and its accessors.
 pub struct UsedChannel<'a> {
     node: usize,
     part: AnimatedPart,
@@ -30,7 +30,7 @@ pub struct UsedChannel<'a> {
 }
 
 /// The channels of an animation that move a needed node.
-pub fn chosen<'a>(
+pub fn used_channels<'a>(
     animation: &GltfAnimation,
     at: &'a JsonPath,
     nodes: &NodeTree,
@@ -40,28 +40,28 @@ pub fn chosen<'a>(
     let mut all = Vec::new();
     for (index, channel) in animation.channels.0.iter().enumerate() {
         let at_channel = || at.clone().key("channels").index(index);
-        let Some((node, part)) = moved(channel) else { continue };
+        let Some((node, part)) = animated_part(channel) else { continue };
         let Some(is_needed) = is_needed.get(node) else {
-            let reason = format!("there is no node {node}");
+            let reason = index_rule("nodes", nodes.parents.len(), node);
             return Err(FieldError::new(at_channel().key("target").key("node"), reason));
         };
         if !is_needed {
             continue;
         }
         if let NodeTransform::Matrix(_) = nodes.locals[node] {
-            let reason = "a node that moves cannot have a matrix";
+            let reason = "must not be given for an animated node";
             return Err(FieldError::new(at_node(node).key("matrix"), reason));
         }
         if !seen.insert((node, part)) {
-            let reason = format!("an earlier channel moves the same part of node {node}");
+            let reason = format!("target must be unique, got the same part of node {node} twice");
             return Err(FieldError::new(at_channel(), reason));
         }
-        let place = channel.sampler.0 as usize;
-        let Some(sampler) = animation.samplers.0.get(place) else {
-            let reason = format!("there is no sampler {place}");
+        let sampler_index = channel.sampler.0 as usize;
+        let Some(sampler) = animation.samplers.0.get(sampler_index) else {
+            let reason = index_rule("samplers", animation.samplers.0.len(), sampler_index);
             return Err(FieldError::new(at_channel().key("sampler"), reason));
         };
-        let at_sampler = || at.clone().key("samplers").index(place);
+        let at_sampler = || at.clone().key("samplers").index(sampler_index);
         let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
         let interpolation = Interpolation::new(name).ok_or_else(|| {
             let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
@@ -73,7 +73,8 @@ pub fn chosen<'a>(
     Ok(all)
 }
 
-fn moved(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
+/// The node and the part that a channel animates; `None` if a skeleton has no such part.
+fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
     let JsonObject(target) = &channel.target;
     let part = match target.path.as_str() {
         "translation" => AnimatedPart::Translation,
@@ -88,10 +89,10 @@ fn moved(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
 pub fn buffers<'a>(
     source: &'a Source,
     file: &GltfFile,
-    chosen: &[UsedChannel<'_>],
+    channels: &[UsedChannel<'_>],
 ) -> Result<GltfBuffers<'a>, FieldError> {
     let accessors: BTreeSet<usize> =
-        chosen.iter().flat_map(|chosen| [chosen.input, chosen.output]).collect();
+        channels.iter().flat_map(|channel| [channel.input, channel.output]).collect();
     let needed: Result<BTreeSet<usize>, FieldError> =
         accessors.into_iter().map(|accessor| super::rows::buffer_of(file, accessor)).collect();
     let needed: Vec<usize> = needed?.into_iter().collect();
@@ -102,13 +103,13 @@ impl<'a> NodeTracks<'a> {
     pub fn new(
         file: &GltfFile,
         buffers: &'a GltfBuffers<'_>,
-        chosen: &[UsedChannel<'_>],
+        channels: &[UsedChannel<'_>],
     ) -> Result<Self, FieldError> {
-        /// Bounds the time for few bytes that many channels share.
+        /// Bounds the time, because many channels can share the same few bytes.
         const MOST_KEYS: usize = 20_000_000;
-        let mut tracks = Vec::with_capacity(chosen.len());
+        let mut tracks = Vec::with_capacity(channels.len());
         let mut keys = 0_usize;
-        for UsedChannel { node, part, interpolation, input, output, at } in chosen {
+        for UsedChannel { node, part, interpolation, input, output, at } in channels {
             let (node, part, accessors) = (*node, *part, [*input, *output]);
             let sampler = KeySampler::new(file, buffers, accessors, part, *interpolation)?;
             keys = keys.saturating_add(sampler.len());
@@ -118,7 +119,7 @@ impl<'a> NodeTracks<'a> {
             }
             tracks.push(NodeTrack { node, part, sampler });
         }
-        for (track, UsedChannel { input, output, .. }) in tracks.iter().zip(chosen) {
+        for (track, UsedChannel { input, output, .. }) in tracks.iter().zip(channels) {
             track.sampler.check([*input, *output])?;
         }
         Ok(Self(tracks))
