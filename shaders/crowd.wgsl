@@ -2,7 +2,7 @@
 
 struct Crowd {
     planes: array<vec4f, 5>, // of the view frustum, normals inwards: left, right, bottom, top, near
-    upper: vec4f, // colours
+    upper: vec4f, // colours of the limbs and joints
     lower: vec4f,
     joint: vec4f,
     eye: vec3f,
@@ -10,22 +10,24 @@ struct Crowd {
     forward: vec3f,
     pixel: f32, // size of a pixel in the world if orthographic, else 0
     arms: u32,
-    stride: u32, // distance between arrays
-    base_radius: f32, // of a limb
+    stride: u32, // distance between arrays, in floats
+    base_radius: f32, // of a limb, in world units
     tip_radius: f32,
 }
 
-const JOINT_RADIUS = 1.12; // times the radius of a limb
+const JOINT_RADIUS = 1.12; // as a multiple of the base radius of a limb
 
 struct Arm {
-    shoulder: vec3f, // all in the world
+    shoulder: vec3f, // all points are in the world
     elbow: vec3f,
     hand: vec3f,
 }
 
 @group(1) @binding(0) var<uniform> crowd: Crowd;
-@group(1) @binding(1) var<storage, read> shoulders: array<f32>; // x, z
-@group(1) @binding(2) var<storage, read> poses: array<f32>; // elbow x, y, z, hand x, y, z, in Root space
+// Arrays of x and z, in the world.
+@group(1) @binding(1) var<storage, read> shoulders: array<f32>;
+// Arrays of elbow x, y and z, hand x, y and z, in Root space.
+@group(1) @binding(2) var<storage, read> poses: array<f32>;
 
 fn arm_at(index: u32) -> Arm {
     let n = crowd.stride;

@@ -1,9 +1,10 @@
-// Arms of a crowd, without meshes: vertices are computed from their indices. Near arms have round limbs
-// and joints, farther ones limbs with few sides, the farthest ones flat limbs that face the eye.
+// Arms of a crowd, without meshes: vertices are computed from their indices. Near arms have round
+// limbs and joints, farther ones limbs with few sides, the farthest ones flat limbs that face the
+// eye.
 
 struct Lod {
-    sides: u32, // of a limb
-    first: u32, // start of the level's list
+    sides: u32, // number of sides of a limb
+    first: u32, // index in `visible` at which the level's list starts
 }
 
 @group(1) @binding(3) var<storage, read> visible: array<u32>;
@@ -23,7 +24,7 @@ struct Vertex {
 
 const TAU = 6.2831853;
 const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 1), vec2u(0, 1));
-const BALL = vec2u(10u, 5u); // around, from pole to pole
+const BALL = vec2u(10u, 5u); // number of cells around, and from pole to pole
 const MIN_RADIUS = 0.4; // of a limb on screen, in pixels
 
 fn unit(v: vec3f, fallback: vec3f) -> vec3f {
@@ -63,7 +64,7 @@ fn ball_vertex(centre: vec3f, index: u32) -> Vertex {
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Surface {
     let arm = arm_at(visible[lod.first + instance]);
-    let limb = lod.sides * 6u; // vertices
+    let limb = lod.sides * 6u; // number of vertices of a limb
     var corner: Vertex;
     var colour = crowd.joint.rgb;
     if index < limb {

@@ -1,9 +1,12 @@
 // Culls the arms of a crowd and sorts the visible ones into one list per level of detail.
 
-@group(1) @binding(3) var<storage, read_write> visible: array<u32>; // one list per level
-@group(1) @binding(4) var<storage, read_write> draws: array<atomic<u32>>; // four arguments per level
+// One list of arm indices per level of detail.
+@group(1) @binding(3) var<storage, read_write> visible: array<u32>;
+// Four arguments of an indirect draw per level of detail.
+@group(1) @binding(4) var<storage, read_write> draws: array<atomic<u32>>;
 
-// Radii of a limb in pixels above which it is drawn round with joints, and round without.
+// Minimum radii of a limb in pixels at which it is drawn round with joints, and round without
+// joints.
 const LOD_RADII = vec2f(3.0, 0.7);
 
 @compute @workgroup_size(256)

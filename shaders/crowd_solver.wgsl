@@ -1,24 +1,27 @@
-// Two-bone solver for every arm of a crowd, with the formulas of `kinematics::two_bone`. The sine and
-// cosine of the twist are inputs, since those of a GPU are inexact.
+// Two-bone solver for every arm of a crowd, with the formulas of `kinematics::two_bone`. The sine
+// and cosine of the twist are inputs, since a GPU computes them inexactly.
 
 struct Crowd {
     arms: u32,
-    stride: u32, // distance between arrays
+    stride: u32, // distance between arrays, in floats
     upper: f32,
     lower: f32,
 }
 
 @group(0) @binding(0) var<uniform> crowd: Crowd;
-@group(0) @binding(1) var<storage, read> targets: array<f32>; // Cursor x, y, z, cosine and sine of the twist
-@group(0) @binding(2) var<storage, read_write> poses: array<f32>; // elbow x, y, z, hand x, y, z
+// Arrays of Cursor x, y and z, cosine and sine of the twist.
+@group(0) @binding(1) var<storage, read> targets: array<f32>;
+// Arrays of elbow x, y and z, hand x, y and z.
+@group(0) @binding(2) var<storage, read_write> poses: array<f32>;
 
-// The power of two at or below a number, and its reciprocal. Scaling by them is exact.
+// The power of two at or below a positive number, and the reciprocal of that power. Scaling by
+// either is exact.
 fn power_of_two_near(value: f32) -> vec2f {
     let power = clamp(bitcast<u32>(value) & 0x7f800000u, 0x00800000u, 0x7e800000u);
     return vec2f(bitcast<f32>(power), bitcast<f32>(0x7f000000u - power));
 }
 
-// Normalized vector; `fallback` if its length is 0.
+// The vector scaled to length 1; `fallback` if its length is 0.
 fn normalize_or(v: vec3f, fallback: vec3f) -> vec3f {
     let largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
     let scaled = v * power_of_two_near(largest).y;
@@ -42,7 +45,8 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
     let cos = targets[3u * n + arm];
     let sin = targets[4u * n + arm];
 
-    // Scaled so that the bones are about 1 long: nothing overflows or underflows.
+    // Lengths are scaled so that the longer bone is about 1 long, which avoids overflow and
+    // underflow.
     let unit = power_of_two_near(max(crowd.upper, crowd.lower));
     let upper = crowd.upper * unit.y;
     let lower = crowd.lower * unit.y;

@@ -1,20 +1,20 @@
 // Sphere of all directions of the Pointer, coloured by the twist reference's gain.
 
 const RIM_OPACITY = 0.3;
-const FAR_OPACITY = 0.65; // times that of the near side
-const LINE_WIDTH = 1.3; // pixels
+const FAR_OPACITY = 0.65; // as a multiple of the near side's opacity
+const LINE_WIDTH = 1.3; // points
 const LINE_OPACITY = 0.55;
-const LEVELS = vec3f(0.6931472, 1.0986123, 1.7917595); // ln 2, ln 3, ln 6: gains 1, 2 and 5
-const MAX_SLOPE = 0.2; // of the level per pixel, above which lines fade out
+const LEVELS = vec3f(0.6931472, 1.0986123, 1.7917595); // ln 2, ln 3, ln 6 for gains 1, 2, 5
+const MAX_SLOPE = 0.2; // change of the level per pixel above which lines fade out
 
 struct Globe {
     centre: vec3f,
     radius: f32,
-    axis: vec3f, // unit, towards a singular direction
+    axis: vec3f, // unit vector in a singular direction
     singular: f32, // number of singular directions: 0, 1 (the axis) or 2 (and its opposite)
     ramp: array<vec4f, 5>, // linear in the logarithm of 1 + gain
     line: vec4f,
-    max_gain: f32, // at the end of the ramp
+    max_gain: f32, // gain at the end of the ramp
 }
 
 @group(1) @binding(0) var<uniform> globe: Globe;
@@ -34,14 +34,14 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     return Side(covering(index, globe.centre, globe.radius), 1.0 - 2.0 * f32(instance));
 }
 
-// Radians that the elbow turns per radian of the Pointer, as `TwistReference::gain`.
+// Radians that the elbow swings per radian that the Pointer turns, as in `TwistReference::gain`.
 fn gain(pointer: vec3f) -> f32 {
     let both = abs(dot(pointer, globe.axis)) / max(length(cross(pointer, globe.axis)), 1e-6);
     let one = length(pointer + globe.axis) / max(length(pointer - globe.axis), 1e-6);
     return select(select(both, one, globe.singular < 1.5), 0.0, globe.singular < 0.5);
 }
 
-// Colour by the logarithm of 1 + gain.
+// Colour for a level, the logarithm of 1 + gain.
 fn ramp(level: f32) -> vec4f {
     let at = level / log(1.0 + globe.max_gain) * 4.0;
     let first = mix(globe.ramp[0], globe.ramp[1], saturate(at));

@@ -1,8 +1,8 @@
-// Glyphs of labels: rectangles of the glyph atlas, in pixels.
+// Glyphs of labels: rectangles of the glyph atlas, drawn at positions in pixels.
 
 struct Instance {
     @location(0) target_rect: vec4f, // left, top, width, height in pixels
-    @location(1) source: vec4f, // rectangle in the atlas, 0 to 1
+    @location(1) source: vec4f, // left, top, width, height in the atlas, from 0 to 1
     @location(2) colour: vec4f,
 }
 

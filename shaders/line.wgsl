@@ -19,7 +19,8 @@ struct Stroke {
     @location(3) @interpolate(flat) dashed: f32,
 }
 
-// The end `a` of a segment, clipped if it is behind the eye.
+// The end `a` of the segment from `a` to `b` in clip space. If only `a` is behind the eye, the end
+// is moved along the segment to just before the eye.
 fn before_eye(a: vec4f, b: vec4f) -> vec4f {
     let part = (NEAREST - a.w) / (b.w - a.w);
     return select(a, mix(a, b, part), a.w < NEAREST && b.w > NEAREST);

@@ -1,20 +1,21 @@
-// The three grids and the ground in front of a pixel's colour. All three planes are intersected analytically
-// and blended from far to near, so that they intersect each other and the arm correctly in one pass. The
-// code has no branches, since software rasterizers gain nothing from them.
+// The three grids and the ground in front of a pixel's colour. All three planes are intersected
+// analytically and blended from far to near, so that they intersect each other and the arm
+// correctly in one pass. The code has no branches, since software rasterizers gain nothing from
+// branches.
 
-const LINE_WIDTH = 1.1; // maximum, in pixels
-const MAX_LINE_WIDTH = 0.012; // cells
+const LINE_WIDTH = 1.1; // points
+const MAX_LINE_WIDTH = 0.012; // limit of `LINE_WIDTH` in cells
 const FINE = 0.4;
-const COARSE = 0.65; // every fifth line
+const COARSE = 0.65; // opacity of every fifth line
 
 struct Layer {
     along: f32,
     colour: vec4f, // premultiplied
 }
 
-// Fraction of a pixel that is covered by lines one cell apart. A line thinner than a pixel is drawn one
-// pixel wide and fainter, and cells smaller than a pixel are averaged, so that nothing flickers (after B.
-// Golus, "The Best Darn Grid Shader (Yet)", 2023).
+// Fraction of a pixel that is covered by lines one cell apart. A line thinner than a pixel is drawn
+// one pixel wide and fainter, and cells smaller than a pixel are averaged, so that nothing flickers
+// (after B. Golus, "The Best Darn Grid Shader (Yet)", 2023).
 fn lines(at: vec2f, pixel: vec2f) -> f32 {
     let nearest = round(at);
     let strength = select(vec2f(FINE), vec2f(COARSE), nearest - round(nearest / 5.0) * 5.0 == vec2f(0.0));
@@ -25,7 +26,8 @@ fn lines(at: vec2f, pixel: vec2f) -> f32 {
     return max(cover.x, cover.y);
 }
 
-// A grid with coloured axes at a point in cells from the origin; `pixel` is the size of a pixel in cells.
+// Premultiplied colour of a grid with coloured axes at a point `at`, in cells from the origin;
+// `pixel` is the size of a pixel in cells.
 fn grid(at: vec2f, pixel: vec2f, axis_u: vec3f, axis_v: vec3f) -> vec4f {
     let cover = lines(at, pixel);
     let axes = saturate(1.0 + 0.9 * view.pixel_scale - abs(at) / pixel) * 0.85;
@@ -37,7 +39,7 @@ fn over(front: vec4f, back: vec4f) -> vec4f {
     return front + back * (1.0 - front.a);
 }
 
-// 1 if a plane is hit before `limit`, else 0.
+// 1 if a plane is hit after the start of a ray and before `limit`, else 0.
 fn met(along: f32, limit: f32) -> f32 {
     return select(0.0, 1.0, along > nearest_along() && along < limit);
 }
@@ -46,7 +48,7 @@ fn pixel_in_cells(at: vec2f) -> vec2f {
     return max(fwidth(at), vec2f(1e-6));
 }
 
-// The colour at distance `limit` along the ray, with all nearer planes blended over it.
+// The colour `behind` at distance `limit` along a ray, with all nearer planes blended over it.
 fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
     let along = -ray.origin / ray.direction;
     let on_yz = ray.origin + ray.direction * along.x;

@@ -1,8 +1,8 @@
-// Soft shadow of a limb on the ground. The limb is a capsule, and the key light has a width, so that the
-// shadow gets softer and fainter with the height of the limb.
+// Soft shadow of a limb on the ground. The limb is a capsule, and the key light has a width, so
+// that the shadow gets softer and fainter with the height of the limb.
 
 const LIGHT_WIDTH = 0.16;
-const CONTACT = 0.35; // of the radius: how soft the shadow is where the limb touches the ground
+const CONTACT = 0.35; // softness where the limb touches the ground, as a fraction of its radius
 
 struct Instance {
     @location(0) base: vec4f, // centre, radius
@@ -16,14 +16,14 @@ struct Ground {
     @location(2) @interpolate(flat) tip: vec4f,
 }
 
-// Centre of a ball's shadow on the ground, and its radius.
+// Centre (x and z) of a ball's shadow on the ground, and radius of the shadow.
 fn shadow_of(ball: vec4f) -> vec3f {
     let height = ball.y / KEY_DIRECTION.y;
     let point = ball.xyz - KEY_DIRECTION * height;
     return vec3f(point.xz, (ball.w * (1.0 + CONTACT) + height * LIGHT_WIDTH) / KEY_DIRECTION.y);
 }
 
-// Corners of a rectangle around the shadows of both ends.
+// Corner of a rectangle on the ground around the shadows of both ends.
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Ground {
     let from_base = shadow_of(i.base);
@@ -38,7 +38,8 @@ fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Ground {
     return Ground(view.clip_from_world * vec4f(point, 1.0), point, i.base, i.tip);
 }
 
-// Finds the closest point of the limb's axis to the ray from the ground to the light.
+// Computes the opacity of the shadow from the point of the limb's axis that is closest to the ray
+// from the ground to the light.
 @fragment
 fn fragment(g: Ground) -> @location(0) vec4f {
     let axis = g.tip.xyz - g.base.xyz;

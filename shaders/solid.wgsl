@@ -1,5 +1,5 @@
-// Instanced tapered cylinders and balls. A vertex has a position along the solid and on the rim there; a ball
-// is a solid of length 0 whose rim is a unit sphere.
+// Instanced tapered cylinders and balls. A vertex has a position along the solid and a position on
+// the rim there. A ball is a solid of length 0 whose rim is a unit sphere.
 
 struct Vertex {
     @location(0) along: f32, // 0 base, 1 tip
@@ -13,13 +13,13 @@ struct Instance {
     @location(5) z_tip_radius: vec4f,
     @location(6) origin: vec3f,
     @location(7) colour: vec4f,
-    @location(8) stripes: vec2f, // 1 or 0, winding
+    @location(8) stripes: vec2f, // 1 with stripes or 0 without, winding in radians
 }
 
 struct Surface {
     @builtin(position) position: vec4f,
     @location(0) world: vec3f,
-    // Centroid sampling keeps it within the solid at its edges.
+    // At the edges of a solid, centroid sampling takes the normal from inside the solid.
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(flat) colour: vec4f,
     @location(3) around_along: vec3f, // position on the rim and along the solid
@@ -27,7 +27,7 @@ struct Surface {
 }
 
 const STRIPES = 5.0;
-const STRIPE_WIDTH = 0.13; // of the distance between two stripes
+const STRIPE_WIDTH = 0.13; // as a fraction of the distance between two stripes
 const STRIPE_SHADE = 0.3;
 
 @vertex
@@ -50,8 +50,8 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     );
 }
 
-// Darkness of the stripes at a pixel. The angle around the solid has a seam, so that its derivative is computed
-// from the position on the rim.
+// Darkness of the stripes at a pixel. The angle around the solid jumps at a seam, so its derivative
+// is computed from the position on the rim instead.
 fn stripe_shade(s: Surface) -> f32 {
     let rim = s.around_along.xy;
     let turn = vec2f(
@@ -81,7 +81,7 @@ fn fragment(s: Surface) -> @location(0) vec4f {
     return vec4f(shaded(s), 1.0);
 }
 
-// The part that is hidden by other things.
+// Flat see-through colour of a guide where other surfaces hide it.
 @fragment
 fn fragment_hidden(s: Surface) -> @location(0) vec4f {
     return vec4f(s.colour.rgb, 0.38);

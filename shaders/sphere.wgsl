@@ -1,8 +1,8 @@
-// A see-through sphere, intersected analytically: a square that covers it, and the intersection with a
-// pixel's ray. Also correct from inside, where the near side is behind the eye.
+// A see-through sphere, drawn as a square that covers it and intersected analytically with the ray
+// of each pixel. Also correct from inside, where the near side is behind the eye.
 
-// Clip position of a corner of a square that faces the eye and covers the sphere, or the whole picture from
-// inside. The fragment shader sets the depth.
+// Clip position of a corner of a square that faces the eye and covers the sphere, or the whole
+// picture if the eye is inside the sphere. The fragment shader sets the depth.
 fn covering(index: u32, centre: vec3f, radius: f32) -> vec4f {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     let to_centre = centre - view.eye;
@@ -26,12 +26,12 @@ fn covering(index: u32, centre: vec3f, radius: f32) -> vec4f {
 
 struct Met {
     point: vec3f,
-    cover: f32, // coverage of the pixel; 0 behind the eye
+    cover: f32, // fraction of the pixel that is covered; 0 behind the eye
     grazing: f32, // 0 if the ray is perpendicular to the surface, 1 at the rim
     hides_far: f32, // 1 if the near side is in front of the eye, else 0
 }
 
-// Intersection with the near (-1) or far (1) side.
+// Intersection of a ray with the near (`side` = -1) or the far side (`side` = 1) of a sphere.
 fn meet(ray: Ray, centre: vec3f, radius: f32, side: f32) -> Met {
     let squared = dot(ray.direction, ray.direction);
     let from_centre = ray.origin - centre;
@@ -42,7 +42,8 @@ fn meet(ray: Ray, centre: vec3f, radius: f32, side: f32) -> Met {
     let along = middle + half_along * side;
     let size = pixel_size(middle);
     let edge = saturate(0.5 + (radius - miss) / size) * saturate(radius / size);
-    // Half the chord over the radius is the cosine between the normal and the ray, on both sides.
+    // The ratio of half the chord to the radius is the cosine of the angle between the normal and
+    // the ray, on both sides.
     return Met(
         ray.origin + ray.direction * along,
         edge * select(0.0, 1.0, along > nearest_along()),
@@ -57,7 +58,7 @@ fn rim(grazing: f32) -> f32 {
     return squared * squared * grazing;
 }
 
-// Depth of a point, always in front of the sky.
+// Clip depth of a point, kept above 0, which is the depth of the sky.
 fn depth_of(point: vec3f) -> f32 {
     let clip = view.clip_from_world * vec4f(point, 1.0);
     return max(clip.z / clip.w, 1e-37);

@@ -1,5 +1,5 @@
-// Uniforms and functions that all shaders of a scene share. Colours are sRGB; light is added in linear
-// space and then encoded.
+// Uniforms and functions that all shaders of a scene share. Colours are sRGB; light is added in
+// linear space and then encoded.
 
 struct View {
     clip_from_world: mat4x4f,
@@ -14,9 +14,9 @@ struct View {
     planes_centre: vec3f,
     planes_radius: f32,
     size: vec2f,
-    cell: f32, // of the grids
+    cell: f32, // width of a grid cell
     padding: f32,
-    shown: vec4f, // 1 or 0: the grids in which x, y, z is 0; the ground
+    shown: vec4f, // 1 or 0 for the grids at x = 0, y = 0, z = 0 and the ground
     sky_top: vec4f,
     sky_bottom: vec4f,
     ground: vec4f,
@@ -39,7 +39,7 @@ struct Ray {
     direction: vec3f, // not normalised
 }
 
-// Ray through a pixel.
+// Ray through a position in the picture, in pixels.
 fn pixel_ray(position: vec2f) -> Ray {
     let step = 2.0 / view.size;
     let at = vec2f(position.x * step.x - 1.0, 1.0 - position.y * step.y);
@@ -50,7 +50,8 @@ fn pixel_ray(position: vec2f) -> Ray {
     );
 }
 
-// Minimum distance along a ray: an orthographic view has no eye to be behind.
+// Minimum distance along a ray at which surfaces are visible: 0 at the eye in perspective,
+// unlimited in an orthographic view, which has no eye.
 fn nearest_along() -> f32 {
     return -1e30 * view.orthographic;
 }
@@ -83,18 +84,20 @@ fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     return encoded(decoded(colour) * (ambient + key + fill));
 }
 
-// Radii at which the planes fade out, in units of the planes' radius.
+// Radii at which the ground and the vertical grids have faded out, as multiples of the planes'
+// radius.
 const FLOOR_RADIUS = 2.2;
 const WALL_RADIUS = 1.0;
 
-// 1 at the centre of the planes, fading to 0 at `radius` times their radius.
+// Opacity of a plane at a point: 1 at the centre of the planes, fading to 0 at `radius` times the
+// planes' radius.
 fn presence(point: vec3f, radius: f32) -> f32 {
     let out = (point - view.planes_centre) / (view.planes_radius * radius);
     let near = 1.0 - saturate(dot(out, out));
     return near * near;
 }
 
-// Fades distant things into the sky.
+// Fades a colour into the sky with its distance `along` the ray of the pixel.
 fn fogged(colour: vec3f, position: vec2f, along: f32) -> vec3f {
     let depth = along / (view.focus_distance * 7.0);
     return mix(sky(position), colour, exp(-depth * depth));

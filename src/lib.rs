@@ -13,19 +13,20 @@
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!
-//! Skeletons of any shape have [iterative solvers](kinematics::chain_ik) for any number of targets.
+//! Skeletons of any shape, with any number of targets, have [iterative
+//! solvers](kinematics::chain_ik).
 //!
 //! # Architecture
 //!
-//! Each module uses only modules above it in this table, and no two files of a module import each
-//! other, directly or in a circle (`tests/architecture.rs`).
+//! Each module uses only modules above it in this table. Within a module, no files import each
+//! other, neither directly nor through other files (`tests/architecture.rs`).
 //!
 //! | module | contents | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | mathematics: two bones, one or a batch, twist references, soft limits, IK and FK of the arm, a two-bone job for other programs' skeletons, skeletons, chain solvers, path following, splines | |
+//! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons; skeletons; chain solvers; path following; splines | |
 //! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; crowds of arms | |
 //! | `document` | saved state: arm, skeleton with targets, keys, timeline, camera, display | `document` |
-//! | `io` | files: documents, Scotty3D's skeletons, glTF and BVH in; documents, glTF, BVH, CSV out; lines of `ik-arm solve` | `document` |
+//! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH and CSV; reads and writes lines of `ik-arm solve` | `document` |
 //! | `session` | the open document and state that is not saved; actions, undo and redo | `document` |
 //! | `scene` | what to draw, as plain lists | `document` |
 //! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
@@ -39,8 +40,10 @@
 //! 1. Panels and viewport read the [session](session::Session) and push
 //!    [actions](session::Action).
 //! 2. [`apply`](session::Session::apply) checks each action, edits the document and solves again.
-//! 3. If there was an action, the panels run once more, so that none shows the state before it.
-//! 4. The [scene](scene::Scene) is refilled from the document and drawn if it changed; then the panels.
+//! 3. If there was an action, the panels run once more, so that no panel shows the state from
+//!    before the action.
+//! 4. The [scene](scene::Scene) is refilled from the document and drawn if it changed; then the
+//!    panels are drawn.
 //!
 //! Nothing is drawn while nothing changes.
 //!
@@ -48,12 +51,13 @@
 //!
 //! - Right-handed axes: +x right, +y up, +z towards the viewer.
 //! - Angles are radians in code, degrees on screen and on the command line.
-//! - Where two spaces meet, a point's name carries its space.
-//! - A target out of reach is a value, not an error. Errors name the file, the field and the rule.
-//! - A pose is a function of document and time. All state that shapes it is in the document, except
-//!   unkeyed edits of keyed channels, which last until the time changes.
-//! - Playback writes nothing. Keys of a transported twist are measured from the stereographic map, so
-//!   that playing does not depend on the past.
+//! - Where code uses two spaces, the name of a point says which space the point is in.
+//! - A target out of reach gives a result, not an error. Errors name the file, the field and the
+//!   rule.
+//! - A pose is a function of document and time. All state that determines the pose is in the
+//!   document, except unkeyed edits of keyed channels, which last until the time changes.
+//! - Playback writes nothing to the document. Keys of a transported twist are measured from the
+//!   stereographic map, so that a pose does not depend on the poses before it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -10,7 +10,7 @@ const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
 const MIN_SIZE: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
 const ICON: &[u8] = include_bytes!("../../assets/icon-64.png");
 
-/// Attributes of the window: its last position and size, title and icon.
+/// Attributes of the window: title, icon, minimum size, and the size from the previous run.
 pub(super) fn attributes(
     event_loop: &ActiveEventLoop,
     last: Option<WindowSettings>,
@@ -25,7 +25,7 @@ pub(super) fn attributes(
     named(attributes)
 }
 
-/// Last size of the window, limited to the screens.
+/// Size of the window in the previous run, limited to the screens; `SIZE` if it is unknown.
 fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSize<f64> {
     let Some(mut last) = last else {
         return SIZE;

@@ -18,7 +18,7 @@ use crate::session::{
     Action, Actions, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
 };
 
-/// Saves a picture of the viewport, drawn on a device of its own.
+/// Saves a picture of the viewport, drawn on a graphics device of its own.
 pub(super) fn save_picture(
     picture: ViewportPicture,
     path: PathBuf,
@@ -59,7 +59,7 @@ pub(super) fn export(
     };
     let thread = thread::spawn(move || {
         let write = || export::export(&document, &export.path, &options, &progress);
-        // Sent even after a panic: the window allows no other export before.
+        // Sent even after a panic, because the window allows no other export before this event.
         let result = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(write)) {
             Ok(exported) => export_message(&export.path, exported),
             Err(_) => Err("Not exported: the program failed (this is a bug)".to_owned()),
@@ -86,7 +86,7 @@ fn export_message(
     }
 }
 
-/// Reads a file, which may be large.
+/// Reads a file on a thread of its own, because the file may be large.
 pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProxy<UserEvent>) {
     thread::spawn(move || {
         let read = Box::new(io::open(&path, skeleton.as_deref()));
@@ -94,8 +94,8 @@ pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProx
     });
 }
 
-/// Actions for a file that was read: they show its document or its error, and ask which of several skeletons
-/// to open.
+/// Actions for a file that was read: they show the file's document or the error, and ask which of
+/// several skeletons to open.
 pub(super) fn open_actions(
     path: PathBuf,
     has_chosen_skeleton: bool,
@@ -116,7 +116,7 @@ pub(super) fn open_actions(
             format!("Opened {}; {first}, and {} more warnings", path.display(), rest.len())
         }
     };
-    // A file of another program is opened but never overwritten by Save.
+    // Save must not overwrite a file of another program.
     let file = skeletons.is_empty().then(|| path.clone());
     actions.push(FileAction::Opened { document: Box::new(document), file });
     actions.push(ShellAction::Report(message));
@@ -126,9 +126,10 @@ pub(super) fn open_actions(
     actions
 }
 
-/// Opens the system's file dialog in place of one of the program's, starting at `path`.
+/// Opens the system's file dialog in place of `dialog`, starting at `path`.
 pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
-    /// A system without dialogs answers like a user who cancels, but faster than any user.
+    /// An answer before this time comes from a system without file dialogs, which answers like a
+    /// user who cancels.
     const FASTEST_USER: Duration = Duration::from_millis(400);
     let export_extensions = Format::EXTENSIONS.map(|(extension, _)| extension);
     let (name, extensions): (_, &[&str]) = match &dialog {
@@ -165,7 +166,8 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
     });
 }
 
-/// Action for the answer of the system's dialog; without one, the program's own dialog opens.
+/// Action for the answer of the system's file dialog. If the system has no file dialog, the action
+/// opens the program's own dialog.
 pub(super) fn path_action(dialog: PathDialog, choice: PathChoice) -> Action {
     match (choice, dialog) {
         (PathChoice::Path(path), PathDialog::Open { .. }) => {

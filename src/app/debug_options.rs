@@ -3,8 +3,9 @@ use std::env;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{KeyCode, PhysicalKey};
 
-/// Options of `IK_ARM_DEBUG`, for the program's own tests. With any value, F12 destroys the graphics device,
-/// like the reset of a driver; with `fail-devices:3`, the first three attempts to create it again fail.
+/// Options from the environment variable `IK_ARM_DEBUG`, for the program's own tests. With any
+/// value, F12 destroys the graphics device, like the reset of a driver; with `fail-devices:3`, the
+/// first three attempts to create the device again fail.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct DebugOptions {
     is_enabled: bool,
@@ -37,7 +38,7 @@ impl DebugOptions {
             )
     }
 
-    /// Whether the device that is being created is to fail.
+    /// Whether the next attempt to create the device is to fail; counts this attempt.
     pub fn fails_device(&mut self) -> bool {
         let fails = self.failing_devices > 0;
         self.failing_devices = self.failing_devices.saturating_sub(1);

@@ -1,24 +1,24 @@
 use std::time::Duration;
 
-/// Attempts to create a lost graphics device again since the last frame that was presented.
+/// Counter of attempts to create a lost graphics device again since the last presented frame.
 #[derive(Debug, Default)]
 pub(super) struct DeviceRetries {
     count: usize,
 }
 
 impl DeviceRetries {
-    /// Pauses before the attempts: drivers that are reset or updated are back within seconds.
+    /// Pauses before the attempts: a driver that is reset or updated is back within seconds.
     const PAUSES: [Duration; 3] =
         [Duration::ZERO, Duration::from_millis(500), Duration::from_secs(2)];
 
-    /// Counts an attempt and returns the pause before it; `None` after the last attempt.
+    /// Counts an attempt and returns the pause before it; `None` if no attempt is left.
     pub fn next_pause(&mut self) -> Option<Duration> {
         let pause = Self::PAUSES.get(self.count).copied();
         self.count += 1;
         pause
     }
 
-    /// Whether no frame was presented since the last loss.
+    /// Whether the device was lost and no frame was presented since.
     pub fn is_retrying(&self) -> bool {
         self.count > 0
     }

@@ -9,9 +9,9 @@ use super::window::AppWindow;
 use crate::io;
 use crate::session::{Action, Effect, FileAction, Session};
 
-/// Effects of actions outside the session.
+/// Execution of the effects that a session requests.
 impl AppWindow {
-    /// Applies an action that does not come from the panels.
+    /// Applies an action that does not come from the panels, and carries out its effect.
     pub fn act(
         &mut self,
         action: Action,
@@ -36,7 +36,8 @@ impl AppWindow {
         }
     }
 
-    /// Waits until a cancelled export has removed its files.
+    /// Waits until the export's thread, if there is one, has ended: a cancelled export removes its
+    /// files first.
     pub fn await_export(&mut self) {
         if let Some(thread) = self.exporting.take()
             && thread.join().is_err()

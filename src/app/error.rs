@@ -29,9 +29,9 @@ pub enum AppError {
          {recovery}"
     )]
     GraphicsLost {
-        /// Last attempt's error.
+        /// Error of the last attempt.
         source: GraphicsError,
-        /// Where unsaved changes are.
+        /// Sentence that tells whether unsaved changes are kept, and in which file.
         recovery: String,
     },
 }

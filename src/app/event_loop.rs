@@ -16,7 +16,7 @@ use super::window::{AppWindow, Repaint};
 use crate::document::Document;
 use crate::session::{Dialog, FileAction, Session, ShellAction};
 
-/// Opens the window, with a document and its file if given, and returns when it is closed.
+/// Opens the window, with a document and its file if given, and returns when the window is closed.
 ///
 /// # Errors
 ///
@@ -60,7 +60,7 @@ struct App {
     session: Session,
     settings: Settings,
     recovery: Recovery,
-    /// Unsaved document of a run that did not end cleanly.
+    /// Unsaved document of an earlier run that did not end cleanly.
     recovered: Option<RecoveredFile>,
     state: AppState,
 }
@@ -94,7 +94,8 @@ impl App {
         });
     }
 
-    /// Ends after the graphics device is lost for good, with unsaved changes kept for the next start.
+    /// Ends the program after the graphics device is lost for good; unsaved changes are kept for
+    /// the next start.
     fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
         let recovery = match self.recovery.leave(&self.session) {
             Ok(None) => "All changes are saved".to_owned(),
@@ -120,7 +121,8 @@ impl App {
         }
     }
 
-    /// Removes a recovered file once it was declined, or this run has it saved or backed up.
+    /// Removes the recovered file once the user has opened or declined its document, and this run
+    /// has no unsaved changes without a backup.
     fn remove_settled_recovery(&mut self) {
         let is_settled = self.session.has_settled_recovery();
         let is_safe = !self.session.is_unsaved() || self.recovery.has(self.session.revision());

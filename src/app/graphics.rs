@@ -13,7 +13,7 @@ use crate::render::{Canvas, Counts, CrowdError, Gpu, GpuTimer, Renderer, TimedPa
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
-/// Everything that lives on the graphics device: lost with it, and created again.
+/// Everything that lives on the graphics device, and is lost and created again with it.
 pub(super) struct Graphics {
     pub(super) egui_renderer: egui_wgpu::Renderer,
     renderer: Renderer,
@@ -24,11 +24,11 @@ pub(super) struct Graphics {
     /// Whether the surface still works but should be configured again.
     pub(super) is_stale: bool,
     pub(super) gpu: Gpu,
-    /// Error of the last crowd that was drawn.
+    /// Error of the latest crowd that was drawn; `None` if there was no error.
     crowd_error: Option<CrowdError>,
 }
 
-/// The last scene that was drawn, as a texture for the panels.
+/// The scene that was drawn most recently, as a texture for the panels.
 struct SceneTexture {
     canvas: Canvas,
     texture: TextureId,
@@ -38,8 +38,8 @@ struct SceneTexture {
 }
 
 impl Graphics {
-    /// Creates the graphics of a window that has none, since a window has one surface at a time. The panels'
-    /// font atlas is uploaded completely.
+    /// Creates the graphics of a window and uploads the panels' whole font atlas. Earlier graphics
+    /// of the window must be dropped first, because a window has one surface at a time.
     pub fn new(
         display: OwnedDisplayHandle,
         window: &Arc<Window>,
@@ -55,7 +55,7 @@ impl Graphics {
             let gpu = Gpu::new(instance, Some(&surface))?;
             Ok::<_, GraphicsError>((gpu, surface))
         })?;
-        // Fails only after the window is closed.
+        // Sending fails only after the window is closed.
         gpu.on_failure(move || drop(proxy.send_event(UserEvent::GraphicsFailed)));
         let config = configuration(&gpu, &surface, window)?;
         let mut egui_renderer =
@@ -82,38 +82,42 @@ impl Graphics {
         Ok(graphics)
     }
 
+    /// Checks that the device still works.
+    ///
     /// # Errors
     ///
-    /// If the device has failed, as far as it has reported so.
+    /// If the device has reported a failure by now.
     pub fn check(&self) -> Result<(), GraphicsError> {
         Ok(self.gpu.check()?)
     }
 
-    /// Times of the crowd, if one is shown.
+    /// Time taken to solve the crowd; `None` if no crowd is shown or the crowd has failed.
     pub fn crowd_times(&self) -> Option<CrowdTimes> {
         self.renderer.crowd_times().ok().flatten()
     }
 
-    /// The scene's texture in egui.
+    /// Identifier in egui of the texture that shows the scene.
     pub fn picture(&self) -> TextureId {
         self.picture.texture
     }
 
-    /// Whether the device measures its times.
+    /// Whether the device can measure the time that it takes for a frame.
     pub fn has_clock(&self) -> bool {
         self.gpu_timer.is_some()
     }
 
-    /// A frame and the device's time for it, if known by now.
+    /// Number of an earlier frame and the device's time for it; `None` if no further time is known
+    /// yet.
     pub fn read_clock(&mut self) -> Option<(u64, Duration)> {
-        // A lost device reports so when polled, and its buffers cannot be read.
+        // A lost device reports its loss when polled, and its buffers cannot be read.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.check().ok()?;
         self.gpu_timer.as_mut()?.read(&self.gpu)
     }
 
-    /// Draws the scene unless it is on the canvas already, and returns the number of things in it and of
-    /// bytes uploaded now. Keeps the scene and leaves the previous one in its place, to be refilled.
+    /// Draws the scene, unless the canvas shows it already. Returns the numbers of things in the
+    /// scene and of bytes uploaded by this call. Keeps the drawn scene and leaves the previous
+    /// scene in `scene`, to be refilled. `scale` is in pixels per point.
     pub fn draw_scene(
         &mut self,
         scene: &mut Scene,
@@ -148,7 +152,7 @@ impl Graphics {
         self.renderer.counts()
     }
 
-    /// Replaces the texture in egui by that of a new canvas.
+    /// Points egui's texture for the scene to a new canvas.
     fn show_canvas(&mut self) {
         self.egui_renderer.update_egui_texture_from_wgpu_texture(
             &self.gpu.device,
@@ -159,8 +163,8 @@ impl Graphics {
     }
 }
 
-/// Runs graphics code and turns panics into errors: `wgpu` and `egui_wgpu` panic in many places if the
-/// device is lost meanwhile.
+/// Runs graphics code and turns panics into errors: `wgpu` and `egui_wgpu` panic in many places if
+/// the device is lost while they run.
 pub(super) fn guarded<T>(
     draw: impl FnOnce() -> Result<T, GraphicsError>,
 ) -> Result<T, GraphicsError> {
@@ -197,7 +201,7 @@ fn configuration(
         .ok_or_else(unsupported)?;
     let formats = surface.get_capabilities(&gpu.adapter).formats;
     config.format = egui_wgpu::preferred_framebuffer_format(&formats).map_err(|_| unsupported())?;
-    // Waits for vsync without tearing; every surface supports it.
+    // Waits for vsync without tearing; every surface supports this mode.
     config.present_mode = wgpu::PresentMode::Fifo;
     config.desired_maximum_frame_latency = 1;
     surface.configure(&gpu.device, &config);

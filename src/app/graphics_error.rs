@@ -30,7 +30,7 @@ pub enum GraphicsError {
     /// A graphics library panicked.
     #[error("a graphics library panicked: {0}")]
     Panic(String),
-    /// `IK_ARM_DEBUG` lets the device fail.
+    /// `IK_ARM_DEBUG` requested that the device fails.
     #[error("the graphics device failed as requested by IK_ARM_DEBUG")]
     Requested,
 }

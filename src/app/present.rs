@@ -14,7 +14,8 @@ use crate::render::TimedPass;
 /// Outcome of a frame.
 pub(super) enum Presented {
     Shown,
-    /// The surface accepts no frame now. Retry after this time, or when the system requests a redraw.
+    /// The surface accepts no frame now. Retry after this time, or, for `None`, when the system
+    /// requests a redraw.
     Later(Option<Duration>),
 }
 
@@ -26,7 +27,7 @@ enum Acquired {
 
 /// Drawing the panels on the surface.
 impl Graphics {
-    /// Time between frames that are not visible.
+    /// Time between frames while the window is hidden.
     pub const HIDDEN_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
     pub fn update_textures(
@@ -56,12 +57,14 @@ impl Graphics {
         }
     }
 
-    /// Draws the panels on the surface and presents it. Returns the time spent waiting for the surface, too.
-    /// `drawn` is the number of earlier frames.
+    /// Draws the panels on the surface and presents it. Returns the outcome and the time spent
+    /// waiting for the surface. `scale` is in pixels per point; `drawn` is the number of earlier
+    /// frames.
     ///
     /// # Errors
     ///
-    /// If the surface or the device has failed, as far as the device has reported so; see [`Self::finish`].
+    /// If the surface has failed, or if the device has reported a failure by now; see
+    /// [`Self::finish`].
     pub fn present(
         &mut self,
         panels: &[ClippedPrimitive],
@@ -133,7 +136,7 @@ impl Graphics {
     ///
     /// # Errors
     ///
-    /// If it fails or does not respond within ten seconds.
+    /// If the device fails or does not respond within ten seconds.
     pub fn finish(&self) -> Result<(), GraphicsError> {
         let timeout = Some(Duration::from_secs(10));
         self.gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout })?;
@@ -165,7 +168,7 @@ impl Graphics {
             Current::Occluded => Ok(Acquired::Later(None)),
             Current::Lost => Err(GraphicsError::SurfaceLost),
             Current::Validation => {
-                // A lost device reports so when polled.
+                // A lost device reports its loss when polled.
                 let _ = self.gpu.device.poll(wgpu::PollType::Poll);
                 self.check()?;
                 Err(GraphicsError::NoFrame)

@@ -1,5 +1,5 @@
-//! Recovery of unsaved changes: the document is backed up every half minute and at a crash, and a run finds
-//! the backups of runs that did not end cleanly.
+//! Recovery of unsaved changes: the document is backed up every half minute and at a crash, and a
+//! later start of the program finds the backups of runs that did not end cleanly.
 
 use std::fs::{self, File};
 use std::io;
@@ -17,7 +17,7 @@ use crate::document::Document;
 use crate::io::{self as files, SaveError};
 use crate::session::Session;
 
-/// Maximum age of a backup.
+/// Time from a change of the document to its backup.
 const INTERVAL: Duration = Duration::from_secs(30);
 
 /// A document and its file.
@@ -27,7 +27,7 @@ pub(super) struct Backup {
     pub file: Option<PathBuf>,
 }
 
-/// A backup on disk.
+/// Contents of a backup file.
 #[derive(Serialize, Deserialize)]
 struct BackupFile {
     file: Option<PathBuf>,
@@ -38,11 +38,11 @@ struct BackupFile {
 /// The backup of a run that did not end cleanly.
 pub(super) struct RecoveredFile {
     pub backup: Backup,
-    /// Path of the backup.
+    /// Path of the backup file.
     pub path: PathBuf,
 }
 
-/// Reasons why there is no backup.
+/// Reasons why a backup cannot be written.
 #[derive(Debug, Error)]
 pub(super) enum BackupError {
     #[error("there is no folder for backups")]
@@ -51,7 +51,7 @@ pub(super) enum BackupError {
     Save(#[from] SaveError),
 }
 
-/// Backup path of this run. Other runs ignore the backup while the lock is held.
+/// Backup file of this run. Other runs ignore the backup while this run holds the lock file.
 struct BackupSlot {
     path: PathBuf,
     lock: PathBuf,
@@ -61,15 +61,16 @@ struct BackupSlot {
 /// Backs up the document of this run.
 pub(super) struct Recovery {
     slot: Option<Arc<BackupSlot>>,
-    /// Backup that a crash writes; `None` if there are no unsaved changes.
+    /// Backup to write at a crash; `None` if there are no unsaved changes.
     newest: Arc<Mutex<Option<Backup>>>,
-    /// Revision of `newest`.
+    /// Revision of the document in `newest`.
     newest_revision: Option<u64>,
-    /// Revision on disk.
+    /// Revision of the backup on disk; `None` if there is no backup.
     written_revision: Option<u64>,
-    /// Time since which the document differs from the one on disk.
+    /// Time since which the document differs from the latest backup; `None` if it does not.
     since: Option<Instant>,
-    /// Revision that is being written, and the thread, which returns whether it was written.
+    /// Revision that is being written, and the writing thread, which returns whether it has
+    /// succeeded.
     writing: Option<(u64, JoinHandle<bool>)>,
 }
 
@@ -97,7 +98,7 @@ impl Recovery {
         }
     }
 
-    /// Finds the newest backup of the runs that did not end cleanly.
+    /// Finds the newest readable backup of the runs that did not end cleanly.
     pub fn find(&self) -> Option<RecoveredFile> {
         let mut backups: Vec<(SystemTime, PathBuf)> = fs::read_dir(folder()?)
             .ok()?
@@ -121,7 +122,8 @@ impl Recovery {
         backups.into_iter().rev().find_map(|(_, path)| read(path))
     }
 
-    /// Writes a backup if one is due. Returns the time of the next call, if a backup is pending.
+    /// Writes a backup if one is due. Returns the time of the next call if a backup is pending,
+    /// else `None`.
     pub fn update(
         &mut self,
         session: &Session,
@@ -156,7 +158,7 @@ impl Recovery {
         let writing = thread::spawn(move || {
             let written = backup.write(&slot.path);
             let is_written = written.is_ok();
-            // Fails only after the window is closed.
+            // Sending fails only after the window is closed.
             let _ = proxy.send_event(match written {
                 Ok(()) => UserEvent::BackedUp,
                 Err(error) => UserEvent::Report(Err(format!("Not backed up: {error}"))),
@@ -167,7 +169,7 @@ impl Recovery {
         None
     }
 
-    /// Sets the backup that a crash writes to the current document.
+    /// Makes the current document the backup to write at a crash.
     fn set_newest(&mut self, session: &Session) {
         self.newest_revision = Some(session.revision());
         let file = session.file().map(Path::to_owned);
@@ -175,7 +177,8 @@ impl Recovery {
         *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(backup);
     }
 
-    /// Notes whether the writing thread has succeeded; after a failure the next backup is due as usual.
+    /// Records the revision as written if the writing thread has succeeded; after a failure, the
+    /// next backup is due as usual.
     fn finish_writing(&mut self) {
         if self.writing.as_ref().is_some_and(|(_, writing)| writing.is_finished())
             && let Some((revision, writing)) = self.writing.take()
@@ -185,12 +188,12 @@ impl Recovery {
         }
     }
 
-    /// Whether a revision is on disk.
+    /// Whether the backup on disk has this revision.
     pub fn has(&self, revision: u64) -> bool {
         self.written_revision == Some(revision)
     }
 
-    /// Removes the backup.
+    /// Removes the backup from memory and from disk.
     fn discard(&mut self) {
         if let Some((_, writing)) = self.writing.take() {
             let _ = writing.join();
@@ -206,7 +209,8 @@ impl Recovery {
         }
     }
 
-    /// Writes unsaved changes for the next start to find, and returns the path; `None` if there are none.
+    /// Writes unsaved changes to the backup file, which the next start finds, and returns its path;
+    /// `None` if there are no unsaved changes.
     pub fn leave(&mut self, session: &Session) -> Result<Option<PathBuf>, BackupError> {
         if !session.is_unsaved() {
             return Ok(None);
@@ -223,7 +227,7 @@ impl Recovery {
         Ok(Some(slot.path.clone()))
     }
 
-    /// Removes the backup and its lock, at a clean end.
+    /// Removes the backup and its lock file when the program ends cleanly.
     pub fn end(&mut self) {
         self.discard();
         if let Some(slot) = self.slot.take() {
@@ -259,12 +263,12 @@ impl Backup {
     }
 }
 
-/// Whether a running program holds a lock.
+/// Whether a running program holds a lock file.
 fn is_held(lock: &Path) -> bool {
     File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)))
 }
 
-/// Removes the lock of a run that ended without a backup.
+/// Removes `lock` if it is the lock file of a run that ended without a backup.
 fn remove_stale_lock(lock: &Path) {
     let is_lock = lock.extension().is_some_and(|extension| extension == "lock");
     if is_lock && !lock.with_extension("json").exists() && !is_held(lock) {
@@ -272,7 +276,7 @@ fn remove_stale_lock(lock: &Path) {
     }
 }
 
-/// Removes the backup of another run.
+/// Removes the backup of another run, with its lock file.
 pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(path.with_extension("lock"));
@@ -281,7 +285,7 @@ pub(super) fn remove(path: &Path) {
 /// Writes the newest backup at a panic and at a termination signal.
 fn write_at_crash(slot: Arc<BackupSlot>, newest: Arc<Mutex<Option<Backup>>>) {
     let write = move || {
-        // Not lock, which would deadlock if this thread panicked while it held it.
+        // Not `lock`, which would deadlock if this thread panicked while it held the mutex.
         if let Ok(backup) = newest.try_lock()
             && let Some(backup) = backup.as_ref()
         {

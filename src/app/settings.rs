@@ -13,9 +13,9 @@ use crate::session::Preferences;
 #[serde(default)]
 pub(super) struct Settings {
     pub preferences: Preferences,
-    /// Files that were opened or saved, the latest first.
+    /// Files that were opened or saved, the most recent first.
     pub recent: Vec<PathBuf>,
-    /// Folder of the last export or picture.
+    /// Folder of the last export or picture; `None` before the first.
     pub export_folder: Option<PathBuf>,
     pub window: Option<WindowSettings>,
     pub layout: IdTypeMap,

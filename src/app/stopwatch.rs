@@ -1,6 +1,7 @@
 use std::time::{Duration, Instant};
 
-/// Returns a function that returns the time since its last call, or since now for the first.
+/// Returns a function that returns the time since its previous call; the first call returns the
+/// time since the function was made.
 pub fn stopwatch() -> impl FnMut() -> Duration {
     let mut last = Instant::now();
     move || {

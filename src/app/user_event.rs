@@ -10,17 +10,17 @@ use crate::session::PathDialog;
 pub enum UserEvent {
     /// Request of a screen reader.
     Accesskit(egui_winit::accesskit_winit::Event),
-    /// Message of a finished background job.
+    /// Message or error of a finished background job.
     Report(Result<String, String>),
-    /// Message of a finished export.
+    /// Message or error of a finished export.
     Exported(Result<String, String>),
-    /// The recovery file is written.
+    /// The backup of unsaved changes was written.
     BackedUp,
     /// The graphics device failed.
     GraphicsFailed,
     /// Answer of the system's file dialog.
     Chosen(PathDialog, PathChoice),
-    /// A file was read; `has_chosen_skeleton` if one of its skeletons was asked for.
+    /// A file was read; `has_chosen_skeleton` if the user chose one of its skeletons.
     Opened { path: PathBuf, has_chosen_skeleton: bool, read: Box<Result<Opened, OpenError>> },
 }
 

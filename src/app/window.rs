@@ -25,7 +25,7 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
 use crate::ui::{self, FrameTime, Machine, style};
 
-/// Time of the next frame.
+/// Time of the next frame, or the reason why there is none.
 pub(super) enum Repaint {
     OnInput,
     At(Instant),
@@ -36,7 +36,7 @@ pub(super) enum Repaint {
 
 /// The window with everything that draws in it.
 pub(super) struct AppWindow {
-    /// `None` while they are lost.
+    /// `None` while the graphics are lost.
     pub(super) graphics: Option<Graphics>,
     retries: DeviceRetries,
     /// Time at which lost graphics are created again.
@@ -47,11 +47,12 @@ pub(super) struct AppWindow {
     machine: Machine,
     overlays: Overlays,
     builder: SceneBuilder,
-    /// The next scene, in the memory of the one before last.
+    /// Scene to refill and draw in the next frame, to reuse its memory; `None` before the first
+    /// frame.
     scene: Option<Scene>,
-    /// Key presses since a file dialog was requested.
+    /// Typed events since a file dialog was requested, held back for that dialog.
     held_keys: Vec<Event>,
-    /// Start of the last frame, if it requested another one at once.
+    /// Start of the previous frame, if that frame requested another one at once.
     moving_since: Option<Instant>,
     frames: u64,
     title: String,
@@ -121,7 +122,7 @@ impl AppWindow {
         self.frames
     }
 
-    /// Passes an event to egui and returns whether it needs a frame.
+    /// Passes an event to egui and returns whether egui needs a new frame.
     pub fn on_event(&mut self, event: &WindowEvent) -> bool {
         if self.debug.destroys_device(event)
             && let Some(graphics) = &self.graphics
@@ -153,7 +154,7 @@ impl AppWindow {
         }
     }
 
-    /// Settings for the next start.
+    /// Settings to save for the next start.
     pub fn settings(&self, session: &Session) -> Settings {
         let ctx = self.egui.egui_ctx();
         Settings {
@@ -210,7 +211,8 @@ impl AppWindow {
         delay.and_then(|delay| started.checked_add(delay)).map_or(Repaint::OnInput, Repaint::At)
     }
 
-    /// Creates lost graphics again. Returns what to do instead of a frame, if there are none.
+    /// Creates lost graphics again. Returns `None` if a frame can be drawn, otherwise when to try
+    /// again or why the program must end.
     fn restore(
         &mut self,
         event_loop: &ActiveEventLoop,
@@ -241,7 +243,8 @@ impl AppWindow {
         None
     }
 
-    /// Drops failed graphics and schedules their creation.
+    /// Drops failed graphics and schedules the next attempt to create them; returns
+    /// [`Repaint::Failed`] if no attempt is left.
     fn lose(&mut self, error: GraphicsError) -> Repaint {
         self.drop_graphics();
         let Some(pause) = self.retries.next_pause() else {
@@ -252,7 +255,7 @@ impl AppWindow {
         Repaint::At(self.retry_at)
     }
 
-    /// Drops the graphics, which may panic after the device is lost.
+    /// Drops the graphics. Dropping them may panic after the device is lost; the panic is logged.
     pub fn drop_graphics(&mut self) {
         let graphics = self.graphics.take();
         let dropped = guarded(|| {
@@ -264,8 +267,8 @@ impl AppWindow {
         }
     }
 
-    /// Runs the panels once for each key press or mouse button, so that each sees the effects of the one
-    /// before.
+    /// Runs the panels once for each key press or mouse button, so that each press sees the effects
+    /// of the previous one.
     fn run(
         &mut self,
         mut input: RawInput,
@@ -274,7 +277,7 @@ impl AppWindow {
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut events = std::mem::take(&mut self.held_keys);
         if !session.is_asking() {
-            // Typed while the system's dialog had the focus.
+            // These events were typed while the system's dialog had the focus.
             events.clear();
         }
         events.append(&mut input.events);
@@ -297,8 +300,8 @@ impl AppWindow {
         (output, viewport, effects)
     }
 
-    /// Runs the panels and applies their actions. If there were any, runs the panels again, so that none shows
-    /// an outdated state.
+    /// Runs the panels and applies their actions. If there were any actions, runs the panels again,
+    /// so that no panel shows an outdated state.
     fn run_stroke(
         &mut self,
         input: RawInput,
@@ -345,7 +348,7 @@ impl AppWindow {
     ) -> Result<Presented, GraphicsError> {
         let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
             output;
-        // Taken out first: egui panics if they are dropped.
+        // Taken out first: egui panics if texture changes are dropped with the output.
         let changed = std::mem::take(&mut textures.set);
         let freed = std::mem::take(&mut textures.free);
         let pixels = self.viewport_pixels(scale);
@@ -372,7 +375,7 @@ impl AppWindow {
         frame.panels += lap();
         let machine = &mut self.machine;
         guarded(|| {
-            // Of earlier frames.
+            // The times are those of earlier frames.
             while let Some((frame, time)) = graphics.read_clock() {
                 machine.times.set_gpu(frame, time);
             }
@@ -393,7 +396,7 @@ impl AppWindow {
         })
     }
 
-    /// Width and height of the viewport in pixels.
+    /// Width and height of the viewport in pixels; `scale` is in pixels per point.
     pub(super) fn viewport_pixels(&self, scale: f32) -> (u32, u32) {
         let side = |length: f32| (length * scale).round().max(1.0) as u32;
         (side(self.viewport.width()), side(self.viewport.height()))

@@ -1,11 +1,11 @@
 use core::ops::Range;
 
-/// Packs small coverage images into a large one, row by row, until it is full.
+/// Packs small coverage images into a large one, row by row, until the large one is full.
 #[derive(Debug)]
 pub(super) struct Atlas {
     width: u32,
     height: u32,
-    /// Maximum height, reached in powers of two.
+    /// Maximum height in pixels. The atlas grows towards it in powers of two.
     max_height: u32,
     /// Coverage from 0 to 255, row by row.
     pixels: Vec<u8>,
@@ -16,7 +16,7 @@ pub(super) struct Atlas {
 }
 
 impl Atlas {
-    /// Gap between images, so that none bleeds into its neighbour.
+    /// Gap between images in pixels, so that none bleeds into its neighbour.
     const GAP: u32 = 1;
     const FIRST_HEIGHT: u32 = 64;
 
@@ -78,7 +78,7 @@ impl Atlas {
         self.change(0..self.height);
     }
 
-    /// Rows that have changed since the last call.
+    /// Returns the range of rows that have changed since the previous call.
     pub fn take_changed(&mut self) -> Range<u32> {
         core::mem::take(&mut self.changed)
     }

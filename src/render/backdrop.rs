@@ -13,7 +13,7 @@ pub(super) struct Backdrop {
 }
 
 impl Backdrop {
-    /// One triangle covers the picture.
+    /// Number of triangles: one that covers the picture.
     pub const TRIANGLES: u32 = 1;
 
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {

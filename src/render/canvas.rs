@@ -18,7 +18,7 @@ pub struct Canvas {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The device did not finish.
+    /// The wait for the device failed.
     #[error("the graphics device did not finish: {0}")]
     Poll(#[from] wgpu::PollError),
     /// The buffer could not be mapped.
@@ -27,18 +27,20 @@ pub enum ReadError {
     /// The mapped range is invalid.
     #[error("cannot read from the graphics device: {0}")]
     Range(#[from] wgpu::MapRangeError),
-    /// The picture has the wrong size.
+    /// The data that was read does not have the size of the picture.
     #[error("the graphics device returned a picture of the wrong size")]
     Size,
 }
 
 impl Canvas {
-    /// Pixel format. The shaders encode sRGB themselves.
+    /// Pixel format of the image. It is not an sRGB format, since the shaders encode sRGB
+    /// themselves.
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
     pub(super) const SAMPLES: u32 = 4;
 
-    /// Creates a canvas. Sides are clamped to 1 and [`Gpu::longest_side`].
+    /// Creates a canvas of a size in pixels. Both sides are clamped to the range from 1 to
+    /// [`Gpu::longest_side`].
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let side = |length: u32| length.clamp(1, gpu.longest_side());
         let (width, height) = (side(width), side(height));
@@ -75,12 +77,12 @@ impl Canvas {
         (self.width, self.height)
     }
 
-    /// Width divided by height.
+    /// Ratio of width to height.
     pub fn aspect(&self) -> f32 {
         self.width as f32 / self.height as f32
     }
 
-    /// View of the image, for sampling.
+    /// View of the image, for shaders that sample it.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.colour
     }
@@ -125,11 +127,11 @@ impl Canvas {
     }
 }
 
-/// Waits until the device has executed all commands and maps a buffer.
+/// Waits until the device has executed all commands, then maps a buffer and returns its contents.
 pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
     let (sender, receiver) = std::sync::mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Fails only if the wait below has failed.
+        // Sending fails only if the poll below has failed, which drops the receiver.
         let _ = sender.send(result);
     });
     gpu.device.poll(wgpu::PollType::wait_indefinitely())?;

@@ -8,7 +8,7 @@ pub(super) enum BindingKind {
     Write,
 }
 
-/// Layout of a bind group of buffers.
+/// Layout of a bind group of buffers, one for each kind and in this order.
 pub(super) fn layout(
     gpu: &Gpu,
     label: &str,
@@ -80,7 +80,7 @@ pub(super) fn pipeline(
     })
 }
 
-/// Number of arms per workgroup, as in the shaders.
+/// Number of arms per workgroup; the shaders have the same number.
 const GROUP: u32 = 256;
 
 /// Encodes a compute pass with one invocation per arm.

@@ -18,15 +18,16 @@ pub(super) const ARMS: &str = concat!(
     include_str!("../../shaders/crowd_arms.wgsl"),
 );
 
-/// Levels of detail from the nearest arms to the farthest: number of sides of a limb, and whether joints
-/// are drawn.
+/// Levels of detail from the nearest arms to the farthest: number of sides of a limb, and whether
+/// joints are drawn.
 const LODS: [(u32, bool); 3] = [(12, true), (5, false), (1, false)];
-/// Number of vertices of an arm's three balls, as in the shader.
+/// Number of vertices of an arm's three balls; the shader has the same number.
 const JOINT_VERTICES: u32 = 3 * 10 * 5 * 6;
-/// Number of arguments of an indirect draw: vertices, instances, first vertex, first instance.
+/// Number of arguments of an indirect draw: vertex count, instance count, first vertex and first
+/// instance.
 const ARGUMENTS: usize = 4;
 
-/// Radii of a limb at its base and its tip, as fractions of the arm length.
+/// Radii of a limb at its base and its tip, as fractions of the arm's length.
 const BASE_RADIUS: f32 = 0.05;
 const TIP_RADIUS: f32 = 0.034;
 
@@ -58,11 +59,11 @@ struct CrowdLodData {
 
 const _: () = assert!(size_of::<CrowdLodData>() == 8);
 
-/// Draws a crowd: solves it on the CPU or the device, culls it on the device, and draws each arm with the
-/// detail that its size on screen needs.
+/// Draws a crowd: solves it on the CPU or the device, culls it on the device, and draws each arm
+/// with a level of detail that depends on its size on screen.
 #[derive(Debug, Default)]
 pub(super) struct Crowds {
-    /// Created with the first crowd.
+    /// Created when the first crowd is drawn.
     renderer: Option<Result<CrowdRenderer, CrowdError>>,
     times: Option<Result<CrowdTimes, CrowdError>>,
 }
@@ -80,11 +81,11 @@ struct CrowdRenderer {
     lods: [wgpu::Buffer; LODS.len()],
     lod_groups: [wgpu::BindGroup; LODS.len()],
     buffers: CrowdBuffers,
-    /// The crowd that is on the device.
+    /// Crowd whose poses are on the device; `None` if there is none.
     uploaded: Option<Crowd>,
 }
 
-/// Buffers with the solver's stride, and the bind groups that contain them.
+/// Buffers whose arrays have the solver's stride, and the bind groups of these buffers.
 #[derive(Debug)]
 struct CrowdBuffers {
     shoulders: wgpu::Buffer,
@@ -93,8 +94,8 @@ struct CrowdBuffers {
 }
 
 impl Crowds {
-    /// Solves the crowd if it has changed, uploads what has changed, and returns the number of bytes
-    /// sent.
+    /// Solves the scene's crowd if it has changed, uploads the changes, and returns the number of
+    /// bytes sent. `size` is the picture's in pixels.
     pub fn upload(
         &mut self,
         gpu: &Gpu,
@@ -125,7 +126,7 @@ impl Crowds {
         sent + renderer.set_view(gpu, &crowd, scene, size)
     }
 
-    /// Times of the last crowd; `None` without a crowd.
+    /// Number of arms and solver time of the last scene's crowd; `None` without a crowd.
     pub fn times(&self) -> Result<Option<CrowdTimes>, CrowdError> {
         self.times.clone().transpose()
     }
@@ -226,8 +227,8 @@ impl CrowdRenderer {
         })
     }
 
-    /// Resizes the arrays and buffers to the crowd's number of arms and uploads the shoulders if they
-    /// have changed. Returns the number of bytes sent.
+    /// Resizes the arrays and buffers to the crowd's number of arms, and uploads the positions of
+    /// the shoulders if they have changed. Returns the number of bytes sent.
     fn resize(&mut self, gpu: &Gpu, crowd: &Crowd) -> u64 {
         let has_changed = self.arrays.resize(crowd);
         let is_larger = self.solver.reserve(gpu, crowd.arms);
@@ -260,7 +261,7 @@ impl CrowdRenderer {
                 .solve(gpu, crowd.bones, &self.arrays)
                 .map_err(|error| CrowdError::Device(error.to_string()))?,
             Processor::Cpu => {
-                // All arrays have one length, so that there is no error.
+                // All arrays have the same length, so `solve` returns no error.
                 let time = self.arrays.solve(crowd.bones).unwrap_or_default();
                 self.solver.upload_poses(gpu, &self.arrays);
                 time
@@ -269,8 +270,8 @@ impl CrowdRenderer {
         Ok(CrowdTimes { arms: crowd.arms, solve })
     }
 
-    /// Uploads the camera, resets the arguments of the indirect draws, and returns the number of bytes
-    /// sent.
+    /// Uploads the camera, resets the arguments of the indirect draws, and returns the number of
+    /// bytes sent.
     fn set_view(&self, gpu: &Gpu, crowd: &Crowd, scene: &Scene, size: (u32, u32)) -> u64 {
         let data = CrowdData::new(crowd, self.solver.stride(), scene, size);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&data));
@@ -308,7 +309,7 @@ impl CrowdData {
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
         let reach = crowd.bones.outer_limit();
-        // `up` points to the upper edge at depth 1, so a picture is two of it high.
+        // `up` is half the height of the picture, at depth 1 in perspective.
         let pixel = 2.0 * projection.up.length() / height as f32;
         let (pixel_per_depth, pixel) =
             if projection.orthographic { (0.0, pixel) } else { (pixel, 0.0) };
@@ -329,8 +330,9 @@ impl CrowdData {
     }
 }
 
-/// Left, right, bottom, top and near planes of the view frustum, with unit normals pointing inwards (G.
-/// Gribb, K. Hartmann, *Fast Extraction of Viewing Frustum Planes*, 2001; depth is 1 at the near plane).
+/// Left, right, bottom, top and near planes of the view frustum, with unit normals pointing inwards
+/// (G. Gribb, K. Hartmann, *Fast Extraction of Viewing Frustum Planes*, 2001), for a depth of 1 at
+/// the near plane.
 fn frustum_planes(clip_from_world: Mat4) -> [Vec4; 5] {
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
     [w + x, w - x, w + y, w - y, w - z].map(|plane| {

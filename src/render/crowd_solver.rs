@@ -9,13 +9,13 @@ use crate::rig::CrowdArrays;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/crowd_solver.wgsl");
 
-/// Arrays of a crowd's targets: Cursor x, y, z, cosine and sine of the twist.
+/// Number of arrays of a crowd's targets: Cursor x, y and z, cosine and sine of the twist.
 const TARGET_ARRAYS: u64 = 5;
-/// Arrays of a crowd's poses: elbow x, y, z, hand x, y, z.
+/// Number of arrays of a crowd's poses: elbow x, y and z, hand x, y and z.
 const POSE_ARRAYS: u64 = 6;
 const FLOAT: u64 = size_of::<f32>() as u64;
 
-/// A device that takes longer than this has hung.
+/// Maximum wait for the device. A device that takes longer is considered to have hung.
 const TIMEOUT: wgpu::PollType =
     wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(10)) };
 
@@ -31,8 +31,8 @@ struct CrowdSolverData {
 const _: () = assert!(size_of::<CrowdSolverData>() == 16);
 
 /// Solves the arms of a crowd on the device, with the formulas of
-/// [`two_bone`](crate::kinematics::two_bone), or uploads poses that were solved on the CPU. Either way
-/// the poses are in a buffer that the crowd is drawn from.
+/// [`two_bone`](crate::kinematics::two_bone), or uploads poses that were solved on the CPU. In both
+/// cases the poses are then in the buffer from which the crowd is drawn.
 #[derive(Debug)]
 pub struct CrowdSolver {
     pipeline: wgpu::ComputePipeline,
@@ -42,7 +42,7 @@ pub struct CrowdSolver {
     arms: u32,
 }
 
-/// Buffers with room for `stride` arms; each array starts `stride` floats after the one before.
+/// Buffers with room for `stride` arms; each array starts `stride` floats after the previous one.
 #[derive(Debug)]
 struct CrowdSolverBuffers {
     stride: u32,
@@ -52,7 +52,7 @@ struct CrowdSolverBuffers {
 }
 
 impl CrowdSolver {
-    /// Creates the pipeline; `None` if the adapter has no compute shaders.
+    /// Creates a solver with room for one arm; `None` if the adapter has no compute shaders.
     pub fn new(gpu: &Gpu) -> Option<Self> {
         let flags = gpu.adapter.get_downlevel_capabilities().flags;
         if !flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
@@ -67,17 +67,18 @@ impl CrowdSolver {
         Some(Self { pipeline, layout, uniform, buffers, arms: 0 })
     }
 
-    /// Capacity in arms, which is also the distance between arrays in the buffers, in floats.
+    /// Capacity of the buffers in arms; also the distance in floats between the starts of two
+    /// arrays in a buffer.
     pub fn stride(&self) -> u32 {
         self.buffers.stride
     }
 
-    /// Elbows' x, y, z and hands' x, y, z, in Root space.
+    /// Buffer of the poses in Root space: arrays of x, y and z of the elbows, then of the hands.
     pub(super) fn poses(&self) -> &wgpu::Buffer {
         &self.buffers.poses
     }
 
-    /// Makes room for at least this many arms and returns whether that replaced the buffers.
+    /// Makes room for at least `arms` arms. Returns whether this replaced the buffers.
     pub fn reserve(&mut self, gpu: &Gpu, arms: u32) -> bool {
         let is_small = self.buffers.stride < arms;
         if is_small {
@@ -87,7 +88,8 @@ impl CrowdSolver {
     }
 
     /// Uploads the targets, solves the arms on the device, and returns the time from submission to
-    /// completion, without the upload. Needs [`reserve`](Self::reserve)d buffers.
+    /// completion, without the upload. The buffers must have room for all arms: see
+    /// [`reserve`](Self::reserve).
     ///
     /// # Errors
     ///
@@ -95,7 +97,7 @@ impl CrowdSolver {
     ///
     /// # Panics
     ///
-    /// If the device is lost, as in every `wgpu` function that waits for it.
+    /// If the device is lost, as in every `wgpu` function that waits for the device.
     pub fn solve(
         &mut self,
         gpu: &Gpu,
@@ -128,7 +130,8 @@ impl CrowdSolver {
         Ok(start.elapsed())
     }
 
-    /// Uploads poses that were solved on the CPU. Needs [`reserve`](Self::reserve)d buffers.
+    /// Uploads poses that were solved on the CPU. The buffers must have room for all arms: see
+    /// [`reserve`](Self::reserve).
     pub fn upload_poses(&mut self, gpu: &Gpu, arrays: &CrowdArrays) {
         self.arms = arrays.len() as u32;
         for (index, array) in arrays.elbow.iter().chain(&arrays.hand).enumerate() {
@@ -136,7 +139,8 @@ impl CrowdSolver {
         }
     }
 
-    /// Waits for the device and reads the elbows and hands back.
+    /// Waits for the device and reads back the elbows and hands in Root space: for each an array of
+    /// x, of y and of z.
     ///
     /// # Errors
     ///

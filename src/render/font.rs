@@ -11,8 +11,9 @@ use super::atlas::Atlas;
 use super::font_face::FontFace;
 use super::ignored_letters::is_ignored;
 
-/// Glyphs of labels at one size, each rasterized when it is first needed: from the built-in fonts, or else
-/// from the face that `find` returns. A letter that no font has is drawn as a box.
+/// Glyphs of labels at one size. Each glyph is rasterized when a text first contains its letter,
+/// from a built-in font or else from the face that `find` returns. A letter that no font has is
+/// drawn as a box.
 ///
 /// Text is not shaped: glyphs run from left to right and are never joined.
 #[derive(Debug)]
@@ -23,7 +24,8 @@ pub(super) struct Font {
     pixels_per_em: f32,
     glyphs: HashMap<char, Glyph>,
     missing: Glyph,
-    /// Hash of the last texts that did not fit the emptied atlas.
+    /// Hash of the last texts for which the atlas was emptied. The same texts do not empty it
+    /// again.
     overflow: Option<u64>,
 }
 
@@ -33,11 +35,11 @@ struct Glyph {
     id: Option<(usize, GlyphId)>,
     advance: f32,
     image: Option<GlyphImage>,
-    /// Whether it is drawn as a box because the atlas was full.
+    /// Whether the letter is drawn as a box because its own image did not fit the atlas.
     is_left_out: bool,
 }
 
-/// Rectangle of the atlas, and the offset at which it is drawn.
+/// Rectangle of a glyph in the atlas, and the offset from the pen at which it is drawn, in pixels.
 #[derive(Clone, Copy, Debug)]
 struct GlyphImage {
     source: Rectangle,
@@ -55,17 +57,18 @@ impl Font {
     /// Built-in fonts in order of preference.
     const BUILT_IN: [&[u8]; 2] =
         [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR];
-    /// Letters that are rasterized first, so that changing numbers need no new ones.
+    /// Letters that are rasterized in advance, so that labels with changing numbers add no glyphs.
     const FIRST: core::ops::RangeInclusive<char> = ' '..='~';
-    /// Maximum number of glyphs.
+    /// Maximum number of letters whose glyphs are kept.
     const MAX_GLYPHS: usize = 1 << 14;
 
-    /// Creates a font from the height of a line and the maximum side of an atlas, both in pixels.
+    /// Creates a font with lines of height `size` and an atlas with sides of at most `longest`,
+    /// both in pixels.
     pub fn new(size: f32, longest: u32, find: fn(char) -> Option<SystemFace>) -> Self {
         const MIN_WIDTH: u32 = 512;
         const MAX_HEIGHT: u32 = 4096;
         const GLYPHS_PER_ROW: f32 = 32.0;
-        // So that a box fits any atlas.
+        // Limits the size so that a box fits any atlas.
         let size = size.min(longest as f32 / 4.0);
         let row = (size * GLYPHS_PER_ROW) as u32;
         let width = row.checked_next_power_of_two().unwrap_or(longest).max(MIN_WIDTH).min(longest);
@@ -91,9 +94,9 @@ impl Font {
         font
     }
 
-    /// Rasterizes all glyphs of the texts that are not in the atlas. If they do not fit, the atlas is
-    /// emptied first; glyphs that do not fit even then become boxes. Thus the texts look the same whatever
-    /// was drawn before.
+    /// Rasterizes all glyphs of the texts that the atlas does not contain yet. If they do not fit,
+    /// the atlas is emptied and the texts are rasterized again; glyphs that still do not fit become
+    /// boxes. The look of the texts therefore does not depend on what was drawn before.
     pub fn prepare<'a>(&mut self, texts: impl Iterator<Item = &'a str> + Clone) {
         if self.rasterize_all(texts.clone()) {
             return;
@@ -110,7 +113,8 @@ impl Font {
         }
     }
 
-    /// Glyphs of a text whose baseline starts at `pen`: rectangles in the picture and in the atlas.
+    /// Glyphs of a text whose baseline starts at `pen`: for each glyph with an image its rectangle
+    /// in the picture and its rectangle in the atlas, in pixels.
     pub fn lay_out<'a>(
         &'a self,
         text: &'a str,
@@ -129,7 +133,7 @@ impl Font {
         })
     }
 
-    /// Rasterizes the first glyphs into an empty atlas.
+    /// Rasterizes the box and the letters in `FIRST` into an empty atlas.
     fn fill(&mut self) {
         self.missing = self.rasterize_box();
         for letter in Self::FIRST {
@@ -138,7 +142,7 @@ impl Font {
         }
     }
 
-    /// Rasterizes the new glyphs of the texts. Returns whether all glyphs fit.
+    /// Rasterizes the letters of the texts that have no glyph yet. Returns whether all glyphs fit.
     fn rasterize_all<'a>(&mut self, texts: impl Iterator<Item = &'a str>) -> bool {
         let mut all = true;
         for letter in texts.flat_map(visible_letters) {
@@ -205,7 +209,8 @@ impl Font {
         }
     }
 
-    /// A space as wide as in the font; an ideographic space as wide as an em.
+    /// A glyph without an image for a white-space letter: as wide as in the first font, or one em
+    /// for the ideographic space.
     fn space(&self, letter: char) -> Glyph {
         const IDEOGRAPHIC: char = '\u{3000}';
         let FontFace { font, scale, .. } = &self.faces[0];
@@ -218,7 +223,8 @@ impl Font {
         Glyph { id: Some((0, id)), advance, image: None, is_left_out: false }
     }
 
-    /// An upright rectangle as high as a capital letter.
+    /// Rasterizes the box for missing letters: the outline of an upright rectangle as high as a
+    /// capital letter.
     fn rasterize_box(&mut self) -> Glyph {
         const SIZE: Vec2 = Vec2::new(0.5, 0.7);
         const SIDE_BEARING: f32 = 0.08;
@@ -241,7 +247,8 @@ impl Font {
         Glyph { id: None, advance, image, is_left_out: false }
     }
 
-    /// Index of the system's face for a letter.
+    /// Index in `faces` of the system's face for a letter, which is added if it is new; `None` if
+    /// there is no such face or it is invalid.
     fn system_face(&mut self, letter: char) -> Option<usize> {
         let SystemFace { number, data, index } = (self.find)(letter)?;
         let known = self.faces.iter().position(|face| face.number == Some(number));
@@ -270,14 +277,14 @@ mod tests {
 
     const SIZES: [f32; 4] = [9.0, 14.0, 28.0, 64.0];
     const LONGEST: u32 = 2048;
-    /// For private use: no font in the program has it.
+    /// A private-use code point, which no built-in font has.
     const NO_LETTER: char = '\u{10fffd}';
 
     fn without_system_fonts(size: f32) -> Font {
         Font::new(size, LONGEST, |_| None)
     }
 
-    /// The icons that come with egui.
+    /// Finds one letter, in the icons that come with egui, instead of the system's fonts.
     fn icons(letter: char) -> Option<SystemFace> {
         let has_it = letter == special_emojis::GITHUB;
         has_it.then_some(SystemFace { number: 7, data: EGUI_ICONS, index: 0 })
@@ -295,7 +302,7 @@ mod tests {
         laid
     }
 
-    /// Sum of the coverage of what a text shows, in pixels.
+    /// Total coverage of the glyphs of a text, in pixels.
     fn ink(font: &mut Font, text: &str) -> f32 {
         let laid = lay_out(font, text);
         let pixels = |source: Rectangle| {
@@ -307,7 +314,7 @@ mod tests {
         sum as f32 / 255.0
     }
 
-    /// Letters that the fonts in the program have.
+    /// Visible letters that the built-in fonts have.
     fn many_letters() -> Vec<char> {
         let letters = ('\u{a1}'..'\u{2fff}').filter(|letter| !letter.is_whitespace());
         let fonts = Font::BUILT_IN.map(|data| FontRef::try_from_slice(data).expect("a font"));
@@ -382,7 +389,7 @@ mod tests {
     #[test]
     fn a_mark_is_drawn_over_the_letter_before_it() {
         let mut font = without_system_fonts(28.0);
-        // There is no letter of both.
+        // Unicode has no single letter for q with an acute accent.
         let laid = lay_out(&mut font, "q\u{301}q");
         let plain = lay_out(&mut font, "qq");
         assert_eq!((laid[0], laid[2]), (plain[0], plain[1]));

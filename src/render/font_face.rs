@@ -17,7 +17,7 @@ impl FontFace {
         Self { number, font, scale }
     }
 
-    /// Outline of a letter; `None` if the face has none.
+    /// Outline of a letter; `None` if the face does not have the letter or its outline.
     pub fn outline(&self, letter: char) -> Option<OutlinedGlyph> {
         let id = self.font.glyph_id(letter);
         if id == GlyphId(0) {

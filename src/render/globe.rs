@@ -12,7 +12,7 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/globe.wgsl"),
 );
 
-/// Number of sides: far and near.
+/// Number of sides of the globe that are drawn: far and near.
 const SIDES: u32 = 2;
 
 #[repr(C)]
@@ -30,7 +30,7 @@ struct GlobeData {
 
 const _: () = assert!(size_of::<GlobeData>() == 2 * 16 + Palette::GAINS * 16 + 2 * 16);
 
-/// Draws the sides of the globe of gains.
+/// Draws the far and the near side of the globe of gains.
 #[derive(Debug)]
 pub(super) struct Globes {
     pipeline: wgpu::RenderPipeline,
@@ -58,7 +58,7 @@ impl Globes {
         Self { pipeline, uniforms, shown: false }
     }
 
-    /// Sends what has changed and returns the number of bytes.
+    /// Sends the changes to the device and returns the number of bytes sent.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         let globe = scene.globe.filter(Globe::has_size);
         self.shown = globe.is_some();

@@ -26,12 +26,12 @@ impl GlyphSheet {
         Self { scale, font, texture, group }
     }
 
-    /// Binds the texture and its sampler.
+    /// Bind group of the texture and its sampler.
     pub fn group(&self) -> &wgpu::BindGroup {
         &self.group
     }
 
-    /// Sends the changed rows of the atlas and returns the number of bytes.
+    /// Sends the changed rows of the atlas to the device and returns the number of bytes sent.
     pub fn upload(
         &mut self,
         gpu: &Gpu,

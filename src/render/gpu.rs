@@ -13,7 +13,7 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// The command queue of the device.
     pub queue: wgpu::Queue,
-    /// Set once the device is lost or out of memory.
+    /// Reason of the failure, set once the device is lost or out of memory.
     failure: Arc<OnceLock<DeviceError>>,
 }
 
@@ -21,7 +21,7 @@ pub struct Gpu {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// No adapter supports what is needed.
+    /// No adapter has the features that the program requires.
     #[error(
         "no graphics adapter was found ({0})\n\
          Install a Vulkan driver; without a graphics card, install a software one:\n  \
@@ -56,7 +56,8 @@ pub struct DeviceError(String);
 impl Gpu {
     /// Creates a device that draws without a window.
     ///
-    /// `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several.
+    /// The environment variables `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several
+    /// adapters.
     ///
     /// # Errors
     ///
@@ -69,12 +70,13 @@ impl Gpu {
         })
     }
 
-    /// Calls `make` with all backends except OpenGL and, if that fails, with all: OpenGL drivers write
-    /// to standard error even if they are not chosen. `WGPU_BACKEND` limits the backends.
+    /// Calls `make` with all backends except OpenGL and, if that fails, with all backends: OpenGL
+    /// drivers write to standard error even if they are not chosen. `WGPU_BACKEND` limits the
+    /// backends.
     ///
     /// # Errors
     ///
-    /// The last error of `make`.
+    /// The error of the last call of `make`.
     pub(crate) fn with_gl_as_fallback<T, E>(
         mut make: impl FnMut(wgpu::Backends) -> Result<T, E>,
     ) -> Result<T, E> {
@@ -90,7 +92,7 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// If there is no such adapter, or it provides no device.
+    /// If no adapter can present to the surface, or the adapter provides no device.
     pub fn new(
         instance: wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -98,7 +100,7 @@ impl Gpu {
         let adapter = adapter(&instance, surface)?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ik-arm"),
-            // For GpuTimer.
+            // `GpuTimer` requires timestamp queries.
             required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
             ..Default::default()
@@ -110,9 +112,9 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Sets a callback that runs once, on any thread, when the device is lost or out of memory.
-    /// It replaces the previous callback; [`Gpu::check`] returns the reason. Validation errors, which
-    /// are mistakes in this program, are logged.
+    /// Sets a callback that runs once, on any thread, when the device is lost or out of memory, and
+    /// that replaces the previous callback. [`Gpu::check`] then returns the reason. Validation
+    /// errors, which are mistakes in this program, are only logged.
     pub fn on_failure(&self, callback: impl Fn() + Send + Sync + 'static) {
         let failure = Arc::clone(&self.failure);
         let fail = Arc::new(move |reason: String| {
@@ -136,7 +138,7 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// If the device is lost or out of memory, as far as it has reported so.
+    /// If the device has reported that it is lost or out of memory.
     pub fn check(&self) -> Result<(), DeviceError> {
         self.failure.get().map_or(Ok(()), |failure| Err(failure.clone()))
     }
@@ -165,7 +167,7 @@ impl Gpu {
         ]
         .map(|filter| self.device.push_error_scope(filter));
         let result = work();
-        // Every scope is closed, whether or not another has caught an error.
+        // Pops every scope, even after one that has caught an error.
         let caught = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
         match caught.collect::<Vec<_>>().first() {
             Some(error) => Err(DeviceError(error.to_string())),
@@ -174,8 +176,8 @@ impl Gpu {
     }
 }
 
-/// The adapter that `WGPU_ADAPTER_NAME` names, or else the best one. `wgpu::util` has the same function
-/// but panics if no adapter has the name.
+/// The adapter whose name contains `WGPU_ADAPTER_NAME`, or the best adapter if that variable is not
+/// set. The function of `wgpu::util` for this purpose panics if no adapter has the name.
 fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,

@@ -15,14 +15,14 @@ pub enum TimedPass {
 
 /// Measures the device's time for each frame with timestamp queries.
 ///
-/// The device writes timestamps at the start and end of each pass. They are read back some frames later,
-/// without waiting. While all readbacks are in use, frames are not measured.
+/// The device writes timestamps at the start and end of each pass. They are read back some frames
+/// later, without waiting. While all readbacks are in use, frames are not measured.
 #[derive(Debug)]
 pub struct GpuTimer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     readbacks: [TimestampReadback; 3],
-    /// Passes of the current frame.
+    /// Whether each pass is part of the current frame.
     passes: [bool; PASSES],
     nanoseconds_per_tick: f64,
 }
@@ -45,7 +45,7 @@ struct TimestampReadback {
 }
 
 const FREE: u8 = 0;
-/// Part of commands that are not submitted yet.
+/// The commands that write the buffer are encoded, but may not be submitted yet.
 const WRITTEN: u8 = 1;
 const FETCHING: u8 = 2;
 const FETCHED: u8 = 3;
@@ -95,7 +95,7 @@ impl GpuTimer {
         self.passes = [false; PASSES];
     }
 
-    /// Timestamp writes for a pass.
+    /// Timestamp writes for a pass of the current frame.
     pub fn pass(&mut self, pass: TimedPass) -> wgpu::RenderPassTimestampWrites<'_> {
         self.passes[pass as usize] = true;
         let first = STAMPS * pass as u32;
@@ -106,7 +106,7 @@ impl GpuTimer {
         }
     }
 
-    /// Ends a frame. The encoder must be submitted after the passes.
+    /// Ends the frame with this number. The encoder must be submitted after the frame's passes.
     pub fn stop(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
         let is_free =
             |readback: &&mut TimestampReadback| readback.state.load(Ordering::Acquire) == FREE;
@@ -123,7 +123,7 @@ impl GpuTimer {
         readback.state.store(WRITTEN, Ordering::Release);
     }
 
-    /// Starts reading back the timestamps of submitted frames.
+    /// Starts reading back the timestamps of ended frames, whose commands must have been submitted.
     pub fn fetch(&self) {
         for readback in &self.readbacks {
             if readback.state.load(Ordering::Acquire) != WRITTEN {
@@ -138,9 +138,10 @@ impl GpuTimer {
         }
     }
 
-    /// A frame and the device's time for it, if known by now. Returns each frame once and never waits.
+    /// Number of a measured frame and the device's time for its passes; `None` if no result is
+    /// available yet. Returns each frame once and never waits.
     pub fn read(&mut self, gpu: &Gpu) -> Option<(u64, Duration)> {
-        // Its results go to callbacks, and so does the loss of the device.
+        // Callbacks report finished readbacks and a lost device, so the result can be ignored.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         let period = self.nanoseconds_per_tick;
         self.readbacks.iter().find_map(|readback| match readback.state.load(Ordering::Acquire) {
@@ -161,7 +162,8 @@ impl GpuTimer {
 }
 
 impl TimestampReadback {
-    /// Sum of the passes' durations in ticks; `None` if the clock went backwards.
+    /// Sum of the passes' durations in ticks; `None` if the timestamps cannot be read or the clock
+    /// went backwards.
     fn ticks(&self) -> Option<u64> {
         let mapped = self.buffer.get_mapped_range(..).ok()?;
         let stamp = |at: u64| {

@@ -4,8 +4,8 @@ use bytemuck::Pod;
 
 use super::Gpu;
 
-/// A list of instances on the device. It is refilled for every picture, and only the range that differs
-/// from the picture before is sent.
+/// A list of instances on the device. It is refilled for every picture, and only the range that
+/// differs from the previous picture is sent.
 #[derive(Debug)]
 pub(super) struct InstanceBuffer<T> {
     label: &'static str,
@@ -17,9 +17,9 @@ pub(super) struct InstanceBuffer<T> {
 #[derive(Debug)]
 struct RefilledList<T> {
     items: Vec<T>,
-    /// Number of items since the last [`finish`](Self::finish).
+    /// Number of items pushed since the last [`finish`](Self::finish).
     filled: usize,
-    /// From the first changed item to the last.
+    /// Range from the first to the last item that a push has changed.
     changed: Range<usize>,
 }
 
@@ -34,8 +34,8 @@ impl<T: Pod + PartialEq> InstanceBuffer<T> {
         self.list.push(instance);
     }
 
-    /// Sends the changes since the last upload and returns the number of bytes sent. The list then
-    /// consists of the instances pushed since.
+    /// Sends the changes since the previous upload and returns the number of bytes sent. The list
+    /// then consists of the instances pushed since that upload.
     pub fn upload(&mut self, gpu: &Gpu) -> u64 {
         let mut changed = self.list.finish();
         let items = &self.list.items;
@@ -56,7 +56,7 @@ impl<T: Pod + PartialEq> InstanceBuffer<T> {
         bytes.len() as u64
     }
 
-    /// Pushes all instances and uploads them.
+    /// Pushes all instances, uploads them, and returns the number of bytes sent.
     pub fn upload_all(&mut self, gpu: &Gpu, instances: impl Iterator<Item = T>) -> u64 {
         instances.for_each(|instance| self.push(instance));
         self.upload(gpu)
@@ -86,7 +86,8 @@ impl<T: PartialEq> RefilledList<T> {
         self.changed = start..self.filled;
     }
 
-    /// Drops the old items behind the new ones and returns the range of changed items.
+    /// Ends a refill: drops the old items after the pushed ones and returns the range of changed
+    /// items.
     fn finish(&mut self) -> Range<usize> {
         self.items.truncate(self.filled);
         self.filled = 0;

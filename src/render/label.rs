@@ -10,13 +10,15 @@ use crate::scene::{Label, LabelSide, Scene};
 pub(super) const SHADER: &str =
     concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/label.wgsl"),);
 
-/// Gap between a label and the ball that it names, in points.
+/// Gap between a label and the ball beside which it is written, in points.
 const GAP: f32 = 3.0;
 
-/// Coordinates of a ball's outline on its diagonal, in radii.
+/// Both coordinates of the point on a ball's outline that is nearest to its label, as a fraction of
+/// the ball's radius.
 const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
 
-/// Offsets of the halo's glyphs, which keep letters readable on any background, in points.
+/// Offsets in points of the copies of each glyph that form a halo, which keeps letters readable on
+/// any background.
 const HALO: [Vec2; 8] = [
     Vec2::new(-1.0, -1.0),
     Vec2::new(0.0, -1.3),
@@ -71,7 +73,8 @@ impl Labels {
         Self { glyphs, glyph_layout, sampler, sheet: None }
     }
 
-    /// Sends what has changed and returns the number of bytes.
+    /// Sends the changes to the device and returns the number of bytes sent. `size` is the
+    /// picture's in pixels, `scale` the number of pixels per point.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
         let (layout, sampler) = (&self.glyph_layout, &self.sampler);
         let mut sheet = match self.sheet.take() {
@@ -99,7 +102,8 @@ impl Labels {
     }
 }
 
-/// Glyphs of a label on top of those of its halo; none if its point is not in the picture.
+/// Glyphs of a label's halo, then of the label itself; empty if the labelled point cannot be
+/// projected.
 fn glyphs<'a>(
     sheet: &'a GlyphSheet,
     scene: &'a Scene,
@@ -118,7 +122,7 @@ fn glyphs<'a>(
     })
 }
 
-/// Start of a label's baseline in pixels; `None` if its point is not in the picture.
+/// Start of a label's baseline in pixels; `None` if the labelled point cannot be projected.
 fn pen(sheet: &GlyphSheet, scene: &Scene, label: &Label, size: Vec2) -> Option<Vec2> {
     let projection = scene.camera.projection(size.x / size.y);
     let at = projection.project(label.at)?;

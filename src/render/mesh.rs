@@ -43,13 +43,14 @@ impl MeshBuffers {
     }
 }
 
-/// Points on a unit circle; the last equals the first.
+/// Points on a unit circle, `segments` + 1 of them: the last equals the first.
 pub(super) fn circle(segments: u16) -> impl Iterator<Item = Vec2> + Clone {
     (0..=segments)
         .map(move |i| Vec2::from_angle(TAU * f32::from(i % segments) / f32::from(segments)))
 }
 
-/// A unit sphere: vertices, which are also its normals, and triangles.
+/// A unit sphere: its vertices, which are also its normals, and the vertex indices of its
+/// triangles.
 pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
     let rings = segments / 2;
     let points: Vec<_> = (0..=rings)
@@ -63,8 +64,9 @@ pub(super) fn sphere(segments: u16) -> (Vec<Vec3>, Vec<u16>) {
     (points, triangles)
 }
 
-/// Triangles between rows of vertices, whose last vertex repeats the first. As seen from outside, rows follow
-/// each other downwards, and vertices in a row to the right. Triangles without area are left out.
+/// Vertex indices of the triangles between successive rows of vertices. As seen from outside, the
+/// rows run from top to bottom and the vertices of a row from left to right; the last vertex of a
+/// row repeats the first. Triangles without area are left out.
 pub(super) fn grid(rows: u16, columns: u16, position: impl Fn(u16) -> Vec3) -> Vec<u16> {
     const MIN_DISTANCE: f32 = 1e-6;
     let has_area = |[a, b, c]: &[u16; 3]| {

@@ -1,8 +1,8 @@
-//! Draws a [`Scene`](crate::scene::Scene) with wgpu: the same code for the window, a PNG and the
-//! test images.
+//! Draws a [`Scene`](crate::scene::Scene) with wgpu. The window, PNG files and the test images are
+//! drawn by the same code.
 //!
 //! A [`Renderer`] holds the pipelines and is created once per device; a [`Canvas`] is its render
-//! target. Each thing drawn has one file here and one shader of the same name.
+//! target. Each kind of part that is drawn has one file here and one shader of the same name.
 
 mod atlas;
 mod backdrop;

@@ -26,11 +26,11 @@ pub struct PictureRenderer<'a> {
 pub struct Timings {
     /// Number of frames.
     pub frames: u32,
-    /// Time until all commands are submitted.
+    /// Time from the start of a frame until all its commands are submitted.
     pub cpu: Duration,
-    /// Time until the device has executed them.
+    /// Time from the start of a frame until the device has executed its commands.
     pub frame: Duration,
-    /// Part of it that solved the crowd; `None` without a crowd.
+    /// Time to solve the crowd, a part of `frame`; `None` without a crowd.
     pub solve: Option<Duration>,
 }
 
@@ -38,7 +38,7 @@ pub struct Timings {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum DrawError {
-    /// The device's textures are smaller.
+    /// The picture is larger than the largest texture of the device.
     #[error(
         "picture sides must be at most {longest} on this graphics device, got {width}x{height}"
     )]
@@ -47,7 +47,7 @@ pub enum DrawError {
         width: u32,
         /// Height in pixels.
         height: u32,
-        /// Limit of the device.
+        /// Maximum side of a picture on this device, in pixels.
         longest: u32,
     },
     /// The device failed while it drew.
@@ -56,7 +56,7 @@ pub enum DrawError {
     /// The picture could not be copied from the device.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The device did not finish.
+    /// The wait for the device failed.
     #[error("the graphics device did not finish the picture: {0}")]
     Poll(#[from] wgpu::PollError),
 }
@@ -79,14 +79,14 @@ pub enum SavePictureError {
 }
 
 impl<'a> PictureRenderer<'a> {
-    /// Creates a renderer for pictures of one size. `scale` is the number of pixels per point: lines and
-    /// letters have their size in points.
+    /// Creates a renderer for pictures of one size in pixels. `scale` is the number of pixels per
+    /// point, the unit for the sizes of lines and letters.
     pub fn new(gpu: &'a Gpu, width: u32, height: u32, scale: f32) -> Self {
         Self { gpu, renderer: Renderer::new(gpu), canvas: Canvas::new(gpu, width, height), scale }
     }
 
-    /// Creates a renderer whose lines and letters look as in a window of 1280×800, scaled up in larger
-    /// pictures.
+    /// Creates a renderer whose lines and letters are as large as in a window of 1280×800, and
+    /// scaled up in larger pictures.
     ///
     /// # Errors
     ///
@@ -115,7 +115,7 @@ impl<'a> PictureRenderer<'a> {
         Ok(image?)
     }
 
-    /// Times of the crowd in the last scene; `None` without a crowd.
+    /// Number of arms and solver time of the crowd in the last scene; `None` without a crowd.
     ///
     /// # Errors
     ///
@@ -124,8 +124,8 @@ impl<'a> PictureRenderer<'a> {
         self.renderer.crowd_times()
     }
 
-    /// Draws `frames` scenes and waits for the device after each. `scene` makes the scene of a frame
-    /// number, starting at 0.
+    /// Draws `frames` scenes, waits for the device after each of them, and returns the median
+    /// times. `scene` makes the scene of a frame from its number, which starts at 0.
     ///
     /// # Errors
     ///

@@ -9,9 +9,9 @@ pub(super) struct PipelineDescriptor<'a> {
     pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
     pub topology: wgpu::PrimitiveTopology,
     pub cull: Option<wgpu::Face>,
-    /// Depth comparison; nearer is greater.
+    /// Depth comparison; nearer depths are greater.
     pub depth: wgpu::CompareFunction,
-    /// Whether it replaces what is behind it and writes depth, instead of being blended.
+    /// Whether the pipeline replaces the colours behind and writes depth, instead of blending.
     pub opaque: bool,
 }
 

@@ -44,7 +44,7 @@ impl<T: Pod + PartialEq> Quads<T> {
         Self { pipeline, instances: InstanceBuffer::new(descriptor.label) }
     }
 
-    /// Sends what has changed and returns the number of bytes.
+    /// Sends the changes to the device and returns the number of bytes sent.
     pub fn upload(&mut self, gpu: &Gpu, instances: impl Iterator<Item = T>) -> u64 {
         self.instances.upload_all(gpu, instances)
     }
@@ -57,7 +57,7 @@ impl<T: Pod + PartialEq> Quads<T> {
         self.draw_range(pass, 0..self.instances.count());
     }
 
-    /// Draws a range of the instances, cut off at their number.
+    /// Draws a range of the instances. Indices beyond the last instance are ignored.
     pub fn draw_range(&self, pass: &mut wgpu::RenderPass<'_>, range: Range<u32>) {
         let Some((buffer, count)) = self.instances.get() else {
             return;

@@ -10,7 +10,7 @@ use super::{Canvas, CrowdError, Gpu};
 use crate::rig::CrowdTimes;
 use crate::scene::Scene;
 
-/// Draws scenes. It is created once per device; its pipelines never change.
+/// Draws scenes. A renderer is created once per device; its pipelines never change.
 #[derive(Debug)]
 pub struct Renderer {
     view: ViewUniforms,
@@ -24,23 +24,23 @@ pub struct Renderer {
     counts: Counts,
 }
 
-/// Numbers of things in the last scene, and of bytes sent for it.
+/// Numbers of parts in the last scene, and of bytes sent for that scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Cones and balls.
+    /// Number of cones and balls.
     pub solids: u32,
-    /// Lines.
+    /// Number of lines.
     pub lines: u32,
-    /// Labels.
+    /// Number of labels.
     pub labels: u32,
-    /// Triangles.
+    /// Number of triangles, without those of a crowd.
     pub triangles: u32,
-    /// Bytes sent to the device. Only changes are sent.
+    /// Number of bytes sent to the device. Only changes are sent.
     pub uploaded: u64,
 }
 
 impl Renderer {
-    /// Number of lists, uniform blocks and textures on the device.
+    /// Number of lists, uniform blocks and textures on the device, without those of a crowd.
     pub const LISTS: usize = 7 + Solids::LISTS;
 
     /// Creates the pipelines.
@@ -59,12 +59,13 @@ impl Renderer {
         }
     }
 
-    /// Counts of the last scene.
+    /// Counts of the last uploaded scene.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Times of the crowd in the last scene; `None` without a crowd.
+    /// Number of arms and solver time of the crowd in the last uploaded scene; `None` if that scene
+    /// has no crowd.
     ///
     /// # Errors
     ///
@@ -73,16 +74,17 @@ impl Renderer {
         self.crowds.times()
     }
 
-    /// Draws a scene and submits it to the device. `scale` is in pixels per point: lines and letters have
-    /// their size in points.
+    /// Draws a scene and submits the commands to the device. `scale` is the number of pixels per
+    /// point, the unit for the sizes of lines and letters.
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         self.upload(gpu, scene, canvas.size(), scale);
         gpu.queue.submit([self.encode(gpu, canvas, None)]);
     }
 
-    /// Sends the changes since the last scene, for a picture of a size in pixels. Once all lists have grown to
-    /// their size it allocates nothing itself; `wgpu` allocates a constant amount for each of the at most
-    /// [`Renderer::LISTS`] lists that have changed.
+    /// Sends the changes since the last scene, for a picture of `size` in pixels with `scale`
+    /// pixels per point. Once all lists are large enough, the renderer allocates nothing itself;
+    /// `wgpu` allocates a constant amount for each list that has changed, of which there are at
+    /// most [`Renderer::LISTS`].
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
         let uploaded = self.view.upload(gpu, scene, size, scale)
             + self.solids.upload(gpu, scene, size)
@@ -111,8 +113,8 @@ impl Renderer {
             + self.labels.triangles()
     }
 
-    /// Encodes the commands that draw the last uploaded scene. `wgpu` allocates memory for them, which does
-    /// not depend on the scene.
+    /// Encodes the commands that draw the last uploaded scene. `wgpu` allocates memory for them;
+    /// its amount does not depend on the scene.
     pub fn encode(
         &self,
         gpu: &Gpu,

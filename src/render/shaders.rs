@@ -1,6 +1,6 @@
 use super::{backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, solid};
 
-/// Every complete shader with its name.
+/// Names and WGSL sources of all complete shaders.
 pub fn shaders() -> [(&'static str, &'static str); 10] {
     [
         ("backdrop", backdrop::SHADER),

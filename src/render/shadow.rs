@@ -35,7 +35,7 @@ impl Shadows {
         ))
     }
 
-    /// Sends what has changed and returns the number of bytes.
+    /// Sends the changes to the device and returns the number of bytes sent.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene) -> u64 {
         self.0.upload(gpu, scene.shadows.iter().map(ShadowInstance::new))
     }

@@ -25,7 +25,7 @@ struct ShellInstance {
 
 const _: () = assert!(size_of::<ShellInstance>() == 36);
 
-/// Draws the sides of shells in the given order.
+/// Draws sides of shells in the order in which they were uploaded.
 #[derive(Debug)]
 pub(super) struct Shells(Quads<ShellInstance>);
 
@@ -43,7 +43,7 @@ impl Shells {
         ))
     }
 
-    /// Sends what has changed and returns the number of bytes.
+    /// Sends the changes to the device and returns the number of bytes sent.
     pub fn upload<'a>(
         &mut self,
         gpu: &Gpu,

@@ -25,8 +25,9 @@ const LODS: [DetailLevel; 8] = [
     DetailLevel { segments: 128, max_radius: f32::INFINITY },
 ];
 
-/// Number of segments n around a solid, and the largest radius r in pixels at which no corner is visible:
-/// the outline deviates from a circle by r·(1 − cos(π/n)), about a quarter of a pixel.
+/// Number of segments n around a solid, and the maximum radius r in pixels of the solids that are
+/// drawn with them. Up to a finite r the outline deviates from a circle by at most
+/// r·(1 − cos(π/n)), less than a quarter of a pixel, so that no corner is visible.
 struct DetailLevel {
     segments: u16,
     max_radius: f32,
@@ -43,13 +44,13 @@ struct SolidInstance {
     tip_radius: f32,
     origin: Vec3,
     colour: [f32; 4],
-    /// 1 or 0 for stripes or none, then their winding in radians.
+    /// 1 with stripes or 0 without, then the winding of the stripes in radians.
     stripes: [f32; 2],
 }
 
 const _: () = assert!(size_of::<SolidInstance>() == 84);
 
-/// Draws tapered cylinders and balls; those of guides also show faintly through what hides them.
+/// Draws tapered cylinders and balls. Guides also show faintly through the surfaces that hide them.
 #[derive(Debug)]
 pub(super) struct Solids {
     visible: wgpu::RenderPipeline,
@@ -69,7 +70,8 @@ struct DetailMeshes {
 }
 
 impl Solids {
-    /// Number of instance buffers: cones, balls, guide cones and guide balls at each level of detail.
+    /// Number of instance buffers: cones, balls, guide cones and guide balls at each level of
+    /// detail.
     pub const LISTS: usize = 4 * LODS.len();
 
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
@@ -118,14 +120,16 @@ impl Solids {
         }
     }
 
-    /// Sends what has changed and returns the number of bytes. `size` is the picture's in pixels.
+    /// Sends the changes to the device and returns the number of bytes sent. `size` is the
+    /// picture's in pixels.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> u64 {
         let (width, height) = (size.0 as f32, size.1 as f32);
         let projection = scene.camera.projection(width / height);
         let lod_of = |instance: &SolidInstance| {
             let pixels = height / 2.0 / projection.half_height_at(instance.origin);
             let radius = instance.base_radius.max(instance.tip_radius) * pixels;
-            // Beside or behind the eye it has no size on screen, but part of it may be near.
+            // A solid whose origin is beside or behind the eye has no size on screen, but a part of
+            // the solid may be near the eye.
             let radius = if radius > 0.0 { radius } else { f32::INFINITY };
             LODS.iter().position(|lod| radius <= lod.max_radius).unwrap_or(LODS.len() - 1)
         };
@@ -161,7 +165,7 @@ impl Solids {
         }
     }
 
-    /// Draws the hidden parts of guides. Comes after everything opaque.
+    /// Draws the hidden parts of guides. Must be called after everything opaque is drawn.
     pub fn draw_hidden(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.hidden);
         for lod in &self.lods {

@@ -15,8 +15,9 @@ pub(super) struct SolidVertex {
 
 const _: () = assert!(size_of::<SolidVertex>() == 28);
 
-/// A cone: a side and two caps. Rows of vertices run from the centre of the base over both rims to the
-/// centre of the tip, with each rim twice for the edge.
+/// Mesh of a cone of length and radius 1, which its instances taper: a side and two caps. Rows of
+/// vertices run from the centre of the base over both rims to the centre of the tip. Each rim has
+/// two rows, with the normals of the cap and of the side.
 pub(super) fn cone(gpu: &Gpu, segments: u16) -> MeshBuffers {
     let (vertices, indices) = cone_triangles(segments);
     MeshBuffers::new(gpu, "cone", &vertices, &indices)
@@ -51,7 +52,7 @@ fn position(vertex: &SolidVertex) -> Vec3 {
     Vec3::new(vertex.along, 0.0, 0.0) + vertex.rim
 }
 
-/// A unit sphere.
+/// Mesh of a unit sphere.
 pub(super) fn ball(gpu: &Gpu, segments: u16) -> MeshBuffers {
     let (points, indices) = mesh::sphere(segments);
     let vertices: Vec<_> = points

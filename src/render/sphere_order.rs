@@ -19,13 +19,14 @@ pub(super) enum SphereSide {
     Far,
 }
 
-/// Sorts the sides of spheres from back to front, independent of the order of the list.
+/// Sorts the sides of spheres from back to front, independently of the order in which the spheres
+/// are listed.
 ///
-/// The result is exact if no two spheres intersect. Spheres inside a sphere come between its far and its near
-/// side. Disjoint spheres are sorted by the length of their tangents from the eye: the points with tangents of
-/// equal length to both spheres form a plane that separates them, and a ray from the eye crosses it at most
-/// once. Intersecting spheres are sorted by the same length, although no order of whole sides is right for
-/// them.
+/// The result is exact if no two spheres intersect. Spheres inside a sphere come between its far
+/// and its near side. Disjoint spheres are sorted by the length of their tangents from the eye: the
+/// points with tangents of equal length to both spheres form a plane that separates them, and a ray
+/// from the eye crosses that plane at most once. Intersecting spheres are sorted by tangent length
+/// too, although no order of whole sides is right for them.
 #[derive(Debug, Default)]
 pub(super) struct SphereOrder {
     surfaces: Vec<SphereSurface>,
@@ -34,7 +35,7 @@ pub(super) struct SphereOrder {
 }
 
 impl SphereOrder {
-    /// Sorts the sides. It allocates only if there are more spheres than before.
+    /// Sorts the sides. Allocates only if there are more spheres than in all previous calls.
     pub fn sort(&mut self, projection: &Projection, spheres: &[SphereShell]) -> &[SphereSurface] {
         self.surfaces.clear();
         self.by_size.clear();
@@ -49,7 +50,8 @@ impl SphereOrder {
         &self.surfaces
     }
 
-    /// Index of the first surface in front of a sphere that is at most as large as those in the list.
+    /// Index in the list at which to insert the sides of `sphere`: that of the first surface in
+    /// front of the sphere. All spheres in the list must be at least as large as `sphere`.
     fn index_of(&self, projection: &Projection, spheres: &[SphereShell], sphere: usize) -> usize {
         let inner = &spheres[sphere];
         let mut inside = 0..self.surfaces.len();
@@ -64,8 +66,8 @@ impl SphereOrder {
             .map_or(inside.end, |(_, sides)| sides.start)
     }
 
-    /// Spheres in a range of the list that are inside no other sphere there, from back to front, with the
-    /// indices of their far and near sides.
+    /// Spheres that have their sides in a range of the list and are inside no other sphere of the
+    /// range, from back to front. Each comes with the indices of its far and near sides.
     fn outermost(&self, range: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
         let mut start = range.start;
         core::iter::from_fn(move || {
@@ -78,7 +80,7 @@ impl SphereOrder {
     }
 }
 
-/// Compares by size, the largest first, then by centre and colour.
+/// Orders spheres by radius, the largest first, then by centre and colour.
 fn by_size(a: &SphereShell, b: &SphereShell) -> Ordering {
     let key = |sphere: &SphereShell| {
         let [x, y, z] = sphere.centre.to_array();
@@ -94,8 +96,9 @@ fn contains(outer: &SphereShell, inner: &SphereShell) -> bool {
     apart <= f64::from(outer.radius) - f64::from(inner.radius)
 }
 
-/// Squared length of the tangent from the eye; negative inside the sphere. In an orthographic view it is the
-/// depth of the centre, the limit as the eye moves away.
+/// Squared length of the tangent from the eye to a sphere; negative if the eye is inside. In an
+/// orthographic view it is replaced by the depth of the centre, which has the same order as the
+/// tangents from an eye that is infinitely far away.
 fn distance(sphere: &SphereShell, projection: &Projection) -> f64 {
     let from_eye = sphere.centre.as_dvec3() - projection.eye.as_dvec3();
     if projection.orthographic {
@@ -192,7 +195,7 @@ mod tests {
     #[test]
     fn the_order_does_not_depend_on_the_list() {
         let (mut shells, mut order) = (shells(), SphereOrder::default());
-        shells.push(shell([95.0, 30.0, 0.0], 50.0)); // cuts others
+        shells.push(shell([95.0, 30.0, 0.0], 50.0)); // intersects others
         for camera in cameras() {
             let projection = camera.projection(1.5);
             let sorted = |shells: &[SphereShell], order: &mut SphereOrder| -> Vec<_> {

@@ -4,15 +4,16 @@ use super::shell::Shells;
 use super::sphere_order::{SphereOrder, SphereSide, SphereSurface};
 use crate::scene::{Colour, Globe, Scene, SphereShell};
 
-/// Draws the shells and the globe, which are see-through, from back to front over everything opaque.
+/// Draws the see-through spheres, which are the shells and the globe, from back to front over
+/// everything opaque.
 #[derive(Debug)]
 pub(super) struct Spheres {
     shells: Shells,
     globe: Globes,
     order: SphereOrder,
-    /// Shells with a size, then the globe.
+    /// Shells that can be drawn, then the globe if there is one.
     spheres: Vec<SphereShell>,
-    /// Number of shells' sides behind the globe's far side and behind its near side.
+    /// Numbers of shell sides that are drawn before the globe's far side and before its near side.
     behind_globe: [u32; 2],
 }
 
@@ -27,7 +28,8 @@ impl Spheres {
         }
     }
 
-    /// Sends what has changed and returns the number of bytes. `size` is the picture's in pixels.
+    /// Sends the changes to the device and returns the number of bytes sent. `size` is the
+    /// picture's in pixels.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32)) -> u64 {
         let projection = scene.camera.projection(size.0 as f32 / size.1 as f32);
         self.spheres.clear();
@@ -59,7 +61,8 @@ impl Spheres {
     }
 }
 
-/// Whether a shell is finite, even with its radius squared, and not empty.
+/// Whether a shell can be drawn: its centre and squared radius are finite, and the radius is above
+/// 0.
 fn has_size(shell: &SphereShell) -> bool {
     let radius = shell.radius;
     shell.centre.is_finite() && radius > 0.0 && (radius * radius).is_finite()

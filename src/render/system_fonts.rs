@@ -9,19 +9,21 @@ use skrifa::MetadataProvider as _;
 /// A face of a font installed on this system, for letters that the built-in fonts lack.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemFace {
-    /// Number that identifies the face.
+    /// Number that identifies the face among all installed ones.
     pub number: u16,
-    /// Contents of the file, kept until the program ends.
+    /// Contents of the font file, kept until the program ends.
     pub data: &'static [u8],
     /// Index of the face in the file.
     pub index: u32,
 }
 
 impl SystemFace {
-    /// The preferred face that has a letter; `None` if there is none.
+    /// The most preferred face that has a letter; `None` if no installed face has it, or its file
+    /// cannot be loaded.
     ///
-    /// The first call reads the character maps of all installed fonts, which may take a tenth of a second;
-    /// later calls look the letter up in a table. The result depends only on the installed fonts.
+    /// The first call reads the character maps of all installed fonts, which may take a tenth of a
+    /// second; later calls look the letter up in a table. The result depends only on the installed
+    /// fonts.
     pub fn find(letter: char) -> Option<Self> {
         static INSTALLED: LazyLock<Mutex<SystemFonts>> = LazyLock::new(|| {
             let mut database = Database::new();
@@ -36,7 +38,7 @@ impl SystemFace {
 struct SystemFonts {
     database: Database,
     faces: Vec<ID>,
-    /// For each code point, 1 plus the index of the first face that has it, or 0.
+    /// For each code point, 1 plus the index of the first face that has it, or 0 if no face has it.
     first: Vec<u16>,
     files: HashMap<PathBuf, &'static [u8]>,
     loaded: HashMap<u16, SystemFace>,
@@ -44,8 +46,8 @@ struct SystemFonts {
 }
 
 impl SystemFonts {
-    /// Maximum total size of loaded files. Letters of further files are not shown, so that a text in many
-    /// scripts does not exhaust memory.
+    /// Maximum total size of loaded files in bytes. Further files are not loaded and their letters
+    /// not shown, so that a text in many scripts does not exhaust memory.
     const MAX_BYTES: usize = 256 << 20;
 
     fn new(database: Database) -> Self {
@@ -72,7 +74,8 @@ impl SystemFonts {
         Some(face)
     }
 
-    /// Faces of one file share its bytes.
+    /// Contents of a font file, which are read once and shared by all faces of the file; `None` if
+    /// the file cannot be read or would exceed `MAX_BYTES`.
     fn load(&mut self, source: &Source) -> Option<&'static [u8]> {
         let (path, data) = match source {
             Source::File(path) | Source::SharedFile(path, _) => {
@@ -99,7 +102,8 @@ impl SystemFonts {
     }
 }
 
-/// Sort key of a face: upright, regular ones of a sans-serif family first, then by name.
+/// Sort key of a face: upright and regular faces of a sans-serif family come first, and equal ones
+/// are sorted by name.
 fn rank(info: &FaceInfo, sans_serif: &str) -> impl Ord + use<> {
     let family = info.families.first().map_or("", |(name, _)| name.as_str());
     (
@@ -117,8 +121,8 @@ fn rank(info: &FaceInfo, sans_serif: &str) -> impl Ord + use<> {
     )
 }
 
-/// Enters a face for all its letters that no earlier face has. Faces with bitmaps only and symbol fonts are
-/// skipped.
+/// Enters the number of a face into `first` for all letters of the face that no earlier face has.
+/// Symbol fonts and faces with bitmaps only are skipped.
 fn claim(first: &mut [u16], number: u16, data: &[u8], index: u32) {
     const SAMPLE: usize = 32;
     let Ok(map) = skrifa::FontRef::from_index(data, index).map(|font| font.charmap()) else {
@@ -159,7 +163,7 @@ mod tests {
     fn a_letter_comes_from_a_face_that_has_it() {
         let mut fonts = fonts(&[HACK_REGULAR, EGUI_ICONS, UBUNTU_LIGHT]);
         for (letter, file) in [
-            ('a', HACK_REGULAR), // as the other is light
+            ('a', HACK_REGULAR), // the other face is light
             ('─', HACK_REGULAR),
             ('ƕ', UBUNTU_LIGHT),
             (special_emojis::GITHUB, EGUI_ICONS),

@@ -2,7 +2,7 @@ use bytemuck::Pod;
 
 use super::Gpu;
 
-/// A uniform buffer in a bind group of its own, sent only when it changes.
+/// A uniform buffer in a bind group of its own, sent only when its values change.
 #[derive(Debug)]
 pub(super) struct Uniforms<T> {
     sent: Option<T>,
@@ -41,7 +41,7 @@ impl<T: Pod + PartialEq> Uniforms<T> {
         Self { sent: None, buffer, layout, group }
     }
 
-    /// Sends the values if they have changed and returns the number of bytes.
+    /// Sends the values to the device if they have changed, and returns the number of bytes sent.
     pub fn upload(&mut self, gpu: &Gpu, values: T) -> u64 {
         if self.sent == Some(values) {
             return 0;

@@ -33,7 +33,7 @@ struct ViewData {
 
 const _: () = assert!(size_of::<ViewData>() == 64 + 5 * 16 + 16 + 8 * 16);
 
-/// The shared uniforms on the device.
+/// The uniforms that all shaders of a scene share, on the device.
 #[derive(Debug)]
 pub(super) struct ViewUniforms(Uniforms<ViewData>);
 
@@ -50,15 +50,15 @@ impl ViewUniforms {
         &self.0.group
     }
 
-    /// Sends the uniforms if they have changed and returns the number of bytes. `scale` is in pixels per
-    /// point.
+    /// Sends the uniforms if they have changed, and returns the number of bytes sent. `size` is the
+    /// picture's in pixels, `scale` the number of pixels per point.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
         self.0.upload(gpu, ViewData::new(scene, size, scale))
     }
 }
 
 impl ViewData {
-    /// Opacity of the ground.
+    /// Opacity of the ground, from 0 to 1.
     const GROUND_OPACITY: f32 = 0.55;
 
     fn new(scene: &Scene, (width, height): (u32, u32), scale: f32) -> Self {

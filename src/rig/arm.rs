@@ -3,7 +3,10 @@ use glam::{Affine3A, Mat3A, Vec3};
 use super::TaperedCylinder;
 use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 
-/// A part of the arm, parents before children.
+/// A part of the arm. Parents come before their children in the order of the variants.
+///
+/// Symbols are those of [`two_bone`](crate::kinematics::two_bone) and
+/// [`twist`](crate::kinematics::twist).
 ///
 /// ```text
 /// Root                 translation = shoulder in the world
@@ -22,9 +25,9 @@ use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 pub enum ArmPart {
     /// The shoulder; the root of the hierarchy.
     Root,
-    /// The frame that points at the hand.
+    /// Frame whose +x points at the hand.
     Limb,
-    /// The frame rotated by the twist.
+    /// Frame of the Limb, rotated about the Pointer by the twist.
     Socket,
     /// Upper limb, from shoulder to elbow.
     UpperLimb,
@@ -73,7 +76,8 @@ impl ArmPart {
 
 /// A posed arm as a hierarchy of rigid transforms.
 ///
-/// World transforms are products down the hierarchy, independent of the solver's own points.
+/// World transforms are products of local ones down the hierarchy. They do not use the positions of
+/// elbow and hand in the solver's pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmRig {
     local: [Affine3A; ArmPart::ALL.len()],
@@ -85,15 +89,16 @@ pub struct ArmRig {
 }
 
 impl ArmRig {
-    /// Limbs have a radius of 30 at the base and 20 at the tip for an arm of length 500, as in
-    /// Palmieri's report. The radius scales with the arm's length, limited by the shorter bone.
+    /// Radius of a limb at its base for an arm of length [`Self::SEED_LENGTH`], as in Palmieri's
+    /// report; [`Self::TIP_RADIUS`] is the radius at its tip. [`Self::thickness`] scales both to
+    /// other arms.
     const BASE_RADIUS: f32 = 30.0;
     const TIP_RADIUS: f32 = 20.0;
     const POINTER_RADIUS: f32 = 4.0;
     const SEED_LENGTH: f32 = 500.0;
 
-    /// Hierarchy of a pose (Root space) with the shoulder at `root` (world). The `cursor` is in Root
-    /// space.
+    /// Makes the hierarchy of `pose`, with the shoulder at `root` in the world. `pose` and `cursor`
+    /// are in Root space.
     pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &TwoBonePose) -> Self {
         let thickness = Self::thickness(arm);
         let (base_radius, tip_radius) =
@@ -131,18 +136,19 @@ impl ArmRig {
         }
     }
 
-    /// Radius of the limbs as a multiple of that of an arm of length 500.
+    /// Ratio of the limbs' radii to the radii for an arm of length 500. It grows with the arm's
+    /// length; the base radius never exceeds the length of the shorter bone.
     pub fn thickness(arm: TwoBone) -> f32 {
         let shorter = arm.upper().min(arm.lower());
         (arm.outer_limit() / Self::SEED_LENGTH).min(shorter / Self::BASE_RADIUS)
     }
 
-    /// The part's transform in its parent.
+    /// Transform from the part's space to its parent's; for the Root, to the world.
     pub fn local(&self, part: ArmPart) -> Affine3A {
         self.local[part as usize]
     }
 
-    /// The part's transform in the world.
+    /// Transform from the part's space to the world.
     pub fn world(&self, part: ArmPart) -> Affine3A {
         match part.parent() {
             Some(parent) => self.world(parent) * self.local(part),
@@ -155,17 +161,17 @@ impl ArmRig {
         self.world(part).translation.into()
     }
 
-    /// The upper limb's shape, along its own +x.
+    /// Shape of the upper limb, along +x of [`ArmPart::UpperLimb`].
     pub fn upper(&self) -> TaperedCylinder {
         self.upper
     }
 
-    /// The lower limb's shape, along its own +x.
+    /// Shape of the lower limb, along +x of [`ArmPart::LowerLimb`].
     pub fn lower(&self) -> TaperedCylinder {
         self.lower
     }
 
-    /// The Pointer's shape, along the Limb's +x.
+    /// Shape of the Pointer, along +x of [`ArmPart::Limb`].
     pub fn pointer(&self) -> TaperedCylinder {
         self.pointer
     }

@@ -12,14 +12,14 @@ use crate::kinematics::batch::{
 };
 use crate::kinematics::two_bone::TwoBone;
 
-/// Parameters of a crowd at a time.
+/// Parameters of a crowd, with the time at which it is posed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crowd {
     /// Number of arms, at most [`Crowd::MOST`].
     pub arms: u32,
-    /// The bones of every arm.
+    /// Bones that all arms have.
     pub bones: TwoBone,
-    /// Time in seconds, periodic in [`Crowd::PERIOD`].
+    /// Time in seconds. The motion of the targets repeats after [`Crowd::PERIOD`].
     pub time: f32,
     /// Processor that solves the crowd.
     pub processor: Processor,
@@ -28,10 +28,10 @@ pub struct Crowd {
 /// Processor that solves a crowd.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Processor {
-    /// The CPU, by [`batch`](crate::kinematics::batch) on all cores.
+    /// The CPU: [`batch`](crate::kinematics::batch) on all cores.
     #[default]
     Cpu,
-    /// The GPU, by the same mathematics in a shader.
+    /// The GPU: the same mathematics in a shader.
     Gpu,
 }
 
@@ -39,10 +39,11 @@ impl Crowd {
     /// Maximum number of arms.
     pub const MOST: u32 = 1_000_000;
 
-    /// Period of the targets in seconds.
+    /// Period of the targets' motion, in seconds.
     pub const PERIOD: f32 = 16.0;
 
-    /// Distance between shoulders in arm lengths, at which the targets of neighbours hardly overlap.
+    /// Distance between neighbouring shoulders, in arm lengths: the paths of their targets hardly
+    /// overlap.
     const SPACING: f32 = 1.15;
 
     /// Bounding sphere of all arms in the world: centre and radius.
@@ -51,8 +52,8 @@ impl Crowd {
         (Vec3::ZERO, self.spread() * (self.arms as f32).sqrt() + reach)
     }
 
-    /// Factor of a shoulder's distance from the centre over the square root of its index, which gives
-    /// every arm the same area.
+    /// Ratio of a shoulder's distance from the centre to the square root of its index. The square
+    /// root gives every arm the same area.
     fn spread(&self) -> f32 {
         Self::SPACING * self.bones.outer_limit() / PI.sqrt()
     }
@@ -63,20 +64,21 @@ impl Crowd {
 pub struct CrowdTimes {
     /// Number of arms.
     pub arms: u32,
-    /// Time of the solver alone, from cursors to elbows and hands.
+    /// Time of the solver alone, which computes elbows and hands from cursors and twists.
     pub solve: Duration,
 }
 
 /// Inputs and results of all arms of a crowd, as a structure of arrays.
 #[derive(Debug, Default)]
 pub struct CrowdArrays {
-    /// x and z of the shoulders on the plane y = 0 of the world. Root spaces are parallel to the world.
+    /// x and z of the shoulders, on the plane y = 0 of the world. The axes of Root spaces are
+    /// parallel to the world's.
     pub shoulder: [Vec<f32>; 2],
     /// Cursors in Root space.
     pub cursor: [Vec<f32>; 3],
-    /// Cosines of the twist.
+    /// Cosines of the twists.
     pub cos: Vec<f32>,
-    /// Sines of the twist.
+    /// Sines of the twists.
     pub sin: Vec<f32>,
     /// Elbows in Root space.
     pub elbow: [Vec<f32>; 3],
@@ -86,12 +88,13 @@ pub struct CrowdArrays {
 }
 
 impl CrowdArrays {
-    /// Resizes to the crowd's number of arms and positions the shoulders. Returns whether anything changed.
+    /// Resizes the arrays to the crowd's number of arms and positions the shoulders. Returns
+    /// whether anything changed.
     ///
-    /// Shoulders are arranged like the seeds of a sunflower (H. Vogel, *A Better Way to Construct the
-    /// Sunflower Head*, 1979), so that adding arms moves no other.
+    /// Shoulders are arranged like the seeds of a sunflower (H. Vogel, *A Better Way to Construct
+    /// the Sunflower Head*, 1979), so that adding arms does not move the others.
     pub fn resize(&mut self, crowd: &Crowd) -> bool {
-        /// 2π(1 − 1/φ).
+        /// The golden angle 2π(1 − 1/φ) in radians, with the golden ratio φ.
         const GOLDEN: f64 = 2.399_963_229_728_653;
         let (arms, spread) = (crowd.arms as usize, crowd.spread());
         if self.len() == arms && self.spread == spread {
@@ -153,8 +156,9 @@ impl CrowdArrays {
     }
 }
 
-/// Positions of the targets at a time from 0 to 1: on loops in front of and above their shoulders,
-/// partly out of reach, with rotating twists.
+/// Writes cursors and twists (cosine and sine) at `time`, a fraction of the period from 0 to 1. The
+/// cursors move on loops around and above their shoulders, partly out of reach; `reach` is the
+/// arm's length.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+avx512bw",
     "x86_64+avx2",
@@ -185,11 +189,12 @@ fn follow(time: f32, reach: f32, cursor: [&mut [f32]; 3], twist: [&mut [f32]; 2]
     }
 }
 
-/// One arm's parameters as fractions of a turn, hashed from its index.
+/// Parameters of one arm's motion, hashed from the arm's index.
 #[derive(Clone, Copy)]
 struct ArmMotion {
+    /// Phases of the motion, in turns.
     phases: [f32; 4],
-    /// Rounds per period, 1 or 2 in either direction.
+    /// Turns per period: 1 or 2, negative for the opposite direction.
     rounds: f32,
 }
 
@@ -207,7 +212,7 @@ impl ArmMotion {
         Self { phases: [phase(0), phase(1), phase(2), phase(3)], rounds: rounds * direction }
     }
 
-    /// In lengths of the arm.
+    /// Cursor at `time` (a fraction of the period), in Root space and arm lengths.
     #[inline(always)]
     fn cursor(self, time: f32) -> [f32; 3] {
         let [across, up, along, _] = self.phases;
@@ -219,23 +224,24 @@ impl ArmMotion {
         ]
     }
 
-    /// ψ in turns.
+    /// Twist ψ at `time` (a fraction of the period), in turns.
     #[inline(always)]
     fn twist(self, time: f32) -> f32 {
         self.phases[3] + time * self.rounds
     }
 }
 
-/// sin 2πt to 1e-7, in plain arithmetic, which vectorizes and is the same on every machine.
+/// sin 2πt, with an error below 1e-7, for an angle of t turns. Plain arithmetic vectorizes and
+/// gives the same bits on every machine.
 #[inline(always)]
 fn sine(turns: f32) -> f32 {
-    // To the nearest quarter before or after 0, where the sine has the same value.
+    // Reduces the angle to −¼ … ¼ turn without changing its sine.
     let turns = turns - turns.round_ties_even();
     let half = if turns < 0.0 { -0.5 } else { 0.5 };
     let turns = if turns.abs() > 0.25 { half - turns } else { turns };
     let x = turns * TAU;
     let square = x * x;
-    // Taylor's series up to x¹¹: the next term is 6e-8 at a quarter.
+    // Taylor's series up to x¹¹: at a quarter turn the next term is 6e-8.
     let series = -1.0 / 39_916_800.0;
     let series = series * square + 1.0 / 362_880.0;
     let series = series * square - 1.0 / 5_040.0;

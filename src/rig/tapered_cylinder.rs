@@ -2,8 +2,8 @@ use glam::{Affine3A, Mat3, Vec3};
 
 /// A tapered cylinder along +x from the origin.
 ///
-/// [`TaperedCylinder::between`] builds its rotation from a basis, without an arc cosine, and is exact in every
-/// direction.
+/// [`TaperedCylinder::between`] builds the rotation from an orthonormal basis, without an arc
+/// cosine, so that it is exact in every direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaperedCylinder {
     /// Length along +x.
@@ -15,8 +15,9 @@ pub struct TaperedCylinder {
 }
 
 impl TaperedCylinder {
-    /// The cone from `base` to `tip`, with the transform that places it: a rotation whose +x points at
-    /// the tip, with any roll, and a translation to the base. Coinciding ends keep +x.
+    /// Returns the cylinder from `base` to `tip` and the transform that places it there: a
+    /// translation to `base`, and a rotation that turns +x towards `tip`, with any roll. If both
+    /// points coincide, +x keeps its direction.
     pub fn between(base: Vec3, tip: Vec3, base_radius: f32, tip_radius: f32) -> (Affine3A, Self) {
         let (x, length) = direction_and_length(tip - base);
         let (y, z) = x.any_orthonormal_pair();
@@ -24,7 +25,7 @@ impl TaperedCylinder {
         (place, Self { length, base_radius, tip_radius })
     }
 
-    /// As [`Self::between`] for ends in the xy-plane, with a rotation about z.
+    /// As [`Self::between`], for ends in the xy-plane: the rotation is about z.
     pub fn in_xy_plane(
         base: Vec3,
         tip: Vec3,
@@ -38,7 +39,8 @@ impl TaperedCylinder {
     }
 }
 
-/// Scaled before it is squared, so that neither huge nor tiny vectors lose their direction.
+/// Direction and length of a vector; +x and 0 for the zero vector. The vector is scaled before it
+/// is squared, so that neither huge nor tiny vectors lose their direction.
 fn direction_and_length(v: Vec3) -> (Vec3, f32) {
     let size = v.abs().max_element();
     if size == 0.0 {

@@ -3,20 +3,21 @@
 pub struct Colour(pub [u8; 4]);
 
 impl Colour {
-    /// Opaque colour from its hexadecimal code.
+    /// Opaque colour from its hexadecimal code 0xRRGGBB.
     pub(super) const fn rgb(hex: u32) -> Self {
         let [_, r, g, b] = hex.to_be_bytes();
         Self([r, g, b, 255])
     }
 
-    /// The colour with another opacity: 0 is invisible, 1 opaque.
+    /// The colour with another opacity, from 0 (invisible) to 1 (opaque).
     #[must_use]
     pub fn with_opacity(self, opacity: f32) -> Self {
         let [r, g, b, _] = self.0;
         Self([r, g, b, (opacity * 255.0).round() as u8])
     }
 
-    /// Linear interpolation in sRGB: 0 is this colour, 1 the other.
+    /// Linear interpolation to another colour in sRGB: a fraction of 0 is this colour, 1 the other
+    /// one.
     #[must_use]
     pub fn mixed(self, other: Self, fraction: f32) -> Self {
         let mix =

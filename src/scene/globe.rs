@@ -2,23 +2,26 @@ use glam::Vec3;
 
 use crate::kinematics::twist::TwistReference;
 
-/// Sphere of all directions of the Pointer, coloured by the [gain](TwistReference::gain) of the twist
-/// reference there: radians that the elbow swings per radian that the Pointer turns.
+/// Sphere of all directions of the Pointer, coloured by the [gain](TwistReference::gain) of the
+/// twist reference in each direction: radians that the elbow swings per radian that the Pointer
+/// turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Globe {
-    /// The shoulder, in the world.
+    /// Position of the shoulder in the world.
     pub centre: Vec3,
     /// Radius in world units.
     pub radius: f32,
-    /// Twist reference; its directions are in Root space, whose axes are the world's.
+    /// Twist reference, whose gains colour the globe. Its directions are in Root space, which has
+    /// the world's axes.
     pub reference: TwistReference,
 }
 
 impl Globe {
-    /// Unit vectors in which the reference is singular: none, one, or two opposite ones.
+    /// Unit vectors of the directions in which the reference is singular: none, one, or two
+    /// opposite ones.
     ///
-    /// A pole at the shoulder has no direction, so it acts like [`TwistReference::Transport`], which is
-    /// singular nowhere.
+    /// A pole at the shoulder has no direction, so it acts like [`TwistReference::Transport`],
+    /// which is singular nowhere.
     pub fn singular(&self) -> impl Iterator<Item = Vec3> + Clone {
         let both = |axis: Vec3| [Some(axis), Some(-axis)];
         let directions = match self.reference {
@@ -33,7 +36,7 @@ impl Globe {
         directions.into_iter().flatten()
     }
 
-    /// Whether it can be drawn: its centre and radius are finite, and the radius is above 0.
+    /// Whether the globe can be drawn: its centre and radius are finite, and the radius is above 0.
     pub fn has_size(&self) -> bool {
         self.centre.is_finite() && self.radius.is_finite() && self.radius > 0.0
     }

@@ -1,6 +1,7 @@
 //! What to draw: plain lists of solids, balls, shells, lines and labels, filled from a document.
 //!
-//! This module does not know how things are drawn, and [`crate::render`] does not know what they mean.
+//! This module does not know how these things are drawn, and [`crate::render`] does not know what
+//! they mean.
 
 mod builder;
 mod colour;

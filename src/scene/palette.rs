@@ -2,10 +2,10 @@ use super::Colour;
 use crate::document::{Theme, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 
-/// Colours of a theme. The panels share those of the two limbs and the accent.
+/// Colours of the scene in a theme. The panels use the colours of the two limbs and the accent too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// The theme.
+    /// Theme that the colours belong to.
     pub theme: Theme,
     /// Upper limb.
     pub upper: Colour,
@@ -15,9 +15,9 @@ pub struct Palette {
     pub joint: Colour,
     /// Cursor, Pointer and limits.
     pub guide: Colour,
-    /// Selection, trails and gaps.
+    /// Selection, trails, and gaps between a target and what should reach it.
     pub accent: Colour,
-    /// x, y and z axis.
+    /// Axes x, y and z.
     pub axes: [Colour; 3],
     /// Background at the top of the picture.
     pub sky_top: Colour,
@@ -29,17 +29,17 @@ pub struct Palette {
     pub grid: Colour,
     /// Labels.
     pub text: Colour,
-    /// Colour ramp of [`Palette::gain`]. Contrast with the background and opacity increase along it, so
-    /// that it is readable without hues; steps are equal in Oklab.
+    /// Colour ramp of [`Palette::gain`], in steps that are equal in Oklab. Opacity and contrast
+    /// with the background increase along the ramp, so that it is readable without hues.
     pub gains: [Colour; Palette::GAINS],
-    /// Opacity of the darkest shadow.
+    /// Opacity of the darkest shadow, from 0 to 1.
     pub shadow: f32,
 }
 
 impl Palette {
     /// Number of colours in the ramp of gains.
     pub const GAINS: usize = 5;
-    /// Gain at the end of the ramp; higher gains have its last colour.
+    /// Gain at the end of the ramp. Higher gains have the ramp's last colour.
     pub const MAX_GAIN: f32 = 8.0;
 
     /// The palette of a theme.
@@ -80,7 +80,7 @@ impl Palette {
         }
     }
 
-    /// Colour of a twist reference where references are compared.
+    /// Colour of a twist reference in the comparison of all references.
     pub fn twist_reference(&self, twist_reference: TwistReferenceKind) -> Colour {
         let [dark, light] = match twist_reference {
             TwistReferenceKind::Limb => [0xf2d06b, 0x866400],
@@ -91,7 +91,7 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// Colour of a solver where solvers are compared.
+    /// Colour of a solver method in the comparison of solvers.
     pub fn method(&self, method: Method) -> Colour {
         let [dark, light] = match method {
             Method::TransposeFixed => [0xc9a227, 0x7d6300],
@@ -104,8 +104,8 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// Colour and opacity of a [gain](crate::kinematics::twist::TwistReference::gain) on the globe: the ramp
-    /// is linear in the logarithm of 1 + gain, from 0 to [`Palette::MAX_GAIN`].
+    /// Colour and opacity of a [gain](crate::kinematics::twist::TwistReference::gain) on the globe.
+    /// The ramp is linear in the logarithm of 1 + gain, from a gain of 0 to [`Palette::MAX_GAIN`].
     pub fn gain(&self, gain: f32) -> Colour {
         let last = Self::GAINS - 1;
         let along = gain.max(0.0).ln_1p() / Self::MAX_GAIN.ln_1p() * last as f32;

@@ -3,7 +3,8 @@ use glam::Vec3;
 use crate::document::{Display, Overlay};
 use crate::rig::Crowd;
 
-/// The ground and the grids through the world's origin, drawn around a centre up to a radius.
+/// The ground and the grids: planes through the world's origin, drawn around a centre up to a
+/// radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
     /// Whether the grid in the plane z = 0 is drawn.
@@ -14,20 +15,21 @@ pub struct Planes {
     pub grid_yz: bool,
     /// Whether the ground is drawn.
     pub ground: bool,
-    /// Centre in the world.
+    /// Centre of the drawn part, in the world.
     pub centre: Vec3,
-    /// Radius at which the planes fade out.
+    /// Radius in world units at which the vertical grids have faded out. The ground reaches about
+    /// twice as far.
     pub radius: f32,
-    /// Width of a grid cell.
+    /// Width of a grid cell in world units.
     pub cell: f32,
 }
 
 impl Planes {
-    /// Radius of the planes divided by the reach of the rig, so that the rig has ground below it in every
-    /// pose.
+    /// Ratio of the radius of the planes to the reach of the rig, large enough that the rig has
+    /// ground below it in every pose.
     const RADIUS: f32 = 1.7;
 
-    /// Planes around a rig.
+    /// The planes that `display` shows, around a rig of this centre and reach.
     pub(super) fn around(centre: Vec3, reach: f32, cell: f32, display: Display) -> Self {
         Self {
             grid_xy: display.shows(Overlay::GridXy),
@@ -40,7 +42,8 @@ impl Planes {
         }
     }
 
-    /// The ground and its grid under a crowd, with cells the size of an arm or of a power of ten of arms.
+    /// The ground and its grid under a crowd. A grid cell is as wide as an arm is long, or a power
+    /// of ten times that in a large crowd.
     pub(super) fn around_crowd(crowd: &Crowd, display: Display) -> Self {
         const CELLS: f32 = 200.0;
         let (centre, radius) = crowd.bounds();

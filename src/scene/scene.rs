@@ -8,45 +8,45 @@ use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Solid, Sp
 use crate::document::{Camera, Display, Theme};
 use crate::rig::{Crowd, TaperedCylinder};
 
-/// Everything in a picture.
+/// Everything that is drawn in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// View of the scene.
+    /// Camera that views the scene.
     pub camera: Camera,
-    /// Colours of the background and the grids, and of what has no colour of its own.
+    /// Colours of the background, the grids and all parts without a colour of their own.
     pub palette: Palette,
     /// Ground and grids.
     pub planes: Planes,
-    /// Shadows on the ground, of what is above it.
+    /// Shadows on the ground, each of a limb above the ground.
     pub shadows: Vec<Shadow>,
     /// Cones and cylinders.
     pub solids: Vec<Solid>,
     /// Balls.
     pub balls: Vec<Ball>,
-    /// Cones and cylinders that also show faintly through what hides them.
+    /// Cones and cylinders that also show faintly through the surfaces that hide them.
     pub guide_solids: Vec<Solid>,
-    /// Balls that also show faintly through what hides them.
+    /// Balls that also show faintly through the surfaces that hide them.
     pub guide_balls: Vec<Ball>,
     /// See-through spheres.
     pub shells: Vec<SphereShell>,
-    /// Globe of gains.
+    /// Globe coloured by the gain of a twist reference.
     pub globe: Option<Globe>,
-    /// Crowd that replaces the rig; the renderer solves it.
+    /// Crowd that is drawn instead of the rig. The renderer solves it.
     pub crowd: Option<Crowd>,
     /// Lines.
     pub lines: Vec<Line>,
     /// Labels, drawn over everything else.
     pub labels: Vec<Label>,
-    /// Texts of all labels, one after the other.
+    /// Texts of all labels, concatenated.
     text: String,
 }
 
 impl Scene {
-    /// Radii of the crowds that are drawn. Outside, squared lengths overflow or underflow, also on the
-    /// device.
+    /// Range of the bounding radius of a crowd that is drawn, in world units. Outside this range
+    /// squared lengths overflow or underflow on the CPU or the device.
     pub const CROWD_RADII: Range<f32> = 1e-12..1e15;
 
-    /// A scene of nothing but planes.
+    /// A scene of the planes alone.
     pub(super) fn empty(camera: Camera, display: Display, theme: Theme) -> Self {
         Self {
             camera,
@@ -66,7 +66,7 @@ impl Scene {
         }
     }
 
-    /// Empties all lists but keeps their memory.
+    /// Empties the scene but keeps the memory of its lists. Camera, palette and planes stay.
     pub(super) fn clear(&mut self) {
         self.shadows.clear();
         self.solids.clear();
@@ -95,7 +95,7 @@ impl Scene {
         self.labels.push(Label { text, ..label });
     }
 
-    /// Adds a cone from base to tip.
+    /// Adds a cone from base to tip, both in the world.
     pub(super) fn add_solid(
         &mut self,
         base: Vec3,
@@ -108,7 +108,7 @@ impl Scene {
         self.solids.push(Solid { transform, shape, colour, stripes: None });
     }
 
-    /// Removes what is not finite.
+    /// Removes all shapes and labels with a position or size that is not finite.
     pub(super) fn remove_non_finite(&mut self) {
         for solids in [&mut self.solids, &mut self.guide_solids] {
             solids.retain(|Solid { transform, shape, .. }| {

@@ -6,14 +6,15 @@ use crate::rig::TaperedCylinder;
 /// A tapered cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
-    /// Rigid transform from its space, in which it lies along +x, to the world.
+    /// Rigid transform to the world from the solid's space, where the base is at the origin and the
+    /// axis along +x.
     pub transform: Affine3A,
     /// Length and radii.
     pub shape: TaperedCylinder,
     /// Colour of the surface.
     pub colour: Colour,
-    /// Winding of darker stripes along the side from base to tip, in radians, right-handed about the
-    /// solid's +x; `None` or a non-finite angle for no stripes.
+    /// Angle in radians by which darker stripes along the side wind from base to tip, right-handed
+    /// about the solid's +x. `None` or an angle that is not finite means no stripes.
     pub stripes: Option<f32>,
 }
 
@@ -39,7 +40,7 @@ pub struct SphereShell {
     pub colour: Colour,
 }
 
-/// A line of constant width on screen.
+/// A line whose width on screen does not depend on its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// Start in the world.
@@ -48,19 +49,19 @@ pub struct Line {
     pub to: Vec3,
     /// Colour, with opacity.
     pub colour: Colour,
-    /// Whether it is dashed.
+    /// Whether the line is dashed.
     pub dashed: bool,
 }
 
-/// A limb that casts a shadow on the ground: two balls and the space between them.
+/// A limb that casts a shadow on the ground: the hull of a ball at its base and a ball at its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadow {
     /// Centre of the ball at the base, in the world.
     pub base: Vec3,
-    /// Radius at the base.
+    /// Radius of the ball at the base, in world units.
     pub base_radius: f32,
     /// Centre of the ball at the tip, in the world.
     pub tip: Vec3,
-    /// Radius at the tip.
+    /// Radius of the ball at the tip, in world units.
     pub tip_radius: f32,
 }

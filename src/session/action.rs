@@ -7,14 +7,14 @@ use super::solver_action::SolverAction;
 use super::transaction_action::TransactionAction;
 use super::view_action::ViewAction;
 
-/// A change of a [`Session`](super::Session), grouped by the part that it changes. Values are absolute, so
-/// that applying an action twice is harmless.
+/// A change of a [`Session`](super::Session), grouped by the part of the session that it changes.
+/// Values are absolute, so that setting the same value twice is harmless.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Changes the document; one undo step, unless it is part of a larger one.
+    /// Changes the document. An undo step of its own, unless a transaction is open.
     Edit(EditAction),
-    /// Opens, drags and closes transactions, and moves through the undo history. These have no
-    /// label of their own: a step is labelled by the edits in it.
+    /// Opens, drags and closes transactions, and moves through the undo history. These actions have
+    /// no label of their own: an undo step is labelled by the edits in it.
     Transaction(TransactionAction),
     /// Changes the selection.
     Select(SelectAction),
@@ -26,7 +26,7 @@ pub enum Action {
     Solver(SolverAction),
     /// Opens, saves and exports.
     File(FileAction),
-    /// Dialogs, messages and preferences.
+    /// Changes dialogs, messages or preferences.
     Shell(ShellAction),
 }
 
@@ -66,7 +66,7 @@ impl Actions {
         self.0.push(action.into());
     }
 
-    /// Whether there is no action.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

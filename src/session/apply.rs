@@ -3,8 +3,9 @@ use super::effect::Effect;
 use super::session::Session;
 
 impl Session {
-    /// Applies an action. An invalid one changes nothing and is reported by [`Session::message`]; one that
-    /// would lose unsaved changes opens a dialog first.
+    /// Applies an action and returns the effect that the program must carry out, if any. An invalid
+    /// action changes nothing and is reported by [`Session::message`]; an action that would lose
+    /// unsaved changes opens a dialog first.
     pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
         match action.into() {
             Action::Edit(action) => self.apply_edit(action),

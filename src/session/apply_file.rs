@@ -12,19 +12,20 @@ use crate::document::{Document, RigKind};
 use crate::io::Example;
 use crate::kinematics::skeleton::JointId;
 
-/// Files.
+/// Opening, saving and exporting files.
 impl Session {
-    /// Where the document was opened from or saved to.
+    /// The file that the document was opened from or saved to; `None` for a new or imported
+    /// document.
     pub fn file(&self) -> Option<&Path> {
         self.files.file()
     }
 
-    /// Files that were opened or saved, the last one first.
+    /// Files that were opened or saved, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         self.files.recent()
     }
 
-    /// Remembers files of an earlier session.
+    /// Sets the recent files, as saved by an earlier run of the program.
     pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
         self.files.set_recent(recent);
     }
@@ -37,7 +38,7 @@ impl Session {
         self.say("The unsaved document is open; save it");
     }
 
-    /// Whether the action opens a file, and the document has changed since the file was asked for.
+    /// Whether the action opens a file, and the document has changed since the user chose the file.
     pub(super) fn is_late(&self, action: &FileAction) -> bool {
         let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
         matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
@@ -64,7 +65,8 @@ impl Session {
         }
     }
 
-    /// Saves to the document's file, or asks for a path if it has none.
+    /// Returns the effect that saves the document to its file, or that asks for a path if the
+    /// document has no file.
     pub(super) fn save(&mut self) -> Effect {
         self.end_glide();
         match self.files.file() {
@@ -73,7 +75,7 @@ impl Session {
         }
     }
 
-    /// Marks the document as saved and applies the action that waited for it.
+    /// Marks the document as saved and applies the action that waited for the save.
     pub(super) fn finish_save(&mut self, path: PathBuf) -> Option<Effect> {
         self.say(format!("Saved {}", path.display()));
         self.commit_edit();
@@ -93,7 +95,8 @@ impl Session {
         self.files.take_after_save();
     }
 
-    /// Reports the error; an open dialog keeps the path.
+    /// Reports the error. Unless another dialog is open, shows the error and the path in the
+    /// program's Open dialog.
     pub(super) fn fail_open(&mut self, path: &Path, why: &str) {
         self.fail(format!("not opened: {why}"));
         if self
@@ -106,7 +109,7 @@ impl Session {
         }
     }
 
-    /// Applies an action; asks first if it would lose unsaved changes or end an export.
+    /// Applies an action; asks first if the action would lose unsaved changes or end an export.
     pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
         if action == FileAction::Quit && self.is_exporting() {
             self.shell.open_dialog(Dialog::Exporting);
@@ -220,16 +223,16 @@ impl Session {
         let document = Document { rig: RigKind::Skeleton, ..Document::default() };
         self.replace_document(document, None);
         self.select(vec![JointId::new(0)]);
-        // Frames a rig of one or two units.
+        // Frames a sphere that a skeleton of one or two units fits into.
         self.set_camera(self.settled_camera().framing(Vec3::Y * 0.5, 1.0, ASPECT));
     }
 
-    /// The running export.
+    /// The running export; `None` if there is none.
     pub fn export_job(&self) -> Option<&ExportJob> {
         self.files.job()
     }
 
-    /// The dialog for an export of the document.
+    /// The dialog for an export of the document, with default settings.
     pub fn export_dialog(&self) -> PathDialog {
         const SIZE: (u32, u32) = (1280, 800);
         let stem = self.files.file().and_then(|file| file.file_stem());

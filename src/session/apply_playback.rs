@@ -4,10 +4,10 @@ use super::session::Session;
 
 /// Playback.
 impl Session {
-    /// Slowest and fastest speed.
+    /// Minimum and maximum playback speed; 1 is real time.
     pub const SPEEDS: (f64, f64) = Playback::SPEEDS;
 
-    /// The playhead, in seconds.
+    /// Time of the playhead, in seconds.
     pub fn time(&self) -> f64 {
         self.playback.time()
     }
@@ -17,22 +17,22 @@ impl Session {
         self.playback.is_playing()
     }
 
-    /// Whether playback starts again at the end of the timeline.
+    /// Whether playback continues from the start of the timeline when it reaches the end.
     pub fn is_looping(&self) -> bool {
         self.playback.is_looping()
     }
 
-    /// The speed, 1 for real time.
+    /// The playback speed; 1 is real time.
     pub fn speed(&self) -> f64 {
         self.playback.speed()
     }
 
-    /// Whether every edit sets keys.
+    /// Whether auto-key is on, so that every edit sets keys.
     pub fn is_auto_key(&self) -> bool {
         self.playback.is_auto_key()
     }
 
-    /// Whether the document changes over time.
+    /// Whether the document has keys, or a target or the skeleton moves without keys.
     pub fn has_motion(&self) -> bool {
         !self.document().keys.is_empty() || self.skeleton_rig().is_moving()
     }
@@ -48,7 +48,8 @@ impl Session {
         }
     }
 
-    /// Plays from the start if the playhead is at the end; pauses on a frame.
+    /// Plays or pauses. Playing starts over if the playhead is at the end of the timeline; pausing
+    /// moves the playhead to the nearest frame.
     fn play(&mut self, playing: bool) {
         let timeline = self.document().timeline;
         let (time, was_playing) = (self.time(), self.is_playing());

@@ -5,12 +5,12 @@ use crate::kinematics::skeleton::JointId;
 
 /// Selection of joints, keys and channels.
 impl Session {
-    /// Selected joints; the last one is the active one.
+    /// Selected joints; the last of them is the active joint.
     pub fn selection(&self) -> &[JointId] {
         self.selection.joints()
     }
 
-    /// The active joint: the last one selected.
+    /// The active joint, which is the last of the selected ones; `None` without a selection.
     pub fn selected(&self) -> Option<JointId> {
         self.selection().last().copied()
     }

@@ -16,7 +16,7 @@ impl Session {
         self.shell.dialog()
     }
 
-    /// Whether a modal dialog is open, the program's or the system's.
+    /// Whether a modal dialog of the program or a file dialog of the system is open.
     pub fn is_asking(&self) -> bool {
         self.shell.is_choosing() || self.shell.dialog().is_some_and(Dialog::is_modal)
     }
@@ -27,7 +27,7 @@ impl Session {
     }
 
     pub(super) fn open_dialog(&mut self, dialog: Dialog) {
-        // A dialog other than those that save ends the wait for the document to be saved.
+        // Only the dialogs for saving keep the action that waits for the document to be saved.
         let is_saving = match &dialog {
             Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
             Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
@@ -48,7 +48,8 @@ impl Session {
         }
     }
 
-    /// Opens the program's dialog where the system has none, or says so if it is open already.
+    /// Opens the program's own dialog, because the system has no file dialog. If a dialog of the
+    /// program is open already, asks to type the path there.
     pub(super) fn ask_in_program(&mut self, dialog: PathDialog) {
         if self.shell.dialog().is_some() {
             self.shell.set_choosing(false);
@@ -58,7 +59,8 @@ impl Session {
         }
     }
 
-    /// The full path of a typed one: a relative path is in the folder that was used last.
+    /// Resolves a path typed into `dialog`. A relative path of an export or a picture is in the
+    /// folder of the last export or picture; any other is in the document's folder.
     pub fn full_path(&self, dialog: &PathDialog, typed: &Path) -> PathBuf {
         let in_folder = |folder: &Path| folder.join(typed);
         let full = match dialog {
@@ -66,7 +68,7 @@ impl Session {
                 self.files.export_folder().or(self.files.document_folder()).map(in_folder)
             }
             PathDialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
-            // An existing file of the current folder comes first.
+            // A file that exists relative to the current folder takes precedence.
             PathDialog::Open { .. } if !typed.exists() => {
                 self.files.document_folder().map(in_folder)
             }
@@ -75,22 +77,23 @@ impl Session {
         full.unwrap_or_else(|| typed.to_owned())
     }
 
-    /// The folder of the last export or picture.
+    /// The folder of the last export or picture; `None` before the first.
     pub fn export_folder(&self) -> Option<&Path> {
         self.files.export_folder()
     }
 
-    /// Remembers the folder of an earlier session.
+    /// Sets the folder of the last export or picture, as saved by an earlier run of the program.
     pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
         self.files.set_export_folder(folder);
     }
 
-    /// Theme, navigation and open panels.
+    /// The user's preferences, such as theme, navigation and open panels.
     pub fn preferences(&self) -> &Preferences {
         &self.preferences
     }
 
-    /// The message of the last action; `None` after the next edit.
+    /// The message in the status bar; `None` before the first message and after an edit, which
+    /// clears it.
     pub fn message(&self) -> Option<&str> {
         self.shell.message().map(Message::text)
     }
@@ -104,7 +107,7 @@ impl Session {
         self.shell.set_message(Message::new(text));
     }
 
-    /// Reports an error as a sentence.
+    /// Shows an error in the status bar, with its first letter capitalized.
     pub(super) fn fail(&mut self, why: impl AsRef<str>) {
         self.shell.set_message(Message::error(why.as_ref()));
     }

@@ -5,17 +5,17 @@ use super::solver_run::SolverRun;
 
 /// Solver runs.
 impl Session {
-    /// The solver run since the last reset.
+    /// The solver run, running or paused; `None` before the first run and after a reset.
     pub fn solver_run(&self) -> Option<&SolverRun> {
         self.solvers.run()
     }
 
-    /// Whether a solver runs.
+    /// Whether a solver run is in progress and not paused.
     pub fn is_running(&self) -> bool {
         self.solvers.is_running()
     }
 
-    /// The comparison of all solvers.
+    /// The comparison of all solvers; `None` if none is shown.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.solvers.comparison()
     }
@@ -30,7 +30,8 @@ impl Session {
         }
     }
 
-    /// Takes the solver run, or starts one.
+    /// Takes the solver run, or makes a new one. Reports why and returns `None` if there is nothing
+    /// to solve.
     fn take_or_new_run(&mut self) -> Option<SolverRun> {
         if self.skeleton_rig().follow_path.is_some() {
             self.fail("A skeleton that follows a path has nothing to solve");
@@ -79,7 +80,7 @@ impl Session {
         }
     }
 
-    /// Resets the skeleton to the pose before the first iteration.
+    /// Resets the skeleton to the pose before the first iteration of the solver run.
     pub(super) fn reset_solver(&mut self) {
         self.solvers.end_comparison();
         self.stop_run();
@@ -106,7 +107,7 @@ impl Session {
         }
     }
 
-    /// Makes the iterations of a frame of the run and of the comparison.
+    /// Makes one frame's iterations of the solver run and of the comparison.
     pub(super) fn advance_solvers(&mut self) {
         if self.is_running() {
             self.iterate(self.skeleton_rig().iterations_per_frame);

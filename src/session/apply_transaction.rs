@@ -21,27 +21,29 @@ impl Session {
         self.editing.is_open() || self.editing.has_run()
     }
 
-    /// Whether the document differs from the saved one in more than the display and the cameras.
+    /// Whether the document differs from the saved one in more than cameras, shown rig and
+    /// overlays.
     pub fn is_unsaved(&self) -> bool {
         self.editing.is_unsaved()
     }
 
-    /// Equal for equal documents, cameras aside.
+    /// Number of the document's state: equal numbers mean equal documents, except for their
+    /// cameras.
     pub fn revision(&self) -> u64 {
         self.editing.revision()
     }
 
-    /// Label of the step that Undo undoes.
+    /// Label of the step that Undo undoes; `None` if there is none.
     pub fn undo_label(&self) -> Option<&'static str> {
         self.editing.undo_label()
     }
 
-    /// Label of the step that Redo redoes.
+    /// Label of the step that Redo redoes; `None` if there is none.
     pub fn redo_label(&self) -> Option<&'static str> {
         self.editing.redo_label()
     }
 
-    /// Whether a keyed channel has an unkeyed edit.
+    /// Whether the channel has an unkeyed edit.
     pub fn is_overridden(&self, channel: Channel) -> bool {
         self.editing.overrides().contains_key(&channel)
     }
@@ -51,12 +53,12 @@ impl Session {
         self.editing.shown_before().arm.grid_cell() * 0.01
     }
 
-    /// The drag in the viewport.
+    /// The drag in the viewport; `None` if nothing is dragged.
     pub fn drag(&self) -> Option<&Drag> {
         self.editing.drag()
     }
 
-    /// The drag of a point in the viewport.
+    /// The drag of a point in the viewport; `None` if no point is dragged.
     pub fn point_drag(&self) -> Option<&PointDrag> {
         self.drag()?.point()
     }
@@ -79,7 +81,8 @@ impl Session {
         }
     }
 
-    /// Changes a copy of the shown document and commits it, or reports the error.
+    /// Changes a copy of the shown document and commits it. After an error, reports it and returns
+    /// `None`.
     pub(super) fn edit_document<T, E: Display>(
         &mut self,
         change: impl FnOnce(&mut Document) -> Result<T, E>,
@@ -98,7 +101,7 @@ impl Session {
         }
     }
 
-    /// Replaces the shown document, with all that follows from it.
+    /// Replaces the shown document and updates all that depends on it.
     pub(super) fn commit(&mut self, after: Document) {
         let Some(change) = self.editing.write(after, &self.playback) else { return };
         if change.is_rebuilt {
@@ -154,19 +157,20 @@ impl Session {
         self.say("Cancelled");
     }
 
-    /// A running solver is one step, until it stops or something else is edited.
+    /// Opens the undo step of a running solver. The step lasts until the solver stops or something
+    /// else is edited.
     pub(super) fn begin_run(&mut self) {
         if self.is_running() {
             self.editing.begin_run(self.time());
         }
     }
 
-    /// Makes an undo step of the run so far.
+    /// Makes one undo step of the solver run so far.
     pub(super) fn end_run(&mut self) {
         self.editing.end_run(self.time());
     }
 
-    /// Undoes a step; an open transaction or run is cancelled instead.
+    /// Undoes a step; if a transaction or a solver run is open, cancels it instead.
     fn undo(&mut self) {
         if self.is_editing() {
             return self.cancel_edit();

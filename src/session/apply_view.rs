@@ -6,37 +6,39 @@ use crate::rig::Crowd;
 
 /// Camera, crowd and panels.
 impl Session {
-    /// The camera now.
+    /// The present camera, which changes during a glide.
     pub fn camera(&self) -> &Camera {
         &self.document().camera
     }
 
-    /// The camera at the end of its glide.
+    /// The camera at the end of its glide, or the present camera if it does not glide.
     pub fn settled_camera(&self) -> Camera {
         self.view.glide_target().unwrap_or(*self.camera())
     }
 
-    /// The drag of the camera.
+    /// The drag of the camera; `None` if the camera is not dragged.
     pub fn view_drag(&self) -> Option<&ViewDrag> {
         self.view.drag()
     }
 
-    /// Whether the camera glides.
+    /// Whether the camera is gliding, which is a smooth move to another camera.
     pub fn is_gliding(&self) -> bool {
         self.view.is_gliding()
     }
 
-    /// The crowd shown instead of the rig, of arms like the document's.
+    /// The crowd that is shown instead of the rig, with the bones of the document's arm; `None` if
+    /// the crowd is hidden.
     pub fn crowd(&self) -> Option<Crowd> {
         self.view.crowd(self.arm().bones)
     }
 
-    /// Whether the crowd follows its targets.
+    /// Whether the crowd's targets are animated rather than paused.
     pub fn is_crowd_moving(&self) -> bool {
         self.view.is_crowd_animated()
     }
 
-    /// The camera that frames the selected joints, else the rig.
+    /// A camera that frames the selected joints; without a selection, the whole rig. If the crowd
+    /// is shown, the camera frames the crowd.
     pub fn framing_selection(&self) -> Camera {
         if self.crowd().is_some() {
             return self.framing_all();
@@ -51,8 +53,8 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
-    /// The camera that frames all points in reach of the arm, the skeleton with its targets, or the
-    /// crowd.
+    /// A camera that frames what is shown: all points in reach of the arm, the skeleton with its
+    /// targets, or the crowd.
     pub fn framing_all(&self) -> Camera {
         if let Some(crowd) = self.crowd() {
             let (centre, radius) = crowd.bounds();
@@ -120,7 +122,8 @@ impl Session {
         }
     }
 
-    /// Lets the crowd continue from where it paused.
+    /// Forgets the previous frame unless the timeline plays, so that the crowd continues from where
+    /// it paused.
     fn forget_pause(&mut self) {
         if !self.is_playing() {
             self.playback.forget_last_frame();

@@ -9,8 +9,9 @@ use crate::kinematics::euler;
 
 /// Drags of the arm.
 impl Session {
-    /// Begins to drag the Cursor. A free drag starts at the hand where the mouse is nearer to it than to a
-    /// Cursor out of reach; moving the Cursor to the hand does not change the pose.
+    /// Begins to drag the Cursor. If the Cursor is out of reach and the mouse is nearer to the
+    /// hand, a free drag starts at the hand; moving the Cursor to the hand does not change the
+    /// pose.
     pub(super) fn grab_hand(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
         let (arm, hand) = (*self.arm(), self.pose().hand);
         if !arm.uses_ik() {
@@ -45,8 +46,8 @@ impl Session {
         }
     }
 
-    /// The ring of an FK angle in the world: the shoulder's about x, y or z, or the elbow's bend. `None` for
-    /// an arm that IK poses.
+    /// The ring, in world space, of a shoulder angle about x, y or z or of the elbow's bend. `None`
+    /// for other grips, or if IK poses the arm.
     pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
         let arm = self.arm();
         if arm.uses_ik() {
@@ -58,7 +59,7 @@ impl Session {
             Grip::Shoulder(1) => Vec3::Y,
             Grip::Shoulder(2) => yaw.z_axis,
             Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
-            // A growing bend turns the lower limb clockwise about the hinge.
+            // The lower limb turns clockwise about the hinge as the bend grows.
             Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
             _ => return None,
         };

@@ -39,7 +39,7 @@ impl Session {
         let was_overridden = self.is_overridden(Channel::Twist);
         self.shell.clear_message();
         self.commit(self.shown().with_twist_reference(twist_reference));
-        // The converted keys give the same elbow at a key: then there is no unkeyed edit.
+        // If the converted keys give the shown twist at the playhead, there is no unkeyed edit.
         let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
         let keyed = twist(&self.document().evaluate(self.time()));
         let apart = wrapped(keyed - twist(self.shown()) + SAME);

@@ -1,7 +1,7 @@
 use std::cell::OnceCell;
 
-/// A value derived from other state, computed when it is first needed. All are equal, so that sessions
-/// are compared by the state alone.
+/// A value derived from other state, computed when it is first read. All cached values compare
+/// equal, so that comparing sessions ignores them.
 #[derive(Clone, Debug)]
 pub(super) struct Cached<T>(OnceCell<T>);
 
@@ -10,7 +10,7 @@ impl<T> Cached<T> {
         self.0.get_or_init(compute)
     }
 
-    /// Lets the value be computed again.
+    /// Discards the value; the next [`Self::get`] computes it again.
     pub fn clear(&mut self) {
         self.0.take();
     }

@@ -5,7 +5,7 @@ use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SolverOptions};
 use crate::kinematics::skeleton::Skeleton;
 
-/// All solvers side by side, from the same pose to the same targets.
+/// A comparison of all solvers, run side by side from the same pose to the same targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     solvers: Vec<ComparedSolver>,
@@ -16,11 +16,11 @@ pub struct Comparison {
 pub struct ComparedSolver {
     /// The solver.
     pub method: Method,
-    /// The skeleton after the last iteration.
+    /// The skeleton after the latest iteration.
     pub skeleton: Skeleton,
-    /// Error after every iteration.
+    /// Residual error before the first and after every iteration.
     pub history: ResidualHistory,
-    /// Time that all iterations took.
+    /// Total duration of all iterations.
     pub elapsed: Duration,
     solver: Result<ChainSolver, SolveError>,
 }
@@ -51,13 +51,12 @@ impl Comparison {
         &self.solvers
     }
 
-    /// Whether any solver still runs.
-    /// Whether the solver makes further iterations.
+    /// Whether any solver makes further iterations.
     pub fn is_running(&self) -> bool {
         self.solvers.iter().any(ComparedSolver::is_running)
     }
 
-    /// Whether the skeleton has the joints with which the comparison began, in any pose.
+    /// Whether `skeleton` has the hierarchy with which the comparison began, in any pose.
     pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
         let is_like = |solver: &ComparedSolver| {
             let parents = |skeleton: &Skeleton| -> Vec<_> {
@@ -68,21 +67,22 @@ impl Comparison {
         self.solvers.first().is_none_or(is_like)
     }
 
-    /// Makes iterations with every solver: first one a frame, then more and more.
+    /// Makes one frame's iterations with every solver: at first one iteration, later an eighth of
+    /// the number made before.
     pub(super) fn advance(&mut self) {
         self.solvers.iter_mut().for_each(ComparedSolver::advance);
     }
 }
 
 impl ComparedSolver {
-    /// A frame adds one iteration for every so many made before, and at least one.
+    /// A frame makes one iteration for every `PACE` iterations made before, and at least one.
     const PACE: u32 = 8;
 
-    /// State after the last iteration.
+    /// Progress after the latest iteration.
     ///
     /// # Errors
     ///
-    /// The solver cannot solver for these targets.
+    /// If the solver cannot solve for these targets.
     pub fn report(&self) -> Result<Report, &SolveError> {
         self.solver.as_ref().map(ChainSolver::report)
     }

@@ -5,7 +5,8 @@ use super::path_dialog::PathDialog;
 use crate::document::Document;
 use crate::kinematics::skeleton::JointId;
 
-/// A window over the others. All but the statistics are modal: they take the keyboard and the mouse.
+/// A dialog above the panels. All dialogs except the statistics are modal: they take all keyboard
+/// and mouse input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dialog {
     /// Version, graphics adapter and licence.
@@ -14,41 +15,41 @@ pub enum Dialog {
     Shortcuts,
     /// Frame times; not modal.
     Statistics,
-    /// Offers the document that an earlier run of the program left unsaved.
+    /// Offers to open the document that an earlier run of the program left unsaved.
     Recover {
         /// The unsaved document.
         document: Box<Document>,
-        /// The file it was read from.
+        /// The document's file; `None` if it had none.
         file: Option<PathBuf>,
     },
     /// Asks before an action that would lose unsaved changes.
     Unsaved {
-        /// The action.
+        /// The action that waits for the answer.
         then: Box<FileAction>,
     },
     /// Asks before quitting while an export runs.
     Exporting,
     /// Asks before a file is overwritten.
     Replace {
-        /// The file.
+        /// The file to overwrite.
         path: PathBuf,
-        /// The action that overwrites it.
+        /// The action that overwrites the file.
         then: Box<FileAction>,
-        /// The dialog that the path was typed into; it opens again on Cancel.
+        /// The dialog in which the path was chosen; Cancel opens it again.
         back: PathDialog,
     },
     /// Asks for a path.
     Path(PathDialog),
     /// Asks which of a file's skeletons to open.
     ChooseSkeleton {
-        /// The file.
+        /// The file to open.
         path: PathBuf,
-        /// Names of its skeletons.
+        /// Names of the skeletons in the file.
         names: Vec<String>,
     },
     /// Asks for the name of a joint.
     Rename {
-        /// The joint.
+        /// The joint to rename.
         joint: JointId,
         /// The name as typed so far.
         name: String,
@@ -61,7 +62,7 @@ pub enum Dialog {
 }
 
 impl Dialog {
-    /// Whether it takes the keyboard and the mouse.
+    /// Whether the dialog takes all keyboard and mouse input.
     pub fn is_modal(&self) -> bool {
         *self != Self::Statistics
     }

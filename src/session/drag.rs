@@ -5,9 +5,9 @@ use crate::kinematics::skeleton::JointId;
 /// A part of a gizmo that can be dragged in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
-    /// The arm's hand.
+    /// The hand of the arm; dragging it moves the Cursor.
     Hand(PointHandle),
-    /// The pole, at which the elbow points.
+    /// The pole, towards which the elbow points.
     Pole(PointHandle),
     /// The ring of the shoulder's angle about x, y or z (0, 1, 2).
     Shoulder(usize),
@@ -22,7 +22,7 @@ pub enum Grip {
 }
 
 impl Grip {
-    /// Whether its axis is 0, 1 or 2.
+    /// Whether the grip's axis, if it has one, is 0, 1 or 2.
     pub(super) fn has_valid_axis(self) -> bool {
         match self {
             Self::Hand(handle)
@@ -49,7 +49,7 @@ pub(super) enum DragKind {
 }
 
 impl Drag {
-    /// The part that is dragged.
+    /// The part of a gizmo that is dragged.
     pub fn grip(&self) -> Grip {
         self.grip
     }
@@ -70,7 +70,7 @@ impl Drag {
         }
     }
 
-    /// The typed offset; empty while the mouse sets it.
+    /// The offset as typed, in degrees for a ring; empty while the mouse sets the offset.
     pub fn typed(&self) -> &str {
         match &self.kind {
             DragKind::Point(drag) => drag.typed(),

@@ -9,24 +9,25 @@ use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{JointId, Limit};
 use crate::kinematics::soft_reach::SoftReach;
 
-/// A change of the document. Each is one undo step and has a label.
+/// A change of the document. Outside a transaction, each change is one undo step with its own
+/// label.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EditAction {
-    /// Moves the Cursor, in Root space.
+    /// Moves the Cursor to a point in Root space.
     SetHand(Vec3),
-    /// Sets the Socket twist in radians; wraps around.
+    /// Sets the Socket twist in radians, wrapped to [0, 2π).
     SetTwist(f32),
-    /// Moves the shoulder, in world space.
+    /// Moves the shoulder to a point in world space.
     SetRoot(Vec3),
-    /// Moves the point in world space to which the hand is pinned.
+    /// Pins the hand to a point in world space.
     SetPin(Vec3),
     /// Pins the hand to the world, or unpins it; the hand does not move.
     PinHand(bool),
     /// Changes the twist reference; the elbow does not move.
     SetTwistReference(TwistReferenceKind),
-    /// Moves the pole at which the elbow points, in Root space.
+    /// Moves the pole, towards which the elbow points, to a point in Root space.
     SetPole(Vec3),
-    /// Sets softness, stretch and the smallest elbow angle.
+    /// Sets softness, maximum stretch and minimum elbow angle.
     SetSoftReach(SoftReach),
     /// Sets the blend from FK (0) to IK (1).
     SetInfluence(f32),
@@ -36,7 +37,7 @@ pub enum EditAction {
     SetShoulder(Vec3),
     /// Sets the FK bend of the elbow in radians.
     SetBend(f32),
-    /// Sets the angles of the hand about x, y and z in radians.
+    /// Sets the angles of the hand about x, y and z in radians, in the present [`HandSpace`].
     SetHandOrientation(Vec3),
     /// Changes the space of the hand's angles; the hand does not turn.
     SetHandSpace(HandSpace),
@@ -44,26 +45,27 @@ pub enum EditAction {
     SetUpper(f32),
     /// Sets the length of the lower limb.
     SetLower(f32),
-    /// Resets the arm, or the skeleton to its bind pose; the display stays.
+    /// Resets the shown rig: the arm to its defaults, or the skeleton to its bind pose. The display
+    /// does not change.
     ResetPose,
-    /// Resets the pose, the display and the camera.
+    /// Resets the pose, the display, the camera and the crowd.
     ResetAll,
     /// Shows or hides an overlay.
     ShowOverlay(Overlay, bool),
     /// Shows the arm or the skeleton.
     ShowRig(RigKind),
 
-    /// Adds a child at the tip of a joint. Its bone ends at `tip` in world space, else it continues
-    /// the bone of its parent.
+    /// Adds a child at the tip of a joint.
     AddChild {
         /// The joint that gets a child.
         parent: JointId,
-        /// End of the new bone, in world space.
+        /// End of the new bone, in world space; `None` continues the parent's bone.
         tip: Option<Vec3>,
     },
-    /// Adds a child to the selected joint, else to the last one, else to a new root.
+    /// Adds a child to the selected joint; without a selection, to the joint with the highest
+    /// index; without joints, to a new root.
     AddJoint {
-        /// End of the new bone, in world space.
+        /// End of the new bone, in world space; `None` continues the parent's bone.
         tip: Option<Vec3>,
     },
     /// Adds a joint without a parent.
@@ -72,87 +74,88 @@ pub enum EditAction {
     DeleteJoints(Vec<JointId>),
     /// Deletes joints; their children are attached to the next remaining ancestor and do not move.
     DissolveJoints(Vec<JointId>),
-    /// Renames a joint; names are unique.
+    /// Renames a joint. A name that another joint has is refused.
     RenameJoint {
         /// The joint.
         joint: JointId,
-        /// Its new name.
+        /// The new name.
         name: String,
     },
     /// Attaches a joint to another parent; the joint does not move.
     ReparentJoint {
         /// The joint.
         joint: JointId,
-        /// Its new parent; `None` for a root.
+        /// The new parent; `None` makes the joint a root.
         parent: Option<JointId>,
     },
     /// Sets the Euler angles of a joint about x, y and z in radians.
     SetRotation {
         /// The joint.
         joint: JointId,
-        /// Its angles.
+        /// The angles.
         rotation: Vec3,
     },
-    /// Sets the bone of a joint, from base to tip.
+    /// Sets the vector of a joint's bone, from base to tip.
     SetAxis {
         /// The joint.
         joint: JointId,
-        /// Its bone.
+        /// The vector, in the joint's own space.
         axis: Vec3,
     },
-    /// Sets or removes the limit of an angle.
+    /// Sets or removes the limit of one of a joint's Euler angles.
     SetLimit {
         /// The joint.
         joint: JointId,
-        /// 0, 1 or 2 for x, y or z.
+        /// Axis of the angle: 0, 1 or 2 for x, y or z.
         axis: usize,
-        /// Its limit; `None` for unlimited.
+        /// The limit, in radians; `None` for an unlimited angle.
         limit: Option<Limit>,
     },
     /// Locks or unlocks a joint: solvers do not turn locked joints.
     SetLocked {
         /// The joint.
         joint: JointId,
-        /// Whether it is locked.
+        /// Whether the joint is to be locked.
         locked: bool,
     },
-    /// Sets the path that the skeleton follows, or none.
+    /// Sets the path that the skeleton follows; `None` for no path.
     SetFollowPath(Option<FollowPath>),
-    /// Moves the origin of the skeleton, in world space.
+    /// Moves the origin of the skeleton to a point in world space.
     SetTranslation(Vec3),
 
     /// Adds a target at the tip of a joint.
     AddTarget(JointId),
     /// Removes the target of a joint, with its keys.
     RemoveTarget(JointId),
-    /// Replaces the target of the joint that it names.
+    /// Replaces the target of the joint [`Target::joint`].
     SetTarget(Target),
     /// Sets the solver and its options.
     SetSolver(SolverOptions),
-    /// Sets the iterations that a run makes per frame.
+    /// Sets the number of iterations that a solver run makes per frame.
     SetIterationsPerFrame(u32),
     /// Makes one solver iteration.
     StepSolver,
-    /// Resets the skeleton to the pose before the first iteration.
+    /// Resets the skeleton to the pose before the first iteration of the solver run.
     ResetSolver,
 
-    /// Keys channels at the playhead with the values that are shown.
+    /// Keys channels at the playhead with their shown values.
     Key(Vec<Channel>),
     /// Deletes keys.
     DeleteKeys(Vec<Key>),
     /// Deletes all keys of channels.
     ClearChannels(Vec<Channel>),
-    /// Moves keys, named by their times before the transaction.
+    /// Moves keys in time.
     MoveKeys {
-        /// The keys.
+        /// The keys, with their times before the transaction.
         keys: Vec<Key>,
-        /// The distance in seconds.
+        /// Shift in seconds; positive is later.
         by: f64,
     },
     /// Pastes the copied keys at the playhead.
     PasteKeys,
-    /// Sets start, end and frame rate.
+    /// Sets start, end and frame rate of the timeline.
     SetTimeline(Timeline),
-    /// Sets the length of a unit in exports, in metres; `None` for the default.
+    /// Sets the length of a document unit in exports, in metres; `None` for the shown rig's
+    /// default.
     SetMetres(Option<f32>),
 }

@@ -3,14 +3,14 @@ use super::edit_action::EditAction;
 use super::pose_mode::PoseMode;
 use crate::document::{Channel, Overlay, RigKind};
 
-/// Name of the undo step of a solver run.
+/// Label of the undo step of a solver run.
 pub(super) const SOLVE: &str = "Solve";
 
-/// Name of a transaction without edits.
+/// Label of a transaction without edits.
 pub(super) const CHANGE: &str = "Change";
 
 impl EditAction {
-    /// Name of its undo step, as in "Undo Move hand".
+    /// Label of the edit's undo step, as in "Undo Move hand".
     pub fn label(&self) -> &'static str {
         match self {
             Self::SetHand(_) | Self::SetPin(_) => "Move hand",
@@ -69,7 +69,7 @@ impl EditAction {
 }
 
 impl Grip {
-    /// Name of the undo step of its drag.
+    /// Label of the undo step of a drag of this part.
     pub(super) fn label(self) -> &'static str {
         match self {
             Self::Hand(_) => "Move hand",

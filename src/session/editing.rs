@@ -18,13 +18,15 @@ pub(super) struct Editing {
     /// Unkeyed edits, discarded when the time changes.
     overrides: Overrides,
     transaction: Option<Transaction>,
-    /// The state before the solver run that is open.
+    /// The state before the open solver run; `None` if no run is open.
     before_run: Option<Snapshot>,
     history: History,
-    /// Equal for equal documents.
+    /// Number of the document's state: equal numbers mean equal documents, except for their
+    /// cameras.
     revision: u64,
     newest_revision: u64,
-    /// Equal for documents that differ only in display and cameras.
+    /// Number of the document's content: equal numbers mean documents that are equal except for
+    /// their cameras, shown rig and overlays.
     content: u64,
     saved_content: u64,
 }
@@ -32,9 +34,9 @@ pub(super) struct Editing {
 /// Consequences of a change of the document.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WriteOutcome {
-    /// Joints were removed, renumbered or attached to other parents.
+    /// Whether joints were removed, renumbered or attached to other parents.
     pub is_rebuilt: bool,
-    /// Keyed channels differ from their keys until the time changes.
+    /// Whether the change made unkeyed edits of keyed channels.
     pub has_overridden: bool,
 }
 
@@ -54,7 +56,7 @@ impl Editing {
         }
     }
 
-    /// Another document with an empty history, under a new revision.
+    /// Editing of another document, with an empty history and a new revision.
     pub fn replaced(&self, document: Document) -> Self {
         let revision = self.newest_revision + 1;
         Self {
@@ -92,12 +94,12 @@ impl Editing {
         self.before_run.is_some()
     }
 
-    /// The revision before the open transaction.
+    /// The revision before the open transaction; `None` if none is open.
     pub fn revision_before(&self) -> Option<u64> {
         Some(self.transaction.as_ref()?.before.revision)
     }
 
-    /// The document as shown before the open transaction, else now.
+    /// The document as shown before the open transaction, or as shown now if none is open.
     pub fn shown_before(&self) -> &Document {
         self.transaction.as_ref().map_or(&self.shown, |transaction| &transaction.shown)
     }
@@ -106,7 +108,8 @@ impl Editing {
         self.transaction.as_ref()?.drag.as_ref()
     }
 
-    /// The drag, with the document as shown before it; labels the transaction.
+    /// Labels the open transaction by its drag. Returns the drag, and the document as shown before
+    /// it; `None` if nothing is dragged.
     pub fn drag_mut(&mut self) -> Option<(&mut Drag, &Document)> {
         let Transaction { shown, drag: Some(drag), label, .. } = self.transaction.as_mut()? else {
             return None;
@@ -127,7 +130,8 @@ impl Editing {
         self.history.redo_label()
     }
 
-    /// Whether the document differs from the saved one in more than the display and the cameras.
+    /// Whether the document differs from the saved one in more than cameras, shown rig and
+    /// overlays.
     pub fn is_unsaved(&self) -> bool {
         let transaction = self.transaction.as_ref().map(|transaction| &transaction.before);
         let before = transaction.or(self.before_run.as_ref());
@@ -157,7 +161,7 @@ impl Editing {
         self.overrides.clear();
     }
 
-    /// Evaluates the document at a time, with unkeyed edits.
+    /// Evaluates the document at `time`, in seconds, and applies the unkeyed edits.
     pub fn evaluate(&mut self, time: f64) {
         self.shown.clone_from(&self.document);
         self.shown.apply_keys(time);
@@ -166,8 +170,8 @@ impl Editing {
         }
     }
 
-    /// Replaces the shown document. Changed channels with keys get a key or are overridden until
-    /// the time changes. `None` where nothing differs.
+    /// Replaces the shown document. With auto-key, changed channels get keys; otherwise, changed
+    /// channels with keys get unkeyed edits. Returns `None` if nothing has changed.
     pub fn write(&mut self, mut after: Document, playback: &Playback) -> Option<WriteOutcome> {
         if after == self.shown {
             return None;
@@ -192,8 +196,9 @@ impl Editing {
         Some(WriteOutcome { is_rebuilt, has_overridden })
     }
 
-    /// Drags restart from the document before the transaction, but keep keys that were changed since,
-    /// and end where joints were added or removed.
+    /// Adapts the open transaction to a change of the document. The drag ends if joints were added,
+    /// removed or attached to other parents; otherwise, the document from which it starts gets the
+    /// changed keys.
     fn update_transaction(&mut self, has_other_joints: bool) {
         let Some(transaction) = &mut self.transaction else { return };
         if has_other_joints {
@@ -204,25 +209,26 @@ impl Editing {
         }
     }
 
-    /// Lets the next [`EditAction::MoveKeys`](super::EditAction::MoveKeys) start from these keys.
+    /// Sets the keys from which the next [`EditAction::MoveKeys`](super::EditAction::MoveKeys) of
+    /// the open transaction starts.
     pub fn restart_keys_from(&mut self, keys: crate::document::Keys) {
         if let Some(transaction) = &mut self.transaction {
             transaction.shown.keys = keys;
         }
     }
 
-    /// Keys changed channels, or overrides their keys until the time changes; returns whether any is
-    /// overridden.
+    /// Keys the channels that `after` changes, if auto-key is on; otherwise, records unkeyed edits
+    /// of the changed channels that have keys. Returns whether any unkeyed edit was recorded.
     fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> bool {
         let changed = |channel: &Channel| {
             let value = channel.value(after);
             value.is_some() && value != channel.value(&self.shown)
         };
         let channels: Vec<Channel> = if playback.is_auto_key() {
-            // Switches are keyed only where they have keys.
+            // Switches get keys only if they have keys already.
             let switches =
                 after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-            // A switch between FK and IK keys both.
+            // A switch between FK and IK keys the channels of both.
             let switched = changed(&Channel::Influence);
             let poses_arm = |channel: &Channel| {
                 let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
@@ -241,7 +247,8 @@ impl Editing {
         };
         if !playback.is_auto_key() && is_transported(after) {
             if after.arm.cursor_in_root() != self.shown.arm.cursor_in_root() {
-                // The transported twist is restored with the hand.
+                // The transported twist is an unkeyed edit, too, discarded together with that of
+                // the hand.
                 let twist = Channel::Twist.value(after).unwrap_or_default();
                 self.overrides.insert(Channel::Twist, twist);
             } else if changed(&Channel::Twist) {
@@ -261,7 +268,8 @@ impl Editing {
         has_overridden
     }
 
-    /// Keeps the document's own values of keyed channels: their values at this time are not saved.
+    /// Restores the document's own values of keyed channels in `after`, since their values at the
+    /// playhead are not saved.
     fn keep_unkeyed_values(&self, after: &mut Document) {
         let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
         let skeleton = &mut after.skeleton_rig.skeleton;
@@ -294,7 +302,7 @@ impl Editing {
         }
     }
 
-    /// The state to restore at a time.
+    /// The present state, for undo; `time` is the playhead in seconds.
     pub fn state(&self, time: f64) -> Snapshot {
         Snapshot::new(&self.document, &self.overrides, time, self.revision, self.content)
     }
@@ -308,7 +316,8 @@ impl Editing {
                 self.content = self.newest_revision;
             }
         } else {
-            // Signs of zeros may have changed: equal revisions are equal to the last bit.
+            // Signs of zeros may have changed, but documents with equal revisions are equal bit for
+            // bit.
             self.document = before.document(&self.document);
             if before.overrides_at(time) == self.overrides {
                 return;
@@ -347,12 +356,12 @@ impl Editing {
         true
     }
 
-    /// Closes the transaction and returns the state before it.
+    /// Closes the transaction and returns the state before it; `None` if none is open.
     pub fn take_transaction(&mut self) -> Option<Snapshot> {
         Some(self.transaction.take()?.before)
     }
 
-    /// Opens a solver run, unless one or a transaction is open.
+    /// Opens a solver run, unless a run or a transaction is open.
     pub fn begin_run(&mut self, time: f64) {
         if self.before_run.is_none() && self.transaction.is_none() {
             self.before_run = Some(self.state(time));
@@ -366,23 +375,25 @@ impl Editing {
         }
     }
 
-    /// Closes the solver run and returns the state before it.
+    /// Closes the solver run and returns the state before it; `None` if none is open.
     pub fn take_run(&mut self) -> Option<Snapshot> {
         self.before_run.take()
     }
 
-    /// The label of the last step and the state before it.
+    /// Undoes a step; returns its label and the state before it, or `None` if there is nothing to
+    /// undo.
     pub fn undo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
         self.history.undo(self.state(time))
     }
 
-    /// The label of the next step and the state after it.
+    /// Redoes a step; returns its label and the state after it, or `None` if there is nothing to
+    /// redo.
     pub fn redo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
         self.history.redo(self.state(time))
     }
 }
 
-/// Whether the elbow is transported along a keyed hand and has no keys of its own.
+/// Whether the twist is transported along a keyed hand and has no keys of its own.
 fn is_transported(document: &Document) -> bool {
     let Document { arm, keys, .. } = document;
     let posing = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };

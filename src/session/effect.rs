@@ -3,25 +3,25 @@ use std::path::PathBuf;
 use super::export::Export;
 use super::path_dialog::PathDialog;
 
-/// A request of the session to the program around it.
+/// A request from the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Copies a text to the clipboard.
     CopyText(String),
-    /// Draws the session into a file.
+    /// Draws the viewport and saves the picture to a path.
     SavePicture(String),
     /// Starts an export.
     Export(Export),
-    /// Opens the system's dialog.
+    /// Opens the system's file dialog in place of one of the program's.
     ChoosePath(PathDialog),
     /// Reads a file.
     Open {
         /// The file.
         path: PathBuf,
-        /// The name of the skeleton, for files with several.
+        /// Name of the skeleton to open, for a file with several; `None` opens the first.
         skeleton: Option<String>,
     },
-    /// Writes the document.
+    /// Saves the document to a file.
     Save(PathBuf),
     /// Ends the program.
     Quit,

@@ -16,7 +16,7 @@ pub(super) struct Evaluated {
     transport_path: TransportPath,
     pops: Pops,
     trail: Cached<Vec<Vec3>>,
-    /// The report of a solver before its first iteration.
+    /// Report of a solver for the pose at the playhead, before its first iteration.
     unsolved_report: Cached<Option<Report>>,
 }
 
@@ -53,7 +53,8 @@ impl Evaluated {
         self.trail.get(sample)
     }
 
-    /// The residual of the evaluated pose; `None` where the solver cannot solve for its targets.
+    /// Report with the residual of the evaluated pose, before any iteration; `None` if the solver
+    /// cannot solve for the targets of `rig`.
     pub fn unsolved_report(&self, rig: &SkeletonRig, time: f64) -> Option<Report> {
         let compute = || {
             let targets = rig.targets_at(time);
@@ -62,7 +63,8 @@ impl Evaluated {
         *self.unsolved_report.get(compute)
     }
 
-    /// Poses a document at a time.
+    /// Updates the poses, and the values derived from them, to a document that was evaluated at
+    /// `time`, in seconds.
     pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
         self.pose = shown.arm.pose();
         self.transport_path.advance(&shown.arm);
@@ -79,7 +81,7 @@ impl Evaluated {
         self.pops = Pops::new(arm, self.pose, time);
     }
 
-    /// Lets the trail be computed anew.
+    /// Discards the trail; the next [`Self::trail`] computes it again.
     pub fn forget_trail(&mut self) {
         self.trail.clear();
     }

@@ -6,7 +6,7 @@ use crate::io::Progress;
 /// Settings of an export; the file extension chooses the format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Export {
-    /// The file.
+    /// The file to write.
     pub path: PathBuf,
     /// Frames per second.
     pub frame_rate: u32,
@@ -17,13 +17,13 @@ pub struct Export {
 /// An export that runs on a thread of its own.
 #[derive(Clone, Debug)]
 pub struct ExportJob {
-    /// The file.
+    /// The file to write.
     pub path: PathBuf,
-    /// Progress, and the flag that cancels it.
+    /// Progress of the export, and the flag that cancels the export.
     pub progress: Arc<Progress>,
 }
 
-/// Compares identity, not progress.
+/// Equal for clones of the same job, whatever its progress.
 impl PartialEq for ExportJob {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.progress, &other.progress)

@@ -8,26 +8,27 @@ use crate::io::Example;
 /// Opens, saves, exports and quits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileAction {
-    /// Asks for a path in the system's dialog, or in this one where the system has none.
+    /// Asks for a path in the system's file dialog, or in the given dialog of the program if the
+    /// system has none.
     AskPath(PathDialog),
-    /// Opens the system's dialog for the path that the open dialog asks for.
+    /// Opens the system's file dialog in place of the program's open dialog for a path.
     ChoosePath,
-    /// The system's dialog was closed without a path.
+    /// The system's file dialog was closed without a path.
     ChoseNothing,
-    /// The system has no dialog; this one is opened instead.
+    /// Opens the given dialog of the program, because the system has no file dialog.
     NoSystemDialog(PathDialog),
     /// Opens a file.
     Open {
         /// The file.
         path: PathBuf,
-        /// The name of the skeleton, for files with several.
+        /// Name of the skeleton to open, for a file with several; `None` opens the first.
         skeleton: Option<String>,
     },
     /// Replaces the document and clears the history.
     Opened {
         /// The new document.
         document: Box<Document>,
-        /// The file it was read from.
+        /// The file that Save overwrites; `None` if Save must ask for a path.
         file: Option<PathBuf>,
     },
     /// Reports why a file cannot be opened.
@@ -41,7 +42,7 @@ pub enum FileAction {
     Save,
     /// Saves to another file.
     SaveAs(PathBuf),
-    /// The document was saved.
+    /// The document was saved to this file.
     Saved(PathBuf),
     /// Reports why the document was not saved.
     NotSaved {
@@ -50,24 +51,24 @@ pub enum FileAction {
         /// The error.
         why: String,
     },
-    /// Saves, then applies the action that would have lost changes.
+    /// Saves the document, then applies the action that would otherwise have lost changes.
     SaveAnd(Box<FileAction>),
-    /// Applies an action that loses changes.
+    /// Applies an action even though it loses unsaved changes.
     Discard(Box<FileAction>),
     /// Opens the document that an earlier run of the program left unsaved.
     Recover {
         /// The unsaved document.
         document: Box<Document>,
-        /// The file it was read from.
+        /// The file that Save overwrites; `None` if Save must ask for a path.
         file: Option<PathBuf>,
     },
     /// Discards the document that an earlier run left unsaved.
     DeclineRecovery,
     /// Opens an example.
     OpenExample(Example),
-    /// Opens a skeleton of one root joint.
+    /// Opens a new document with a skeleton of one root joint.
     NewSkeleton,
-    /// Saves a picture to a path.
+    /// Saves a picture of the viewport to a path.
     SavePicture(String),
     /// Starts an export.
     Export(Export),
@@ -84,7 +85,7 @@ pub enum FileAction {
 }
 
 impl FileAction {
-    /// Whether the open document is replaced or closed.
+    /// Whether the action replaces or closes the open document.
     pub(super) fn leaves_document(&self) -> bool {
         matches!(
             self,

@@ -12,17 +12,18 @@ pub(super) struct Files {
     job: Option<ExportJob>,
     /// Whether an earlier run's unsaved document was opened or declined.
     recovery_settled: bool,
-    /// The revision at which a file was asked for.
+    /// The document's revision when the user chose a file to open.
     opening: Option<u64>,
-    /// The action to apply once the document is saved.
+    /// The action to apply once the document is saved; `None` if no action waits.
     after_save: Option<Box<FileAction>>,
 }
 
 impl Files {
-    /// Number of recent files.
+    /// Maximum number of recent files.
     const MOST_RECENT: usize = 10;
 
-    /// The same after another document was opened.
+    /// The state after another document was opened: `file` is its file, pending requests are
+    /// dropped, and the rest is carried over.
     pub fn replaced(&mut self, file: Option<PathBuf>) -> Self {
         Self {
             file,
@@ -55,7 +56,7 @@ impl Files {
         self.recovery_settled
     }
 
-    /// The revision at which a file was asked for.
+    /// The document's revision when the user chose a file to open.
     pub fn opening(&self) -> Option<u64> {
         self.opening
     }
@@ -69,7 +70,7 @@ impl Files {
         self.recent.truncate(Self::MOST_RECENT);
     }
 
-    /// Moves a file to the front of the recent ones.
+    /// Puts a file at the front of the recent files.
     pub fn remember(&mut self, path: PathBuf) {
         let path = std::path::absolute(&path).unwrap_or(path);
         self.recent.retain(|other| *other != path);
@@ -81,7 +82,7 @@ impl Files {
         self.export_folder = folder;
     }
 
-    /// Remembers the folder of a file as that of the next export.
+    /// Remembers the folder of an exported file or picture for the next export.
     pub fn remember_export_folder(&mut self, path: &Path) {
         let full = std::path::absolute(path).ok();
         if let Some(folder) = full.as_deref().and_then(Path::parent) {
@@ -89,7 +90,7 @@ impl Files {
         }
     }
 
-    /// Folder of the document, else of the last file that was opened or saved.
+    /// Folder of the document's file; without one, of the most recent file.
     pub fn document_folder(&self) -> Option<&Path> {
         let last = self.file.as_ref().or(self.recent.first())?;
         last.parent().filter(|folder| folder.is_absolute())

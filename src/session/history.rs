@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use super::snapshot::Snapshot;
 
-/// Steps to undo and redo. The oldest are dropped at a limit of steps and bytes.
+/// Steps to undo and redo. The oldest steps are dropped beyond `MAX_STEPS` or `MAX_BYTES`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct History {
     undo: VecDeque<UndoStep>,
@@ -14,7 +14,7 @@ pub(super) struct History {
 struct UndoStep {
     label: &'static str,
     state: Snapshot,
-    /// Bytes that the state does not share with the step before.
+    /// Approximate number of bytes that the state does not share with the state of the step before.
     bytes: usize,
 }
 
@@ -22,7 +22,7 @@ impl History {
     const MAX_STEPS: usize = 1000;
     const MAX_BYTES: usize = 256 << 20;
 
-    /// Adds a step with the state before it.
+    /// Adds a step to undo, with the state before it, and drops the steps to redo.
     pub fn push(&mut self, label: &'static str, before: Snapshot) {
         self.redo.clear();
         self.push_undo(label, before);
@@ -36,7 +36,8 @@ impl History {
         self.undo.push_back(UndoStep { label, state, bytes });
     }
 
-    /// Drops the oldest step; what the next one shared with it is the next one's own.
+    /// Drops the oldest step. Memory that it shared with the next step then counts for the next
+    /// step.
     fn drop_oldest(&mut self) {
         self.undo.pop_front();
         if let Some(oldest) = self.undo.front_mut() {
@@ -54,7 +55,8 @@ impl History {
         self.redo.last().map(|step| step.label)
     }
 
-    /// Undoes a step from `now`: its label and the state before it.
+    /// Undoes a step and keeps the state `now` for redoing it; returns the step's label and the
+    /// state before it. Skips steps that change nothing; `None` if no other step is left.
     pub fn undo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
             let UndoStep { label, state, .. } = self.undo.pop_back()?;
@@ -65,7 +67,8 @@ impl History {
         }
     }
 
-    /// Redoes a step from `now`: its label and the state after it.
+    /// Redoes a step and keeps the state `now` for undoing it; returns the step's label and the
+    /// state after it. Skips steps that change nothing; `None` if no other step is left.
     pub fn redo(&mut self, now: Snapshot) -> Option<(&'static str, Snapshot)> {
         loop {
             let UndoStep { label, state, .. } = self.redo.pop()?;

@@ -26,8 +26,9 @@ impl Session {
         !self.selection.clipboard().is_empty()
     }
 
-    /// Channels that K keys: those selected in the timeline, else those of the selected joints, else all
-    /// that shape the rig. Of the arm these are the channels that pose it and those with unkeyed edits.
+    /// Channels that the shortcut K keys: those selected in the timeline, if any. Otherwise, for
+    /// the arm, the channels that pose it and those with unkeyed edits; for the skeleton, the
+    /// channels of the selected joints, or all channels if no joint is selected.
     pub fn channels_to_key(&self) -> Vec<Channel> {
         let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
         if !self.selection.channels().is_empty() {
@@ -50,7 +51,8 @@ impl Session {
         }
     }
 
-    /// Channels that pose the arm: hand and Socket twist with IK, else the joint angles.
+    /// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
+    /// influence is below 1.
     fn posing_channels(&self) -> Vec<Channel> {
         let arm = self.arm();
         let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
@@ -58,7 +60,7 @@ impl Session {
         posing.filter(|channel| channel.shapes(arm)).collect()
     }
 
-    /// Channels that shape the rig, and those with keys.
+    /// Channels that affect the pose of the shown rig, and all channels with keys.
     pub fn all_channels(&self) -> Vec<Channel> {
         let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
         let all: BTreeSet<Channel> =
@@ -66,7 +68,7 @@ impl Session {
         all.into_iter().collect()
     }
 
-    /// Keys channels at the playhead with the values that are shown.
+    /// Keys channels at the playhead with their shown values.
     pub(super) fn key(&mut self, channels: &[Channel]) {
         let time = self.time();
         let overrides = self.editing.overrides().len();
@@ -90,8 +92,8 @@ impl Session {
         self.edit_keys(|document| document.keys.remove_all(keys));
     }
 
-    /// Renumbers selected and copied keys after joints were removed or moved; `keys` and `channels`
-    /// were selected before.
+    /// Renumbers the joints of selected and copied keys after joints were removed or renumbered.
+    /// `keys` and `channels` are the selection from before.
     pub(super) fn remap_keys(
         &mut self,
         moved: &JointRemap,
@@ -113,8 +115,8 @@ impl Session {
         });
     }
 
-    /// Moves keys, named by their times before the transaction, by a time in seconds; replaces other keys
-    /// there.
+    /// Moves `keys`, given with their times before the transaction, by `by` seconds. Replaces other
+    /// keys at the new times.
     pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
         let farthest = Timeline::MAX_TIME;
         let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
@@ -136,7 +138,8 @@ impl Session {
         self.editing.restart_keys_from(before);
     }
 
-    /// The new time of a key: exactly on a frame if the old one was.
+    /// The time of a key after a move by `by`, in seconds. A move from one frame to another ends
+    /// exactly on the frame.
     fn moved_to(&self, time: f64, by: f64) -> f64 {
         let timeline = self.document().timeline;
         let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
@@ -144,7 +147,8 @@ impl Session {
         if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
     }
 
-    /// Copies the selected keys, as text to the clipboard too: a paste event needs a text there.
+    /// Copies the selected keys, also as text to the system's clipboard, which sends paste events
+    /// only for text. Returns `None` if no keys are selected.
     pub(super) fn copy_keys(&mut self) -> Option<Effect> {
         let copied = |(channel, time): &Key| {
             Some((*channel, *time, self.document().keys.track(*channel)?.get(*time)?))

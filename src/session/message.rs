@@ -10,7 +10,7 @@ impl Message {
         Self { text: text.into(), is_error: false }
     }
 
-    /// An error; its first letter becomes a capital.
+    /// An error message; the first letter of `why` becomes a capital.
     pub fn error(why: &str) -> Self {
         let mut letters = why.chars();
         let first = letters.next().map(|letter| letter.to_uppercase().to_string());

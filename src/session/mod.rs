@@ -1,5 +1,5 @@
-//! The open document with its undo history, and all that is neither saved nor undone: selection,
-//! playhead, solver runs, view, dialogs. Everything that can happen to it is an [`Action`].
+//! The open document with its undo history, and state that is neither saved nor undone: selection,
+//! playhead, solver runs, view, dialogs. Every change by the user is an [`Action`].
 
 mod action;
 mod apply;

@@ -6,7 +6,7 @@ use crate::kinematics::skeleton::SkeletonPose;
 pub struct OnionSkin {
     /// The arm.
     pub arm: Arm,
-    /// The skeleton's pose.
+    /// The skeleton's pose, in world space.
     pub pose: SkeletonPose,
     /// Whether the frame is before the playhead.
     pub past: bool,
@@ -14,15 +14,16 @@ pub struct OnionSkin {
     pub opacity: f32,
 }
 
-/// Writes the rig in frames before and after `time` that are on the timeline; reuses the memory of
-/// `skins`.
+/// Writes into `skins` the rig in frames before and after `time` (in seconds) that are on the
+/// timeline, or nothing if onion skins are hidden. Reuses the memory of `skins`.
 pub(super) fn write_onion_skins(
     document: &Document,
     shown: &Document,
     time: f64,
     skins: &mut Vec<OnionSkin>,
 ) {
-    /// Number of onion skins on each side, and frames from one to the next.
+    /// Number of onion skins on each side of `time`, and number of frames from one skin to the
+    /// next.
     const SKINS: (isize, f64) = (3, 5.0);
     if !shown.display.shows(Overlay::OnionSkins) || !document.is_animated() {
         return skins.clear();

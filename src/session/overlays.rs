@@ -11,21 +11,22 @@ use crate::rig::Crowd;
 /// State that a picture shows in addition to the document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlays {
-    /// The playhead, in seconds.
+    /// Time of the playhead, in seconds.
     pub time: f64,
-    /// Selected joints; the last one is the active one.
+    /// Selected joints; the last of them is the active joint.
     pub selection: Vec<JointId>,
     /// The joint under the mouse.
     pub hovered: Option<JointId>,
-    /// Poses of a comparison of solvers.
+    /// Poses that the solvers of a comparison have reached.
     pub ghosts: Vec<SolverGhost>,
-    /// The frame transported along the Pointer's path.
+    /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.
     pub transported: Option<TransportedFrame>,
-    /// Positions of the hand, or of the active joint's tip, in all frames, in the world.
+    /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
+    /// is hidden.
     pub trail: Vec<Vec3>,
-    /// The rig in nearby frames.
+    /// The rig in frames before and after the playhead.
     pub onion_skins: Vec<OnionSkin>,
-    /// The crowd that is shown instead of the rig.
+    /// The crowd that is shown instead of the rig; `None` to show the rig.
     pub crowd: Option<Crowd>,
 }
 
@@ -34,12 +35,13 @@ pub struct Overlays {
 pub struct SolverGhost {
     /// The solver.
     pub method: Method,
-    /// Its pose.
+    /// The pose, in world space.
     pub pose: SkeletonPose,
 }
 
 impl Overlays {
-    /// Motion trail and onion skins of a document at a time in seconds, where its display shows them.
+    /// Overlays for a document at a time in seconds: its motion trail and onion skins, if its
+    /// display shows them.
     pub fn new(document: &Document, time: f64) -> Self {
         let shown = document.evaluate(time);
         let has_trail = has_trail(document, &shown);
@@ -52,7 +54,7 @@ impl Overlays {
         overlays
     }
 
-    /// The same at another time, at which the document is evaluated already.
+    /// The overlays at another time in seconds, at which `document` is evaluated already.
     #[must_use]
     pub fn at(mut self, document: &Document, time: f64) -> Self {
         self.time = time;

@@ -2,7 +2,8 @@ use std::path::Path;
 
 use super::export::Export;
 
-/// A dialog that asks for a path: one of the program's own, or the system's in its place.
+/// A dialog that asks for a path: one of the program's own, which the system's file dialog may
+/// replace.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PathDialog {
     /// Asks where to save a picture.
@@ -16,30 +17,30 @@ pub enum PathDialog {
     Open {
         /// The path as typed so far.
         path: String,
-        /// The error of the last attempt.
+        /// Error of the previous attempt; `None` before the first attempt.
         problem: Option<String>,
     },
     /// Asks where to save the document.
     SaveAs {
         /// The path as typed so far.
         path: String,
-        /// The error of the last attempt.
+        /// Error of the previous attempt; `None` before the first attempt.
         problem: Option<String>,
     },
 }
 
 impl PathDialog {
-    /// Asks for a file to open.
+    /// The dialog that asks for a file to open.
     pub fn open() -> Self {
         Self::Open { path: String::new(), problem: None }
     }
 
-    /// Asks where to save a new document.
+    /// The dialog that asks where to save a new document.
     pub fn save_as() -> Self {
         Self::SaveAs { path: "ik-arm.json".to_owned(), problem: None }
     }
 
-    /// Asks where to save a picture.
+    /// The dialog that asks where to save a picture.
     pub fn save_picture() -> Self {
         Self::SavePicture { path: "ik-arm.png".to_owned() }
     }

@@ -3,14 +3,14 @@ use crate::document::Timeline;
 /// The playhead and the settings of the transport bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Playback {
-    /// In seconds.
+    /// Time of the playhead, in seconds.
     time: f64,
     playing: bool,
     looping: bool,
-    /// 1 for real time.
+    /// Speed; 1 is real time.
     speed: f64,
     auto_key: bool,
-    /// Window time of the last frame in seconds; `None` before the first.
+    /// Time of the previous frame on the window's clock, in seconds; `None` before the first frame.
     last_frame: Option<f64>,
 }
 
@@ -28,10 +28,11 @@ impl Default for Playback {
 }
 
 impl Playback {
-    /// Slowest and fastest speed.
+    /// Minimum and maximum speed; 1 is real time.
     pub const SPEEDS: (f64, f64) = (0.1, 4.0);
 
-    /// Paused at the start of another document's timeline, with the same speed and looping.
+    /// Playback for another document: paused at the start of `timeline`, with the same speed and
+    /// looping.
     pub fn restarted(&self, timeline: &Timeline) -> Self {
         Self { time: timeline.start, looping: self.looping, speed: self.speed, ..Self::default() }
     }
@@ -56,12 +57,13 @@ impl Playback {
         self.speed
     }
 
-    /// Whether a frame at this window time was made already.
+    /// Whether the previous frame was made at `seconds` on the window's clock.
     pub fn has_frame_at(&self, seconds: f64) -> bool {
         self.last_frame == Some(seconds)
     }
 
-    /// Moves the playhead; returns whether it has moved.
+    /// Moves the playhead to a time in seconds, or to 0 if `time` is not finite; returns whether
+    /// the playhead has moved.
     pub fn set_time(&mut self, time: f64) -> bool {
         let time = if time.is_finite() { time } else { 0.0 };
         std::mem::replace(&mut self.time, time) != time
@@ -86,19 +88,20 @@ impl Playback {
         }
     }
 
-    /// Lets the next frame begin a new interval, so that a pause does not count as time.
+    /// Forgets the previous frame, so that a pause before the next frame does not count as time.
     pub fn forget_last_frame(&mut self) {
         self.last_frame = None;
     }
 
-    /// Seconds of the window since the last frame.
+    /// Begins a frame at `seconds` on the window's clock; returns the seconds since the previous
+    /// frame, or 0 for the first.
     pub fn advance_frame(&mut self, seconds: f64) -> f64 {
         let passed = self.last_frame.map_or(0.0, |last| (seconds - last).max(0.0));
         self.last_frame = Some(seconds);
         passed
     }
 
-    /// The playhead after `passed` seconds, and whether it is still playing.
+    /// Time of the playhead after `passed` seconds of real time, and whether playback continues.
     pub fn played(&self, passed: f64, timeline: &Timeline) -> (f64, bool) {
         let time = self.time + passed * self.speed;
         if time < timeline.end {

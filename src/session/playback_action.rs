@@ -3,14 +3,15 @@
 pub enum PlaybackAction {
     /// Plays or pauses.
     Play(bool),
-    /// Moves the playhead, in seconds.
+    /// Moves the playhead to a time in seconds.
     SetTime(f64),
-    /// Loops at the end of the timeline, or stops there.
+    /// Sets whether playback loops at the end of the timeline or stops there.
     SetLooping(bool),
-    /// Sets the speed, 1 for real time.
+    /// Sets the speed; 1 is real time.
     SetSpeed(f64),
-    /// Keys every edit, or only on request.
+    /// Turns auto-key on or off. While it is on, every edit sets keys.
     SetAutoKey(bool),
-    /// Advances playback, solver runs and camera moves to a time of the window, in seconds.
+    /// Advances playback, solver runs, the crowd and the camera's glide to a time in seconds on the
+    /// window's clock.
     Advance(f64),
 }

@@ -7,7 +7,7 @@ use crate::document::Ray;
 /// A part of a point's gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointHandle {
-    /// The point: moves in the plane of the picture.
+    /// The point itself: moves in a plane parallel to the picture.
     Free,
     /// An arrow: moves along x, y or z (0, 1, 2).
     Axis(usize),
@@ -16,7 +16,7 @@ pub enum PointHandle {
 }
 
 impl PointHandle {
-    /// Whether its axis is 0, 1 or 2.
+    /// Whether the handle's axis, if it has one, is 0, 1 or 2.
     pub(super) fn has_valid_axis(self) -> bool {
         match self {
             Self::Free => true,
@@ -35,7 +35,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// Whether its axis is 0, 1 or 2.
+    /// Whether the constraint's axis is 0, 1 or 2.
     pub(super) fn has_valid_axis(self) -> bool {
         let (Self::Axis(axis) | Self::Plane(axis)) = self;
         axis < 3
@@ -45,31 +45,31 @@ impl Constraint {
 /// Position of the mouse and modifier keys during a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragInput {
-    /// The ray under the mouse.
+    /// The ray through the mouse, in world space.
     pub ray: Ray,
-    /// Whether the drag moves a tenth as far.
+    /// Whether precision is on: the drag moves a tenth as far as the mouse.
     pub precise: bool,
-    /// Whether the drag moves in whole steps.
+    /// Whether snapping is on: the drag ends on whole steps.
     pub snap: bool,
 }
 
-/// The drag of a point. Its position is computed from the state at the press, never from the last move,
-/// so that nothing drifts.
+/// The drag of a point. The point is computed from the state at the press, never from its previous
+/// position, so that nothing drifts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointDrag {
     handle: PointHandle,
     constraint: Option<Constraint>,
     /// The point at the press, relative to `origin`.
     start: Vec3,
-    /// In the world.
+    /// Origin of `start` and `last`, in world space.
     origin: Vec3,
-    /// Step of snapping.
+    /// Step of snapping, in world units.
     step: f32,
-    /// Normal of the picture.
+    /// Normal of the picture, in the direction in which the camera looks.
     forward: Vec3,
     pressed: Ray,
     now: DragInput,
-    /// State when precision was switched on or off last.
+    /// State when precision was last switched on or off; `None` if it never was.
     precision: Option<PrecisionStart>,
     typed: String,
     last: Vec3,
@@ -84,11 +84,12 @@ struct PrecisionStart {
 
 impl PointDrag {
     const PRECISION: f32 = 0.1;
-    /// Step of snapping for the default arm.
+    /// Step of snapping for the default arm, in world units.
     const SNAP: f32 = 10.0;
     const PRECISE_SNAP: f32 = 0.1;
 
-    /// Begins a drag of the point at `start`, relative to `origin` in the world.
+    /// Begins a drag of the point at `start`, relative to `origin` in world space. `forward` is the
+    /// normal of the picture.
     pub(super) fn new(
         handle: PointHandle,
         start: Vec3,
@@ -122,7 +123,7 @@ impl PointDrag {
         self.handle
     }
 
-    /// The constraint from the keyboard, else that of the handle.
+    /// The constraint from the keyboard, else the one of the handle; `None` for a free drag.
     pub fn constraint(&self) -> Option<Constraint> {
         self.constraint.or(match self.handle {
             PointHandle::Free => None,
@@ -131,17 +132,17 @@ impl PointDrag {
         })
     }
 
-    /// The typed offset; empty while the mouse sets it.
+    /// The offset as typed; empty while the mouse sets the offset.
     pub fn typed(&self) -> &str {
         &self.typed
     }
 
-    /// Whether the mouse has moved, or the offset was typed or set with precision.
+    /// Whether the mouse has moved, an offset was typed, or precision was switched on or off.
     pub(super) fn has_moved(&self) -> bool {
         !self.typed.is_empty() || self.precision.is_some() || self.now.ray != self.pressed
     }
 
-    /// The offset from the press, finite.
+    /// Offset of the point from its position at the press; always finite.
     pub fn moved(&self) -> Vec3 {
         (self.last - self.start).clamp(Vec3::MIN, Vec3::MAX)
     }
@@ -163,7 +164,8 @@ impl PointDrag {
         self.now = input;
     }
 
-    /// The dragged point, relative to the origin. Coordinates that the drag does not move keep every bit.
+    /// Computes the dragged point, relative to the origin. Coordinates that the drag does not move
+    /// are unchanged, bit for bit.
     pub(super) fn point(&mut self) -> Vec3 {
         let offset = if self.typed.is_empty() {
             self.pointed()
@@ -192,7 +194,7 @@ impl PointDrag {
         }
     }
 
-    /// The offset of the mouse from the press, with precision.
+    /// Offset of the point since the press as the mouse sets it, reduced while precision is on.
     fn pointed(&self) -> Vec3 {
         let Some(PrecisionStart { on, ray, offset }) = self.precision else {
             return self.between(self.pressed, self.now.ray).unwrap_or(self.last - self.start);
@@ -201,8 +203,8 @@ impl PointDrag {
         offset + since * if on { Self::PRECISION } else { 1.0 }
     }
 
-    /// Offset of the point when the mouse moves from one ray to another; `None` where a ray does not meet
-    /// the line or plane of the drag.
+    /// Offset of the point when the mouse moves from one ray to another; `None` if a ray does not
+    /// meet the line or plane of the drag.
     fn between(&self, from: Ray, to: Ray) -> Option<Vec3> {
         let at_press = self.origin + self.start;
         let offset = match self.constraint() {
@@ -224,8 +226,8 @@ impl PointDrag {
     }
 }
 
-/// The offset that typed numbers mean: the first is for the first coordinate that the drag moves, and so
-/// on. `None` for invalid numbers.
+/// Parses a typed offset: numbers separated by commas for the coordinates that the drag moves, in
+/// order. Missing numbers are 0; `None` for an invalid number.
 fn offset_of(typed: &str, constraint: Option<Constraint>) -> Option<Vec3> {
     let axes: &[usize] = match constraint {
         None => &[0, 1, 2],

@@ -16,8 +16,8 @@ pub enum PopFix {
 }
 
 impl PopFix {
-    /// The fix for a pop; `None` if it cannot recur with these settings, at the shoulder, or if every
-    /// fix is in use.
+    /// The fix for a pop. `None` if the pop cannot recur with the settings of `arm`, if its cause
+    /// is a Cursor that passed the shoulder, or if every fix is in use.
     pub fn new(spike: &Spike, arm: &Arm) -> Option<Self> {
         if !spike.persists(arm) {
             return None;
@@ -54,8 +54,8 @@ impl PopFix {
     }
 }
 
-/// Twice the softness, from 0.25, which keeps arms of all proportions calm at both limits, to 0.5;
-/// `None` where that is not more.
+/// Soft limits with twice the softness, at least 0.25 and at most 0.5; `None` if the softness is
+/// 0.5 or more already. A softness of 0.25 keeps arms of all proportions calm at both limits.
 fn softer(soft_reach: SoftReach) -> Option<SoftReach> {
     const ENOUGH: f32 = 0.25;
     const MOST: f32 = 0.5;
@@ -65,7 +65,7 @@ fn softer(soft_reach: SoftReach) -> Option<SoftReach> {
     (softness > soft_reach.softness()).then_some(softer)
 }
 
-/// A minimum elbow angle 30° larger, up to 90°.
+/// Soft limits with a minimum elbow angle that is 30° larger; `None` if that is above 90°.
 fn wider(soft_reach: SoftReach) -> Option<SoftReach> {
     const OPEN: f32 = core::f32::consts::FRAC_PI_6;
     const MOST: f32 = core::f32::consts::FRAC_PI_2;

@@ -5,7 +5,8 @@ use crate::kinematics::ik::Ik;
 use crate::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
 use crate::kinematics::two_bone::TwoBonePose;
 
-/// Elbow speed over Cursor speed in the last dragged or played steps. Neither saved nor undone.
+/// Ratios of elbow speed to Cursor speed in the latest dragged or played steps. Neither saved nor
+/// undone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pops {
     samples: VecDeque<PopSample>,
@@ -13,18 +14,18 @@ pub struct Pops {
     run: u32,
 }
 
-/// One step of the elbow.
+/// One step of the elbow, with the input that caused it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PopSample {
     /// Number of the drag or playback that the sample belongs to.
     pub run: u32,
     /// The solver's settings in this step.
     pub ik: Ik,
-    /// What changed.
+    /// The input that changed.
     pub kind: PopSampleKind,
 }
 
-/// What changed the pose in a [`PopSample`].
+/// The input that changed the pose in a [`PopSample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PopSampleKind {
     /// Only the Cursor moved.
@@ -53,11 +54,11 @@ pub(super) enum CursorMove {
     Dragged(u64),
     /// Playback.
     Played,
-    /// A jump: a typed value, an undo step, another time.
+    /// A jump by a typed value, an undo step or another time.
     Set,
 }
 
-/// The arm to which the next one is compared.
+/// The arm in the previous step, to which the next step is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PreviousMoment {
     moment: PosedArm,
@@ -69,20 +70,21 @@ impl Pops {
     /// Maximum number of samples.
     const MOST: usize = 600;
 
-    /// No samples yet; the first move is compared to this arm.
+    /// Starts without samples; the first step is compared to this arm at `time`, in seconds.
     pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
         let previous = PreviousMoment { moment: moment(arm, pose), cause: CursorMove::Set, time };
         Self { samples: VecDeque::new(), previous, run: 0 }
     }
 
-    /// The last 600 samples, oldest first.
+    /// The latest samples, at most 600, oldest first.
     pub fn samples(&self) -> impl ExactSizeIterator<Item = &PopSample> + Clone {
         self.samples.iter()
     }
 
-    /// The pops, oldest first.
+    /// The pops among the samples, oldest first.
     pub fn spikes(&self) -> Vec<Spike> {
-        // A hand that enters a limit and leaves it at once pops once.
+        // Similar pops that are fewer samples apart count as one: a hand that enters a limit and
+        // leaves it at once pops once.
         const APART: usize = 4;
         let mut spikes: Vec<(Spike, usize)> = Vec::new();
         for (at, sample) in self.samples.iter().enumerate() {
@@ -112,7 +114,7 @@ impl Pops {
 
     fn record_moment(&mut self, moment: PosedArm, cause: CursorMove, time: f64) {
         let previous = &mut self.previous;
-        // PopSampleKind is played begins again.
+        // Playback that loops back to the start is a jump.
         let cause = if cause == CursorMove::Played && time < previous.time {
             CursorMove::Set
         } else {
@@ -131,7 +133,7 @@ impl Pops {
             None if cause == CursorMove::Set => {}
             None => match ElbowStep::between(&before, &moment) {
                 Some(step) => self.push(moment.ik, PopSampleKind::Step(step)),
-                // Steps too short to measure add up.
+                // Steps that are too short to measure add up, since the previous arm is kept.
                 None => return,
             },
         }
@@ -171,7 +173,8 @@ impl Spike {
         Self { pop, ..higher }
     }
 
-    /// Whether the same move of the Cursor would pop again: the settings that caused it are unchanged.
+    /// Whether the same move of the Cursor would pop again, because the settings that caused the
+    /// pop are unchanged.
     pub fn persists(self, arm: &Arm) -> bool {
         match self.pop {
             PopCause::Singular { .. } => self.ik.reference == arm.reference(),

@@ -7,8 +7,8 @@ use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::{angle_from_limb, remeasured};
 use crate::kinematics::two_bone::Pointer;
 
-/// The pose of the arm as a line for `ik-arm solve`. The line gives no direction for a hand at the
-/// shoulder.
+/// The pose of the arm as a JSON line for `ik-arm solve`. For a Cursor at the shoulder, the line
+/// does not give the direction of the Pointer.
 pub(super) fn of(arm: &Arm) -> String {
     let arm = if arm.influence < 1.0 { arm.switched_to_ik() } else { *arm };
     // A single line has no previous pose to transport the twist from.
@@ -38,7 +38,7 @@ pub(super) fn of(arm: &Arm) -> String {
     for (field, value, default) in [
         ("softness", soft_reach.softness(), default.softness()),
         ("max_stretch", soft_reach.max_stretch(), default.max_stretch()),
-        ("min_elbow_angle_deg", min_elbow_angle_deg, default.min_elbow_angle()),
+        ("min_elbow_angle_deg", min_elbow_angle_deg, default.min_elbow_angle().to_degrees()),
     ] {
         if value != default {
             set(field, json!(value));
@@ -47,7 +47,7 @@ pub(super) fn of(arm: &Arm) -> String {
     Value::Object(line).to_string()
 }
 
-/// The twist that gives the same elbow without the last facing of the arm.
+/// The twist in radians that gives the same elbow when the arm is solved without a previous pose.
 fn twist_without_history(arm: &Arm) -> f32 {
     const SAME: f32 = 1e-6;
     let (cursor, outward) = (arm.cursor_in_root(), arm.solve().pose.outward());

@@ -6,7 +6,7 @@ use crate::document::Theme;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Dark or light.
+    /// Dark or light theme.
     pub theme: Theme,
     /// Mouse buttons that move the camera.
     pub navigation: Navigation,
@@ -49,7 +49,7 @@ impl Default for Preferences {
 }
 
 impl Navigation {
-    /// All of them, in the order of the menu.
+    /// All kinds of navigation, in the order of the menu.
     pub const ALL: [Self; 4] = [Self::Default, Self::Blender, Self::Maya, Self::Trackpad];
 
     /// Name in the menu.
@@ -62,7 +62,7 @@ impl Navigation {
         }
     }
 
-    /// How to orbit, pan and zoom.
+    /// Instructions for orbiting, panning and zooming, in this order.
     pub fn help(self) -> [&'static str; 3] {
         match self {
             Self::Default => [

@@ -18,7 +18,7 @@ impl ResidualHistory {
         self.errors.push(error);
     }
 
-    /// Iteration and error, oldest first.
+    /// Pairs of iteration number and residual error, oldest first.
     pub fn points(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
         self.errors.iter().enumerate().map(|(index, error)| (self.dropped + index, *error))
     }

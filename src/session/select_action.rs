@@ -5,9 +5,9 @@ use crate::kinematics::skeleton::JointId;
 /// Changes the selection or the copied keys.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SelectAction {
-    /// Selects these joints and no others; the last one is the active one.
+    /// Selects these joints and no others; the last of them becomes the active joint.
     Joints(Vec<JointId>),
-    /// Sets the joint under the mouse.
+    /// Sets the joint under the mouse; `None` if there is none.
     Hover(Option<JointId>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),

@@ -6,13 +6,13 @@ use super::key::Key;
 use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::{JointId, JointRemap};
 
-/// Copied keys: channel, time after the first one, value.
+/// Copied keys: channel, time in seconds after the first key, and value.
 pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
 
 /// Selected joints, keys and channels, and the copied keys.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Selection {
-    /// The last one is the active joint.
+    /// Selected joints; the last of them is the active joint.
     joints: Vec<JointId>,
     hovered: Option<JointId>,
     keys: Vec<Key>,
@@ -61,13 +61,13 @@ impl Selection {
         self.clipboard = clipboard;
     }
 
-    /// Removes joints that are not among the first `count`.
+    /// Drops selected and hovered joints whose index is `count` or more.
     pub fn retain_joints(&mut self, count: usize) {
         self.joints.retain(|joint| joint.index() < count);
         self.hovered = self.hovered.filter(|joint| joint.index() < count);
     }
 
-    /// Removes keys and channels that the document does not have.
+    /// Deselects keys and channels that the document does not have.
     pub fn retain_keys(&mut self, document: &Document) {
         self.keys.retain(|(channel, time)| {
             document.keys.track(*channel).is_some_and(|track| track.get(*time).is_some())
@@ -75,8 +75,8 @@ impl Selection {
         self.channels.retain(|channel| channel.value(document).is_some());
     }
 
-    /// Renumbers keys, channels and copied keys after joints were removed or moved. `keys` and
-    /// `channels` are those from before.
+    /// Renumbers the joints of selected keys, selected channels and copied keys after joints were
+    /// removed or renumbered. `keys` and `channels` are the selection from before.
     pub fn remap(&mut self, moved: &JointRemap, keys: Vec<Key>, channels: BTreeSet<Channel>) {
         let keys = keys.into_iter();
         self.keys =
@@ -88,7 +88,8 @@ impl Selection {
         self.clipboard = copies.collect();
     }
 
-    /// Clears all that refers to joints by index.
+    /// Clears the selection and removes the copied keys of joints, because their joint indices are
+    /// no longer valid.
     pub fn forget_joints(&mut self) {
         self.joints.clear();
         self.keys.clear();

@@ -14,12 +14,12 @@ use crate::io;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 
-/// Width over height of the viewport that cameras are framed for; the margin of a framed view covers
-/// other shapes.
+/// Ratio of width to height of the viewport that cameras are framed for; the margin of a framed
+/// view allows for other ratios.
 pub(super) const ASPECT: f32 = 1.0;
 
-/// An open document with its history, and all that is neither saved nor undone. Each part owns its
-/// state; a session passes actions to the parts, and changes of one to the others.
+/// An open document with its history, and state that is neither saved nor undone. Each part owns
+/// its state; a session passes actions to the parts, and changes of one part to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub(super) editing: Editing,
@@ -40,7 +40,7 @@ impl Default for Session {
 }
 
 impl Session {
-    /// A session with a new document: the arm, with the Human as its skeleton.
+    /// A session with a new document: the arm, and the example "Human" as its skeleton.
     pub fn new(preferences: Preferences) -> Self {
         Self::with_document(preferences, io::new_document())
     }
@@ -60,7 +60,8 @@ impl Session {
         }
     }
 
-    /// The document that is saved.
+    /// The document as it is saved, without interpolated values and unkeyed edits of keyed
+    /// channels.
     pub fn document(&self) -> &Document {
         self.editing.document()
     }
@@ -100,12 +101,12 @@ impl Session {
         self.evaluated.skeleton_pose()
     }
 
-    /// The frame transported along the Pointer's path.
+    /// Transport of a frame along the Pointer's path.
     pub fn transport_path(&self) -> &TransportPath {
         self.evaluated.transport_path()
     }
 
-    /// Elbow speed over Cursor speed in the last steps.
+    /// Ratios of elbow speed to Cursor speed in the latest steps.
     pub fn pops(&self) -> &Pops {
         self.evaluated.pops()
     }
@@ -118,7 +119,7 @@ impl Session {
             || self.solvers.is_busy()
     }
 
-    /// Evaluates the document at the playhead, with all that follows from it.
+    /// Evaluates the document at the playhead and updates all that depends on it.
     pub(super) fn refresh(&mut self) {
         self.editing.evaluate(self.playback.time());
         self.follow_document();
@@ -137,7 +138,7 @@ impl Session {
         self.selection.retain_keys(self.editing.document());
     }
 
-    /// Moves the camera; an invalid one is ignored.
+    /// Sets the camera; ignores an invalid one.
     pub(super) fn set_camera(&mut self, camera: Camera) {
         if camera.is_valid() {
             self.editing.set_camera(camera);

@@ -15,8 +15,8 @@ impl Session {
         overlays
     }
 
-    /// Writes [`Session::overlays`] into existing ones. Allocates nothing, except for onion skins, which
-    /// copy a document with keys.
+    /// Writes [`Session::overlays`] into `overlays` and reuses its memory. Allocates nothing,
+    /// except for onion skins, which copy a document with keys.
     pub fn write_overlays(&self, overlays: &mut Overlays) {
         overlays.time = self.time();
         overlays.crowd = self.crowd();
@@ -30,7 +30,8 @@ impl Session {
         write_onion_skins(self.document(), self.shown(), self.time(), &mut overlays.onion_skins);
     }
 
-    /// Positions of the hand or the active joint's tip in all frames; empty unless it is shown.
+    /// World positions of the hand or the active joint's tip in all frames; empty if the motion
+    /// trail is hidden.
     fn trail(&self) -> &[Vec3] {
         if has_trail(self.document(), self.shown()) {
             self.evaluated.trail(|| sample_trail(self.document(), self.selected()))

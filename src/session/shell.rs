@@ -16,7 +16,7 @@ impl Shell {
         self.dialog.as_ref()
     }
 
-    /// The open dialog if it asks for a path.
+    /// The open dialog, if it asks for a path.
     pub fn path_dialog(&self) -> Option<&PathDialog> {
         match self.dialog() {
             Some(Dialog::Path(dialog)) => Some(dialog),
@@ -36,7 +36,7 @@ impl Shell {
         self.dialog = Some(dialog);
     }
 
-    /// Closes the dialog and returns it.
+    /// Closes the dialog and returns it; `None` if none is open.
     pub fn take_dialog(&mut self) -> Option<Dialog> {
         self.dialog.take()
     }

@@ -2,7 +2,7 @@ use super::dialog::Dialog;
 use super::preferences::Navigation;
 use crate::document::Theme;
 
-/// Dialogs, messages and preferences.
+/// Changes dialogs, messages or preferences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShellAction {
     /// Opens a dialog.
@@ -13,7 +13,7 @@ pub enum ShellAction {
     Report(String),
     /// Shows an error.
     Fail(String),
-    /// Copies the pose as a line for `ik-arm solve`.
+    /// Copies the arm's pose to the clipboard, as a line for `ik-arm solve`.
     CopyPose,
     /// Sets the theme.
     SetTheme(Theme),

@@ -51,8 +51,8 @@ impl Session {
         self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), kind: DragKind::Turn(drag) }));
     }
 
-    /// The ring of a joint's angle about x, y or z (0, 1, 2), in the world; `None` where its limit fixes
-    /// it.
+    /// The ring, in world space, of a joint's angle about x, y or z (0, 1, 2). `None` if a limit
+    /// fixes the angle, or if there is no such joint or axis.
     pub fn ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
         let skeleton = &self.skeleton();
         let limit = skeleton.joint(joint)?.limits.get(axis)?;
@@ -67,7 +67,7 @@ impl Session {
         Some(GripRing { centre: world.translation.into(), axis })
     }
 
-    /// Step of snapping: a tenth of a cell of the grid.
+    /// Step of snapping in world units: a tenth of a cell of the grid.
     pub(super) fn snap(&self) -> f32 {
         self.shown().grid_cell() * 0.1
     }
@@ -95,7 +95,8 @@ impl Session {
         }
     }
 
-    /// Solves from the pose at the press for a tip under the mouse; a root without a bone moves instead.
+    /// Solves, from the pose at the press, for the tip of `joint` at `to` in world space. A root
+    /// without a bone is moved by `moved` instead.
     fn drag_tip(&mut self, joint: JointId, to: Vec3, moved: Vec3) {
         if !self.is_editing() {
             return;

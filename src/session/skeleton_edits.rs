@@ -7,7 +7,8 @@ use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Limit, Skeleton, S
 
 /// Edits of the skeleton.
 impl Session {
-    /// Changes a copy of the skeleton and commits it, or reports the error.
+    /// Changes a copy of the skeleton and commits it. After an error, reports it and returns
+    /// `None`.
     pub(super) fn edit_skeleton<T>(
         &mut self,
         change: impl FnOnce(&mut SkeletonRig) -> Result<T, SkeletonError>,
@@ -19,8 +20,9 @@ impl Session {
         self.edit_skeleton(|rig| rig.skeleton_mut().change(joint, change));
     }
 
-    /// Adds a child at the tip of `parent`; its bone ends at `tip` in the world, else it continues the
-    /// parent's. Without a parent, adds a root without a bone.
+    /// Adds a child at the tip of `parent` and selects it. The child's bone ends at `tip` in world
+    /// space; if `tip` is `None`, it continues the parent's bone. Without a parent, adds a root
+    /// without a bone.
     pub(super) fn add_joint(&mut self, parent: Option<JointId>, tip: Option<Vec3>) {
         let added = self.edit_skeleton(|rig| {
             let skeleton = rig.skeleton_mut();
@@ -46,7 +48,8 @@ impl Session {
         }
     }
 
-    /// Adds a joint to the selected one, else to the last one, else to a new root.
+    /// Adds a child to the selected joint; without a selection, to the joint with the highest
+    /// index; without joints, to a new root.
     pub(super) fn add_next_joint(&mut self, tip: Option<Vec3>) {
         if self.next_parent().is_none() {
             self.add_joint(None, None);
@@ -61,13 +64,14 @@ impl Session {
         self.selected().or(self.skeleton_pose().ids().next_back())
     }
 
-    /// Base of the bone that the next joint would get, in the world.
+    /// Base of the next joint that would be added, in world space.
     pub fn next_base(&self) -> Vec3 {
         let origin = self.skeleton().transform().translation.into();
         self.next_parent().map_or(origin, |parent| self.skeleton_pose().tip(parent))
     }
 
-    /// Zooms out if the tip of the selected joint is outside the picture.
+    /// Frames the whole rig if the tip of the selected joint is near the edge of the picture or
+    /// outside.
     fn keep_in_view(&mut self) {
         const EDGE: f32 = 0.9;
         let Some(joint) = self.selected() else { return };
@@ -81,7 +85,7 @@ impl Session {
         }
     }
 
-    /// Deletes joints and selects the last remaining parent.
+    /// Deletes joints by `delete` and selects the last of their parents that remains.
     pub(super) fn delete_joints(
         &mut self,
         joints: &[JointId],
@@ -136,7 +140,7 @@ impl Session {
         });
     }
 
-    /// Adds a target at the tip of a joint.
+    /// Adds a target at the tip of a joint that has none.
     pub(super) fn add_target(&mut self, joint: JointId) {
         if joint.index() >= self.skeleton_pose().len()
             || self.skeleton_rig().target(joint).is_some()
@@ -201,7 +205,7 @@ impl Session {
         }
     }
 
-    /// Removes a target, with its keys.
+    /// Removes the target of a joint, with its keys.
     pub(super) fn remove_target(&mut self, joint: JointId) {
         self.edit_document(|document| {
             document.skeleton_rig.targets.retain(|target| target.joint != joint);
@@ -211,7 +215,8 @@ impl Session {
         });
     }
 
-    /// Shows the arm or the skeleton. A solver run pauses while the skeleton is hidden.
+    /// Shows the arm or the skeleton. Showing the arm pauses the solver run and ends the
+    /// comparison.
     pub(super) fn show_rig(&mut self, rig: RigKind) {
         if rig == RigKind::Arm {
             self.solvers.end_comparison();
@@ -226,8 +231,9 @@ impl Session {
     }
 }
 
-/// Radius of a new child of `parent`: nine tenths of the largest radius above it, so that the bones of a
-/// skeleton look alike, but at most 2.5 times `own`, its radius for its length.
+/// Radius of a new child of `parent`: nine tenths of the largest radius of `parent` and its
+/// ancestors, so that the bones of a skeleton are about equally thick, but at most 2.5 times `own`,
+/// the default radius for the child's length.
 fn radius_of_next(skeleton: &Skeleton, parent: JointId, own: f32) -> f32 {
     const TAPER: f32 = 0.9;
     const THICKEST: f32 = 2.5;

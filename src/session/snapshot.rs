@@ -9,18 +9,19 @@ use crate::kinematics::skeleton::Joint;
 /// Unkeyed edits: values of keyed channels that differ from their keys, until the time changes.
 pub(super) type Overrides = BTreeMap<Channel, Vec3>;
 
-/// All that undo restores: a document and its unkeyed edits. It shares memory with the documents before
-/// and after it.
+/// All that undo restores: a document and its unkeyed edits. A snapshot shares memory with those
+/// before and after it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Snapshot {
     document: Document,
     overrides: Overrides,
-    /// Time of the overrides.
+    /// Time at which the overrides were made, in seconds.
     time: f64,
-    /// Number of the document: equal numbers, equal documents.
+    /// Number of the document's state: equal numbers mean equal documents, except for their
+    /// cameras.
     pub revision: u64,
-    /// Number of the document's content: equal numbers, documents that are equal except for their
-    /// display.
+    /// Number of the document's content: equal numbers mean documents that are equal except for
+    /// their cameras, shown rig and overlays.
     pub content: u64,
 }
 
@@ -36,7 +37,7 @@ impl Snapshot {
         Self { document, overrides, time, revision, content }
     }
 
-    /// Its document, with the cameras of the open one.
+    /// The snapshot's document, with the cameras of the `open` document.
     pub fn document(&self, open: &Document) -> Document {
         let mut document = Document {
             rig: open.rig,
@@ -48,14 +49,15 @@ impl Snapshot {
         document
     }
 
-    /// Whether its document differs from another one, cameras aside.
+    /// Whether the snapshot's document differs from `document` in more than cameras.
     pub fn differs_from(&self, document: &Document) -> bool {
         self.document.rig != document.rig
             || self.document.display != document.display
             || self.differs_in_content_from(document)
     }
 
-    /// Whether its document differs from another one in more than cameras, shown rig and overlays.
+    /// Whether the snapshot's document differs from `other` in more than cameras, shown rig and
+    /// overlays.
     pub fn differs_in_content_from(&self, other: &Document) -> bool {
         let Document { arm, skeleton_rig, keys, timeline, metres_per_unit, .. } = &self.document;
         *arm != other.arm
@@ -65,18 +67,18 @@ impl Snapshot {
             || *metres_per_unit != other.metres_per_unit
     }
 
-    /// The overrides at a time; none at another time than theirs.
+    /// The overrides, if they were made at `time`; otherwise none.
     pub fn overrides_at(&self, time: f64) -> Overrides {
         if self.time == time { self.overrides.clone() } else { Overrides::default() }
     }
 
-    /// Whether undoing to this state from `now` would change nothing: overrides of another time are
-    /// discarded.
+    /// Whether restoring this state from `now` would change nothing. Overrides made at another time
+    /// than that of `now` do not count, because restoring discards them.
     pub fn is_restored_in(&self, now: &Self) -> bool {
         self.revision == now.revision && self.overrides_at(now.time) == now.overrides
     }
 
-    /// Bytes that it takes and `other` does not share, approximately.
+    /// Approximate number of bytes that the snapshot does not share with `other`.
     pub fn unshared_bytes(&self, other: Option<&Self>) -> usize {
         let other = other.map(|other| &other.document);
         size_of::<Self>()

@@ -6,7 +6,7 @@ use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
-/// A solver run on the document's skeleton, some iterations per frame.
+/// A solver run on the document's skeleton, which makes some iterations in every frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
     /// The skeleton before the first iteration.
@@ -14,9 +14,10 @@ pub struct SolverRun {
     solver: ChainSolver,
     options: SolverOptions,
     targets: Vec<TipTarget>,
-    /// The skeleton after the last iteration.
+    /// The skeleton after the latest iteration.
     written: Shared<Skeleton>,
-    /// Iterations before the solver restarted: the targets moved or a joint was edited.
+    /// Number of iterations before the solver's latest restart, which follows a moved target or an
+    /// edited joint.
     before: u32,
     history: ResidualHistory,
     pub(super) running: bool,
@@ -45,13 +46,14 @@ impl SolverRun {
         self.running
     }
 
-    /// State and residual after the last iteration.
+    /// Status and residual after the latest iteration, with the number of all iterations of the
+    /// run.
     pub fn report(&self) -> Report {
         let report = self.solver.report();
         Report { iterations: self.before + report.iterations, ..report }
     }
 
-    /// Residual after every iteration.
+    /// Residual before the first and after every iteration.
     pub fn history(&self) -> &ResidualHistory {
         &self.history
     }
@@ -61,7 +63,8 @@ impl SolverRun {
         &self.start
     }
 
-    /// Makes up to `iterations`; none once the solver is done.
+    /// Makes at most `iterations` iterations, fewer if the solver is done, and writes the pose into
+    /// `rig`. `time` is the playhead in seconds.
     pub(super) fn advance(
         &mut self,
         rig: &mut SkeletonRig,
@@ -86,14 +89,16 @@ impl SolverRun {
         self.solver.is_over()
     }
 
-    /// Whether the last iteration made this pose, with the same targets and options.
+    /// Whether the pose of `rig` is the result of the run's latest iteration, and its targets at
+    /// `time` and the solver options have not changed since.
     pub(super) fn made(&self, rig: &SkeletonRig, time: f64) -> bool {
         rig.skeleton == self.written
             && rig.solver == self.options
             && rig.targets_at(time) == self.targets
     }
 
-    /// Takes over changes of the rig since the last iteration; restarts the solver if necessary.
+    /// Adopts changes of `rig` since the latest iteration: moves the targets, or restarts the
+    /// solver if anything else has changed.
     fn follow(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
         let targets = rig.targets_at(time);
         let is_same = rig.solver == self.options && rig.skeleton == self.written;
@@ -114,7 +119,7 @@ impl SolverRun {
     }
 }
 
-/// Whether only the points of the targets differ, so that the solver can be retargeted.
+/// Whether the targets differ in nothing but their points, so that the solver can be retargeted.
 fn only_points_differ(targets: &[TipTarget], others: &[TipTarget]) -> bool {
     let same = |(target, other): (&TipTarget, &TipTarget)| {
         target.joint == other.joint && target.weight.to_bits() == other.weight.to_bits()

@@ -6,16 +6,17 @@ use crate::kinematics::chain_ik::{Report, Status};
 /// State and residual of the shown pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverStatus {
-    /// The state.
+    /// State of the pose in relation to its targets.
     pub state: SolverState,
-    /// The residual of the shown pose. Iterations are those of the run that made it, else 0.
+    /// Residual of the shown pose, with the number of iterations of the run that made it; 0 if no
+    /// run did.
     pub report: Report,
 }
 
 /// State of the shown pose in relation to its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
-    /// No run made this pose, or it was edited since.
+    /// No solver run made the pose, or the pose was edited since.
     NotSolved,
     /// The solver runs.
     Running,
@@ -25,7 +26,7 @@ pub enum SolverState {
     Ended(Status),
 }
 
-/// In words, such as "running" or "converged".
+/// Writes the state in words, such as "running" or "converged".
 impl fmt::Display for SolverState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -38,8 +39,8 @@ impl fmt::Display for SolverState {
 }
 
 impl Session {
-    /// State and residual of the shown pose; `None` without an enabled target or for a skeleton on a
-    /// path.
+    /// State and residual of the shown pose; `None` without an enabled target, for a skeleton that
+    /// follows a path, or if the solver cannot solve for the targets.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         let rig = self.skeleton_rig();
         if rig.follow_path.is_some() || rig.targets_at(self.time()).is_empty() {

@@ -54,7 +54,7 @@ impl Solvers {
         self.comparison = None;
     }
 
-    /// Ends a comparison on a skeleton with other joints.
+    /// Ends the comparison unless it began with the hierarchy of `skeleton`.
     pub fn keep_comparison_of(&mut self, skeleton: &Skeleton) {
         self.comparison.take_if(|comparison| !comparison.is_of(skeleton));
     }

@@ -8,11 +8,11 @@ pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
     document.is_animated() && shown.display.shows(Overlay::Trail)
 }
 
-/// Positions of the hand, or of a joint's tip, in the world: in every frame, or in fewer of a long motion
-/// or a large skeleton.
+/// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
+/// frames for a long timeline or a large skeleton. Empty for a skeleton without a `joint`.
 pub(super) fn sample_trail(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
-    /// Maximum number of joints times points.
+    /// Maximum of the number of joints times the number of points.
     const MOST_POSES: usize = 100_000;
     let timeline = document.timeline;
     let joints = match (document.rig, joint) {

@@ -7,9 +7,10 @@ use crate::document::Document;
 pub(super) struct Transaction {
     /// The state that cancelling restores.
     pub before: Snapshot,
-    /// The document as shown before, with changes since that a drag does not revert.
+    /// The document from which drags start: as shown before the transaction, with later changes
+    /// that a drag does not revert.
     pub shown: Document,
-    /// The label of the last edit; `None` before the first.
+    /// The label of the latest edit; `None` before the first edit.
     pub label: Option<&'static str>,
     pub drag: Option<Drag>,
 }

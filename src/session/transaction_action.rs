@@ -4,7 +4,7 @@ use super::drag::Grip;
 use super::point_drag::{Constraint, DragInput};
 use crate::document::Ray;
 
-/// Groups edits into one undo step, and moves through the steps.
+/// Groups edits into one undo step, or moves through the undo steps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TransactionAction {
     /// Opens a transaction, such as a slider's drag.
@@ -13,23 +13,23 @@ pub enum TransactionAction {
     Commit,
     /// Discards all edits since the transaction was opened.
     Cancel,
-    /// Undoes the last step; cancels the transaction if one is open.
+    /// Undoes the latest step; if a transaction or a solver run is open, cancels it instead.
     Undo,
-    /// Redoes the step that was undone last.
+    /// Redoes the step that was undone most recently.
     Redo,
-    /// Opens a transaction that drags something in the viewport.
+    /// Opens a transaction that drags a point or a ring in the viewport.
     Grab {
         /// The dragged point or ring.
         grip: Grip,
-        /// The ray under the mouse.
+        /// The ray through the mouse, in world space.
         ray: Ray,
-        /// Normal of the picture.
+        /// Normal of the picture, in the direction in which the camera looks.
         forward: Vec3,
     },
     /// Moves the dragged point or ring.
     Drag(DragInput),
-    /// Constrains the drag to an axis or a plane, or frees it.
+    /// Constrains the drag to an axis or a plane; `None` frees it.
     Constrain(Option<Constraint>),
-    /// Sets the typed offset, which replaces that of the mouse.
+    /// Sets the typed offset, which replaces the offset by the mouse unless the text is empty.
     TypeOffset(String),
 }

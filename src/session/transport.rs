@@ -10,7 +10,7 @@ pub struct TransportPath {
 }
 
 impl TransportPath {
-    /// Starts from the frame that the arm's twist is measured from.
+    /// A path that starts at the frame from which the arm's twist is measured.
     pub(super) fn new(arm: &Arm) -> Self {
         let start = arm.solve().transported;
         Self { start, now: start }
@@ -23,13 +23,14 @@ impl TransportPath {
         }
     }
 
-    /// The transported frame.
+    /// The frame transported along the path to the present Pointer, in Root space.
     pub fn transported(&self) -> TransportedFrame {
         self.now
     }
 
-    /// Holonomy: angle in radians, in (−π, π], from the frame taken straight from the start to here to the
-    /// transported one. It is the solid angle that the path encloses.
+    /// Holonomy of the path: the angle about the Pointer, in radians in (−π, π], from the start
+    /// frame transported straight to the present Pointer to the frame transported along the path.
+    /// It equals the solid angle that the path encloses.
     pub fn holonomy(&self) -> f32 {
         self.start.turn_to(self.now)
     }

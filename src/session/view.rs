@@ -14,7 +14,7 @@ pub(super) struct View {
     crowd_size: u32,
     crowd_solver: Processor,
     crowd_animated: bool,
-    /// In seconds.
+    /// Time of the crowd's targets, in seconds.
     crowd_time: f64,
 }
 
@@ -41,7 +41,7 @@ impl View {
         self.glide.is_some()
     }
 
-    /// The end of the glide; `None` without one.
+    /// The camera at the end of the glide; `None` without a glide.
     pub fn glide_target(&self) -> Option<Camera> {
         Some(self.glide?.target())
     }
@@ -54,12 +54,13 @@ impl View {
         self.glide = None;
     }
 
-    /// Ends the glide and returns its target.
+    /// Ends the glide and returns the camera at its end; `None` without a glide.
     pub fn take_glide_target(&mut self) -> Option<Camera> {
         Some(self.glide.take()?.target())
     }
 
-    /// The camera of the glide at a time of the window.
+    /// Advances the glide to `seconds` on the window's clock and returns its camera; `None` without
+    /// a glide.
     pub fn advance_glide(&mut self, seconds: f64) -> Option<Camera> {
         let (camera, arrived) = self.glide.as_mut()?.at(seconds);
         if arrived {
@@ -73,7 +74,7 @@ impl View {
         self.drag = Some(ViewDrag::new(motion, camera, at));
     }
 
-    /// Ends the drag and returns the camera from before it.
+    /// Ends the drag and returns the camera from before it; `None` without a drag.
     pub fn drop(&mut self) -> Option<Camera> {
         Some(self.drag.take()?.before)
     }
@@ -92,7 +93,7 @@ impl View {
         self.crowd_shown && self.crowd_animated
     }
 
-    /// Shows or hides the crowd; returns whether that is a change.
+    /// Shows or hides the crowd; returns whether its visibility has changed.
     pub fn show_crowd(&mut self, shown: bool) -> bool {
         std::mem::replace(&mut self.crowd_shown, shown) != shown
     }

@@ -11,20 +11,20 @@ pub enum ViewAction {
     SetCamera(Camera),
     /// Moves the camera smoothly.
     GlideTo(Camera),
-    /// Begins to drag the camera, from a point of the picture (−1 to 1).
+    /// Begins to drag the camera from a position of the mouse in the picture, −1 to 1.
     Grab(CameraMotion, Vec2),
-    /// Drags the camera.
+    /// Drags the camera by the mouse.
     Drag {
-        /// The mouse in the picture, −1 to 1.
+        /// Position of the mouse in the picture, −1 to 1.
         to: Vec2,
-        /// Width of the picture over its height.
+        /// Ratio of the picture's width to its height.
         aspect: f32,
     },
     /// Ends the drag of the camera.
     Drop,
-    /// Restores the camera from before its drag.
+    /// Ends the drag and restores the camera from before it.
     Cancel,
-    /// Shows many arms instead of the rig, or the rig.
+    /// Shows a crowd of arms instead of the rig, or the rig again.
     ShowCrowd(bool),
     /// Sets the number of arms, from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).
     SetCrowdSize(u32),
@@ -32,12 +32,12 @@ pub enum ViewAction {
     SetCrowdSolver(Processor),
     /// Animates or pauses the crowd's targets.
     AnimateCrowd(bool),
-    /// Measures the holonomy from the present direction of the Pointer.
+    /// Restarts the measurement of holonomy at the present direction of the Pointer.
     ResetTransport,
     /// Opens or closes the panel on the right.
     ShowExplain(bool),
     /// Opens or closes the timeline.
     ShowTimeline(bool),
-    /// Shows keys in the graph editor or in the dope sheet.
+    /// Shows keys in the graph editor (true) or in the dope sheet (false).
     ShowGraphEditor(bool),
 }

@@ -2,46 +2,47 @@ use glam::Vec2;
 
 use crate::document::Camera;
 
-/// How a drag moves the camera.
+/// Kind of motion of the camera in a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraMotion {
-    /// Around its target.
+    /// Around the camera's target.
     Orbit,
-    /// Parallel to the picture.
+    /// Parallel to the plane of the picture.
     Pan,
-    /// Towards its target.
+    /// Towards the camera's target, or away from it.
     Zoom,
 }
 
-/// A drag of the camera. Positions are in the picture, −1 to 1.
+/// A drag of the camera. Positions of the mouse are in the picture, −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewDrag {
-    /// How it moves the camera.
+    /// Kind of motion of the camera.
     pub motion: CameraMotion,
     pub(super) before: Camera,
     pressed: Vec2,
 }
 
-/// A smooth move of the camera to another.
+/// A smooth move from one camera to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glide {
     from: Camera,
     to: Camera,
-    /// In seconds; `None` before the first frame.
+    /// Start on the window's clock, in seconds; `None` before the first frame.
     started: Option<f64>,
 }
 
 impl ViewDrag {
-    /// Angle in radians of a drag over half the height of the picture.
+    /// Angle in radians by which a drag over half the height of the picture orbits.
     const TURN: f32 = 2.2;
-    /// Factor of a drag over half the height of the picture.
+    /// Factor by which a drag over half the height of the picture zooms.
     const ZOOM: f32 = 4.0;
 
     pub(super) fn new(motion: CameraMotion, before: Camera, pressed: Vec2) -> Self {
         Self { motion, before, pressed }
     }
 
-    /// The camera for the mouse at `now`.
+    /// The camera for the mouse at `now`; `aspect` is the ratio of the picture's width to its
+    /// height.
     pub(super) fn camera(&self, now: Vec2, aspect: f32) -> Camera {
         let moved = now - self.pressed;
         if moved == Vec2::ZERO {
@@ -70,7 +71,8 @@ impl Glide {
         self.to
     }
 
-    /// The camera at a time in seconds, and whether the glide has ended.
+    /// The camera at `seconds` on the window's clock, and whether the glide has ended. The first
+    /// call starts the glide.
     pub(super) fn at(&mut self, seconds: f64) -> (Camera, bool) {
         let started = *self.started.get_or_insert(seconds);
         let fraction = ((seconds - started) / Self::SECONDS).clamp(0.0, 1.0) as f32;

@@ -6,8 +6,8 @@ use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Solid, SphereShell};
 
-/// Radii and sizes on an arm of thickness 1. The balls of the joints are as large as the limbs' ends, so that
-/// no gap shows when the elbow bends.
+/// Sizes on an arm of thickness 1. The balls of the joints are as large as the ends of the limbs,
+/// so that no gap shows when the elbow bends.
 const SHOULDER_BALL: f32 = 33.0;
 pub(super) const ELBOW_BALL: f32 = 33.0;
 const HAND_BALL: f32 = 22.0;
@@ -18,7 +18,7 @@ const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the limbs, the guides that are shown, the labels and the shadows.
+/// Adds the arm with the guides, labels and shadows that `display` shows.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Display) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
@@ -52,7 +52,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
     }
 }
 
-/// Adds the two limbs. Stripes on the lower limb show its `roll`, in radians at the hand.
+/// Adds the two limbs. With a `roll`, stripes wind along the lower limb by that angle, in radians.
 fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>) {
     let palette = scene.palette;
     scene.solids.extend([
@@ -89,7 +89,7 @@ fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
     scene.guide_balls.push(Ball { centre, radius, colour });
 }
 
-/// Adds a pin in the Cursor: the hand is pinned to the world.
+/// Adds a pin in the Cursor, to show that the Cursor is pinned to the world.
 fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
     let colour = scene.palette.accent;
     let head = cursor + PIN * thickness;
@@ -98,7 +98,7 @@ fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
     scene.guide_balls.push(Ball { centre: head, radius: PIN_HEAD * thickness, colour });
 }
 
-/// Adds the pole, and a line from the elbow to it.
+/// Adds the pole and a dashed line from the elbow to the pole.
 fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display: Display) {
     let (radius, colour) =
         (POLE_BALL * thickness, scene.palette.twist_reference(TwistReferenceKind::Pole));
@@ -130,7 +130,7 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
     }
 }
 
-/// Adds a line from the hand to a Cursor out of reach, labelled with its length.
+/// Adds a dashed line from the hand to a Cursor out of reach, labelled with the length of the line.
 fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
     let (hand, cursor) = (rig.origin(ArmPart::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
@@ -140,7 +140,8 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
     scene.add_label(label, format_args!("{length:.digits$}"));
 }
 
-/// Adds the joints' names, except the elbow's if it has the label of its twist reference.
+/// Adds the names of the joints. If the elbow has the label of a twist reference, its name is left
+/// out.
 fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: bool) {
     let colour = scene.palette.text;
     let named = [

@@ -1,11 +1,11 @@
 use crate::scene::{Ball, Globe, Label, LabelSide, Palette, Scene};
 
-/// Radius of the mark at a singular direction, as a fraction of the globe's.
+/// Ratio of the radius of a singular direction's mark to the radius of the globe.
 const MARK_RADIUS: f32 = 0.026;
 
 impl Scene {
-    /// Shows a globe, and marks each singular direction with a ball and a label. A globe without size is
-    /// ignored.
+    /// Shows a globe and marks each singular direction with a ball and a label. Does nothing if the
+    /// globe cannot be drawn, see [`Globe::has_size`].
     pub fn add_globe(&mut self, globe: Globe) {
         if !globe.has_size() {
             return;

@@ -2,16 +2,16 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::scene::{Ball, Colour, Scene};
 
-/// A finger, in units of the hand length.
+/// A finger, with lengths in units of the hand's length.
 struct Finger {
     knuckle: Vec3,
-    /// Lengths of the bones.
+    /// Lengths of the bones from the knuckle to the fingertip.
     bones: [f32; 3],
     /// Radius at the knuckle.
     radius: f32,
-    /// Radians to the little finger's side.
+    /// Angle of the finger towards the little finger's side, in radians.
     spread: f32,
-    /// Radians towards the palm, at each joint.
+    /// Bend of each joint towards the palm, in radians.
     bends: [f32; 3],
 }
 
@@ -46,7 +46,8 @@ const FINGERS: [Finger; 4] = [
     },
 ];
 
-/// Joints of the thumb from the wrist to its tip: positions and radii.
+/// Positions and radii of the thumb's joints from the wrist to the tip, in units of the hand's
+/// length.
 const THUMB: [(Vec3, f32); 4] = [
     (Vec3::new(0.12, -0.02, -0.07), 0.105),
     (Vec3::new(0.27, -0.06, -0.225), 0.092),
@@ -54,23 +55,24 @@ const THUMB: [(Vec3, f32); 4] = [
     (Vec3::new(0.505, -0.07, -0.365), 0.062),
 ];
 
-/// Length and radii of the cuff around the wrist.
+/// Length and radii (at base and tip) of the cuff around the wrist, in units of the hand's length.
 const CUFF: (f32, [f32; 2]) = (0.1, [0.165, 0.185]);
 
-/// Distance between the palm's bones at the wrist, as a fraction of that at the knuckles.
+/// Ratio of the spacing of the palm's bones at the wrist to their spacing at the knuckles.
 const WRIST: f32 = 0.5;
-/// Radius of the palm's bones at the wrist.
+/// Radius of the palm's bones at the wrist, in units of the hand's length.
 const PALM_RADIUS: f32 = 0.085;
-/// Radius of the palm at a knuckle divided by the finger's.
+/// Ratio of the palm's radius at a knuckle to the finger's.
 const KNUCKLE: f32 = 1.15;
-/// Radius of a fingertip divided by that of its knuckle.
+/// Ratio of a fingertip's radius to the radius of its knuckle.
 const TAPER: f32 = 0.84;
 
 impl Scene {
-    /// Adds a right hand of cones and balls, with a cuff in the lower limb's colour. `transform` is rigid and
-    /// maps from the space of its wrist: +x is towards the fingertips, +y out of the back (the palm faces
-    /// −y), +z on the little finger's side (the thumb is at −z). `size` is the distance from the wrist to the
-    /// tip of the middle finger.
+    /// Adds a right hand of cones and balls, with a cuff in the lower limb's colour. `transform` is
+    /// rigid and maps to the world from the space of the wrist: +x points towards the fingertips,
+    /// +y out of the back of the hand (the palm faces −y) and +z to the little finger's side (the
+    /// thumb is at −z). `size` is the distance from the wrist to the tip of the middle finger, in
+    /// world units.
     pub fn add_hand(&mut self, transform: Affine3A, size: f32, colour: Colour) {
         let mut hand = Hand { scene: self, transform, size, colour };
         for finger in &FINGERS {
@@ -91,7 +93,7 @@ struct Hand<'a> {
 }
 
 impl Hand<'_> {
-    /// Adds the palm's bone below a finger.
+    /// Adds the palm's bone from the wrist to the knuckle of a finger.
     fn add_palm(&mut self, finger: &Finger) {
         let wrist = Vec3::new(0.06, 0.0, finger.knuckle.z * WRIST);
         let joints = [(wrist, PALM_RADIUS), (finger.knuckle, finger.radius * KNUCKLE)];

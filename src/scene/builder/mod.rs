@@ -1,4 +1,4 @@
-//! Fills a scene from a document: one file for each thing that is added.
+//! Fills a scene from a document, with one file for each group of parts.
 
 mod arm;
 mod axes;
@@ -15,29 +15,30 @@ use crate::document::{Document, Overlay, RigKind, Theme};
 use crate::session::Overlays;
 use scratch::Scratch;
 
-/// Fills scenes from documents. It owns the buffers for intermediate results, so that refilling a scene
-/// allocates nothing once all buffers have grown to their size.
+/// Fills scenes from documents. The builder owns the buffers for intermediate results, so that
+/// refilling a scene allocates nothing once all buffers are large enough.
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     scratch: Scratch,
 }
 
 impl Scene {
-    /// Builds the scene of a document with its overlays.
+    /// The scene of a document with its overlays.
     pub fn new(document: &Document, overlays: &Overlays, theme: Theme) -> Self {
         SceneBuilder::default().build(document, overlays, theme)
     }
 }
 
 impl SceneBuilder {
-    /// Builds the scene of a document with its overlays.
+    /// Returns the scene of a document with its overlays.
     pub fn build(&mut self, document: &Document, overlays: &Overlays, theme: Theme) -> Scene {
         let mut scene = Scene::empty(document.camera, document.display, theme);
         self.refill(&mut scene, document, overlays, theme);
         scene
     }
 
-    /// Replaces a scene by the one that [`build`](Self::build) returns, in the memory that it has.
+    /// Replaces the contents of a scene by those that [`build`](Self::build) returns, reusing its
+    /// memory.
     pub fn refill(
         &mut self,
         scene: &mut Scene,

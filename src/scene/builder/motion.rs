@@ -5,14 +5,16 @@ use crate::rig::ArmPart;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
 
-/// Radius of a frame's dot, as a fraction of the rig's reach.
+/// Radius of the dot of each frame on a trail, as a fraction of the rig's reach.
 const DOT_RADIUS: f32 = 0.004;
 /// Radius of an onion skin's bones, as a fraction of the rig's reach.
 const BONE_RADIUS: f32 = 0.008;
-/// Contrast of an opaque onion skin with the background: 0 is the background's colour.
+/// Contrast of an opaque onion skin with the background, from 0 (the background's colour) to 1 (the
+/// skin's plain colour).
 const CONTRAST: f32 = 0.7;
 
-/// Adds the trail of the hand or joint with a dot for every frame, and the onion skins.
+/// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion
+/// skins.
 pub(super) fn add(scene: &mut Scene, document: &Document, overlays: &Overlays, reach: f32) {
     add_trail(scene, overlays, DOT_RADIUS * reach);
     for skin in &overlays.onion_skins {

@@ -7,15 +7,17 @@ use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::ArmRig;
 use crate::scene::{Ball, Label, LabelSide, Scene};
 
-/// Radii on an arm of thickness 1.
+/// Radii of a ghost's limbs and of its elbow, on an arm of thickness 1.
 const LIMB_RADIUS: f32 = 7.0;
 const ELBOW_RADIUS: f32 = 13.0;
 
-/// Angle below which elbows share a label, since two labels would overlap.
+/// Angle in radians between two elbows below which they share a label, since two labels would
+/// overlap.
 const SHARED_LABEL_ANGLE: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
-/// Adds the arm with every other twist reference and the same twist, as thin ghosts whose labels show the
-/// angles between their elbows and the arm's. `transported` is the frame for transport.
+/// Adds ghosts of the arm: thin arms with the same twist, each measured from another kind of twist
+/// reference. Labels show the angles from the arm's elbow to those of the ghosts. The ghost with
+/// transport continues from the frame `transported`.
 pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedFrame>) {
     if !arm.uses_ik() {
         return;
@@ -39,11 +41,11 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedF
     }
 }
 
-/// The arm with another twist reference.
+/// The arm posed with one of the kinds of twist reference.
 struct ReferenceGhost {
     twist_reference: TwistReferenceKind,
     pose: TwoBonePose,
-    /// Angle from the arm's elbow to its elbow, about the Pointer, in radians.
+    /// Angle in radians about the Pointer from the arm's elbow to the ghost's elbow.
     turn: f32,
     is_own: bool,
 }
@@ -60,7 +62,8 @@ impl ReferenceGhost {
     }
 }
 
-/// Adds a label like "Stereographic · Limb −17°"; the arm's own reference has no angle.
+/// Adds one label for ghosts with nearly the same elbow, like "Stereographic · Limb −17°". The
+/// arm's own reference has no angle.
 fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
     let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
     let Some(ghost) = shown else { return };
@@ -74,7 +77,7 @@ fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
     scene.add_label(label, format_args!("{}", GhostNames(group)));
 }
 
-/// Names of the references that share a label, the arm's own first.
+/// Text of a shared label: the names of its references, the arm's own first.
 struct GhostNames<'a>(&'a [ReferenceGhost]);
 
 impl Display for GhostNames<'_> {

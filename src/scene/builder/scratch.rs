@@ -1,15 +1,15 @@
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 
-/// Buffers for intermediate results.
+/// Buffers for intermediate results of a [`SceneBuilder`](super::SceneBuilder).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     pub pose: SkeletonPose,
-    /// Distance of each joint from its root.
+    /// Distance of each joint from its root along offsets, in skeleton space.
     pub distances: Vec<f32>,
-    /// Number of bones above each joint.
+    /// Number of bones above each joint, not counting bones of zero length.
     pub depths: Vec<usize>,
     /// Whether each joint has no child.
     pub are_leaves: Vec<bool>,
-    /// Joints with labels.
+    /// Joints that get a label.
     pub labelled: Vec<JointId>,
 }

@@ -2,7 +2,8 @@ use glam::Vec3;
 
 use crate::scene::Shadow;
 
-/// Cuts off the part of a limb below the ground, which casts no shadow on it.
+/// Cuts off the part of a limb below the ground, since that part casts no shadow; `None` if the
+/// whole limb is below.
 pub(super) fn above_ground(limb: Shadow) -> Option<Shadow> {
     let at = |fraction: f32| {
         let radius = limb.base_radius + (limb.tip_radius - limb.base_radius) * fraction;

@@ -8,26 +8,28 @@ use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
 
-/// Maximum radius of a bone, as a fraction of its length and of the skeleton's reach.
+/// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
+/// reach.
 const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
-/// Fraction of a bone's length that the limit by reach never goes below, so that the first bones of a new
-/// skeleton are as thick as in the complete one.
+/// Minimum of a bone's radius limit by reach, as a fraction of the bone's length, so that the first
+/// bones of a new skeleton are as thick as they will be in the complete one.
 const MIN_LIMIT: f32 = 0.07;
-/// Maximum radius of a joint without length, as a fraction of the skeleton's reach.
+/// Maximum radius of a joint without a bone, as a fraction of the skeleton's reach.
 const POINT_RADIUS: f32 = 0.02;
-/// Radius of a slender bone's tip divided by that of its base.
+/// Ratio of the tip's radius to the base's radius of a slender bone.
 const TAPER: f32 = 0.6;
-/// Length of a bone in radii above which it tapers. Shorter ones do not, so that many of them form one smooth
-/// body.
+/// Ratio of length to base radius above which a bone is slender and tapers. Shorter bones do not
+/// taper, so that a chain of many forms one smooth body.
 const SLENDER: f32 = 4.0;
-/// Radius of a ghost's bone divided by that of the bone.
+/// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
 const GHOST: f32 = 0.45;
-/// Radius of a target, as a fraction of the skeleton's reach.
+/// Radius of a target's ball, as a fraction of the skeleton's reach.
 const TARGET_RADIUS: f32 = 0.014;
-/// Duration of a target's trail in seconds, and its number of segments.
+/// Duration in seconds and number of segments of a target's trail.
 const TRAIL: (f64, usize) = (1.2, 48);
 
-/// Centre of the ground, reach of the skeleton, and width of a grid cell.
+/// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
+/// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
 pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f32) {
     let reach = rig.reach_in(&mut scratch.distances);
     rig.skeleton.write_pose(&mut scratch.pose);
@@ -35,8 +37,8 @@ pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f
     (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::grid_cell_for(reach))
 }
 
-/// Adds the bones with their shadows, ghosts of other solvers, targets with their trails, the follow path, and
-/// labels.
+/// Adds the bones with their shadows, the ghosts of other solvers, the targets with their trails,
+/// the followed path, and labels.
 pub(super) fn add(
     scene: &mut Scene,
     rig: &SkeletonRig,
@@ -78,7 +80,8 @@ pub(super) fn add(
     }
 }
 
-/// Counts the bones above each joint, without those of no length, and finds the joints without children.
+/// Sets `depths` to the number of bones above each joint, not counting bones of zero length, and
+/// `are_leaves` to whether each joint has no children.
 fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
     depths.clear();
     depths.resize(joints.len(), 0);
@@ -93,7 +96,7 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
     }
 }
 
-/// A posed skeleton with the measures for drawing it.
+/// A posed skeleton with the sizes that its drawing depends on.
 #[derive(Clone, Copy)]
 struct DrawnSkeleton<'a> {
     joints: &'a [Shared<Joint>],
@@ -107,7 +110,7 @@ struct DrawnSkeleton<'a> {
 }
 
 impl DrawnSkeleton<'_> {
-    /// Radius of a bone at its base, as drawn.
+    /// Radius of a bone at its base as drawn, in world units.
     fn radius(&self, joint: JointId) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let (of_length, of_reach) = MAX_RADIUS;
@@ -127,7 +130,8 @@ impl DrawnSkeleton<'_> {
         if length > SLENDER * radius { radius * TAPER } else { radius }
     }
 
-    /// Colour of a bone: the limbs' colours alternate from parent to child, and the accent marks the selection.
+    /// Colour of a bone. The limbs' colours alternate from parent to child; locked, hovered and
+    /// selected joints have colours of their own.
     fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
         let plain = if self.depths[joint.index()].is_multiple_of(2) {
@@ -178,8 +182,8 @@ impl DrawnSkeleton<'_> {
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
     }
 
-    /// Adds a target as a ball with its trail and, if the tip does not reach it, a line to the tip labelled with
-    /// the distance.
+    /// Adds a target as a ball with its trail. If the tip does not reach the target, adds a line
+    /// between the two, labelled with their distance.
     fn add_target(&self, scene: &mut Scene, target: &Target, overlays: &Overlays) {
         let at = target.at(overlays.time);
         let tip = self.pose.tip(target.joint);
@@ -200,7 +204,7 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    /// Adds the names of the selected joints and of the one under the mouse.
+    /// Adds the names of the selected joints and of the joint under the mouse.
     fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
         labelled.clear();
         labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
@@ -215,12 +219,12 @@ impl DrawnSkeleton<'_> {
     }
 }
 
-/// Number of decimals for distances, by the reach of the skeleton.
+/// Number of decimals of a labelled distance, for a skeleton of this reach.
 fn residual_decimals(reach: f32) -> usize {
     (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize
 }
 
-/// Adds the recent path of a moving target, which fades out.
+/// Adds the recent path of a moving target, fading out with age.
 fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
     if target.motion.path == TargetPath::Still {
         return;
@@ -235,7 +239,7 @@ fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
     }
 }
 
-/// Adds the curve that the skeleton follows, once around.
+/// Adds one revolution of the path that the skeleton follows.
 fn add_follow_path(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
     let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
     let head = follow_path.turns_at(time);
