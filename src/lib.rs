@@ -13,13 +13,12 @@
 //! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
 //! ```
 //!
-//! Skeletons of any shape, with any number of targets, have [iterative
-//! solvers](kinematics::chain_ik).
+//! [Iterative solvers](kinematics::chain_ik) move skeletons of any shape to any number of targets.
 //!
 //! # Architecture
 //!
-//! Each module uses only modules above it in this table. Within a module, no files import each
-//! other, neither directly nor through other files (`tests/architecture.rs`).
+//! Each module uses only modules above it in this table. Imports between the files of a module form
+//! no circle (`tests/architecture.rs`).
 //!
 //! | module | contents | feature |
 //! | --- | --- | --- |

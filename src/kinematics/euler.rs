@@ -1,5 +1,5 @@
-//! Euler angles of the arm's ball joints: R = R_y · R_z · R_x, so that y is the yaw, z the pitch and x
-//! the roll about the bone, which lies along +x. (Skeletons use another order: see
+//! Euler angles of the arm's ball joints: R = R_y · R_z · R_x, so that y is the yaw, z the pitch
+//! and x the roll about the bone, which lies along +x. (Skeletons use another order: see
 //! [`skeleton`](super::skeleton).)
 
 use core::array;
@@ -18,8 +18,8 @@ pub fn rotation(angles: Vec3) -> DMat3 {
 }
 
 /// Euler angles of a rotation, the equivalent ones nearest to the last angles, so that they are
-/// continuous beyond ±180°. Straight up or down, the last yaw is kept. Last angles beyond 540° are first
-/// reduced by full turns, which keeps f32 exact.
+/// continuous beyond ±180°. Straight up or down, the last yaw is kept. Last angles beyond 540° are
+/// first reduced by full turns, which keeps f32 exact.
 pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
     let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));
@@ -44,8 +44,8 @@ pub(super) fn few_turns(angle: f64) -> f64 {
     if angle.abs() > 3.0 * PI { angle % (2.0 * PI) } else { angle }
 }
 
-/// Roll of a rotation about +x, τ = 2·atan2(q·x̂, q_w), radians, the equivalent angle nearest to `last`.
-/// A rotation that reverses +x has no roll and gives `last`.
+/// Roll of a rotation about +x, τ = 2·atan2(q·x̂, q_w), radians, the equivalent angle nearest to
+/// `last`. A rotation that reverses +x has no roll and gives `last`.
 pub fn roll(rotation: DMat3, last: f32) -> f32 {
     const NONE: f64 = 1e-9;
     let q = glam::DQuat::from_mat3(&rotation);

@@ -7,14 +7,14 @@
 //! Lower = U · R_z(−β),   β = 180° − φ                        the bend: 0 straight, 180° folded
 //! ```
 //!
-//! A negative bend gives the same pose as the positive one with the shoulder rotated by 180° about the
-//! limb. Root space, right-handed, radians.
+//! A negative bend gives the same pose as the positive one with the shoulder rotated by 180° about
+//! the limb. Root space, right-handed, radians.
 //!
 //! # Accuracy
 //!
 //! After a conversion from a pose to angles and back, the hand is within 1e-6·L, and the elbow
 //! within 1e-5·L for 1° ≤ φ ≤ 179°. For a straighter or more folded arm the elbow is within 5e-4·L,
-//! because there an f32 hand does not determine it better.
+//! because there an f32 hand does not determine the elbow better.
 
 use core::f64::consts::{PI, TAU};
 
@@ -65,8 +65,8 @@ impl Fk {
         }
     }
 
-    /// The pose with these angles, in Root space. Where its Pointer is vertical, it takes the yaw
-    /// of `last`. It has no cursor, so its reach is `None`.
+    /// The pose with these angles, in Root space. Where the Pointer is vertical, the pose takes the
+    /// yaw of `last`. The pose has no cursor, so its reach is `None`.
     #[must_use]
     pub fn pose(self, bones: TwoBone, last: Pointer) -> TwoBonePose {
         ArmRotations::of_fk(self).pose(bones, last)

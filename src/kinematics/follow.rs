@@ -1,7 +1,7 @@
 //! Path following: the joints of a chain follow the path of its head, as a snake's do.
 //!
-//! With bones of fixed length, joint k+1 is the first point at the distance of one bone on the way back
-//! along the path from joint k:
+//! With bones of fixed length, joint k+1 is the first point at the distance of one bone on the way
+//! back along the path from joint k:
 //! |P(s_{k+1}) − P(s_k)| = d_k, s_{k+1} < s_k.
 
 use glam::Vec3;
@@ -10,8 +10,9 @@ use glam::Vec3;
 ///
 /// `path` must be continuous and defined before `head` for the length of the chain. `stride` is a
 /// parameter step over which the path is nearly straight and crosses the sphere of one bone about a
-/// joint at most once. The search for a joint ends after 10,000 strides, that for the whole chain after
-/// 1,000,000: on a path that stays within one bone of a joint, the next joint is where the search ends.
+/// joint at most once. The search for a joint ends after 10,000 strides, that for the whole chain
+/// after 1,000,000: on a path that stays within one bone of a joint, the next joint is where the
+/// search ends.
 pub fn along(
     path: impl Fn(f64) -> Vec3,
     head: f64,
@@ -39,8 +40,8 @@ pub(crate) fn behind(
     })
 }
 
-/// The first parameter before `start` at which `excess` becomes positive, found by strides and then by
-/// bisection. `left` counts down the strides.
+/// The first parameter before `start` at which `excess` becomes positive, found by strides and then
+/// by bisection. `left` counts down the strides.
 fn first_before(excess: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
     const MOST_STRIDES: usize = 10_000;
     const HALVINGS: usize = 40;

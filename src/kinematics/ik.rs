@@ -147,8 +147,7 @@ impl Ik {
     }
 }
 
-/// Reach of a hand at the distance `distance` from the shoulder for a cursor at the distance
-/// `wanted`.
+/// Reach of a hand at `distance` from the shoulder for a cursor at `wanted` from the shoulder.
 pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
     const NEAR: f64 = 1e-6;
     let near = NEAR * (f64::from(bones.upper()) + f64::from(bones.lower()));

@@ -7,7 +7,8 @@ pub(crate) fn normalize(v: Vec3A) -> Option<Vec3A> {
     if squares_safely(v) { v.try_normalize() } else { scaled_near_1(v)?.try_normalize() }
 }
 
-/// Whether the squared length, and the product of two such squares, neither overflows nor underflows.
+/// Whether the squared length, and the product of two such squares, neither overflows nor
+/// underflows.
 pub(super) fn squares_safely(v: Vec3A) -> bool {
     (1e-15..=1e15).contains(&v.length_squared())
 }
@@ -19,8 +20,8 @@ pub(super) fn scaled_near_1(v: Vec3A) -> Option<Vec3A> {
     (largest > 0.0 && v.is_finite()).then(|| v * power_of_two_near(largest).1)
 }
 
-/// The power of two at or below `value` ≥ 0, and its reciprocal; clamped so that both are normal numbers.
-/// Scaling by either is exact.
+/// The power of two at or below `value` ≥ 0, and its reciprocal; clamped so that both are normal
+/// numbers. Scaling by either is exact.
 #[inline(always)]
 pub(super) fn power_of_two_near(value: f32) -> (f32, f32) {
     const EXPONENT: u32 = 0xff << 23;

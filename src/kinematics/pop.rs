@@ -21,12 +21,13 @@
 //! |Δ elbow| / |Δ cursor|  >  2 · max(1, σd₁ / max(D, L/5))
 //! ```
 //!
-//! An arm without a pop can need the factor 2. The sideways part of the bound in [`ik`](super::ik)
-//! is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the Pointer turns (gain g
-//! ≤ 1: at 45° or more from the vertical for the Limb, at 45° or more from the pole's line, and in
-//! the half of all directions opposite to the stereographic map's singular one). The bending of two
-//! equal bones stays below 2 up to D = 0.968·L. A cursor that passes the shoulder within a fifth of
-//! the outer limit rotates the whole arm, which is a kind of pop of its own.
+//! The factor is 2 because an arm without a pop can come near it. The sideways part of the bound in
+//! [`ik`](super::ik) is (d₁ + oₑ·g)/d ≤ 2·d₁/d wherever the reference swings no faster than the
+//! Pointer turns (gain g ≤ 1: at 45° or more from the vertical for the Limb, at 45° or more from
+//! the pole's line, and in the half of all directions opposite to the stereographic map's singular
+//! one). The bending of two equal bones stays below 2 up to D = 0.968·L. A cursor that passes the
+//! shoulder within a fifth of the outer limit rotates the whole arm, which is a kind of pop of its
+//! own.
 //!
 //! Everything is in Root space; lengths share any one unit, angles are radians.
 
@@ -94,11 +95,11 @@ pub struct ElbowStep {
     pub ratio: f32,
     /// Ratio above which the step is a spike.
     pub limit: f32,
-    /// Part of the displacement by the rotation of the Pointer, in Root space.
+    /// Part of the displacement caused by the rotation of the Pointer, in Root space.
     pub turn: Vec3,
     /// Part of the displacement in the plane of the arm, in Root space.
     pub bend: Vec3,
-    /// Part of the displacement about the Pointer, by the twist reference, in Root space.
+    /// Part of the displacement about the Pointer, caused by the twist reference, in Root space.
     pub swing: Vec3,
     /// Cause of the spike; `None` if the step is not a spike.
     pub pop: Option<PopCause>,
@@ -134,7 +135,7 @@ impl InputChange {
         Self::Root,
     ];
 
-    /// The first input in [`Self::ALL`] that differs between two steps; `None` if all are equal.
+    /// The first input in [`Self::ALL`] that differs between two poses; `None` if all are equal.
     /// Inputs without effect are ignored: the FK angles at influence 1, and the shoulder's position
     /// unless the cursor is pinned to the world.
     pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
@@ -181,7 +182,8 @@ impl ElbowStep {
     /// be told from f32 rounding in a nearly straight or folded arm. A caller can accumulate
     /// shorter steps.
     pub const LEAST: f32 = 1e-3;
-    /// Ratio of the elbow's displacement to the expected one above which a step is a spike.
+    /// Ratio of the elbow's displacement to the expected one above which a step is a spike: see the
+    /// module.
     const SPIKE: f64 = 2.0;
 
     /// The elbow's step between two poses, for inputs without an [`InputChange`]; `None` if the
@@ -238,14 +240,15 @@ fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
     (upper / distance.max(NEAR_SHOULDER * sum)).max(1.0)
 }
 
-/// Whether the hand, on average of both poses, is nearer to the outer limit than to the inner one.
+/// Whether the hand's mean distance in both poses is nearer to the outer limit than to the inner
+/// one.
 fn is_far_out(before: &PosedArm, after: &PosedArm, sum: f64) -> bool {
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
-/// Smallest angle between the Pointer, from one pose to the other, and a singular direction of the
-/// twist reference, in radians.
+/// Smallest angle in radians between the Pointer, on its way from one pose to the other, and a
+/// singular direction of the twist reference.
 fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {

@@ -2,8 +2,8 @@ use glam::{Quat, Vec3A};
 
 use super::normalize::{normalize, scaled_near_1, squares_safely};
 
-/// Rotation by the smallest angle that turns one direction to another, for vectors of any length. The
-/// identity if either has no direction; about any perpendicular axis if they are opposite.
+/// Rotation by the smallest angle that turns one direction to another, for vectors of any length.
+/// The identity if either has no direction; about any perpendicular axis if they are opposite.
 pub(crate) fn rotation_between(from: Vec3A, to: Vec3A) -> Quat {
     // Cosine of the angle; below it, `both + dot` cancels.
     const NEARLY_OPPOSITE: f32 = -0.9;

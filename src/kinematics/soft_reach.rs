@@ -1,8 +1,8 @@
 //! Soft limits: distance of the hand for a distance of the cursor, with softness and stretch.
 //!
-//! Near a straight arm the elbow speed grows like 1/√(L − D): the hand stops at the outer limit while
-//! the elbow snaps. Softness lets the hand lag behind the cursor before the limit; stretch lengthens
-//! the limbs instead; a minimum elbow angle keeps the arm from folding.
+//! Near a straight arm the elbow speed grows like 1/√(L − D): the hand stops at the outer limit
+//! while the elbow snaps. Softness lets the hand lag behind the cursor before the limit; stretch
+//! lengthens the limbs instead; a minimum elbow angle keeps the arm from folding.
 //!
 //! With d the distance of the cursor from the shoulder, L = d₁ + d₂, δ = d₁ − d₂:
 //!
@@ -17,8 +17,8 @@
 //! D = σ d', limbs σ d₁ and σ d₂
 //! ```
 //!
-//! The curve has slope 1 at both joins, is monotone, and on the outer side never exceeds the cursor's
-//! distance: the hand does not overshoot. With the defaults it is a plain clamp.
+//! The curve has slope 1 at both joins, is monotone, and on the outer side never exceeds the
+//! cursor's distance: the hand does not overshoot. With the defaults it is a plain clamp.
 //!
 //! Lengths share any one unit; angles are radians.
 //!
@@ -195,7 +195,8 @@ impl SoftReach {
     }
 }
 
-/// Limits and soft zones of an arm, in f64: where the curve is nearly flat, f32 differences are coarse.
+/// Limits and soft zones of an arm, in f64: where the curve is nearly flat, f32 differences are
+/// coarse.
 #[derive(Clone, Copy)]
 struct SoftLimits {
     least: f64,
@@ -215,12 +216,12 @@ impl SoftLimits {
         Self { least, most, width: 0.5 * f64::from(soft_reach.softness) * (most - least) }
     }
 
-    /// d_a, the distance at which the outer soft zone begins.
+    /// d_a, the cursor's distance above which the outer soft zone begins.
     fn outer_join(self) -> f64 {
         self.most - self.width
     }
 
-    /// d_b, the distance at which the inner soft zone begins.
+    /// d_b, the cursor's distance below which the inner soft zone begins.
     fn inner_join(self) -> f64 {
         self.least + self.width
     }

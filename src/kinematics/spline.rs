@@ -146,7 +146,7 @@ where
         Some(from.value * a + leaving * b + to.value * c + arriving * d)
     }
 
-    /// The tangent h·m at a knot: the rate of change there times the span h of time.
+    /// h·m at a knot: the rate of change m there, times the time span h.
     fn turn(&self, knot: usize, span: f64) -> V {
         let here = self.knots[knot];
         let mirrored = |of: Knot<V>| Knot {

@@ -76,8 +76,8 @@ impl ArmPart {
 
 /// A posed arm as a hierarchy of rigid transforms.
 ///
-/// World transforms are products of local ones down the hierarchy. They do not use the positions of
-/// elbow and hand in the solver's pose.
+/// World transforms are products of the local transforms down the hierarchy. They do not use the
+/// positions of elbow and hand in the solver's pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmRig {
     local: [Affine3A; ArmPart::ALL.len()],

@@ -45,13 +45,13 @@ fn invalid_jobs_are_refused_by_name() {
     }
     assert_eq!(
         said(TwoBoneJob { middle: scaled(1.0, 2.0, 1.0), ..job }),
-        "middle has axes of length 1, 2 and 1 in start joint space; they must be equal to one in a \
-         thousand"
+        "middle must have axes of equal length in start joint space, to one in a thousand, got 1, 2 \
+         and 1"
     );
     assert_eq!(
         said(TwoBoneJob { start: scaled(1.0, 2.0, 1.0), ..job }),
-        "middle has axes of length 1, 0.5 and 1 in start joint space; they must be equal to one in \
-         a thousand"
+        "middle must have axes of equal length in start joint space, to one in a thousand, got 1, \
+         0.5 and 1"
     );
     assert_eq!(
         said(TwoBoneJob { middle: sheared(-1.0), ..job }),
@@ -102,7 +102,7 @@ fn a_start_joint_without_an_inverse_is_refused_unless_it_has_scale_0() {
         assert_eq!(error, JobError::NotInvertible { field: JobField::Start });
         assert_eq!(
             error.to_string(),
-            "start has axes in one plane; its matrix must have an inverse, or scale 0"
+            "start must have an inverse, or scale 0; its axes are in one plane"
         );
     }
     // Nothing turns under scale 0, for any middle joint.

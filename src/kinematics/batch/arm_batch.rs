@@ -16,12 +16,12 @@ pub struct ArmBatch<'a> {
 }
 
 impl<'a> ArmBatch<'a> {
-    /// A batch of as many arms as each array has numbers. Cursors are in Root space.
+    /// A batch with one arm for each number in the arrays. Cursors are in Root space.
     ///
     /// # Errors
     ///
-    /// [`BatchError`] for arrays of different lengths and for a bone length that is not finite or not
-    /// above 0.
+    /// [`BatchError`] for arrays of different lengths and for a bone length that is not finite or
+    /// not above 0.
     pub fn new(
         bones: BatchBones<'a>,
         cursor: Points<'a>,
@@ -173,8 +173,8 @@ impl<'a> ArmBatch<'a> {
         }
     }
 
-    /// Solves by the fast path, which is right for normal numbers; if some numbers are not normal,
-    /// solves again by the path for all finite numbers.
+    /// Solves by the fast path, which is correct for normal numbers; if some numbers are not
+    /// normal, solves again by the path for all finite numbers.
     fn solve_bones<const SAME: bool>(
         &self,
         bones: [&[f32]; 2],

@@ -34,14 +34,14 @@ pub struct QuaternionsMut<'a> {
 }
 
 impl<'a> PointsMut<'a> {
-    /// Borrows three arrays as those of x, y and z.
+    /// Borrows three arrays: x, y and z.
     pub fn of([x, y, z]: &'a mut [impl AsMut<[f32]>; 3]) -> Self {
         Self { x: x.as_mut(), y: y.as_mut(), z: z.as_mut() }
     }
 }
 
 impl<'a> QuaternionsMut<'a> {
-    /// Borrows four arrays as those of x, y, z and w.
+    /// Borrows four arrays: x, y, z and w.
     pub fn of([x, y, z, w]: &'a mut [impl AsMut<[f32]>; 4]) -> Self {
         Self { x: x.as_mut(), y: y.as_mut(), z: z.as_mut(), w: w.as_mut() }
     }

@@ -8,7 +8,7 @@ use crate::kinematics::two_bone::LengthError;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BatchError {
-    /// An array has not the length of the cursors' x.
+    /// The length of an array differs from that of the cursors' x.
     #[error("{array} has {len} numbers; the cursors' x has {arms}, and there must be as many")]
     Len {
         /// The array.

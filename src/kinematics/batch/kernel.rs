@@ -11,8 +11,8 @@ use crate::kinematics::two_bone::{ClosedForm, Pointer, ScaledBones, TwoBone};
 
 /// Number of arms that are solved before their results are copied to the outputs.
 ///
-/// A block stays in the cache. Copying whole pages does not read the memory that is overwritten;
-/// single stores during the computation do.
+/// A block stays in the cache. Copying whole pages does not read the memory that it overwrites;
+/// storing single results during the computation does.
 pub(super) const BLOCK: usize = 2048;
 
 /// An array with one number for each arm of a block, aligned to the widest vectors.
@@ -30,7 +30,7 @@ const MAX_RATIO: f32 = 8.0;
 
 /// Results of a block of arms.
 pub(super) trait Block {
-    /// Stores an arm's results. Returns whether these are correct if `ANY` is not set.
+    /// Stores an arm's results, and returns whether they are correct even without `ANY`.
     fn keep<const ANY: bool>(&mut self, arm: usize, solved: &ClosedForm, hand: Vec3) -> bool;
 }
 

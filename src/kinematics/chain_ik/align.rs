@@ -1,4 +1,4 @@
-//! Rotations about a point that bring points nearest to others.
+//! Rotations about a centre that bring points as near as possible to their destinations.
 
 use glam::{Quat, Vec3, Vec3A};
 
@@ -13,7 +13,8 @@ pub(super) struct PointPair {
     pub weight: f32,
 }
 
-/// The best rotation about the axis of the total moment Σ w from × to; exact for a single pair.
+/// Rotation by the best angle about the axis of the total moment Σ w from × to; exact for a single
+/// pair.
 pub(super) fn align(pairs: &[PointPair]) -> Quat {
     if let [pair] = pairs {
         return rotation_between(pair.from, pair.to);
@@ -23,10 +24,11 @@ pub(super) fn align(pairs: &[PointPair]) -> Quat {
     Quat::from_axis_angle(axis.into(), best_angle(axis, pairs))
 }
 
-/// Optimizes angle after angle within its limits, x first, which never increases the weighted squared
-/// distance. Rotates the pairs' points and returns the whole rotation.
+/// Sets each Euler angle in turn, x first, to its best value within its limits, which never
+/// increases the weighted squared distance. Rotates the points `from` of the pairs and returns the
+/// total rotation.
 ///
-/// `axes` are the axes of the angles before the first rotation.
+/// `axes` are the rotation axes of the three angles before the call.
 pub(super) fn align_within(
     limits: &[Option<Limit>; 3],
     axes: [Vec3A; 3],
@@ -59,7 +61,8 @@ pub(super) fn align_within(
     whole
 }
 
-/// The angle that maximizes Σ w from·to, which is a cos θ + b sin θ up to a constant.
+/// Angle of a rotation about `axis` that maximizes Σ w from·to. This sum is a cos θ + b sin θ, up
+/// to a constant.
 fn best_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
     let (mut a, mut b) = (0.0, 0.0);
     for PointPair { from, to, weight } in pairs {
@@ -69,10 +72,11 @@ fn best_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
     if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
 }
 
-/// The angle of a range around 0 that is nearest to `best` on the circle; 0 if no other is nearer.
+/// Of the angles from `least` to `most`, a range that contains 0, the one nearest to `best` on the
+/// circle; 0 if no other angle is nearer.
 fn best_within(best: f32, least: f32, most: f32) -> f32 {
     use core::f32::consts::TAU;
-    // Gain or loss by rounding of the angle.
+    // Gain or loss that rounding of the angle alone can cause.
     const ROUNDING: f32 = 1e-7;
     for angle in [best, best - TAU, best + TAU] {
         if (least..=most).contains(&angle) {

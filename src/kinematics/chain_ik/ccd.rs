@@ -1,14 +1,15 @@
 //! Cyclic coordinate descent: from the tips to the roots, each joint rotates as if it were the only
 //! one.
 //!
-//! Let r be the vectors from the joint's base to the tips below it and t those to their targets. One
-//! tip is rotated exactly onto the line to its target; several by the best angle about Σ w r × t. The
-//! best angle about a unit axis a has tan θ = Σ w a·(r × t) / Σ w (r·t − (a·r)(a·t)). A joint with
-//! limits is treated as three hinges, x, y and z, each with its best angle within the limits. No
-//! rotation increases the cost.
+//! Let r be the vectors from the joint to the tips below it, and t the vectors from the joint to
+//! the targets of these tips. For one tip, the joint rotates the tip exactly onto the line to its
+//! target; for several tips, the joint rotates by the best angle about Σ w r × t. The best angle
+//! about a unit axis a has tan θ = Σ w a·(r × t) / Σ w (r·t − (a·r)(a·t)). A joint with limits is
+//! treated as three hinges, x, y and z, each with its best angle within the limits. No rotation
+//! increases the cost.
 //!
-//! A sweep moves only the tips. The joints are updated in one pass from the roots, so that the time of
-//! an iteration is linear in the number of joints.
+//! During a sweep only the tips are moved. The joints are updated afterwards, in one pass from the
+//! roots, so that the time of an iteration is linear in the number of joints.
 //!
 //! # Source
 //!
@@ -24,9 +25,10 @@ use crate::kinematics::skeleton::JointAngles;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Ccd {
-    /// Rotations from the spaces of links to those of their parents, without E.
+    /// Rotation `mount` of each link: from the link's space to its parent's, without the link's own
+    /// rotation E.
     mounts: Vec<Quat>,
-    /// Rotation of each link in this sweep; after the sweep, including its parents'.
+    /// Rotation of each link in this sweep; after the sweep, with the rotations of its ancestors.
     rotations: Vec<Quat>,
     pairs: Vec<PointPair>,
 }
@@ -77,7 +79,7 @@ impl Ccd {
         rotation
     }
 
-    /// Updates the configuration by the sweep's rotations.
+    /// Applies the sweep's rotations to the configuration.
     fn update(&mut self, problem: &Problem, config: &mut Configuration) {
         for (index, link) in problem.links.iter().enumerate() {
             if let Some(parent) = link.parent {
@@ -96,7 +98,7 @@ impl Ccd {
     }
 }
 
-/// Updates bases and tips from orientations.
+/// Updates the positions of joints and tips from the links' orientations.
 fn update_points(problem: &Problem, config: &mut Configuration) {
     for (index, link) in problem.links.iter().enumerate() {
         config.bases[index] = match link.parent {
@@ -112,7 +114,8 @@ fn update_points(problem: &Problem, config: &mut Configuration) {
     }
 }
 
-/// Shifts each tree by the mean vector from its tips to their targets, unless that overflows.
+/// Shifts each tree by the weighted mean vector from its tips to their targets, unless that
+/// overflows.
 pub(super) fn move_roots(problem: &Problem, config: &mut Configuration) {
     for tree in 0..problem.trees.len() {
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);

@@ -3,7 +3,8 @@ use glam::{Mat3A, Quat, Vec3, Vec3A};
 use super::problem::{EndEffector, Problem};
 use crate::kinematics::skeleton::JointAngles;
 
-/// Angles of all links, shifts of all trees, and the positions that follow from them.
+/// Angles of all links, shifts of all trees, and the positions that follow from both, in problem
+/// space (see [`Problem`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Configuration {
     pub angles: Vec<Vec3>,
@@ -11,13 +12,14 @@ pub(super) struct Configuration {
     pub shifts: Vec<Vec3A>,
     /// G, the rotation from a link's space to skeleton space.
     pub frames: Vec<Mat3A>,
-    /// Rotation axes of each link's angles, in skeleton space, as columns.
+    /// Rotation axes of each link's three angles in skeleton space, as columns.
     pub axes: Vec<Mat3A>,
-    /// G for methods that use orientations instead of angles; frames and axes are stale then.
+    /// G as quaternions, for methods that use orientations instead of angles; empty for other
+    /// methods. While they are used, `frames` and `axes` are stale.
     pub orientations: Vec<Quat>,
-    /// Pivot of each link.
+    /// Position of each link's joint, the base of its bone.
     pub bases: Vec<Vec3A>,
-    /// Tip of each end effector.
+    /// Position of each end effector's tip.
     pub tips: Vec<Vec3A>,
 }
 
@@ -37,7 +39,7 @@ impl Configuration {
         config
     }
 
-    /// Forward kinematics: updates frames, axes, bases and tips from angles and shifts.
+    /// Forward kinematics: updates `frames`, `axes`, `bases` and `tips` from angles and shifts.
     pub fn forward(&mut self, problem: &Problem) {
         for (index, link) in problem.links.iter().enumerate() {
             let (parent, base) = match link.parent {
@@ -61,13 +63,13 @@ impl Configuration {
         }
     }
 
-    /// Sets orientations from frames.
+    /// Sets `orientations` from `frames`.
     pub fn set_orientations(&mut self) {
         self.orientations.clear();
         self.orientations.extend(self.frames.iter().map(Quat::from_mat3a));
     }
 
-    /// f = Σ ½ w |tip − target|².
+    /// The cost f = Σ ½ w |tip − target|².
     pub fn cost(&self, problem: &Problem) -> f64 {
         let costs = problem.effectors.iter().zip(&self.tips).map(|(effector, tip)| {
             let residual = tip.as_dvec3() - effector.target.as_dvec3();
@@ -76,7 +78,7 @@ impl Configuration {
         costs.sum()
     }
 
-    /// Largest distance from a tip to its target, in the world.
+    /// Largest distance from a tip to its target, in world units.
     pub fn error(&self, problem: &Problem) -> f64 {
         let errors = problem
             .effectors
@@ -86,14 +88,15 @@ impl Configuration {
         errors.fold(0.0, f64::max)
     }
 
-    /// Root mean square distance from tips to targets.
+    /// Weighted root mean square distance from tips to targets, in the problem's units.
     pub fn distance(&self, problem: &Problem) -> f64 {
         let weights: f64 =
             problem.effectors.iter().map(|effector| f64::from(effector.weight)).sum();
         (2.0 * self.cost(problem) / weights.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Mean distance from tips to targets. One far target does not hide what the others gain.
+    /// Weighted mean distance from tips to targets, in the problem's units. One far target does not
+    /// hide how much nearer the other tips are.
     pub fn mean_distance(&self, problem: &Problem) -> f64 {
         let of_effector = |(effector, tip): (&EndEffector, &Vec3A)| {
             let weight = f64::from(effector.weight);
@@ -106,14 +109,14 @@ impl Configuration {
         sum / f64::max(weights, f64::MIN_POSITIVE)
     }
 
-    /// Largest distance of a base or tip from its position in another configuration.
+    /// Largest distance of a joint or tip from its position in another configuration.
     pub fn max_displacement(&self, from: &Self) -> f32 {
         let bases = self.bases.iter().zip(&from.bases);
         let both = bases.chain(self.tips.iter().zip(&from.tips));
         both.map(|(here, there)| here.distance_squared(*there)).fold(0.0, f32::max).sqrt()
     }
 
-    /// Whether angles, orientations and positions are equal.
+    /// Whether both configurations have equal angles, orientations and positions.
     pub fn is_same(&self, other: &Self) -> bool {
         self.angles == other.angles
             && self.orientations == other.orientations

@@ -1,9 +1,10 @@
 //! Damped least squares: Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ (target − p).
 //!
-//! Rows are weighted by √w. λ is a fraction of the chain's length. It grows while a step would raise the
-//! cost and shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges
-//! too. Residuals are clamped to 0.3 of the chain's length. Angles at a limit that would leave it are
-//! fixed, and the rest is solved again.
+//! J is the Jacobian of the tips p. Rows of J and residuals target − p are weighted by √w. The
+//! damping λ is a fraction of the chain's length: it grows while a step would raise the cost and
+//! shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges, too.
+//! Residuals are clamped to 0.3 of the chain's length. Angles that are at a limit and would cross
+//! it are fixed, and the step is solved again for the other angles.
 //!
 //! # Sources
 //!
@@ -17,22 +18,23 @@ use super::configuration::Configuration;
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
-/// Largest residual, in chain lengths.
+/// Maximum length of a residual, in chain lengths; longer residuals are clamped.
 const MAX_RESIDUAL: f32 = 0.3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DampedLeastSquares {
-    /// λ of a first try.
+    /// λ before it is raised, in the problem's units.
     damping: f32,
-    /// Factor on λ, at least 1.
+    /// Factor by which λ is raised, at least 1.
     raised: f32,
     wrenches: Wrenches,
     step: (Vec<Vec3>, Vec<Vec3A>),
     before: (Vec<Vec3>, Vec<Vec3A>),
-    /// The configuration's rotation axes, zero for fixed angles.
+    /// Rotation axes of the configuration, as columns; zero for fixed angles.
     axes: Vec<Mat3A>,
-    /// JJᵀ, and its factorization with the damping.
+    /// JJᵀ; only the lower triangle is used.
     square: DMatrix<f32>,
+    /// JJᵀ + λ²I, then its factorization.
     factored: DMatrix<f32>,
     residuals: DVector<f32>,
     forces: DVector<f32>,
@@ -55,14 +57,15 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Resets the damping.
+    /// Resets λ to its initial value.
     pub fn restart(&mut self) {
         self.raised = 1.0;
     }
 
-    /// Makes a step that lowers the cost. Returns whether there is one.
+    /// Makes a step that lowers the cost and returns `true`. If there is no such step, restores the
+    /// configuration and returns `false`.
     pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
-        // The step of the last try is below rounding.
+        // Number of tries after which the step is below rounding.
         const TRIES: u32 = 12;
         const GROWTH: f32 = 4.0;
         self.set_residuals(problem, config);
@@ -82,7 +85,7 @@ impl DampedLeastSquares {
         false
     }
 
-    /// Sets the weighted and clamped residuals, and the start of the step.
+    /// Sets the weighted and clamped residuals, and stores the angles and shifts before the step.
     fn set_residuals(&mut self, problem: &Problem, config: &Configuration) {
         for (index, effector) in problem.effectors.iter().enumerate() {
             let residual = (effector.target - config.tips[index])
@@ -94,7 +97,8 @@ impl DampedLeastSquares {
         self.before.1.clone_from(&config.shifts);
     }
 
-    /// Solves with the angles fixed that would leave their limits. Returns whether there is a solution.
+    /// Solves for the step, with those angles fixed that would leave their limits. Returns whether
+    /// there is a solution.
     fn solve_within(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         self.axes.clone_from(&config.axes);
         loop {
@@ -108,7 +112,7 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Sets JJᵀ, joint by joint.
+    /// Sets JJᵀ, link by link.
     fn multiply(&mut self, problem: &Problem, config: &Configuration) {
         self.square.fill(0.0);
         for (index, link) in problem.links.iter().enumerate() {
@@ -136,7 +140,7 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Adds three columns of one chain length for each free root.
+    /// Adds the shifts of each free root to JJᵀ: three columns of one chain length.
     fn add_shifts(&mut self, problem: &Problem) {
         for (row, one) in problem.effectors.iter().enumerate() {
             for (column, other) in problem.effectors[..=row].iter().enumerate() {
@@ -149,7 +153,7 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Adds to the lower triangle of JJᵀ; the upper one is not read.
+    /// Adds a 3 × 3 block to the lower triangle of JJᵀ; the upper triangle is not read.
     fn add(&mut self, row: usize, column: usize, block: Mat3A) {
         for (j, side) in block.to_cols_array_2d().iter().enumerate() {
             for (i, value) in side.iter().enumerate() {
@@ -181,7 +185,7 @@ impl DampedLeastSquares {
         true
     }
 
-    /// Fixes angles that would leave their limits. Returns whether there was a new one.
+    /// Fixes angles that would leave their limits. Returns whether any angle was newly fixed.
     fn fix_angles(&mut self, problem: &Problem) -> bool {
         let mut any = false;
         for (index, link) in problem.links.iter().enumerate().filter(|(_, link)| link.is_limited())

@@ -9,7 +9,7 @@ use crate::kinematics::skeleton::JointId;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// The joint of a target is not one of the skeleton.
+    /// The skeleton has no joint with the index that a target names.
     #[error("the joint of a target must be one of the skeleton, got {0}")]
     NoJoint(JointId),
     /// Two targets name the same joint.
@@ -36,7 +36,7 @@ pub enum SolveError {
     Option {
         /// The option.
         field: OptionField,
-        /// Its value.
+        /// The refused value.
         value: f32,
     },
     /// The skeleton's transform is singular.
@@ -52,7 +52,7 @@ pub enum SolveError {
     },
 }
 
-/// A number among [`SolverOptions`](super::SolverOptions).
+/// A numeric field of [`SolverOptions`](super::SolverOptions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OptionField {
@@ -84,7 +84,7 @@ impl fmt::Display for OptionField {
     }
 }
 
-/// Why [`Method::TwoBone`](super::Method::TwoBone) cannot move a joint.
+/// Reason why [`Method::TwoBone`](super::Method::TwoBone) cannot move a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum TwoBoneRefusal {
@@ -97,10 +97,10 @@ pub enum TwoBoneRefusal {
     /// The joint's parent is locked.
     #[error("its parent is locked")]
     ParentLocked,
-    /// A bone has no length, or one that the closed form cannot solve.
+    /// One of the two bones has length 0, or a length that the closed form cannot solve.
     #[error("one of its two bones has no length")]
     NoLength,
-    /// Another target's limb contains the joint or its parent.
+    /// The joint or its parent belongs to the limb of another target.
     #[error("another target moves the same joint")]
     Shared,
 }

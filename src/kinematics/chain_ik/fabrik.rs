@@ -1,24 +1,26 @@
-//! Forward and backward reaching: points move towards their destinations, first from targets to roots,
-//! then back, keeping their distance from the point before.
+//! Forward and backward reaching: points move towards their goals, first from the targets to the
+//! roots (inward), then back (outward). Each point keeps its distance r from its link's joint, the
+//! base.
 //!
 //! ```text
 //! inward    base' = goal + r · unit(base − goal)      goal: the target, or the child's base'
 //! outward   point = base + r · unit(goal − base)      base: of the root, then the parent's point
 //! ```
 //!
-//! The goal of a point that several children share is the weighted mean of their bases'. A link with
-//! several points (bones with children away from their tips; locked forks) averages the bases that its
-//! points give, and rotates as a whole, to the best fit.
+//! The goal of a point that several children share is the weighted mean of the goals of the
+//! children's bases. A link with several points (a bone with children away from its tip, or a
+//! locked fork) takes the mean of the positions base' that its points give, and rotates as a whole,
+//! to the best fit.
 //!
-//! With limits every link rotates as a whole on the outward pass, limited ones angle by angle within
-//! their limits. The inward pass ignores limits and may ask for what they forbid, so that the points
-//! would oscillate. An iteration that does not lower the cost is therefore replaced by a sweep of cyclic
-//! coordinate descent.
+//! If any link has limits, every link rotates as a whole on the outward pass, and limited links
+//! angle by angle within their limits. The inward pass ignores limits and may set goals that the
+//! limits forbid, so that the points would oscillate. An iteration that does not lower the cost is
+//! therefore replaced by a sweep of cyclic coordinate descent.
 //!
-//! A chain whose only target is out of reach is laid out straight towards it.
+//! A chain whose only target is out of reach is laid out straight towards the target.
 //!
-//! Orientations of links with one point and no limits are computed on demand, by the least rotation. A
-//! tree whose root is free stays where the inward pass leaves it.
+//! Orientations of links with one point and no limits are computed on demand, by the smallest
+//! rotation. A tree whose root is free moves to where the inward pass brings its root.
 //!
 //! # Source
 //!
@@ -34,51 +36,53 @@ use super::problem::{Link, Problem};
 use crate::kinematics::skeleton::JointAngles;
 use crate::kinematics::{normalize, rotation_between};
 
-/// A point of a link, at which bases of children and tips coincide.
+/// A point fixed to a link, with the child joints and tips that are at this point.
 #[derive(Clone, Debug, PartialEq)]
 struct LinkPoint {
-    /// In the link's space.
+    /// Position in the link's space.
     position: Vec3A,
-    /// Distance from the link's base.
+    /// Distance from the link's joint.
     radius: f32,
     /// Sum of the weights of `members`.
     weight: f32,
     members: Vec<PointMember>,
 }
 
-/// A base or tip at a point of a link.
+/// A child joint or a tip at a point of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PointMember {
     kind: MemberKind,
-    /// Sum of the weights of all end effectors below.
+    /// Sum of the weights of all end effectors at the member and below.
     weight: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum MemberKind {
-    /// Base of a link.
+    /// Joint of the link with this index.
     Base(usize),
-    /// Tip of an end effector.
+    /// Tip of the end effector with this index.
     Tip(usize),
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Fabrik {
     points: Vec<LinkPoint>,
-    /// Range of points of each link.
+    /// Range of each link's points in `points`.
     ranges: Vec<(usize, usize)>,
-    /// Bases and tips that are fixed to the root of each tree.
+    /// Joints and tips that are fixed to the root, for each tree.
     grounds: Vec<Vec<PointMember>>,
     mounts: Vec<Quat>,
     limited: bool,
-    /// With limits: the configuration before the iteration, and the sweep that replaces it.
+    /// The configuration before the iteration; used if any link has limits.
     before: Configuration,
+    /// The sweep that replaces an iteration that did not lower the cost; used if any link has
+    /// limits.
     ccd: Ccd,
-    /// Destination of each point.
+    /// Goal of each point.
     goals: Vec<Vec3A>,
-    /// Destination of each base.
+    /// Goal of each link's joint.
     base_goals: Vec<Vec3A>,
-    /// Vector from the base to each point.
+    /// Vector to each point from the joint of the point's link.
     arms: Vec<Vec3A>,
     pairs: Vec<PointPair>,
 }
@@ -157,7 +161,8 @@ impl Fabrik {
         }
     }
 
-    /// Whether a chain can only point at its one target.
+    /// Whether the problem is a chain without limits, with a fixed root, whose one target is out of
+    /// reach.
     fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
         let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
         else {
@@ -167,7 +172,7 @@ impl Fabrik {
         effector.link.is_some() && effector.target.distance(config.bases[0]) >= length
     }
 
-    /// Sets the goals of a link's points and, from them, of its base.
+    /// Sets the goals of a link's points and, from these, the goal of its joint.
     fn reach_inward(&mut self, problem: &Problem, config: &Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
@@ -202,8 +207,8 @@ impl Fabrik {
         }
     }
 
-    /// Shifts each tree by the mean vector from what is fixed to its root to the goals, unless that
-    /// overflows.
+    /// Shifts each tree by the weighted mean vector from the joints and tips fixed to its root to
+    /// their goals, unless that overflows.
     fn move_roots(&self, problem: &Problem, config: &mut Configuration) {
         for (tree, ground) in self.grounds.iter().enumerate() {
             let weights: f32 = ground.iter().map(|member| member.weight).sum();
@@ -223,7 +228,7 @@ impl Fabrik {
         }
     }
 
-    /// Places a link's points from its base.
+    /// Moves the points of a link towards their goals, at their distances from the link's joint.
     fn reach_outward(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
@@ -245,8 +250,8 @@ impl Fabrik {
 
     /// Rotates a link as a whole, so that its points come near their goals.
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
-        // A rotation for several points is the best about one axis only; a few come near the best of
-        // all.
+        // For several points, one rotation is the best about one axis only; a few rotations come
+        // near the best of all.
         const ROTATIONS: usize = 3;
         let (from, to) = self.ranges[index];
         let link = &problem.links[index];
@@ -285,7 +290,8 @@ impl Fabrik {
         }
     }
 
-    /// Orientations of all links. Those of links with one point follow from it by the least rotation.
+    /// Orientations of all links. The orientation of a link with one point is turned, by the
+    /// smallest angle, until the link points at that point.
     pub fn orientations(&self, config: &Configuration) -> Vec<Quat> {
         let mut orientations = config.orientations.clone();
         if self.limited {
@@ -320,14 +326,14 @@ fn add_member(points: &mut Vec<LinkPoint>, position: Vec3A, member: PointMember)
 }
 
 impl LinkPoint {
-    /// Position in skeleton space.
+    /// Position in problem space.
     fn position_in(&self, config: &Configuration) -> Vec3A {
         self.members[0].kind.position_in(config)
     }
 }
 
 impl MemberKind {
-    /// Position in skeleton space.
+    /// Position in problem space.
     fn position_in(self, config: &Configuration) -> Vec3A {
         match self {
             Self::Base(link) => config.bases[link],

@@ -1,9 +1,9 @@
-//! The Jacobian: derivatives of tips by angles.
+//! The Jacobian: derivatives of tips with respect to joint angles.
 //!
-//! The column of the Jacobian J for one Euler angle of a joint with base b, for a tip p, is a × (p −
-//! b), where the unit vector a is the angle's axis. A force F at p has the component Jᵀ F = a · ((p −
-//! b) × F) along that angle. Summing forces and moments from tips to roots gives it for all joints in
-//! one pass.
+//! The column of the Jacobian J for one Euler angle of a joint with base b, for a tip p, is a × (p
+//! − b), where the unit vector a is the angle's axis. A force F at p has the component Jᵀ F = a ·
+//! ((p − b) × F) along that angle. Summing forces and moments from tips to roots gives this
+//! component for all joints in one pass.
 //!
 //! # Source
 //!
@@ -16,8 +16,8 @@ use super::configuration::Configuration;
 use super::problem::Problem;
 use crate::kinematics::skeleton::{JointAngles, JointId, Skeleton, clamp_to_limits};
 
-/// Derivatives of a tip by every joint's angles about x, y and z, in skeleton space; zero for joints
-/// that are not ancestors of the tip.
+/// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
+/// space and per radian; zero for joints other than the joint and its ancestors.
 ///
 /// # Panics
 ///
@@ -36,13 +36,14 @@ pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
     columns
 }
 
-/// Force and moment (about the tree's origin) on each link, from all end effectors below.
+/// Force and moment (about the tree's origin) on each link, from all end effectors at the link and
+/// below.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Wrenches(Vec<(Vec3A, Vec3A)>);
 
 impl Wrenches {
-    /// Writes Jᵀ F for forces at tips into `angles`, for every link, and the sum of forces on every tree
-    /// into `shifts`.
+    /// Writes Jᵀ F into `angles` for every link, and the sum of forces on every tree into `shifts`.
+    /// `force` gives the force F at the tip of an end effector.
     pub fn apply_transpose(
         &mut self,
         problem: &Problem,
@@ -95,7 +96,7 @@ pub(super) fn advance(
         config.angles[index] = clamp_to_limits(&link.limits, angles);
     }
     if problem.free_roots {
-        // One chain length converts the units of angles to those of shifts.
+        // The square of the chain's length converts the units of angles to those of shifts.
         let lever = factor * problem.length * problem.length;
         for (index, shifts) in config.shifts.iter_mut().enumerate() {
             let (before, moved) = (from.1[index], from.1[index] + lever * by.1[index]);

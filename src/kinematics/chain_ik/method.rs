@@ -3,7 +3,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-/// Solver method.
+/// Method of a [`ChainSolver`](super::ChainSolver).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -22,7 +22,7 @@ pub enum Method {
     /// Forward and backward reaching (FABRIK).
     #[default]
     Fabrik,
-    /// Closed form for a target's joint and its parent.
+    /// Closed form for two joints: a target's joint and its parent.
     TwoBone,
 }
 
@@ -59,7 +59,7 @@ impl Method {
     }
 }
 
-/// The [name](Method::name).
+/// Writes the [name](Method::name).
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
@@ -92,7 +92,7 @@ impl From<Method> for &'static str {
     }
 }
 
-/// A text that is not the [name](Method::name) of a method.
+/// Error for a text that is not the [name](Method::name) of a method.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("must be one of {names}, got {0:?}", names = Method::ALL.map(Method::name).join(", "))]
 pub struct ParseMethodError(String);

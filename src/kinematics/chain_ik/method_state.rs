@@ -8,7 +8,7 @@ use super::two_bone::TwoBones;
 use super::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::Skeleton;
 
-/// A method with what it keeps between iterations.
+/// A method with the state that it keeps between iterations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MethodState {
     Transpose(Transpose),
@@ -41,7 +41,8 @@ impl MethodState {
         matches!(self, Self::Ccd(_) | Self::Fabrik(_))
     }
 
-    /// Resets what was learnt about step lengths. Returns whether the method learns any.
+    /// Resets what the method has learnt about step lengths. Returns whether the method learns step
+    /// lengths at all.
     pub fn restart(&mut self) -> bool {
         match self {
             Self::Transpose(transpose) => transpose.restart(),
@@ -53,7 +54,7 @@ impl MethodState {
         }
     }
 
-    /// Makes one iteration. Returns whether another one could get further.
+    /// Makes one iteration. Returns whether another iteration could improve the result.
     pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         match self {
             Self::Transpose(transpose) => transpose.iterate(problem, config),

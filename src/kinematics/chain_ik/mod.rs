@@ -1,4 +1,4 @@
-//! Inverse kinematics of skeletons: moves tips of bones to targets.
+//! Inverse kinematics of skeletons: solvers that move tips of bones to targets.
 //!
 //! With p a tip, t its target and w its weight, every method lowers
 //!
@@ -6,9 +6,10 @@
 //! f = Σ ½ w |p − t|²
 //! ```
 //!
-//! by rotating the joints between targets and roots within their limits. Locked joints and joints on no
-//! such path are unchanged, bit for bit. Targets, errors and the tolerance are in the world; the solve
-//! runs in skeleton space, so that mirrored and scaled skeletons are right.
+//! by rotating the joints between targets and roots within their limits. Locked joints, and joints
+//! that are not between a target and a root, are unchanged, bit for bit. Targets, errors and the
+//! tolerance are in the world; solvers work in skeleton space, so that mirrored and scaled
+//! skeletons are solved correctly.
 //!
 //! | method | moves | at limits |
 //! | --- | --- | --- |
@@ -18,15 +19,17 @@
 //! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short |
 //! | [`Method::TwoBone`] | two joints, at once | stops short |
 //!
-//! A target out of reach is not an error: the chain straightens towards it and the solve stalls. Results
-//! are deterministic.
+//! A target out of reach is not an error: the chain straightens towards the target and the solver
+//! stalls. Results are deterministic.
 //!
 //! # What breaks
 //!
-//! - A solve stalls at a *local* minimum of f, which limits can cause away from the target.
-//! - Near y = ±90° (gimbal lock) two of a joint's angles rotate about one axis; methods that move
-//!   angles lose a direction there. CCD and FABRIK do not, without limits.
-//! - A root that moves far from its start has an offset of single precision, seven digits.
+//! - A solver stalls at a *local* minimum of f. Limits can cause such minima away from the target.
+//! - Near y = ±90° (gimbal lock) two of a joint's angles rotate about the same axis; methods that
+//!   move angles cannot rotate the joint in one direction there. CCD and FABRIK can, at joints
+//!   without limits.
+//! - The offset of a free root has single precision, seven digits: a root that moves far from its
+//!   start loses precision.
 
 mod align;
 mod ccd;

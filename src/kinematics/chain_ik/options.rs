@@ -16,14 +16,15 @@ pub struct SolverOptions {
     pub method: Method,
     /// Maximum number of iterations; `None` for the [method's default](Method::budget).
     pub iterations: Option<u32>,
-    /// Maximum distance from any tip to its target in the world when converged; `None` for 1e-4 of the
-    /// chain's length.
+    /// Distance in world units: a solver has converged if no tip is farther from its target. `None`
+    /// for 1e-4 of the chain's length.
     pub tolerance: Option<f32>,
-    /// Damping λ of damped least squares, in chain lengths.
+    /// Initial damping λ of damped least squares, in chain lengths.
     pub damping: f32,
-    /// Step length of [`Method::TransposeFixed`], in units of 1/Σr².
+    /// Step length of [`Method::TransposeFixed`], in units of 1/Σ w r², with the weights w of the
+    /// targets and the distances r from joints to tips in the bind pose.
     pub step: f32,
-    /// Whether roots move.
+    /// Whether solvers move roots.
     pub root: Root,
 }
 
@@ -59,19 +60,19 @@ impl SolverOptions {
         Self { iterations: Some(iterations), ..self }
     }
 
-    /// These options with a tolerance, in the world.
+    /// These options with a tolerance, in world units.
     #[must_use]
     pub fn with_tolerance(self, tolerance: f32) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
 
-    /// These options with a damping λ, in chain lengths.
+    /// These options with an initial damping λ, in chain lengths.
     #[must_use]
     pub fn with_damping(self, damping: f32) -> Self {
         Self { damping, ..self }
     }
 
-    /// These options with a step length, in units of 1/Σr².
+    /// These options with a step length, in the units of [`Self::step`].
     #[must_use]
     pub fn with_step(self, step: f32) -> Self {
         Self { step, ..self }

@@ -1,5 +1,5 @@
-//! A small bend for chains that lie on one line with their target, where no joint has a moment and no
-//! method can start.
+//! A small bend for chains that lie on one line with their target. There no joint has a moment, and
+//! no method can start.
 
 use glam::{Vec3, Vec3A};
 
@@ -8,16 +8,18 @@ use super::problem::Problem;
 use crate::kinematics::normalize;
 use crate::kinematics::skeleton::clamp_to_limits;
 
-/// Angle of a bend in radians, distributed over the joints of a path.
+/// Total angle of a bend in radians, distributed over the joints of a path.
 const BEND: f32 = 0.5;
 
-/// Whether any path cannot start.
+/// Whether any path from a root to a tip lies on one line with its target, so that no method can
+/// start.
 pub(super) fn is_stuck(problem: &Problem, config: &Configuration) -> bool {
     (0..problem.effectors.len())
         .any(|effector| stuck_line(problem, config, effector, path(problem, effector)).is_some())
 }
 
-/// Bends the paths that cannot start. Changes only angles.
+/// Bends the paths that lie on one line with their targets. Changes only the configuration's
+/// angles.
 pub(super) fn bend(problem: &Problem, config: &mut Configuration) {
     for effector in 0..problem.effectors.len() {
         let Some(line) = stuck_line(problem, config, effector, path(problem, effector)) else {
@@ -30,20 +32,20 @@ pub(super) fn bend(problem: &Problem, config: &mut Configuration) {
     }
 }
 
-/// Links from an end effector's to the root's.
+/// Indices of the links from the end effector's link up to the root's.
 fn path(problem: &Problem, effector: usize) -> impl Iterator<Item = usize> + Clone + '_ {
     std::iter::successors(problem.effectors[effector].link, |link| problem.links[*link].parent)
 }
 
-/// Direction of the line that a path and its target lie on; `None` if they don't, or if the path is
-/// already stretched towards a target out of reach.
+/// Direction of the line on which a path and its target lie; `None` if there is no such line, or if
+/// the path is already stretched towards a target out of reach.
 fn stuck_line(
     problem: &Problem,
     config: &Configuration,
     index: usize,
     path: impl Iterator<Item = usize> + Clone,
 ) -> Option<Vec3A> {
-    // Relative distance from the line below which methods leave it slowly.
+    // Relative distance from the line below which methods move away from it slowly.
     const STRAIGHT: f32 = 1e-3;
     let (effector, tip) = (&problem.effectors[index], config.tips[index]);
     let base = config.bases[path.clone().last()?];
@@ -62,9 +64,9 @@ fn stuck_line(
     (!is_stretched(problem, index, line, tip, base)).then_some(line)
 }
 
-/// Whether a path on a line is fully stretched towards its target.
+/// Whether a path that lies on a line is fully stretched towards its target.
 fn is_stretched(problem: &Problem, index: usize, line: Vec3A, tip: Vec3A, base: Vec3A) -> bool {
-    // Relative shortening of a chain within `STRAIGHT` of its line.
+    // Relative shortening of a stretched path whose joints are within `STRAIGHT` of its line.
     const STRETCHED: f32 = 1e-3;
     let effector = &problem.effectors[index];
     let inner = path(problem, index).filter(|link| problem.links[*link].parent.is_some());
@@ -74,7 +76,8 @@ fn is_stretched(problem: &Problem, index: usize, line: Vec3A, tip: Vec3A, base: 
     reached >= (bones + effector.tip.length()) * (1.0 - STRETCHED) && beyond >= reached
 }
 
-/// Rotates a link by the angle that swings the line most within the limits.
+/// Changes one angle of a link by `by` or `-by` (radians), within its limits. Of the three angles
+/// and both signs, it takes the one that swings the direction `line` most.
 pub(super) fn bend_link(
     problem: &Problem,
     config: &mut Configuration,
@@ -89,7 +92,7 @@ pub(super) fn bend_link(
         for side in [by, -by] {
             let bent = clamp_to_limits(limits, angles + unit * side);
             let swung = swing * (bent - angles).length();
-            // A margin, so that rounding does not decide between equals.
+            // A margin, so that rounding does not decide between equal swings.
             if swung > best.0 * 1.01 {
                 best = (swung, bent);
             }

@@ -2,7 +2,7 @@ use core::fmt;
 
 use super::Method;
 
-/// Progress of a solve.
+/// Progress of a solver run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
@@ -10,9 +10,9 @@ pub struct Report {
     pub method: Method,
     /// Number of iterations so far.
     pub iterations: u32,
-    /// Largest distance from a tip to its target, in the world.
+    /// Largest distance from a tip to its target, in world units.
     pub error: f32,
-    /// Whether and why the solve has ended.
+    /// Whether and why the run has ended.
     pub status: Status,
 }
 
@@ -23,7 +23,7 @@ impl Report {
     }
 }
 
-/// State of a solve.
+/// State of a solver run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -35,13 +35,14 @@ pub enum Status {
     Iterating,
     /// The error is within the tolerance.
     Converged,
-    /// Further iterations change nothing: targets are out of reach, or limits prevent reaching them.
+    /// Further iterations would change nothing: targets are out of reach, or limits prevent
+    /// reaching them.
     Stalled,
-    /// The maximum number of iterations is made.
+    /// The maximum number of iterations has been made.
     OutOfIterations,
 }
 
-/// In words: "iterating", "converged", "stalled" or "out of iterations".
+/// Writes the state in words: "iterating", "converged", "stalled" or "out of iterations".
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

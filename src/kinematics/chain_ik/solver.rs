@@ -8,7 +8,7 @@ use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
 use crate::kinematics::saturate::saturate;
 use crate::kinematics::skeleton::{Skeleton, nearest_angles};
 
-/// An iterative solve of a skeleton and its targets.
+/// An iterative solver that moves the bone tips of a skeleton to targets.
 ///
 /// ```
 /// use glam::Vec3;
@@ -31,7 +31,7 @@ use crate::kinematics::skeleton::{Skeleton, nearest_angles};
 pub struct ChainSolver {
     report: Report,
     max_iterations: u32,
-    /// In the world.
+    /// In world units.
     tolerance: f64,
     problem: Problem,
     config: Configuration,
@@ -42,7 +42,7 @@ pub struct ChainSolver {
 }
 
 impl ChainSolver {
-    /// Prepares a solve; no iteration is made.
+    /// Prepares a solver without making an iteration.
     ///
     /// # Errors
     ///
@@ -78,8 +78,8 @@ impl ChainSolver {
         self.report
     }
 
-    /// Makes one iteration, unless the solve has converged or stalled. It ignores the maximum number
-    /// of iterations.
+    /// Makes one iteration, unless the solver has converged or stalled. The maximum number of
+    /// iterations is ignored.
     pub fn step(&mut self) -> Report {
         if matches!(self.report.status, Status::Converged | Status::Stalled) {
             return self.report;
@@ -98,7 +98,7 @@ impl ChainSolver {
         self.report
     }
 
-    /// Iterates until the solve converges, stalls or is out of iterations.
+    /// Iterates until the solver has converged, has stalled or is out of iterations.
     pub fn run(&mut self) -> Report {
         while !self.is_over() {
             self.step();
@@ -106,18 +106,19 @@ impl ChainSolver {
         self.report
     }
 
-    /// Whether the solve has converged, stalled or is out of iterations.
+    /// Whether the solver has converged, has stalled or is out of iterations.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.report.status != Status::Iterating
     }
 
-    /// Moves the targets of the same joints, in the same order and with the same weights, and restarts
-    /// from the current pose with no iterations made.
+    /// Moves the targets and restarts from the current pose with no iterations made. The targets
+    /// must be for the same joints, in the same order; their weights stay as they were.
     ///
     /// # Errors
     ///
-    /// [`SolveError::NoJoint`] for other joints; [`SolveError::Point`]; [`SolveError::Weight`].
+    /// [`SolveError::NoJoint`] for other joints or another order; [`SolveError::Point`];
+    /// [`SolveError::Weight`].
     pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
         let effectors = &self.problem.effectors;
         for (index, effector) in effectors.iter().enumerate() {
@@ -136,8 +137,9 @@ impl ChainSolver {
         Ok(())
     }
 
-    /// Writes the solved angles, each triple nearest to the present one, and the offsets of free roots
-    /// into the skeleton of the solve.
+    /// Writes the solved Euler angles and the offsets of free roots into `skeleton`, which must be
+    /// the skeleton for which the solver was made. Of all equivalent angles of a joint, it writes
+    /// those nearest to the joint's present angles.
     pub fn write(&self, skeleton: &mut Skeleton) {
         if self.problem.free_roots {
             for (index, tree) in self.problem.trees.iter().enumerate() {
@@ -145,7 +147,8 @@ impl ChainSolver {
                 skeleton.write_local(tree.root, |root| root.offset = offset);
             }
         } else if self.config.is_same(&self.start) {
-            // The start's own angles, bit for bit, also if others have been written since.
+            // Nothing has moved: writes the angles from before the run, bit for bit, also if other
+            // angles have been written since.
             for link in &self.problem.links {
                 skeleton.write_local(link.joint, |joint| joint.rotation = link.start);
             }
@@ -172,7 +175,7 @@ impl ChainSolver {
         self.stall.set_reference(&self.problem, &self.config);
     }
 
-    /// Measures the error and whether it is within the tolerance.
+    /// Updates the error and the status of the report.
     fn measure(&mut self) {
         let error = self.config.error(&self.problem);
         self.report.error = saturate(error);
@@ -206,9 +209,10 @@ impl ChainSolver {
         }
     }
 
-    /// Returns to the last configuration that was an improvement and restarts the method from there. If
-    /// that has failed already or the method has nothing to restart, the solve has stalled: another
-    /// solve from there would change nothing.
+    /// Returns to the reference of the stall detector, the last configuration that was an
+    /// improvement, and restarts the method there. If a restart from the reference has failed
+    /// already, or the method has nothing to restart, the solver has stalled: another run from
+    /// there would change nothing.
     fn restart_or_stall(&mut self) {
         if matches!(self.state, MethodState::TwoBone(_)) {
             self.report.status = Status::Stalled;
@@ -223,7 +227,8 @@ impl ChainSolver {
         self.stall.restarted = true;
     }
 
-    /// Angles of every link, nearest to given ones.
+    /// Euler angles of every link. Angles that follow from an orientation are the ones nearest to
+    /// those that `near` gives for the link.
     fn angles(&self, near: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
         let from_points;
         let orientations = match &self.state {

@@ -9,19 +9,21 @@ pub(super) struct StallDetector {
     pub reference: Configuration,
     /// Root mean square distance of the reference from the targets, in the problem's units.
     distance: f64,
-    /// Mean distance of the reference.
+    /// Mean distance of the reference from the targets, in the problem's units.
     mean: f64,
-    /// Number of iterations since the reference.
+    /// Number of iterations since the reference was set.
     pub idle: u32,
-    /// Number of idle iterations of a stall.
+    /// Number of idle iterations after which a method has stalled.
     patience: u32,
-    /// Least improvement of the distance.
+    /// Decrease of the distance up to which an iteration is idle.
     least: f64,
-    /// Least improvement while joints still move.
+    /// Decrease of the distance up to which an iteration is idle although joints still move. If
+    /// negative, the distance may grow a little.
     least_moving: f64,
-    /// Number of iterations in which joints moved without an improvement.
+    /// Number of iterations in which joints moved without an improvement, since the last
+    /// improvement.
     drifts: u32,
-    /// Whether the method was restarted since the reference.
+    /// Whether the method was restarted since the reference was set.
     pub restarted: bool,
 }
 
@@ -29,12 +31,14 @@ impl StallDetector {
     pub fn new(method: Method, tolerance: f64, config: &Configuration) -> Self {
         // The fixed step overshoots for longer before it settles.
         let patience = if method == Method::TransposeFixed { 100 } else { 20 };
-        // At this rate the whole budget improves by less than one tolerance.
+        // At this rate of improvement, all iterations of the budget together improve by less than
+        // one tolerance.
         let fraction = f64::from(patience) / f64::from(method.budget());
         let rounding = f64::from(f32::EPSILON);
         let (least, least_moving) = match method {
-            // Written angles are rounded, and another solve from them takes other steps, so that
-            // almost no improvement may be left. In exact arithmetic no sweep increases the distance.
+            // Written angles are rounded, and another run from them takes other steps. For that run
+            // to find no improvement, almost none may be left. In exact arithmetic no sweep
+            // increases the distance.
             Method::Ccd => (2.0 * rounding, -rounding),
             // With conflicting targets, FABRIK converges near the minimum, not at it.
             Method::Fabrik => (2.0 * rounding, -1e-5),
@@ -66,10 +70,10 @@ impl StallDetector {
 
     /// Updates the reference after an iteration. Returns whether the method has stalled.
     pub fn observe(&mut self, problem: &Problem, config: &Configuration) -> bool {
-        // Longer drifts oscillate.
+        // More iterations without an improvement are oscillations.
         const DRIFTS: u32 = 200;
         let nearer = match self.distance - config.distance(problem) {
-            // One target out of reach does not hide improvements of the others.
+            // The mean shows improvements of the other tips even if one target is far out of reach.
             nearer if nearer >= 0.0 => nearer.max(self.mean - config.mean_distance(problem)),
             farther => farther,
         };
@@ -84,8 +88,8 @@ impl StallDetector {
         self.idle >= self.patience
     }
 
-    /// Whether a joint is away from the reference. In a flat valley chains move far for little
-    /// improvement.
+    /// Whether a joint or tip has moved away from the reference. In a flat valley of the cost,
+    /// chains move far for little improvement.
     fn is_moving(&self, problem: &Problem, config: &Configuration) -> bool {
         const STILL: f32 = 1e-5;
         config.max_displacement(&self.reference) > STILL * problem.length

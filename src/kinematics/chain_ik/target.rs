@@ -8,7 +8,7 @@ use crate::kinematics::skeleton::JointId;
 pub struct TipTarget {
     /// The joint whose tip is to reach the target.
     pub joint: JointId,
-    /// Position in the world.
+    /// Position of the target in the world.
     pub point: Vec3,
     /// Weight relative to other targets, above 0.
     pub weight: f32,

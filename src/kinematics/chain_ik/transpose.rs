@@ -1,8 +1,9 @@
-//! Gradient descent: θ ← θ − τ Jᵀ W (p − target).
+//! Gradient descent: θ ← θ − τ Jᵀ W (p − target), with the angles θ, the tips p and their weights
+//! W.
 //!
-//! The fixed step is τ = 1/Σ w r², with the distances r from joints to tips in the bind pose: at most
-//! the reciprocal of the cost's greatest curvature near a solution. The line search starts at twice the
-//! last successful step and halves it until the cost falls.
+//! The fixed step is τ = 1/Σ w r², with the distances r from joints to tips in the bind pose; it is
+//! at most the reciprocal of the cost's greatest curvature near a solution. The line search starts
+//! at twice the last successful step and halves the step until the cost falls.
 //!
 //! # Sources
 //!
@@ -16,9 +17,11 @@ use super::problem::Problem;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Transpose {
+    /// Whether the step is found by a line search.
     searched: bool,
-    /// τ, and its initial value.
+    /// The step τ: the last successful one, or the initial step.
     step: f32,
+    /// Initial value of τ.
     initial_step: f32,
     wrenches: Wrenches,
     gradient: (Vec<Vec3>, Vec<Vec3A>),
@@ -31,13 +34,13 @@ impl Transpose {
         Self { searched, step, initial_step: step, ..Self::default() }
     }
 
-    /// Resets the step. Returns whether the method searches for one.
+    /// Resets the step. Returns whether the method searches for its step.
     pub fn restart(&mut self) -> bool {
         self.step = self.initial_step;
         self.searched
     }
 
-    /// Makes a step. Returns whether it lowers the cost, or `true` for a fixed step.
+    /// Makes a step. Returns whether the step lowers the cost; always `true` for a fixed step.
     pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         let force = |index: usize| {
             let effector = &problem.effectors[index];
@@ -60,7 +63,7 @@ impl Transpose {
     }
 
     fn search(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
-        // Down to where angles change by less than their rounding.
+        // Number of halvings after which angles change by less than their rounding.
         const HALVINGS: u32 = 40;
         let cost = config.cost(problem);
         let mut step = 2.0 * self.step;

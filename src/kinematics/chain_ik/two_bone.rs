@@ -1,8 +1,9 @@
-//! Closed form for a target's joint and its parent: [`TwoBone`] in their own plane.
+//! Closed form for a target's joint and its parent: [`TwoBone`] in the plane of their bones.
 //!
-//! The elbow keeps its side: its direction from the line shoulder–hand is transported by the least
-//! rotation of that line, and the upper bone rotates with the whole plane, so that a hinge stays one. A
-//! straight or folded limb is first bent within its limits.
+//! The elbow keeps its side: its direction from the line between shoulder and hand is transported
+//! by the smallest rotation of this line. The upper bone rotates with the whole plane, so that an
+//! elbow that is a hinge remains a hinge. A straight or folded limb is first bent within its
+//! limits.
 
 use glam::{Mat3A, Vec3, Vec3A};
 
@@ -26,7 +27,7 @@ struct LinkPair {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TwoBones {
-    /// From the roots to the tips.
+    /// Limbs, sorted from the roots to the tips.
     limbs: Vec<LinkPair>,
 }
 
@@ -70,7 +71,7 @@ impl TwoBones {
 
     /// Bends a limb that is too straight to define a plane.
     fn bend_if_straight(&self, problem: &Problem, config: &mut Configuration, limb: LinkPair) {
-        // Sine of the angle between the bones below which their plane is rounding.
+        // Sine of the angle between the bones below which the plane of the bones is only rounding.
         const STRAIGHT: f32 = 1e-4;
         const BEND: f32 = 0.1;
         let upper =
@@ -84,7 +85,8 @@ impl TwoBones {
     }
 }
 
-/// Rotates the upper bone with the limb's plane. A bone that underflows beside the chain's length is left
+/// Rotates the upper bone together with the limb's plane, so that the elbow is where the closed
+/// form puts it. A bone that is so short that it underflows beside the chain's length is left
 /// unchanged.
 fn place_elbow(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
     let shoulder = config.bases[limb.upper];
@@ -117,8 +119,8 @@ fn aim_hand(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
     rotate_link(problem, config, limb.lower, Mat3A::from_quat(rotation_between(lower, cursor)));
 }
 
-/// Rotates a link by a rotation in skeleton space, within its limits. Of the two Euler triples it takes
-/// the one that the limits contain.
+/// Rotates a link by a rotation in skeleton space, within its limits. Of the two equivalent Euler
+/// triples it takes the farther one only if the limits contain that one and not the nearer one.
 fn rotate_link(problem: &Problem, config: &mut Configuration, index: usize, rotation: Mat3A) {
     let link = &problem.links[index];
     let parent = link.parent.map_or(Mat3A::IDENTITY, |parent| config.frames[parent]);

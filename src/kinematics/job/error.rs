@@ -10,22 +10,22 @@ use crate::kinematics::saturate::saturate;
 #[non_exhaustive]
 pub enum JobError {
     /// A matrix or a vector is not finite. (Of `end` only the translation counts.)
-    #[error("{field} is not finite; each of its numbers must be")]
+    #[error("{field} must be finite")]
     NotFinite {
         /// The matrix or vector.
         field: JobField,
     },
     /// The start joint's axes are in one plane or on one line (their condition number is above
     /// 1e6), and are not all 0.
-    #[error("{field} has axes in one plane; its matrix must have an inverse, or scale 0")]
+    #[error("{field} must have an inverse, or scale 0; its axes are in one plane")]
     NotInvertible {
         /// The matrix, [`JobField::Start`].
         field: JobField,
     },
     /// In start joint space, the middle joint is scaled unevenly.
     #[error(
-        "{field} has axes of length {}, {} and {} in start joint space; they must be equal to one in \
-         a thousand",
+        "{field} must have axes of equal length in start joint space, to one in a thousand, got {}, \
+         {} and {}",
         .lengths[0], .lengths[1], .lengths[2]
     )]
     UnevenAxes {
@@ -69,7 +69,7 @@ pub enum JobField {
     End,
     /// Target of the end joint.
     Target,
-    /// Direction in which the middle joint lies.
+    /// Direction from the line between start joint and target to the middle joint.
     Pole,
     /// Hinge axis of the middle joint.
     Hinge,

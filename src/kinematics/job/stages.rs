@@ -96,7 +96,8 @@ pub(super) fn start_joint(
     (DQuat::from_axis_angle(towards, twist) * to_pole).normalize()
 }
 
-/// The rotation `turn` by the fraction `part` of its angle, which is at most 180°; w ≥ 0.
+/// The rotation about the axis of `turn` by the fraction `part` of its angle, taken as at most
+/// 180°. The result has w ≥ 0.
 pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     if part >= 1.0 {
@@ -108,8 +109,8 @@ pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     DQuat::from_vec4((axis * sin).extend(cos))
 }
 
-/// Inner angle φ of the middle joint for a hand at `distance`, computed by half the angle: exact
-/// for straight and folded limbs.
+/// Inner angle φ of the middle joint for a hand at `distance`, computed from half the angle, so
+/// that it is exact for straight and folded limbs.
 fn inner_angle(upper: f64, lower: f64, distance: f64) -> f64 {
     let (sum, difference) = (upper + lower, upper - lower);
     let open = (distance - difference) * (distance + difference);
@@ -134,8 +135,8 @@ fn on_side_of(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> DVec3 {
     if is_opposite { -normal_ss } else { normal_ss }
 }
 
-/// Unit axis, perpendicular to the bones, about which bones in one line bend: by the hinge axis,
-/// else towards the pole, else arbitrary.
+/// Unit axis, perpendicular to the bones, about which bones in one line bend: from the hinge axis,
+/// else from the pole, else arbitrary.
 fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>) -> DVec3 {
     const ALONG: f64 = 1e-3;
     let across = |axis: DVec3| {

@@ -23,7 +23,7 @@ impl Skeleton {
 
     /// Default bone vector for a new child of `parent`: that of the nearest joint with a bone, from
     /// `parent` towards the root. Without such a joint it is upwards (+y), as long as the longest
-    /// bone of the skeleton, or of length 1 if there is none.
+    /// bone of the skeleton, or of length 1 if the skeleton has no bones.
     pub fn next_axis(&self, parent: JointId) -> Vec3 {
         let like = self.ancestors(parent).find_map(|joint| {
             let axis = self.joint(joint)?.axis;
@@ -35,7 +35,8 @@ impl Skeleton {
         })
     }
 
-    /// An unused joint name: `stem`, or, if that is taken, `stem` with another number at its end.
+    /// An unused joint name: `stem` if that is free, otherwise `stem` with another number at its
+    /// end.
     pub fn free_name(&self, stem: &str) -> String {
         let taken = |name: &str| self.find(name).is_some();
         if !stem.is_empty() && !taken(stem) {

@@ -4,8 +4,8 @@ use super::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// Forward kinematics. For several joints use [`Skeleton::pose`], which visits each joint once.
 impl Skeleton {
-    /// Transform to the world from the joint's space before its rotation R, which has its origin at
-    /// the joint's base.
+    /// Transform to the world from the space of the joint's base: the joint's own space before its
+    /// rotation R.
     ///
     /// # Panics
     ///
@@ -50,7 +50,7 @@ impl Skeleton {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local())
     }
 
-    /// Writes [`Skeleton::pose`] into an existing pose. Allocates only if that has too little
+    /// Writes [`Skeleton::pose`] into an existing pose. Allocates only if that pose has too little
     /// memory.
     pub fn write_pose(&self, pose: &mut SkeletonPose) {
         self.write_pose_with(pose, |_, joint| joint.local());

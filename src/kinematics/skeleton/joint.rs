@@ -17,7 +17,8 @@ pub struct Joint {
     /// the skeleton's origin. An offset equal to the parent's axis puts the joint on the parent's
     /// tip.
     pub offset: Vec3,
-    /// The bone's vector from base to tip, in the joint's own space. Zero for a joint without a bone.
+    /// The bone's vector from base to tip, in the joint's own space. Zero for a joint without a
+    /// bone.
     pub axis: Vec3,
     /// Euler angles about the frame's x, y and z in radians, unbounded; x is applied first.
     pub rotation: Vec3,
@@ -62,9 +63,8 @@ impl Joint {
         frame * rotation * frame.transpose()
     }
 
-    /// Unit axis about which the angle about x, y or z (`axis` 0, 1 or 2) rotates, in the space of
-    /// the joint's base:
-    /// A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
+    /// Unit axis of the rotation by the angle about x, y or z (`axis` 0, 1 or 2), in the space of
+    /// the joint's base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
     pub fn rotation_axis(&self, axis: usize) -> Vec3 {
         (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
     }

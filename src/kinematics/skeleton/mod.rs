@@ -13,9 +13,9 @@
 //! base       = X · (0, 0, 0)          tip = X · axis
 //! ```
 //!
-//! A is a fixed orthonormal frame in which the angles are measured. The skeleton's own transform maps
-//! skeleton space to the world and may mirror and scale. The bind pose is the skeleton as built,
-//! before any rotation.
+//! A is a fixed orthonormal frame in which the angles are measured. The skeleton's own transform
+//! maps skeleton space to the world and may mirror and scale. The bind pose is the skeleton as
+//! built, before any rotation.
 //!
 //! Angles are radians. Offsets, axes and radii are in skeleton units; positions in the world are in
 //! world units.

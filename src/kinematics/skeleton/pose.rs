@@ -27,7 +27,7 @@ impl SkeletonPose {
         pose
     }
 
-    /// [`SkeletonPose::new`] into the pose's existing memory.
+    /// Refills the pose as [`SkeletonPose::new`] does, in its existing memory.
     pub(super) fn refill(
         &mut self,
         joints: &[Shared<Joint>],

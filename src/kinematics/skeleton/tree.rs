@@ -69,7 +69,7 @@ impl Skeleton {
         Ok(skeleton)
     }
 
-    /// All joints, parents before children. Clones of the skeleton share their memory.
+    /// All joints, parents before children. Clones of a skeleton share unchanged joints in memory.
     pub fn joints(&self) -> &[Shared<Joint>] {
         &self.joints
     }

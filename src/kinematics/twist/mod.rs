@@ -13,10 +13,10 @@
 //! No choice of e₀ that depends on ŵ alone is smooth for every ŵ (a hair on a ball cannot be combed
 //! flat). References differ in where they are singular and in how far around the singularity e₀
 //! still rotates fast. The gain g measures that: radians by which e₀ rotates against a
-//! parallel-transported direction, per radian of rotation of the Pointer. The table has its
-//! maximum, for a rotation of the Pointer across the direction to the singularity. θ_y is the
-//! Pointer's pitch, p the pole; R is the singular direction of the [`Stereographic`] map and V its
-//! up direction.
+//! parallel-transported direction, per radian of rotation of the Pointer. The table gives the
+//! maximum of g, which is reached by a rotation of the Pointer across the direction to the
+//! singularity. θ_y is the Pointer's pitch, p the pole; R is the singular direction of the
+//! [`Stereographic`] map and V its up direction.
 //!
 //! | reference | e₀ | singular at | gain |
 //! | --- | --- | --- | --- |

@@ -48,8 +48,8 @@ impl TwistReference {
         }
     }
 
-    /// ψ_ref, the angle of e₀ about the Pointer from the Limb frame's +y, in (−π, π]; it is added to ψ
-    /// for [`TwoBone::solve_from`](crate::kinematics::two_bone::TwoBone::solve_from).
+    /// ψ_ref, the angle of e₀ about the Pointer from the Limb frame's +y, in (−π, π]; it is added
+    /// to ψ for [`TwoBone::solve_from`](crate::kinematics::two_bone::TwoBone::solve_from).
     #[must_use]
     pub fn angle(self, pointer: Pointer, last: Option<TransportedFrame>) -> f32 {
         match self {

@@ -78,9 +78,12 @@ impl TwoBone {
     }
 
     /// The bones scaled by `factor`, with lengths of at most `f32::MAX`. The bones are unchanged if
-    /// a scaled length is not above 0.
+    /// `factor` is NaN or a scaled length is not above 0.
     #[must_use]
     pub fn stretched(self, factor: f32) -> Self {
+        if factor.is_nan() {
+            return self;
+        }
         let length = |length: f32| (length * factor).min(f32::MAX);
         Self::new(length(self.upper), length(self.lower)).unwrap_or(self)
     }

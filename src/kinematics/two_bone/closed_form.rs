@@ -24,8 +24,8 @@ const AT_SHOULDER: f32 = 1e-30;
 #[derive(Clone, Copy)]
 pub(crate) struct ClosedForm {
     pub elbow: Vec3,
-    /// Position of the hand computed from the elbow. It may differ from a reached cursor by
-    /// rounding; [`Self::hand_or`] returns the cursor then.
+    /// Position of the hand, computed from the Pointer and D. It may differ from a reached cursor
+    /// by rounding; [`Self::hand_or`] returns the cursor then.
     pub hand: Vec3,
     pub reach: Reach,
     /// Whether all numbers were normal: see the module.

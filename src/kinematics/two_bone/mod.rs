@@ -33,13 +33,15 @@
 //! off by 3e-4·L when one bone is thirty times as long as the other. The elbow itself is
 //! ill-conditioned where the arm is nearly straight or folded, whatever the formula: there oₑ moves
 //! like √(L − D).
+//!
 //! # What breaks
 //!
-//! - The elbow's reference direction is the Limb frame's +y. It is singular where the Pointer is
 //! - The elbow's reference direction is the Limb frame's +y. It is singular where the Pointer is
 //!   vertical: the elbow turns around when the hand passes over ±y. Where the Pointer points
 //!   straight up or down, the frame takes the yaw of the previous pose ([`Pointer`]).
 //! - A cursor at the shoulder has no direction: the arm keeps the direction of the previous pose.
+//!
+//! # Sources
 //!
 //! E. Palmieri, *IK-Rigging in three.js*, 2014, section 2 (hierarchy, θ_z, θ_y, θ_e); R. Juckett,
 //! *Analytic Two-Bone IK in 2D*, 2008 (law of cosines); W. Kahan, *Miscalculating Area and Angles

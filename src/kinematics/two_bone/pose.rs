@@ -24,8 +24,8 @@ pub struct TwoBonePose {
     pub along: f32,
     /// o_e ≥ 0, the elbow's y in Socket space: its distance from the Pointer.
     pub out: f32,
-    /// Angle about the Pointer from the Limb frame's +y to the elbow, radians: the Socket's rotation
-    /// ψ_ref + ψ.
+    /// Angle about the Pointer from the Limb frame's +y to the elbow, radians: the Socket's
+    /// rotation ψ_ref + ψ.
     pub twist: f32,
     /// Factor by which the bones are lengthened; 1 without stretch.
     pub stretch: f32,

@@ -5,17 +5,18 @@ use super::data::{EndEffector, KinematicTree, Link, Problem};
 use crate::kinematics::chain_ik::{Method, Root, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
-/// The space of a joint, relative to the link it is attached to or, without one, to its tree.
+/// The space of a joint, relative to the link to which it is attached or, without a link, to its
+/// tree.
 #[derive(Clone, Copy)]
 struct Attachment {
     link: Option<usize>,
     to_link: Affine3A,
     tree: usize,
-    /// Length of the path from the root.
+    /// Length of the path from the root, in the problem's units.
     path: f64,
 }
 
-/// The problem of bringing tips of a skeleton to targets.
+/// Builds the problem of moving the tips of a skeleton to targets.
 pub fn build(
     skeleton: &Skeleton,
     targets: &[TipTarget],
@@ -66,7 +67,7 @@ impl Problem {
         Attachment { link: None, to_link: Affine3A::IDENTITY, tree, path: 0.0 }
     }
 
-    /// The base of a joint, before its rotation.
+    /// The space of a joint's base, before the joint's rotation, from its parent's space.
     fn at_offset(&self, joint: &Joint, parent: Attachment) -> Attachment {
         let offset = self.scaled(joint.offset);
         let translation = parent.to_link.transform_point3a(offset);
@@ -74,7 +75,8 @@ impl Problem {
         Attachment { to_link: Affine3A { translation, ..parent.to_link }, path, ..parent }
     }
 
-    /// The space of a joint from its base: on a link of its own unless it is locked.
+    /// The space of a joint from the space of its base. Adds a link for the joint unless the joint
+    /// is locked.
     fn add_joint(&mut self, id: JointId, joint: &Joint, base: Attachment) -> Attachment {
         if joint.locked {
             let matrix3 = base.to_link.matrix3 * joint.local_rotation();
@@ -107,9 +109,9 @@ impl Problem {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
             let axis = self.scaled(skeleton[target.joint].axis);
             let reach = attachment.path as f32 + axis.length();
-            // Out of reach only the direction counts. The fixed step is stable while the target is
-            // less than about twice as far as the tip can be; the other methods need only digits
-            // left for the tip.
+            // Of a target out of reach only the direction counts. The fixed step is stable while
+            // the target is less than about twice as far away as the tip can be; the other methods
+            // only need the tip's position not to be lost to rounding.
             let max_distance = match method {
                 Method::TransposeFixed if !self.free_roots => 1.25 * f64::from(reach),
                 _ => 1e4 * f64::from(self.length.max(1.0)),
@@ -161,10 +163,10 @@ impl Problem {
     }
 }
 
-/// The transform's linear part, and the inverse of the whole; `None` for a singular one. In f64, where
-/// squares and cubes of any f32 are finite.
+/// The linear part of a transform and the inverse of the whole transform; `None` if the transform
+/// is singular. Computed in f64, where squares and cubes of any f32 are finite.
 fn with_inverse(transform: Affine3A) -> Option<(DMat3, DAffine3)> {
-    // Rounding of a determinant of 0 relative to its columns, with a margin.
+    // Rounding of a determinant that is 0, relative to the lengths of the columns; with a margin.
     const SINGULAR: f64 = 1e-6;
     let matrix = transform.matrix3.as_dmat3();
     let sides = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
@@ -176,7 +178,7 @@ fn with_inverse(transform: Affine3A) -> Option<(DMat3, DAffine3)> {
     inverse.is_finite().then_some((matrix, inverse))
 }
 
-/// Whether each joint is an ancestor of a target.
+/// Whether each joint is a target's joint or an ancestor of one.
 fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
     let mut on_path = vec![false; skeleton.joints().len()];
     for target in targets {
@@ -187,7 +189,7 @@ fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
     on_path
 }
 
-/// Length of the longest path from a root to a tip.
+/// Length of the longest path from a root to a tip, in skeleton units.
 fn longest_path(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
     let path = |target: &TipTarget| {
         let inner =

@@ -14,7 +14,7 @@ pub(super) fn check_targets(skeleton: &Skeleton, targets: &[TipTarget]) -> Resul
     Ok(())
 }
 
-/// Checks the numbers of a target.
+/// Checks that a target's point is finite, and its weight finite and above 0.
 pub fn check_target(&TipTarget { joint, point, weight }: &TipTarget) -> Result<(), SolveError> {
     if !point.is_finite() {
         return Err(SolveError::Point { joint, point });
