@@ -13,7 +13,7 @@ pub fn wrapped(angle: f32) -> f32 {
 pub(crate) fn wrapped_to_turn(angle: f64) -> f32 {
     let wrapped = angle.rem_euclid(TAU_F64) as f32;
     // An f64 just below 2π may round up to 2π in f32.
-    if wrapped < TAU { wrapped } else { 0.0 }
+    if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
 /// The angle equivalent to `angle` that is nearest to `near`.

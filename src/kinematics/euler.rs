@@ -17,9 +17,10 @@ pub fn rotation(angles: Vec3) -> DMat3 {
         * DMat3::from_rotation_x(angles.x)
 }
 
-/// Euler angles of a rotation, the equivalent ones nearest to the last angles, so that they are
-/// continuous beyond ±180°. Straight up or down, the last yaw is kept. Last angles beyond 540° are
-/// first reduced by full turns, which keeps f32 exact.
+/// Converts a rotation to Euler angles in radians. Of all equivalent angles, it returns those nearest
+/// to `last`, the previous angles, so that angles continue past ±180° without a jump. If the bone
+/// points straight up or down, its yaw is undetermined and taken from `last`. Angles in `last` beyond
+/// ±540° are first reduced by full turns, so that f32 stays precise.
 pub fn angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
     let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));

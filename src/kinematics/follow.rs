@@ -40,8 +40,9 @@ pub(crate) fn behind(
     })
 }
 
-/// The first parameter before `start` at which `excess` becomes positive, found by strides and then
-/// by bisection. `left` counts down the strides.
+/// Steps back from `start` by `stride` until `excess` is positive, then bisects the last step; returns
+/// the path's parameter there. Each step is counted off `left`, the number of steps still allowed;
+/// without a positive `excess`, the result is where the steps end.
 fn first_before(excess: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
     const MOST_STRIDES: usize = 10_000;
     const HALVINGS: usize = 40;

@@ -10,8 +10,8 @@ use crate::kinematics::euler;
 /// Drags of the arm.
 impl Session {
     /// Begins to drag the Cursor. If the Cursor is out of reach and the mouse is nearer to the
-    /// hand, a free drag starts at the hand; moving the Cursor to the hand does not change the
-    /// pose.
+    /// hand, a free drag (not along an axis
+    /// or in a plane) starts with the Cursor at the hand, which does not change the pose.
     pub(super) fn grab_hand(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
         let (arm, hand) = (*self.arm(), self.pose().hand);
         if !arm.uses_ik() {

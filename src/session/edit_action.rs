@@ -146,7 +146,7 @@ pub enum EditAction {
     ClearChannels(Vec<Channel>),
     /// Moves keys in time.
     MoveKeys {
-        /// The keys, with their times before the transaction.
+        /// The keys to move, each with the time that it had before the transaction.
         keys: Vec<Key>,
         /// Shift in seconds; positive is later.
         by: f64,

@@ -21,12 +21,11 @@ pub(super) struct Editing {
     /// The state before the open solver run; `None` if no run is open.
     before_run: Option<Snapshot>,
     history: History,
-    /// Number of the document's state: equal numbers mean equal documents, except for their
-    /// cameras.
+    /// Revision of the document: documents with the same revision differ at most in their cameras.
     revision: u64,
     newest_revision: u64,
-    /// Number of the document's content: equal numbers mean documents that are equal except for
-    /// their cameras, shown rig and overlays.
+    /// Revision of the document's content: documents with the same one differ at most in their
+    /// cameras, shown rig and overlays.
     content: u64,
     saved_content: u64,
 }

@@ -88,7 +88,8 @@ impl Playback {
         }
     }
 
-    /// Forgets the previous frame, so that a pause before the next frame does not count as time.
+    /// Forgets the previous frame, so that a pause before the next frame does not move the
+    /// playhead.
     pub fn forget_last_frame(&mut self) {
         self.last_frame = None;
     }

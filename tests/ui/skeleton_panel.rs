@@ -96,7 +96,7 @@ fn a_joint_can_be_renamed_but_not_to_a_name_in_use() {
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "hand"]);
     bench.apply([EditAction::RenameJoint { joint: JointId::new(1), name: "hand".to_owned() }]);
     assert_eq!(names(&bench)[1], "joint");
-    assert!(bench.says("Two joints are called \"hand\""));
+    assert!(bench.says("Names of joints must be unique, got \"hand\" twice"));
 }
 
 #[test]

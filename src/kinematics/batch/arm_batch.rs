@@ -64,8 +64,7 @@ impl<'a> ArmBatch<'a> {
     /// and, if given, the limbs' rotations to `rotations`.
     ///
     /// # Errors
-    ///
-    /// [`BatchError::Len`] for outputs of another length than the batch.
+    /// [`BatchError::Len`] if the length of an output differs from the number of arms.
     pub fn solve(
         &self,
         mut positions: BatchPositions<'_>,

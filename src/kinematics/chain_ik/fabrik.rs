@@ -52,7 +52,7 @@ struct LinkPoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PointMember {
     kind: MemberKind,
-    /// Sum of the weights of all end effectors at the member and below.
+    /// Sum of the weights of the tip, or of all end effectors at the child joint and below.
     weight: f32,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Transpose {
     searched: bool,
     /// The step τ: the last successful one, or the initial step.
     step: f32,
-    /// Initial value of τ.
+    /// The step τ of the first iteration.
     initial_step: f32,
     wrenches: Wrenches,
     gradient: (Vec<Vec3>, Vec<Vec3A>),

@@ -77,7 +77,7 @@ pub enum JobField {
     Twist,
     /// Softness of the limits.
     Softness,
-    /// Fraction of the correction to apply.
+    /// Weight: the fraction of the correction to apply.
     Weight,
 }
 

@@ -33,7 +33,8 @@ pub struct TwoBoneJob {
     /// joint. It is right-handed about the direction to the target in start joint space, and so
     /// left-handed in model space if the start joint's matrix mirrors.
     pub twist: f32,
-    /// Softness s of the limits, from 0 to less than 1: see [`SoftReach`]. Bones do not stretch.
+    /// Softness s of the limits of the reach, from 0 to less than 1: see [`SoftReach`]. A job never
+    /// stretches bones.
     pub softness: f32,
     /// Fraction of the correction to apply, from 0 (exactly none) to 1.
     pub weight: f32,

@@ -122,7 +122,8 @@ impl Skeleton {
         self.placed_under_in(&self.pose_in_skeleton(), joint, parent, near)
     }
 
-    /// [`Skeleton::placed_under`] for a given pose in skeleton space.
+    /// Like [`Skeleton::placed_under`], but with a given pose in skeleton space instead of the
+    /// skeleton's own.
     pub(crate) fn placed_under_in(
         &self,
         pose: &SkeletonPose,

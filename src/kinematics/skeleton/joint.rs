@@ -63,8 +63,8 @@ impl Joint {
         frame * rotation * frame.transpose()
     }
 
-    /// Unit axis of the rotation by the angle about x, y or z (`axis` 0, 1 or 2), in the space of
-    /// the joint's base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z.
+    /// Unit axis about which the joint's angle x, y or z (`axis` 0, 1 or 2) turns, in the space of the
+    /// joint's base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z with the joint's frame A.
     pub fn rotation_axis(&self, axis: usize) -> Vec3 {
         (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
     }

@@ -4,8 +4,8 @@ use super::stereographic::{Stereographic, unit};
 use crate::kinematics::two_bone::Pointer;
 
 /// A Pointer with its twist reference: the state of
-/// [`TwistReference::Transport`](super::TwistReference::Transport). It also replaces the other
-/// references where they are singular.
+/// [`TwistReference::Transport`](super::TwistReference::Transport). The other references fall back to this frame
+/// where they are singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TransportedFrame {

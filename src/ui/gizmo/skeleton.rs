@@ -73,8 +73,9 @@ impl SkeletonGizmo {
         Some(Grip::Target(hit.joint, PointHandle::Free))
     }
 
-    /// The tip at a screen position; `None` if there is no tip. Of several tips, that of a selected
-    /// joint comes first, then the nearest, then that of the last joint.
+    /// The tip at a screen position; `None` if there is no tip. Among several tips, it
+    /// prefers one of a selected joint, then the nearest to the mouse, then the one of the joint with
+    /// the highest index.
     fn tip_at(&self, mouse: Pos2) -> Option<Grip> {
         let tips = self
             .bones

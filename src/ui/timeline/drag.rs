@@ -54,7 +54,7 @@ pub(in crate::ui) fn clear(ui: &Ui) {
     ui.data_mut(|data| data.remove::<TimelineDrag>(id()));
 }
 
-/// Whether no mouse button is held or one was released in this frame.
+/// Whether a drag ends: a mouse button was released in this frame, or none is held.
 pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
     ui.input(|input| !input.pointer.any_down() || input.pointer.any_released())
 }

@@ -16,8 +16,8 @@ use crate::ui::widgets::symbol;
 const HEIGHT: f32 = 170.0;
 const MARGIN: f32 = 26.0;
 const SIZE: f32 = 14.0;
-/// Radius of the arc of the angle.
-const ARC: f32 = 24.0;
+/// Radius of the arc of θ_e, in points.
+const ARC: f32 = 18.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
     let (rect, response) =
@@ -116,15 +116,15 @@ impl TriangleDrawing {
         labels.write_always("d_2", self.lower, beside(elbow, hand, 12.0));
         labels.write_always("D", self.text, beside(hand, shoulder, 13.0));
         let angle = self.angle.min(TAU / 4.0);
-        let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
+        let in_angle = [31.0, 38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             let at = |part: f32| shoulder + radius * Vec2::angled(-part * angle);
-            [0.5, 0.65, 0.35].map(at)
+            [0.5, 0.65, 0.8, 0.35].map(at)
         });
         let [below, ..] = beside(hand, shoulder, 13.0).map(|at| pos2(shoulder.x + ARC + 8.0, at.y));
         labels.write("θ_e", self.accent, in_angle.chain([below]));
         let heights = beside(elbow, foot, 12.0).into_iter().chain(beside(elbow, foot, -12.0));
         labels.write("o_e", self.weak, heights);
-        labels.write("h_e", self.weak, beside(foot, shoulder, 13.0));
+        labels.write("h_e", self.weak, along(foot, shoulder).map(|at| at + vec2(0.0, 13.0)));
     }
 
     fn lines(&self) -> [[Pos2; 2]; 4] {
