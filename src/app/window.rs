@@ -16,9 +16,9 @@ use super::device_retries::DeviceRetries;
 use super::error::AppError;
 use super::graphics::{Graphics, guarded};
 use super::graphics_error::GraphicsError;
+use super::lap_timer::lap_timer;
 use super::present::Presented;
 use super::settings::Settings;
-use super::stopwatch::stopwatch;
 use super::title::{TITLE, title};
 use super::user_event::UserEvent;
 use crate::scene::{Scene, SceneBuilder};
@@ -308,7 +308,7 @@ impl AppWindow {
         session: &mut Session,
         frame: &mut FrameTime,
     ) -> (FullOutput, Rect, Vec<Effect>) {
-        let mut lap = stopwatch();
+        let mut lap = lap_timer();
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
         let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
@@ -363,7 +363,7 @@ impl AppWindow {
                 Ok(Presented::Later(None))
             });
         }
-        let mut lap = stopwatch();
+        let mut lap = lap_timer();
         let (document, theme) = (session.shown(), session.preferences().theme);
         session.write_overlays(&mut self.overlays);
         match &mut self.scene {

@@ -36,7 +36,7 @@ struct Cli {
 enum Command {
     /// Solve arm poses: one JSON object per line in, one per line out
     Solve(SolveArgs),
-    /// Print the pose of a file's skeleton as JSON, after solving its targets if asked
+    /// Print the pose of a file's skeleton as JSON, and, with --solver, solve for its targets
     Pose(PoseArgs),
     /// Draw the arm, a file or a crowd to a PNG, without a window
     Render(RenderArgs),

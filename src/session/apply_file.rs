@@ -119,10 +119,10 @@ impl Session {
             self.shell.open_dialog(Dialog::Unsaved { then: Box::new(action) });
             return None;
         }
-        self.apply_file_unasked(action)
+        self.apply_confirmed_file(action)
     }
 
-    fn apply_file_unasked(&mut self, action: FileAction) -> Option<Effect> {
+    fn apply_confirmed_file(&mut self, action: FileAction) -> Option<Effect> {
         let effect = self.file_effect(action);
         if matches!(effect, Some(Effect::ChoosePath(_))) {
             self.shell.set_choosing(true);
@@ -195,7 +195,7 @@ impl Session {
             }
             FileAction::Discard(then) => {
                 self.shell.take_dialog();
-                return self.apply_file_unasked(*then);
+                return self.apply_confirmed_file(*then);
             }
             FileAction::Recover { document, file } => self.recover(*document, file),
             FileAction::DeclineRecovery => {

@@ -23,7 +23,7 @@ impl Files {
     const MOST_RECENT: usize = 10;
 
     /// The state after another document was opened: `file` is its file, pending requests are
-    /// dropped, and the rest is carried over.
+    /// dropped, and the rest is kept.
     pub fn replaced(&mut self, file: Option<PathBuf>) -> Self {
         Self {
             file,

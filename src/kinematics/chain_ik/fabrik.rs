@@ -1,21 +1,21 @@
-//! Forward and backward reaching: points move towards their goals, first from the targets to the
-//! roots (inward), then back (outward). Each point keeps its distance r from its link's joint, the
-//! base.
+//! Forward and backward reaching: points move towards their destinations, first from the targets to
+//! the roots (inward), then back (outward). Each point keeps its distance r from its link's joint,
+//! the base.
 //!
 //! ```text
-//! inward    base' = goal + r · unit(base − goal)      goal: the target, or the child's base'
-//! outward   point = base + r · unit(goal − base)      base: of the root, then the parent's point
+//! inward    base' = q + r · unit(base − q)         q, the destination: the target, or the child's base'
+//! outward   point = base + r · unit(q − base)      base: of the root, then the parent's point
 //! ```
 //!
-//! The goal of a point that several children share is the weighted mean of the goals of the
-//! children's bases. A link with several points (a bone with children away from its tip, or a
+//! The destination of a point that several children share is the weighted mean of the destinations
+//! of the children's bases. A link with several points (a bone with children away from its tip, or a
 //! locked fork) takes the mean of the positions base' that its points give, and rotates as a whole,
 //! to the best fit.
 //!
 //! If any link has limits, every link rotates as a whole on the outward pass, and limited links
-//! angle by angle within their limits. The inward pass ignores limits and may set goals that the
-//! limits forbid, so that the points would oscillate. An iteration that does not lower the cost is
-//! therefore replaced by a sweep of cyclic coordinate descent.
+//! angle by angle within their limits. The inward pass ignores limits and may set destinations that
+//! the limits forbid, so that the points would oscillate. An iteration that does not lower the cost
+//! is therefore replaced by a sweep of cyclic coordinate descent.
 //!
 //! A chain whose only target is out of reach is laid out straight towards the target.
 //!
@@ -79,9 +79,9 @@ pub(super) struct Fabrik {
     /// limits.
     ccd: Ccd,
     /// Goal of each point.
-    goals: Vec<Vec3A>,
+    destinations: Vec<Vec3A>,
     /// Goal of each link's joint.
-    base_goals: Vec<Vec3A>,
+    base_destinations: Vec<Vec3A>,
     /// Vector to each point from the joint of the point's link.
     arms: Vec<Vec3A>,
     pairs: Vec<PointPair>,
@@ -94,7 +94,7 @@ impl Fabrik {
             mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
             limited: problem.links.iter().any(Link::is_limited),
             ccd: Ccd::new(problem),
-            base_goals: vec![Vec3A::ZERO; problem.links.len()],
+            base_destinations: vec![Vec3A::ZERO; problem.links.len()],
             ..Self::default()
         };
         let lists = fabrik.list_points(problem);
@@ -103,7 +103,7 @@ impl Fabrik {
             fabrik.points.extend(points);
             fabrik.ranges.push((from, fabrik.points.len()));
         }
-        fabrik.goals = vec![Vec3A::ZERO; fabrik.points.len()];
+        fabrik.destinations = vec![Vec3A::ZERO; fabrik.points.len()];
         fabrik.arms = vec![Vec3A::ZERO; fabrik.points.len()];
         fabrik.pairs.reserve(fabrik.points.len());
         fabrik
@@ -144,7 +144,7 @@ impl Fabrik {
     /// Makes the inward and the outward pass.
     fn reach(&mut self, problem: &Problem, config: &mut Configuration) {
         if self.is_out_of_reach(problem, config) {
-            self.goals.fill(problem.effectors[0].target);
+            self.destinations.fill(problem.effectors[0].target);
         } else {
             for link in (0..problem.links.len()).rev() {
                 self.reach_inward(problem, config, link);
@@ -172,48 +172,49 @@ impl Fabrik {
         effector.link.is_some() && effector.target.distance(config.bases[0]) >= length
     }
 
-    /// Sets the goals of a link's points and, from these, the goal of its joint.
+    /// Sets the destinations of a link's points and, from these, the destination of its joint.
     fn reach_inward(&mut self, problem: &Problem, config: &Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
         for index in from..to {
             let point = &self.points[index];
-            let goal = self.goal_of(problem, point);
-            self.goals[index] = goal;
+            let destination = self.destination_of(problem, point);
+            self.destinations[index] = destination;
             self.arms[index] = point.position_in(config) - base;
-            let back = normalize(base - goal).or_else(|| normalize(-self.arms[index]));
-            sum += point.weight * (goal + point.radius * back.unwrap_or(Vec3A::ZERO));
+            let back = normalize(base - destination).or_else(|| normalize(-self.arms[index]));
+            sum += point.weight * (destination + point.radius * back.unwrap_or(Vec3A::ZERO));
             weights += point.weight;
         }
-        self.base_goals[link] = sum / weights;
+        self.base_destinations[link] = sum / weights;
     }
 
-    /// Weighted mean of the goals of a point's members.
-    fn goal_of(&self, problem: &Problem, point: &LinkPoint) -> Vec3A {
+    /// Weighted mean of the destinations of a point's members.
+    fn destination_of(&self, problem: &Problem, point: &LinkPoint) -> Vec3A {
         if let [member] = point.members[..] {
-            return self.member_goal(problem, member.kind);
+            return self.member_destination(problem, member.kind);
         }
-        let goals = point.members.iter();
-        let sum: Vec3A =
-            goals.map(|member| member.weight * self.member_goal(problem, member.kind)).sum();
+        let destinations = point.members.iter();
+        let sum: Vec3A = destinations
+            .map(|member| member.weight * self.member_destination(problem, member.kind))
+            .sum();
         sum / point.weight
     }
 
-    fn member_goal(&self, problem: &Problem, member: MemberKind) -> Vec3A {
+    fn member_destination(&self, problem: &Problem, member: MemberKind) -> Vec3A {
         match member {
-            MemberKind::Base(link) => self.base_goals[link],
+            MemberKind::Base(link) => self.base_destinations[link],
             MemberKind::Tip(effector) => problem.effectors[effector].target,
         }
     }
 
     /// Shifts each tree by the weighted mean vector from the joints and tips fixed to its root to
-    /// their goals, unless that overflows.
+    /// their destinations, unless that overflows.
     fn move_roots(&self, problem: &Problem, config: &mut Configuration) {
         for (tree, ground) in self.grounds.iter().enumerate() {
             let weights: f32 = ground.iter().map(|member| member.weight).sum();
             let residual = |member: &PointMember| {
-                self.member_goal(problem, member.kind) - member.kind.position_in(config)
+                self.member_destination(problem, member.kind) - member.kind.position_in(config)
             };
             let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
             let shift = config.shifts[tree] + sum / weights;
@@ -228,13 +229,13 @@ impl Fabrik {
         }
     }
 
-    /// Moves the points of a link towards their goals, at their distances from the link's joint.
+    /// Moves the points of a link towards their destinations, at their distances from the link's joint.
     fn reach_outward(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
         if self.limited || to - from > 1 {
             self.rotate(problem, config, link);
-        } else if let Some(towards) = normalize(self.goals[from] - base) {
+        } else if let Some(towards) = normalize(self.destinations[from] - base) {
             self.arms[from] = self.points[from].radius * towards;
         }
         for index in from..to {
@@ -248,7 +249,7 @@ impl Fabrik {
         }
     }
 
-    /// Rotates a link as a whole, so that its points come near their goals.
+    /// Rotates a link as a whole, so that its points come near their destinations.
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
         // For several points, one rotation is the best about one axis only; a few rotations come
         // near the best of all.
@@ -267,7 +268,7 @@ impl Fabrik {
             let LinkPoint { position, weight, .. } = self.points[point];
             self.pairs.push(PointPair {
                 from: config.orientations[index] * position,
-                to: self.goals[point] - config.bases[index],
+                to: self.destinations[point] - config.bases[index],
                 weight,
             });
         }

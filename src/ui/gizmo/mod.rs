@@ -38,7 +38,7 @@ impl Gizmo {
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         match self {
             Self::Arm(arm) => arm.at(mouse),
-            Self::Skeleton(figure) => figure.at(mouse),
+            Self::Skeleton(skeleton) => skeleton.at(mouse),
             Self::None => None,
         }
     }
@@ -48,7 +48,7 @@ impl Gizmo {
     pub fn joint_at(&self, mouse: Pos2) -> Option<JointId> {
         match self {
             Self::Arm(_) | Self::None => None,
-            Self::Skeleton(figure) => figure.joint_at(mouse),
+            Self::Skeleton(skeleton) => skeleton.joint_at(mouse),
         }
     }
 
@@ -56,7 +56,7 @@ impl Gizmo {
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
         match self {
             Self::Arm(arm) => arm.paint(painter, ui, pointed, dragged),
-            Self::Skeleton(figure) => figure.paint(painter, ui, pointed, dragged),
+            Self::Skeleton(skeleton) => skeleton.paint(painter, ui, pointed, dragged),
             Self::None => {}
         }
     }

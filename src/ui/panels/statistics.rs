@@ -123,7 +123,7 @@ fn parts(ui: &mut Ui, machine: &Machine) {
 }
 
 fn heading(ui: &mut Ui, text: &str, tooltip: &str) {
-    figure(ui, RichText::new(format!("{text}, ms")).weak().size(12.0)).on_hover_text(tooltip);
+    number(ui, RichText::new(format!("{text}, ms")).weak().size(12.0)).on_hover_text(tooltip);
 }
 
 /// Shows a name and, to its left, a square of `colour` if there is a colour.
@@ -144,7 +144,7 @@ fn figures(ui: &mut Ui, times: &FrameTimes, part: impl Fn(&FrameTime) -> Option<
     let spread = times.spread(part);
     for time in [spread.map(|it| it.median), spread.map(|it| it.slowest)] {
         let text = time.map_or("–".to_owned(), |time| format!("{:.3}", milliseconds(time)));
-        figure(ui, RichText::new(text).monospace());
+        number(ui, RichText::new(text).monospace());
     }
     ui.end_row();
 }
@@ -156,12 +156,12 @@ fn row(ui: &mut Ui, name: &str, tooltip: &str, text: &str) {
         ui.set_min_width(size.x);
         ui.label(name).on_hover_text(tooltip);
     });
-    figure(ui, RichText::new(text).monospace());
+    number(ui, RichText::new(text).monospace());
     ui.end_row();
 }
 
 /// Shows right-aligned text in a column of constant width.
-fn figure(ui: &mut Ui, text: RichText) -> egui::Response {
+fn number(ui: &mut Ui, text: RichText) -> egui::Response {
     let right = Layout::right_to_left(Align::Center);
     let label = |ui: &mut Ui| {
         ui.set_min_width(FIGURE);

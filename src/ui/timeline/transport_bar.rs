@@ -223,7 +223,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let timeline = session.document().timeline;
-    let figure = |name, value, tooltip| TimeField {
+    let field = |name, value, tooltip| TimeField {
         name,
         label: name,
         value,
@@ -234,11 +234,11 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         tooltip,
     };
     let is_editing = session.is_editing();
-    let start = figure("Start", timeline.start, "Set the start of the timeline");
+    let start = field("Start", timeline.start, "Set the start of the timeline");
     start.show(ui, roomy, is_editing, actions, |start| {
         EditAction::SetTimeline(Timeline { start, ..timeline })
     });
-    let end = figure("End", timeline.end, "Set the end of the timeline");
+    let end = field("End", timeline.end, "Set the end of the timeline");
     end.show(ui, roomy, is_editing, actions, |end| {
         EditAction::SetTimeline(Timeline { end, ..timeline })
     });
