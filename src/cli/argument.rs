@@ -10,7 +10,8 @@ use crate::document::{Display, Overlay, Theme};
 use crate::export::ExportOptions;
 use crate::kinematics::two_bone::TwoBone;
 
-/// Rule that the text of an argument breaks. The command line names the argument and its text.
+/// Rule that the text of an argument breaks. clap adds the argument's name and its text to the
+/// message.
 #[derive(Debug, Error, PartialEq)]
 pub enum ArgumentError {
     #[error("size must be like 1280x800, each side 1 to {max}", max = ExportOptions::MAX_SIDE)]
@@ -117,7 +118,8 @@ impl FromStr for PointArgument {
 }
 
 impl GuidesArgument {
-    /// A display with these guides shown, the other guides hidden and the rest unchanged.
+    /// Returns `display` with these guides shown, the other guides hidden and all other overlays
+    /// unchanged.
     pub fn shown_in(&self, display: Display) -> Display {
         let show = |display: Display, guide| display.with(guide, self.0.contains(&guide));
         Overlay::GUIDES.into_iter().fold(display, show)

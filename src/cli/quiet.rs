@@ -1,4 +1,4 @@
-//! Keeps graphics drivers from writing to standard error without an error.
+//! Keeps graphics drivers from printing error messages when nothing is wrong.
 
 /// Replaces this process by one without Mesa's Vulkan layer "device select", if the layer would
 /// print an error.
@@ -27,7 +27,8 @@ mod linux {
         }
         let (Ok(program), mut arguments) = (env::current_exe(), env::args_os()) else { return };
         let name = arguments.next().unwrap_or_default();
-        // Returns only if it fails. This process then continues, with the layer's errors.
+        // `exec` returns only if it fails. This process then continues, and the layer prints its
+        // errors.
         let error = Command::new(program).arg0(name).args(arguments).env(SWITCH, "1").exec();
         log::debug!("cannot restart: {error}");
     }

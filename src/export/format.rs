@@ -39,11 +39,12 @@ impl Format {
         ("apng", Self::Apng),
     ];
 
-    /// Format that a file name selects by its extension and, for PNG, by whether it contains `#`.
+    /// Returns the format that a file name selects by its extension and, for PNG, by whether the
+    /// name contains `#`.
     ///
     /// # Errors
     ///
-    /// If the extension is unknown.
+    /// Fails if the extension is unknown.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
         let matches = |(known, _): &(&str, Self)| extension.eq_ignore_ascii_case(known);
@@ -54,7 +55,7 @@ impl Format {
         }
     }
 
-    /// Whether it consists of pictures.
+    /// Whether the format consists of pictures.
     pub fn is_picture(self) -> bool {
         matches!(self, Self::Png | Self::PngSequence | Self::Apng)
     }
@@ -64,7 +65,8 @@ fn extensions() -> String {
     Format::EXTENSIONS.map(|(extension, _)| format!(".{extension}")).join(", ")
 }
 
-/// The file that an export to this path would overwrite, or the first of them for a sequence.
+/// Returns the existing file that an export to `path` would overwrite, or the first of several
+/// existing files of a sequence. `None` if no file would be overwritten.
 pub fn existing(path: &Path) -> Option<PathBuf> {
     let is_sequence = matches!(Format::of(path), Ok(Format::PngSequence));
     let Some(numbered) = NumberedName::new(path).filter(|_| is_sequence) else {

@@ -26,8 +26,8 @@ use crate::io::{self, Exported, Progress};
 ///
 /// # Errors
 ///
-/// If it is cancelled, the format is unknown or cannot hold the document, or the file cannot be
-/// written. The path then holds no file, or the previous one.
+/// Fails if the export is cancelled, the format is unknown or cannot hold the document, or the file
+/// cannot be written. At `path` there is then no file, or the file that was there before.
 pub fn export(
     document: &Document,
     path: &Path,

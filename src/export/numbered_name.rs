@@ -1,10 +1,10 @@
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-/// Placeholder for a digit of a frame's number.
+/// Placeholder for one digit of a frame's number.
 const DIGIT: char = '#';
 
-/// A file name with a placeholder for a number: its last run of `#`.
+/// A file name with a placeholder for a number: the last run of `#` in the name.
 pub(super) struct NumberedName {
     before: String,
     digits: usize,
@@ -25,7 +25,8 @@ impl NumberedName {
         })
     }
 
-    /// Whether a file name is one of the sequence.
+    /// Whether `name` is the name of a file of the sequence, with a number in place of the
+    /// placeholder.
     pub fn contains(&self, name: &OsStr) -> bool {
         let digits = name.to_str().and_then(|name| {
             name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())
@@ -35,7 +36,8 @@ impl NumberedName {
         })
     }
 
-    /// Name of a number, padded with zeros.
+    /// The file name with `number` in place of the placeholder. The number is padded with zeros to
+    /// the length of the placeholder.
     pub fn with_number(&self, number: usize) -> OsString {
         const MAX_DIGITS: usize = 64;
         let Self { before, after, .. } = self;

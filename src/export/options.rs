@@ -1,10 +1,10 @@
 use crate::document::Theme;
 use crate::io::BvhUnit;
 
-/// Options of an export; each applies to the formats that have it.
+/// Options of an export. Each format uses only the options that apply to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportOptions {
-    /// Frames per second; `None` for the timeline's.
+    /// Frames per second; `None` for the timeline's frame rate.
     pub fps: Option<u32>,
     /// Width and height of a picture in pixels.
     pub size: (u32, u32),
@@ -12,7 +12,7 @@ pub struct ExportOptions {
     pub theme: Theme,
     /// Time of a single picture in seconds; `None` for the timeline's start.
     pub time: Option<f64>,
-    /// Length unit of BVH.
+    /// Unit of lengths in a BVH file.
     pub unit: BvhUnit,
 }
 

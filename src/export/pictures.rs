@@ -10,7 +10,7 @@ use crate::render::{Gpu, PictureRenderer};
 use crate::scene::SceneBuilder;
 use crate::session::Overlays;
 
-/// Encodes one picture.
+/// Draws one picture and encodes it as PNG.
 pub fn still(
     document: &Document,
     options: &ExportOptions,
@@ -28,7 +28,7 @@ pub fn still(
     Ok(Exported { bytes, notes: Vec::new() })
 }
 
-/// Writes one file per frame, all or none.
+/// Writes one picture file per frame, either all files or none.
 pub fn sequence(
     document: &Document,
     path: &Path,
@@ -104,7 +104,7 @@ impl<'a> FrameRenderer<'a> {
         })
     }
 
-    /// RGBA pixels at a time, rows from the top.
+    /// Draws the document at `time`, in seconds. Returns the RGBA pixels in rows from the top.
     fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
         let document = self.evaluator.at(time);
         self.overlays = std::mem::take(&mut self.overlays).at(document, time);

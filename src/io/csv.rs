@@ -9,13 +9,14 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
-/// One row per frame: its number from 0, its time in seconds from the first frame, the world
-/// position of every joint's base, then that of every leaf bone's tip, in units of the scene. Of
-/// the arm: shoulder, elbow, hand.
+/// Each row is a frame: the frame's number from 0, its time in seconds from the first frame, and
+/// world positions in units of the scene. A skeleton has the positions of all joints' bases, then
+/// those of all leaf bones' tips. The arm has the positions of shoulder, elbow and hand.
 ///
 /// # Errors
 ///
-/// Fails if cancelled, or if the rig or the timeline is too large for a table.
+/// Fails if the export is cancelled, `fps` is invalid, a position overflows, or the rig or the
+/// timeline is too large for a table.
 pub fn to_csv(
     document: &Document,
     fps: Option<u32>,
@@ -48,10 +49,10 @@ pub fn to_csv(
     Ok(Exported { bytes, notes: Vec::new() })
 }
 
-/// The points in the columns of the table.
+/// The points of a rig that fill the columns of the table.
 struct Columns {
     names: Vec<String>,
-    /// The joints whose bone's tip is in the table.
+    /// Indices of the leaf joints. The tips of their bones are in the table.
     leaves: Vec<usize>,
 }
 

@@ -35,24 +35,26 @@ pub enum OpenError {
         file: String,
         /// The requested name.
         name: String,
-        /// Names of the file's skeletons; empty where skeletons have no names.
+        /// Names of the file's skeletons; empty for this program's own format, in which the one
+        /// skeleton has no name.
         names: Vec<String>,
     },
 }
 
 impl OpenError {
-    /// The size of the largest file that is read.
+    /// Maximum size of a file that is read, in bytes.
     pub const MAX_BYTES: u64 = 64 << 20;
 }
 
 /// A message about a position in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// Line from 1; 0 in a binary file.
+    /// Number of the line, from 1; 0 for a binary file.
     pub line: usize,
-    /// Column from 1, in characters; 0 in a binary file.
+    /// Column in characters, from 1; 0 for a binary file.
     pub column: usize,
-    /// Path of the field, like `skeleton.joints[3].parent`; empty if the message is about none.
+    /// Path of the field that the message is about, like `skeleton.joints[3].parent`, or in a BVH
+    /// file the name of the joint. Empty if the message is about neither.
     pub field: String,
     /// The rule and the value that breaks it.
     pub reason: String,
@@ -113,7 +115,7 @@ fn list(names: &[String]) -> String {
     }
 }
 
-/// Cuts the middle out of a long message.
+/// Replaces the middle of a long message by `…`.
 pub(crate) fn shortened(message: String) -> String {
     const START: usize = 200;
     const END: usize = 120;

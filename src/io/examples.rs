@@ -6,15 +6,15 @@ use crate::document::Document;
 /// An example document that is built into the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
-    /// The list that it is shown in.
+    /// The list in which the example is shown.
     pub group: Group,
-    /// Name of its file without extension.
+    /// Name of the example's file, without extension.
     pub name: &'static str,
-    /// Name on screen.
+    /// Name of the example on screen.
     pub title: &'static str,
-    /// One sentence about it.
+    /// One sentence that describes the example.
     pub sentence: &'static str,
-    /// Content of its file.
+    /// Content of the example's file.
     pub text: &'static str,
 }
 
@@ -27,7 +27,8 @@ pub enum Group {
     HardCases,
 }
 
-/// The document of a new window: the arm, and the Human to switch to.
+/// Returns the document of a new window, which shows the arm. Its skeleton, to which the user can
+/// switch, is the one of the Human example.
 pub fn new_document() -> Document {
     let human = Example::find("human").and_then(|human| human.open().ok());
     let skeleton_rig = human.map(|opened| opened.document.skeleton_rig).unwrap_or_default();
@@ -183,7 +184,7 @@ impl Example {
         Self::ALL.into_iter().filter(move |example| example.group == group)
     }
 
-    /// The example with a name.
+    /// The example called `name`; `None` if there is no such example.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|example| example.name == name)
     }

@@ -13,12 +13,12 @@ impl FieldError {
     }
 }
 
-/// Oddities that do not keep a file from being opened. Only the first are kept, because finding the
-/// position of each searches the text.
+/// Warnings about a file that can be opened all the same. Only the first few are kept, because
+/// finding the position of a warning takes a search through the whole text.
 #[derive(Debug, Default)]
 pub struct FieldWarnings {
     pub first: Vec<FieldError>,
-    /// Number of further warnings.
+    /// Number of warnings that came after those in `first`.
     pub more: usize,
 }
 

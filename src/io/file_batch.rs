@@ -8,24 +8,25 @@ use tempfile::TempDir;
 use super::WriteError;
 use super::write::{failed, folder_of};
 
-/// Several files in one folder that are written all or none, by way of a temporary folder beside
-/// them.
+/// Files of one folder that are written all together or not at all. They are first written to a
+/// temporary folder inside that folder.
 ///
-/// Existing files are replaced only at the end, and restored if one of them cannot be replaced.
+/// Only [`FileBatch::finish`] replaces existing files. It restores them if one of them cannot be
+/// replaced.
 #[derive(Debug)]
 pub struct FileBatch {
     folder: PathBuf,
-    /// Holds the new files until the end, then the replaced ones in [`BACKUP`]; deleted with the
-    /// batch.
+    /// Temporary folder of the new files, with the subfolder [`BACKUP`] for the files that they
+    /// replace. Deleted when the batch is dropped.
     temporary: TempDir,
     names: Vec<OsString>,
 }
 
-/// Subfolder of the files that are replaced.
+/// Name of the subfolder that holds the replaced files.
 const BACKUP: &str = "before";
 
 impl FileBatch {
-    /// A batch without files, in the folder of a file.
+    /// Returns a batch without files, for the folder that contains the file `path`.
     ///
     /// # Errors
     ///
@@ -40,11 +41,11 @@ impl FileBatch {
         Ok(Self { folder, temporary, names: Vec::new() })
     }
 
-    /// Adds a file. Its name must differ from those of the others.
+    /// Adds a file. Its name must differ from the names of the other files in the batch.
     ///
     /// # Errors
     ///
-    /// Fails if it cannot be written.
+    /// Fails if the file cannot be written.
     pub fn add(&mut self, name: &OsStr, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.new_path(name);
         fs::write(path, bytes).map_err(|source| failed(&self.folder.join(name), source))?;
@@ -52,11 +53,11 @@ impl FileBatch {
         Ok(())
     }
 
-    /// Moves all files to the folder.
+    /// Moves all files from the temporary folder to their final folder.
     ///
     /// # Errors
     ///
-    /// Fails if one cannot be moved. The folder is then restored as far as possible.
+    /// Fails if a file cannot be moved. The final folder is then restored as far as possible.
     pub fn finish(self) -> Result<(), WriteError> {
         for (index, name) in self.names.iter().enumerate() {
             if let Err(source) = self.install(name) {
@@ -81,7 +82,7 @@ impl FileBatch {
 
     fn restore(&self, name: &OsStr) {
         let path = self.folder.join(name);
-        // The error that led here is the one to report.
+        // Errors are ignored, because the caller already has an error to report.
         let _ = fs::remove_file(&path);
         let _ = fs::rename(self.backup_path(name), &path);
     }

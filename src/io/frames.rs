@@ -10,8 +10,9 @@ pub struct ExportFrames {
 }
 
 impl ExportFrames {
-    /// The frames of the document's timeline, at `fps` frames a second if given; only the first if
-    /// the rig's pose does not change.
+    /// The frames of the document's timeline at `fps` frames per second, or at the timeline's own
+    /// frame rate if `fps` is `None`. If the pose of the rig does not change over time, there is
+    /// only the first frame.
     ///
     /// # Errors
     ///
@@ -20,12 +21,12 @@ impl ExportFrames {
         Self::new(document, fps, document.is_animated())
     }
 
-    /// Like [`ExportFrames::of_pose`] for pictures: only the first frame if nothing visible
-    /// changes.
+    /// Like [`ExportFrames::of_pose`], but for pictures: if nothing visible changes over time,
+    /// there is only the first frame.
     ///
     /// # Errors
     ///
-    /// As [`ExportFrames::of_pose`].
+    /// Fails for the same reason as [`ExportFrames::of_pose`].
     pub fn of_picture(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
         let is_moving = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
         Self::new(document, fps, is_moving || !document.keys.is_empty())
@@ -61,7 +62,7 @@ impl ExportFrames {
     }
 }
 
-/// Evaluates a document at successive times without copying it for each.
+/// Evaluates a document at many times without copying the document each time.
 pub struct FrameEvaluator {
     document: Document,
 }
@@ -72,7 +73,7 @@ impl FrameEvaluator {
         Self { document: document.clone() }
     }
 
-    /// The document at a time, like [`Document::evaluate`].
+    /// Returns the document at `time` in seconds, equal to the result of [`Document::evaluate`].
     pub fn at(&mut self, time: f64) -> &Document {
         self.document.apply_keys(time);
         &self.document

@@ -1,4 +1,4 @@
-//! Paths to values of a JSON text, and their positions.
+//! Paths to values in a JSON text, and the positions of these values in the text.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 
-/// The path to a value of a JSON text.
+/// The path to a value in a JSON text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JsonPath(Vec<PathSegment>);
 
@@ -17,7 +17,7 @@ enum PathSegment {
 }
 
 impl JsonPath {
-    /// The path to the whole text.
+    /// The empty path, which leads to the outermost value of the text.
     pub fn root() -> Self {
         Self::default()
     }
@@ -34,7 +34,7 @@ impl JsonPath {
         self
     }
 
-    /// The names of all fields on the path.
+    /// The names of all fields on the path, from the outside inwards. Array indices are left out.
     pub fn keys(&self) -> impl DoubleEndedIterator<Item = &str> {
         self.0.iter().filter_map(|segment| match segment {
             PathSegment::Key(key) => Some(key.as_str()),
@@ -42,7 +42,8 @@ impl JsonPath {
         })
     }
 
-    /// The byte at which the value begins, or else the nearest existing value around it.
+    /// Returns the byte of `text` at which the value begins. If the value does not exist, returns
+    /// the byte at which the innermost existing value around it begins.
     pub fn find(&self, text: &str) -> usize {
         let depths = (1..=self.0.len()).rev();
         let found = depths.map(|depth| &self.0[..depth]).find_map(|path| find(text, path));
@@ -94,14 +95,16 @@ impl From<&serde_ignored::Path<'_>> for JsonPath {
     }
 }
 
-/// Line and column of a byte, each from 1, the column in characters.
+/// Returns the line and the column of a byte of `text`. Both count from 1, and the column counts
+/// characters.
 pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |end| end + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// The byte at a line and a column in bytes, each from 1.
+/// Returns the byte of `text` at a line and a column. Both count from 1, and the column counts
+/// bytes. If the column is within a character, returns the first byte of the character.
 pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
     let start = start_of_line(text, line);
     let mut byte = (start + column.saturating_sub(1)).min(text.len());
@@ -128,7 +131,8 @@ fn skip_space(text: &str, from: usize) -> usize {
     text.len() - rest.trim_start().len()
 }
 
-/// Parses up to a value and fails there, so that the error has its position.
+/// Parses up to the value at `path`, sets `found` and fails there, so that the error has the
+/// position of the value.
 struct ValueFinder<'a> {
     path: &'a [PathSegment],
     found: &'a mut bool,

@@ -3,7 +3,8 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
-/// JSON for people: one line per field, rows of numbers on one line.
+/// Serializes a value as JSON that is easy to read: each field on its own line, each array of
+/// numbers on one line.
 pub fn to_styled_json(value: &impl Serialize) -> Result<String, serde_json::Error> {
     let mut bytes = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, JsonStyle::default());

@@ -2,12 +2,12 @@
 //! and [`to_csv`] write; [`solve_line`] answers the lines of `ik-arm solve`. docs/files.md
 //! describes the formats.
 //!
-//! An [`OpenError`] has the line, the column, the field, the rule and the value. Oddities that do
-//! not keep a file from being opened are [`Remark`]s in [`Opened`]. Losses of an export are in the
-//! notes of [`Exported`].
+//! An [`OpenError`] names the line, the column, the field, the rule and the value. Warnings about a
+//! file that can be opened all the same are [`Remark`]s in [`Opened`]. Content that an export
+//! cannot hold is listed in the notes of [`Exported`].
 //!
-//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]; nothing
-//! else writes to the disk.
+//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]. No
+//! other code writes documents or exports.
 
 mod bvh;
 mod csv;

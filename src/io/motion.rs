@@ -8,7 +8,7 @@ use crate::document::Timeline;
 pub struct Exported {
     /// The bytes of the file.
     pub bytes: Vec<u8>,
-    /// Losses: content of the document that the format cannot hold.
+    /// Descriptions of content of the document that the format cannot hold.
     pub notes: Vec<String>,
 }
 
@@ -48,14 +48,14 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// The most numbers that a motion can have: about a gigabyte of text.
+    /// Maximum count of numbers in a motion. As text they take about a gigabyte.
     pub const MOST_NUMBERS: usize = 100_000_000;
 
-    /// Checks the size of a motion.
+    /// Checks the size of a motion that has `frames` frames of `numbers` numbers each.
     ///
     /// # Errors
     ///
-    /// Fails with more than [`MotionError::MOST_NUMBERS`].
+    /// Fails if the motion has more than [`MotionError::MOST_NUMBERS`] numbers.
     pub(super) fn check_size(frames: usize, numbers: usize) -> Result<(), Self> {
         if frames.saturating_mul(numbers) > Self::MOST_NUMBERS {
             return Err(Self::TooMuch { frames, numbers });

@@ -13,17 +13,19 @@ use super::source::Source;
 use super::value::Whole;
 use super::{bvh, format, gltf, js3d};
 
-/// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file, detected by its
-/// content. Of several skeletons, the one called `skeleton` or else the first is opened.
+/// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
+/// detected by the content. If the file has several skeletons, the one called `skeleton` is opened,
+/// or with `None` the first.
 ///
 /// # Errors
 ///
-/// Fails if the file cannot be read or has none of these formats.
+/// Fails if the file cannot be read, has none of these formats, has invalid content, or has no
+/// skeleton called `skeleton`.
 pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
     open_source(&Source::open(path)?, skeleton)
 }
 
-/// Like [`open`], from a reader. `name` stands for the file in errors.
+/// Like [`open`], but reads the content from `input`. Errors call the file `name`.
 ///
 /// # Errors
 ///
@@ -32,7 +34,7 @@ pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Open
     open_source(&Source::read(name, input)?, skeleton)
 }
 
-/// Like [`open`], from a text. `name` stands for the file in errors.
+/// Like [`open`], but takes the content as a text. Errors call the file `name`.
 ///
 /// # Errors
 ///
@@ -98,7 +100,7 @@ impl<'de> Visitor<'de> for FileFormatVisitor<'_> {
         while let Some(key) = map.next_key::<Cow<'_, str>>()? {
             let format = match &*key {
                 "format" => FileFormat::Document,
-                // In glTF, "scene" is a number, and "asset" may come later.
+                // A number can be the "scene" of a glTF file whose "asset" comes later.
                 "scene" if map.next_value::<Whole>().is_ok() => {
                     *self.0 = Some(FileFormat::Scene);
                     continue;

@@ -7,11 +7,11 @@ use crate::kinematics::skeleton::JointId;
 pub struct Opened {
     /// The document.
     pub document: Document,
-    /// Oddities in the file that did not keep it from being opened.
+    /// Warnings about a file that could be opened all the same.
     pub warnings: Vec<Remark>,
     /// For each joint in the file's order, its index in the document's skeleton.
     pub order: Vec<JointId>,
-    /// The names of the file's skeletons, one of which is the document's; empty where skeletons
-    /// have no names.
+    /// The names of the file's skeletons, one of which was opened; empty for this program's own
+    /// format, in which the one skeleton has no name.
     pub skeletons: Vec<String>,
 }

@@ -16,7 +16,8 @@ pub struct Progress {
 pub struct Cancelled;
 
 impl Progress {
-    /// Reports that `done` of `total` steps are done. The job calls it often.
+    /// Reports that `done` of `total` steps are done. The job calls this method often, so that it
+    /// stops soon when it is cancelled.
     ///
     /// # Errors
     ///

@@ -14,11 +14,11 @@ use super::translation::Translation;
 pub struct Source {
     name: String,
     text: String,
-    /// The text of the file before the translation, if `text` is a translation.
+    /// The original text of the file and its translation, if `text` is translated.
     translated: Option<(String, Translation)>,
     /// The binary chunk of a GLB file.
     binary: Option<Vec<u8>>,
-    /// The folder of the file, for other files that it names.
+    /// The folder of the file, in which other files that it names are looked up.
     folder: Option<PathBuf>,
 }
 
@@ -90,7 +90,7 @@ impl Source {
         self.binary.as_deref()
     }
 
-    /// The folder of the file, if it was opened by its path.
+    /// The folder of the file; `None` if the file was not opened by its path.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -123,7 +123,8 @@ impl Source {
         remarks
     }
 
-    /// An error of the parser, at the position of the invalid value.
+    /// Converts an error of the JSON parser. The result is at the position of the invalid value,
+    /// or, for a text that is not JSON, where the parser stopped.
     pub fn parse_error(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
         let reason = without_position(error);
         if self.text.trim_ascii().is_empty() {
@@ -144,7 +145,8 @@ impl Source {
         OpenError::Content { file: self.name.clone(), remark }
     }
 
-    /// A remark at a byte of the text, about a joint if its name is not empty.
+    /// Returns a remark at a byte of the text. `joint` is the name of the joint that the remark is
+    /// about, or empty.
     pub fn remark_about(&self, byte: usize, joint: &str, reason: &str) -> Remark {
         let field = if joint.is_empty() { JsonPath::root() } else { JsonPath::root().key(joint) };
         self.remark_at(byte, &field, reason)
@@ -166,10 +168,10 @@ impl Source {
     }
 }
 
-/// serde_json identifies this error by its text alone.
+/// Message of serde_json for a number that overflows. Only this text identifies the error.
 const OUT_OF_RANGE: &str = "number out of range";
 
-/// An error of a binary file as a whole.
+/// The error of a binary file, without line, column and field.
 fn invalid_chunks(file: String, reason: String) -> OpenError {
     OpenError::Content { file, remark: Remark { line: 0, column: 0, field: String::new(), reason } }
 }

@@ -1,4 +1,4 @@
-//! Values in JSON files: objects, finite numbers, arrays of them. Errors say what was expected.
+//! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -62,7 +62,7 @@ impl<'de> Deserialize<'de> for JsonNumber {
             }
         }
 
-        // As f32, so that decimals are rounded once, not to f64 first.
+        // Parses to f32 directly: by way of f64, a decimal would be rounded twice.
         deserializer.deserialize_f32(JsonNumberVisitor)
     }
 }

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
-/// Writes a file whole or not at all, by way of a temporary file beside it. An existing file keeps
-/// its permissions, and a link stays a link. A pipe or a device is written to directly.
+/// Writes a file whole or not at all: writes a temporary file in the same folder and renames it. An
+/// existing file keeps its permissions, and a link stays a link. A pipe or a device is written to
+/// directly.
 ///
 /// # Errors
 ///
@@ -14,8 +15,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
 }
 
-/// Like [`write()`], for content that the closure writes piece by piece. If it fails, no file is
-/// created.
+/// Like [`write()`], for content that the closure `write` writes piece by piece. If the closure
+/// fails, no file is created or replaced.
 ///
 /// # Errors
 ///
@@ -36,7 +37,7 @@ pub fn write_with<E: From<WriteError>>(
         }
         _ => {}
     }
-    // The target of a link, so that it stays a link.
+    // Replaces the file that a link points to, so that the link stays a link.
     let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let permissions = existing.map(|existing| existing.permissions());
     let mut file = temporary_file(&folder_of(path)?).map_err(failed)?;
@@ -48,7 +49,7 @@ pub fn write_with<E: From<WriteError>>(
     Ok(())
 }
 
-/// The folder of a file, which must exist.
+/// Returns the folder of a file. Fails if the folder does not exist.
 pub(super) fn folder_of(path: &Path) -> Result<PathBuf, WriteError> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -80,7 +81,8 @@ fn persist(
     Ok(())
 }
 
-/// A temporary file with the permissions of a new file, not the private ones of temporary files.
+/// Creates a temporary file with the permissions of an ordinary new file. By default, only the
+/// owner can read a temporary file.
 fn temporary_file(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".ik-arm-");

@@ -105,7 +105,7 @@ pub fn run(args: &ExportArgs) -> ExitCode {
 
 impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
-        // Checked first, so that no file is read for nothing.
+        // Checks the arguments first, so that no file is read if one of them does not apply.
         self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
         let document = open::open(&self.file, self.skeleton.as_deref())?.document;
         let progress = Arc::new(Progress::default());

@@ -5,7 +5,8 @@ use indicatif::ProgressBar;
 
 use crate::io::Progress;
 
-/// Runs a job on a thread and shows its progress on standard error, if that is a terminal.
+/// Runs a job on a thread of its own. Shows its progress on standard error if standard error is a
+/// terminal.
 pub fn run_with_bar<T: Send>(progress: &Progress, job: impl FnOnce() -> T + Send) -> T {
     const STEPS: u64 = 1000;
     const UPDATE_INTERVAL: Duration = Duration::from_millis(50);

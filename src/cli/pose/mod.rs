@@ -102,7 +102,7 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;
     let mut rig = document.evaluate(time).skeleton_rig;
-    // Follow path moves the whole skeleton.
+    // Applies Follow path, which moves the whole skeleton.
     rig.skeleton = rig.skeleton_at(time);
     let report = match args.solver {
         Some(method) => Some(solve(&mut rig, args, method, &order, &file)?),
@@ -134,7 +134,7 @@ fn solve(
     })
 }
 
-/// Replaces joint indices by those of the file.
+/// Replaces the joint's index in an error by the index of the same joint in the file.
 fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
     use SolveError::{NoJoint, Point, TwoBone, TwoTargets, Weight};
     match &mut error {

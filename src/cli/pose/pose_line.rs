@@ -42,11 +42,12 @@ struct ReportLine {
 }
 
 impl<'a> PoseLine<'a> {
-    /// Reads joints and targets at a time, in the file's order.
+    /// Returns the output for a rig with its targets at `time`, in seconds. `order` has the rig's
+    /// joints in the file's order.
     ///
     /// # Errors
     ///
-    /// The name of a joint whose position overflows.
+    /// Fails with the name of a joint whose position overflows.
     pub fn new(
         rig: &'a SkeletonRig,
         order: &[JointId],
@@ -96,7 +97,8 @@ impl<'a> PoseLine<'a> {
     }
 }
 
-/// Converts in f64, so that 90 degrees in the file print as 90; overflow is clamped to ±f32::MAX.
+/// Converts radians to degrees. Computes in f64, so that 90 degrees in the file are printed as 90.
+/// Overflow is clamped to ±f32::MAX.
 fn degrees(radians: Vec3) -> Vec3 {
     let degrees = radians.as_dvec3() * 1_f64.to_degrees();
     saturate_vector(degrees)

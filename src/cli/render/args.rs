@@ -109,7 +109,7 @@ impl From<CrowdSolverName> for Processor {
 }
 
 impl ViewName {
-    /// The default camera, turned to this view.
+    /// The default camera, turned to look from this side.
     pub fn camera(self) -> Camera {
         let camera = Camera::default();
         match self {

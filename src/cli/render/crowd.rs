@@ -9,10 +9,10 @@ use crate::rig::Crowd;
 use crate::scene::Scene;
 use crate::session::Overlays;
 
-/// Time between two frames that are measured, in seconds of the crowd's motion.
+/// Time that the crowd's motion advances from one measured frame to the next, in seconds.
 const STEP: f32 = 1.0 / 60.0;
 
-/// Draws a crowd of arms, measures it, or both.
+/// Draws a crowd of arms to a file, prints its frame times, or both.
 pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
     let crowd = Crowd {
         arms,

@@ -2,7 +2,8 @@ use std::io::IsTerminal as _;
 
 use indicatif::ProgressBar;
 
-/// Progress over frames: a bar in a terminal, else a line for every tenth.
+/// Progress over frames on standard error: in a terminal a bar, otherwise a line for every tenth of
+/// the frames.
 pub struct FrameProgress {
     bar: ProgressBar,
     frames: u32,

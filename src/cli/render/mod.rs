@@ -58,7 +58,8 @@ fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
     Ok(())
 }
 
-/// The file's document at a time, or one with the arm that the arguments pose.
+/// Returns the document to draw: that of the file, evaluated at the time in `args`, or without a
+/// file a document with the arm that the arguments describe.
 fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     let time = args.time.0;
     let mut document = match &args.file {
@@ -89,7 +90,7 @@ fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {
     Ok(arm)
 }
 
-/// Bounding sphere of the rig that is shown.
+/// Centre and radius of the bounding sphere of the shown rig, in world space.
 fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
     match document.rig {
         RigKind::Arm => arm_bounds(&document.arm, document.display),
@@ -100,7 +101,8 @@ fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
     }
 }
 
-/// Bounding sphere of the arm and, if shown, its Cursor and its outer limit.
+/// Centre and radius of a bounding sphere of the arm, in world space. The sphere contains the outer
+/// limit if that is shown, otherwise the Cursor if that is shown.
 fn arm_bounds(arm: &Arm, display: Display) -> (Vec3, f32) {
     let (centre, radius) = arm.bounds(&arm.pose());
     if display.shows(Overlay::OuterLimit) {

@@ -3,7 +3,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-/// Medians for `--timings` without a crowd.
+/// Output of `--timings` without a crowd: median times in milliseconds.
 #[derive(Serialize)]
 pub struct TimingsLine<'a> {
     pub frames: u32,
@@ -12,7 +12,7 @@ pub struct TimingsLine<'a> {
     pub adapter: &'a str,
 }
 
-/// Medians for `--timings` with a crowd.
+/// Output of `--timings` with a crowd: median times in milliseconds.
 #[derive(Serialize)]
 pub struct CrowdTimingsLine<'a> {
     pub arms: u32,
@@ -22,7 +22,7 @@ pub struct CrowdTimingsLine<'a> {
     pub adapter: &'a str,
 }
 
-/// Rounded to microseconds.
+/// Converts a time to milliseconds, rounded to whole microseconds.
 pub fn milliseconds(time: Duration) -> f64 {
     (time.as_secs_f64() * 1e6).round() / 1e3
 }

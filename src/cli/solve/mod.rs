@@ -53,7 +53,7 @@ pub fn run(args: &SolveArgs) -> ExitCode {
     }
 }
 
-/// Reasons why a run ends before its input.
+/// Reasons why the command stops before the end of the input.
 #[derive(Debug, Error)]
 enum SolveCommandError {
     #[error("cannot open {name}: {error}")]
@@ -64,7 +64,7 @@ enum SolveCommandError {
     Write(io::Error),
 }
 
-/// Solves every line and returns the number of invalid ones.
+/// Solves every line and returns the number of invalid lines.
 fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, SolveCommandError> {
     let mut output = BufWriter::new(output);
     let mut previous = None;
@@ -105,7 +105,7 @@ fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()>
 struct LineReader {
     name: String,
     reader: BufReader<Box<dyn Read>>,
-    /// The last line with its line ending; reused to avoid allocations.
+    /// The most recently read line with its line ending. The buffer is reused to avoid allocations.
     line: Vec<u8>,
     number: u64,
 }
@@ -127,7 +127,7 @@ impl LineReader {
         Self { name, reader, line: Vec::new(), number: 0 }
     }
 
-    /// Whether the whole next line is buffered.
+    /// Whether the next line is buffered as a whole.
     fn has_line(&self) -> bool {
         self.reader.buffer().contains(&b'\n')
     }
@@ -143,8 +143,8 @@ impl LineReader {
         }
     }
 
-    /// Reads one line and returns false at the end of the input. Only the start of a line that is
-    /// too long is kept.
+    /// Reads one line. Returns false at the end of the input. Of a line that is too long, keeps
+    /// only the start.
     fn read_line(&mut self) -> io::Result<bool> {
         let longest = LineError::MAX_LENGTH + b"\r\n".len();
         self.line.clear();
@@ -156,7 +156,7 @@ impl LineReader {
     }
 }
 
-/// A line without its line ending.
+/// A line of the input, without its line ending and without a byte order mark.
 struct InputLine<'a> {
     number: u64,
     content: &'a [u8],

@@ -5,12 +5,12 @@ use glam::{DMat3, DVec3};
 
 use crate::kinematics::angle;
 
-/// The angles about x, y and z of a rotation R_z · R_y · R_x, in radians, that are nearest to
-/// `near`. Every rotation has two triples of angles, each up to whole turns. At y = ±90°, where x
-/// and z turn about one axis, z is that of `near`.
+/// Of all angles about x, y and z for which R_z · R_y · R_x is `rotation`, returns those nearest to
+/// `near`, in radians. Every rotation has two such triples of angles, and each angle is determined
+/// up to whole turns. At y = ±90°, where x and z turn about the same axis, z is taken from `near`.
 ///
-/// [`nearest_angles`](crate::kinematics::skeleton::nearest_angles) in f64, so that errors do not
-/// add up along a long chain.
+/// This is [`nearest_angles`](crate::kinematics::skeleton::nearest_angles), but in f64, so that
+/// errors do not add up along a long chain.
 pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     const GIMBAL: f64 = 1e-9;
     let DMat3 { x_axis, y_axis, z_axis } = rotation;
@@ -28,7 +28,7 @@ pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     if first.distance_squared(near) <= second.distance_squared(near) { first } else { second }
 }
 
-/// R_z · R_y · R_x of angles about x, y and z in radians.
+/// The rotation R_z · R_y · R_x for angles about x, y and z, in radians.
 pub fn matrix(angles: DVec3) -> DMat3 {
     DMat3::from_rotation_z(angles.z)
         * DMat3::from_rotation_y(angles.y)

@@ -6,16 +6,16 @@ use crate::kinematics::skeleton::Skeleton;
 /// A joint of the file.
 pub struct BvhNode {
     pub name: String,
-    /// The byte of the name in the text.
+    /// The byte of the text at which the name begins.
     pub at: usize,
     pub parent: Option<usize>,
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
-    /// The tip of its bone, from its End Site.
+    /// The tip of the joint's bone relative to its base; `None` without an End Site.
     pub end: Option<Vec3>,
 }
 
-/// A channel of a joint, with its axis: x, y or z (0, 1, 2).
+/// A channel of a joint. The number is the axis: 0 for x, 1 for y, 2 for z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BvhChannel {
     Position(usize),
@@ -37,7 +37,8 @@ impl BvhChannel {
     }
 }
 
-/// Reads all joints, parents before their children, up to and including the word MOTION.
+/// Reads the text up to and including the word MOTION. Returns all joints, parents before their
+/// children.
 pub fn read(text: &mut Scanner<'_>) -> Result<Vec<BvhNode>, TextError> {
     let first = text.word();
     if !first.is("HIERARCHY") {
@@ -60,7 +61,7 @@ pub fn read(text: &mut Scanner<'_>) -> Result<Vec<BvhNode>, TextError> {
 #[derive(Default)]
 struct Hierarchy {
     nodes: Vec<BvhNode>,
-    /// The open blocks, from the root inwards.
+    /// The blocks that are not closed yet, from the root inwards.
     open: Vec<OpenBlock>,
 }
 
@@ -70,7 +71,7 @@ enum OpenBlock {
     End { node: usize, end: Option<Vec3> },
 }
 
-/// The keywords of a joint that were read.
+/// The keywords that were already read in the block of a joint.
 #[derive(Clone, Copy, Default)]
 struct JointKeywords {
     offset: bool,
@@ -156,7 +157,7 @@ impl Hierarchy {
             let end = point(text, &node.name)?;
             self.set(OpenBlock::End { node: index, end: Some(end) });
         } else if let Some(end) = end.filter(|_| word.text == "}") {
-            // The first of several is used.
+            // Of several End Sites, the first is used.
             node.end.get_or_insert(end);
             self.open.pop();
         } else {

@@ -2,21 +2,22 @@
 //!
 //! ```text
 //! HIERARCHY
-//! ROOT NAME                       or several
+//! ROOT NAME                       one or several roots
 //! {
 //!     OFFSET x y z                from the parent's base, in the bind pose
-//!     CHANNELS n …                of Xposition Yposition Zposition Xrotation Yrotation Zrotation
-//!     JOINT NAME { … }            any number, as a root
+//!     CHANNELS n …                n of Xposition Yposition Zposition Xrotation Yrotation Zrotation
+//!     JOINT NAME { … }            any number of children, written like the root
 //!     End Site { OFFSET x y z }   tip of a bone without children
 //! }
 //! MOTION
 //! Frames: N
 //! Frame Time: seconds
-//! …                               a line for each frame: all channels in their order
+//! …                               one line per frame: the values of all channels in their order
 //! ```
 //!
-//! Angles are degrees. A joint's rotation is the product of its rotation channels in their order,
-//! the first one outermost; its position channels replace its offset.
+//! Angles are in degrees. A joint's rotation is the product of its rotation channels in their
+//! order, with the first channel as the leftmost factor. Position channels replace the joint's
+//! offset.
 //!
 //! # Export
 //!
@@ -28,8 +29,8 @@
 //! # Import
 //!
 //! Channels can have any order and number. The bone of a joint goes to its End Site, to its only
-//! child, or to the middle of its children, all at the first frame. Values that change become keys;
-//! constant ones are set on the skeleton.
+//! child, or to the mean of its children, all at the first frame. Values that change over time
+//! become keys; constant values are set on the skeleton.
 
 mod angles;
 mod hierarchy;

@@ -5,7 +5,7 @@ use crate::document::Timeline;
 /// The values of all channels in each frame.
 pub struct MotionData {
     frames: usize,
-    /// Number of channels of all joints.
+    /// Number of channels of all joints together.
     width: usize,
     values: Vec<f32>,
     pub timing: FrameTiming,
@@ -15,11 +15,11 @@ pub struct MotionData {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTiming {
     pub frame_rate: u32,
-    /// The frame time in seconds, if it is not one over a whole number.
+    /// Time from one frame to the next in seconds; `None` if it is 1 / `frame_rate`.
     step: Option<f64>,
 }
 
-/// Reads the text after the word MOTION. Text after the last frame gives a warning.
+/// Reads the text after the word MOTION. Text after the last frame is ignored, with a warning.
 pub fn read(
     text: &mut Scanner<'_>,
     nodes: &[BvhNode],
@@ -30,7 +30,8 @@ pub fn read(
     let channels: Vec<(&BvhNode, BvhChannel)> =
         nodes.iter().flat_map(|node| node.channels.iter().map(move |it| (node, *it))).collect();
     let width = channels.len();
-    // The header can claim more frames than the file has: a number takes a digit and a space.
+    // The header can claim more frames than the file has. A number takes at least two bytes, a
+    // digit and a space, so the rest of the text limits how many there can be.
     let max_values = text.remaining().div_ceil(2);
     let mut values = Vec::with_capacity(frames.saturating_mul(width).min(max_values));
     for frame in 0..if width == 0 { 0 } else { frames } {
@@ -97,7 +98,7 @@ impl MotionData {
         self.frames
     }
 
-    /// The values of `width` adjacent channels in every frame.
+    /// For each frame, the values of the `width` channels that begin with channel `start`.
     pub fn channels(&self, start: usize, width: usize) -> impl Iterator<Item = &[f32]> + Clone {
         let rows = self.values.chunks_exact(self.width.max(1));
         rows.map(move |row| row.get(start..start + width).unwrap_or_default())
@@ -126,7 +127,7 @@ impl FrameTiming {
     }
 
     fn new(step: f64) -> Self {
-        /// Tolerance for one over a whole number, because files round the frame time.
+        /// Relative tolerance for a frame time of 1 / (a whole number), because files round it.
         const ROUNDING: f64 = 1e-3;
         let rate = step.recip().round();
         let highest = f64::from(Timeline::MAX_FRAME_RATE);

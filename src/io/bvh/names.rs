@@ -1,6 +1,6 @@
 use std::collections::{HashMap, HashSet};
 
-/// Unique names: of equal ones, the first stays and the others get a number.
+/// Makes names unique: of equal names, the first stays, and the others get a number as suffix.
 pub fn distinct(names: &[String]) -> Vec<String> {
     let mut taken: HashSet<&str> = HashSet::new();
     let is_first: Vec<bool> = names.iter().map(|name| taken.insert(name)).collect();
@@ -22,7 +22,8 @@ pub fn distinct(names: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// A name as one word of a BVH file.
+/// Converts a name to one word of a BVH file: trims it, and replaces space, control characters and
+/// braces by `_`.
 pub fn word(name: &str) -> String {
     let is_plain = |c: char| !(c.is_whitespace() || c.is_control() || "{}".contains(c));
     name.trim().chars().map(|c| if is_plain(c) { c } else { '_' }).collect()

@@ -4,9 +4,9 @@ use std::fmt;
 pub enum BvhNote<'a> {
     /// The skeleton's transform has uneven scale, shear or zero scale.
     Uneven,
-    /// The length of a limb changes.
+    /// The length of the limb with this name changes over time.
     Length(&'a str),
-    /// The offsets of these joints change.
+    /// The offsets of the joints with these names change over time.
     Offsets(&'a [&'a str]),
 }
 
@@ -23,7 +23,7 @@ impl fmt::Display for BvhNote<'_> {
                  first frame is written"
             ),
             Self::Offsets(joints) => {
-                /// Most names that are listed; further joints are only counted.
+                /// Maximum number of names that are listed. Further joints are only counted.
                 const MOST: usize = 10;
                 let named: Vec<_> =
                     joints.iter().take(MOST).map(|name| format!("{name:?}")).collect();

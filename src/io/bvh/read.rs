@@ -12,12 +12,13 @@ use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
-/// Whether a text is BVH, by its first word.
+/// Whether a text is BVH, judged by its first word.
 pub fn is_bvh(text: &str) -> bool {
     Scanner::new(text).word().is("HIERARCHY")
 }
 
-/// Reads the skeleton of a file. Its name is that of the first root.
+/// Reads the skeleton of a file and its motion. The skeleton has the name of its first root. Fails
+/// if `name` is another name.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let open_error = |error: TextError| {
         let remark = source.remark_about(error.at, &error.joint, &error.reason);
@@ -37,9 +38,10 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     Ok(Opened { order: document.skeleton().ids().collect(), document, warnings, skeletons })
 }
 
-/// Renames joints that have the name of another one, with a warning each.
+/// Makes the names of joints unique, and returns warnings about the renamed joints.
 fn rename(source: &Source, nodes: &mut [BvhNode]) -> Vec<Remark> {
-    /// Bounds the time, because finding the position of each searches the text.
+    /// Maximum number of warnings with a position. Bounds the time, because finding a position
+    /// takes a search through the text.
     const MOST: usize = 20;
     let names: Vec<_> = nodes.iter().map(|node| node.name.clone()).collect();
     let mut remarks = Vec::new();
@@ -93,7 +95,8 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     })
 }
 
-/// The timeline from the first frame to the last; of the default length for a single frame.
+/// The timeline from the first frame to the last, or up to the default end if the motion has a
+/// single frame.
 fn timeline(motion: &MotionData) -> Timeline {
     let default = Timeline::default();
     let timing = motion.timing;
@@ -102,13 +105,14 @@ fn timeline(motion: &MotionData) -> Timeline {
     if timeline.is_valid() { timeline } else { Timeline { end: default.end, ..timeline } }
 }
 
-/// A joint's offset and angles at the first frame.
+/// A joint's offset and angles, in radians, at the first frame.
 struct FirstFrame {
     offset: Vec3,
     rotation: Vec3,
 }
 
-/// Adds keys for the values of a joint that change. `start` is the index of its first channel.
+/// Adds keys for the joint's offset and for its angles if they change over time, and returns their
+/// values at the first frame. `start` is the index of the joint's first channel in the motion.
 fn add_keys(
     keys: &mut Keys,
     joint: usize,
@@ -143,7 +147,7 @@ fn add_keys(
     FirstFrame { offset: offset(node, first), rotation }
 }
 
-/// Position channels replace the joint's offset.
+/// The joint's offset in a frame. Position channels replace the components of `node.offset`.
 fn offset(node: &BvhNode, row: &[f32]) -> Vec3 {
     let mut offset = node.offset;
     for (channel, value) in node.channels.iter().zip(row) {
@@ -154,7 +158,7 @@ fn offset(node: &BvhNode, row: &[f32]) -> Vec3 {
     offset
 }
 
-/// The product of a joint's rotations, in the order of its channels.
+/// The joint's rotation in a frame: the product of its rotation channels in their order.
 fn rotation_of(node: &BvhNode, row: &[f32]) -> DMat3 {
     let mut product = DMat3::IDENTITY;
     for (channel, value) in node.channels.iter().zip(row) {
@@ -169,9 +173,11 @@ fn rotation_of(node: &BvhNode, row: &[f32]) -> DMat3 {
     product
 }
 
-/// The joint's angles at the first frame; those of the file, unchanged, if its order is Z, Y, X.
+/// The joint's angles about x, y and z at the first frame, in radians. If its channels are in the
+/// order Z, Y, X, these are the angles in the file.
 fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
-    /// In degrees. Larger angles are too coarse in f32 radians.
+    /// A hundred turns in degrees. Larger angles are reduced by whole turns, because they would be
+    /// too coarse as f32 radians.
     const MANY_TURNS: f32 = 36_000.0;
     let mut angles = DVec3::ZERO;
     let mut order = Vec::new();
@@ -185,8 +191,8 @@ fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
     if is_zyx { angles } else { angles::nearest(rotation_of(node, row), DVec3::ZERO) }
 }
 
-/// The joints' bones at the first frame: to an End Site, else to the only child or the middle of
-/// the children, else of length 0.
+/// The axis of each joint's bone at the first frame: from the joint to its End Site, otherwise to
+/// its only child or the mean of its children, otherwise zero.
 fn axes(nodes: &[BvhNode], joints: &[Joint]) -> Vec<Vec3> {
     let mut sums = vec![(DVec3::ZERO, 0_u32); joints.len()];
     for joint in joints {

@@ -10,7 +10,7 @@ use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 pub struct BvhRig {
     pub names: Vec<String>,
     pub parents: Vec<Option<usize>>,
-    /// The joints or limbs of the nodes.
+    /// The joints of a skeleton or the limbs of the arm that the nodes stand for.
     kind: BvhRigKind,
 }
 
@@ -23,17 +23,17 @@ enum BvhRigKind {
 /// The pose of a rig in one frame, in units of the scene.
 #[derive(Clone, Debug)]
 pub struct BvhPose {
-    /// The offset of each node from its parent in the bind pose; of the first one, its world
-    /// position.
+    /// The offset of each node from its parent in the bind pose, in world axes; for the first node
+    /// its position in the world.
     pub offsets: Vec<DVec3>,
-    /// The tip of each leaf's bone in the bind pose.
+    /// The tip of each leaf's bone in the bind pose, relative to its base; `None` for other nodes.
     pub ends: Vec<Option<DVec3>>,
     /// The rotation of each node relative to its parent, in world axes.
     pub rotations: Vec<DMat3>,
 }
 
 impl BvhRig {
-    /// The shown rig; `None` for a skeleton without joints.
+    /// The hierarchy of the shown rig; `None` for a skeleton without joints.
     pub fn new(document: &Document) -> Option<Self> {
         match document.rig {
             RigKind::Arm => Some(Self {
@@ -74,7 +74,7 @@ impl BvhRig {
         (!nodes.is_empty()).then_some(Self { names, parents, kind: BvhRigKind::Skeleton(nodes) })
     }
 
-    /// The pose of the rig in a document evaluated at a time.
+    /// The pose of the rig at `time` in seconds. `document` must be evaluated at this time.
     pub fn pose(&self, document: &Document, transform: &SkeletonTransform, time: f64) -> BvhPose {
         match &self.kind {
             BvhRigKind::Arm => arm(&document.arm),
@@ -113,7 +113,7 @@ impl BvhRig {
     }
 }
 
-/// [`Joint::local_rotation`] in f64.
+/// The rotation of [`Joint::local_rotation`], but computed in f64.
 fn local_rotation(joint: &Joint) -> DMat3 {
     let rotation = angles::matrix(joint.rotation.as_dvec3());
     if joint.frame == Mat3::IDENTITY {
@@ -123,7 +123,7 @@ fn local_rotation(joint: &Joint) -> DMat3 {
     frame * rotation * frame.transpose()
 }
 
-/// Two bones along +x; the elbow is a hinge about z.
+/// The pose of the arm as two bones along +x, with the elbow as a hinge about z.
 fn arm(arm: &Arm) -> BvhPose {
     let pose = arm.pose();
     let (along, out) = (f64::from(pose.along), f64::from(pose.out));

@@ -16,7 +16,7 @@ pub struct Token<'a> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextError {
     pub at: usize,
-    /// The joint that the error is about; empty if it is about none.
+    /// Name of the joint that the error is about; empty if the error is about no joint.
     pub joint: String,
     pub reason: String,
 }
@@ -26,7 +26,7 @@ impl<'a> Scanner<'a> {
         Self { text, at: 0 }
     }
 
-    /// The next word or brace; empty at the end.
+    /// Reads the next word or brace. The token is empty at the end of the text.
     pub fn word(&mut self) -> Token<'a> {
         let rest = self.skip_space();
         let end = match rest.starts_with(is_brace) {
@@ -36,7 +36,8 @@ impl<'a> Scanner<'a> {
         self.take(end)
     }
 
-    /// The rest of this line, or else the next line that is not blank, up to a brace, trimmed.
+    /// Skips space and line ends, then reads up to a brace or the end of the line. Space at the end
+    /// of the token is removed.
     pub fn name(&mut self) -> Token<'a> {
         let rest = self.skip_space();
         let is_end = |c: char| c == '\n' || c == '\r' || is_brace(c);
@@ -44,7 +45,7 @@ impl<'a> Scanner<'a> {
         Token { text: word.text.trim_end(), ..word }
     }
 
-    /// Skips these words and a colon if they are next.
+    /// Skips `words` and a colon if they come next in the text. Returns whether they did.
     pub fn label(&mut self, words: &[&str]) -> bool {
         let mut ahead = *self;
         for word in words {
@@ -64,14 +65,15 @@ impl<'a> Scanner<'a> {
         is_there
     }
 
-    /// The rest of this line, or else the next line that is not blank; `None` at the end.
+    /// Skips space and line ends, then reads up to the end of the line. Space at the end of the
+    /// token is removed. Returns `None` at the end of the text.
     pub fn line(&mut self) -> Option<Token<'a>> {
         let rest = self.skip_space();
         let word = self.take(rest.find(['\n', '\r']).unwrap_or(rest.len()));
         (!word.text.is_empty()).then(|| Token { text: word.text.trim_end(), ..word })
     }
 
-    /// Number of bytes that are not read yet.
+    /// Number of bytes of the text that are not read yet.
     pub fn remaining(&self) -> usize {
         self.text.len() - self.at
     }
@@ -91,7 +93,7 @@ impl<'a> Scanner<'a> {
 }
 
 impl<'a> Token<'a> {
-    /// The words of a line.
+    /// The words in the token's text.
     pub fn words(self) -> impl Iterator<Item = Self> {
         let mut remaining = self;
         std::iter::from_fn(move || {
@@ -108,7 +110,7 @@ impl<'a> Token<'a> {
         self.text.eq_ignore_ascii_case(keyword)
     }
 
-    /// The byte after the token.
+    /// The byte of the text after the token.
     pub fn end(self) -> usize {
         self.at + self.text.len()
     }

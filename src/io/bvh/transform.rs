@@ -1,16 +1,17 @@
 use glam::{Affine3A, DMat3, DVec3, Mat3};
 use nalgebra::Matrix3;
 
-/// A skeleton's transform M · p + t, decomposed for a format that has rotations only.
+/// A skeleton's transform M · p + t, decomposed for BVH, which has rotations but no scale and
+/// shear.
 ///
 /// If M = s·Q with Q orthogonal (possibly a mirror), a rotation R in the skeleton is the rotation
-/// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists: the
-/// joints get the rotations W that bring M nearest to M·G, where G is a joint's rotation in the
-/// skeleton.
+/// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists. A
+/// joint then gets the rotation W for which W·M is nearest to M·G, where G is the joint's rotation
+/// in the skeleton.
 pub struct SkeletonTransform {
     matrix: DMat3,
     translation: DVec3,
-    /// Q, if it exists.
+    /// The orthogonal Q of M = s·Q; `None` if M has uneven scale, shear or zero scale.
     orthogonal: Option<DMat3>,
 }
 
@@ -21,7 +22,8 @@ impl SkeletonTransform {
         Self { matrix, translation, orthogonal: orthogonal(matrix) }
     }
 
-    /// Whether rotations in the skeleton are rotations in the world.
+    /// Whether the transform makes every rotation in the skeleton a rotation in the world, as it
+    /// does without uneven scale, shear and zero scale.
     pub fn is_even(&self) -> bool {
         self.orthogonal.is_some()
     }
@@ -34,8 +36,8 @@ impl SkeletonTransform {
         self.matrix * vector
     }
 
-    /// Rotations relative to the parents in world axes, from rotations in the skeleton. Parents
-    /// come first.
+    /// Converts the joints' rotations relative to their parents from the skeleton's axes to world
+    /// axes. Parents come before their children.
     pub fn rotations(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
         if let Some(orthogonal) = self.orthogonal {
             return locals
@@ -56,19 +58,20 @@ impl SkeletonTransform {
     }
 }
 
-/// Q of a matrix s·Q.
+/// The orthogonal Q of a matrix s·Q; `None` if the matrix has uneven scale, shear or zero scale.
 fn orthogonal(matrix: DMat3) -> Option<DMat3> {
-    /// Tolerance for right angles and equal lengths, as for frames of joints.
+    /// Tolerance for right angles and equal lengths; the same as for the frames of joints.
     const EVEN: f64 = 1e-5;
     let square = matrix.transpose() * matrix;
     let size = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
     let is_even = size > 0.0 && (square * size.recip()).abs_diff_eq(DMat3::IDENTITY, EVEN);
-    // Orthogonal in f64; the f32 matrix is only nearly so.
+    // The matrix was rounded to f32 and is orthogonal only nearly. The nearest rotation is
+    // orthogonal in f64.
     let sign = matrix.determinant().signum();
     is_even.then(|| nearest(matrix * (sign / size.sqrt())) * sign)
 }
 
-/// The rotation W nearest to a matrix: the least ‖W − matrix‖.
+/// The rotation W that minimizes ‖W − matrix‖; the identity for a zero or non-finite matrix.
 fn nearest(matrix: DMat3) -> DMat3 {
     const PRECISION: f64 = 1e-15;
     const STEPS: usize = 1000;
@@ -83,7 +86,7 @@ fn nearest(matrix: DMat3) -> DMat3 {
     let Some((u, v_t)) = decomposed else {
         return DMat3::IDENTITY;
     };
-    // Singular values are sorted: the last, smallest one is mirrored.
+    // The singular values are in descending order. The mirror is applied to the last, smallest one.
     let mirror = (u * v_t).determinant().signum();
     let rotation = u * Matrix3::from_diagonal(&[1.0, 1.0, mirror].into()) * v_t;
     let rotation = DMat3::from_cols_slice(rotation.as_slice());

@@ -1,6 +1,6 @@
 use crate::document::Document;
 
-/// The unit of lengths in a BVH file, which the file itself does not have.
+/// The unit of lengths in an exported BVH file. The file itself does not name its unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhUnit {
     /// The usual unit of BVH.
@@ -12,11 +12,11 @@ pub enum BvhUnit {
     Scene,
 }
 
-/// Length in metres of the unit of a file that is read, taken to be a centimetre.
+/// Assumed length of the unit of an imported BVH file, in metres: one centimetre.
 pub const METRES_PER_UNIT: f32 = 0.01;
 
 impl BvhUnit {
-    /// Length of a unit of the document, in this unit.
+    /// Length of one unit of the document, measured in this unit.
     pub fn per_unit(self, document: &Document) -> f64 {
         let per_metre = match self {
             Self::Centimetres => METRES_PER_UNIT.recip(),

@@ -12,11 +12,12 @@ use crate::io::Progress;
 use crate::io::frames::{ExportFrames, FrameEvaluator};
 use crate::io::motion::{Exported, MotionError};
 
-/// The shown rig and its motion as a BVH file.
+/// Exports the shown rig and its motion as a BVH file.
 ///
 /// # Errors
 ///
-/// Fails if cancelled, or if the rig or the timeline is too large.
+/// Fails if the export is cancelled, `fps` is invalid, the skeleton has no joints, a position
+/// overflows, or the rig or the timeline is too large.
 pub fn to_bvh(
     document: &Document,
     fps: Option<u32>,
@@ -61,9 +62,10 @@ fn motion_header(text: &mut String, frames: &ExportFrames) {
 /// Writes the hierarchy and the frames of a rig.
 struct BvhWriter<'a> {
     rig: &'a BvhRig,
-    /// Length of a unit of the scene in the file.
+    /// Length of one unit of the scene, in units of the file.
     scale: f64,
-    /// The joints' angles in the last frame, radians, for unwrapping.
+    /// The joints' angles in the previous frame, in radians. The angles of the next frame are
+    /// unwrapped to be nearest to them.
     angles: Vec<DVec3>,
 }
 
@@ -75,7 +77,7 @@ impl<'a> BvhWriter<'a> {
     fn hierarchy(&self, pose: &BvhPose) -> Result<String, MotionError> {
         let mut text = "HIERARCHY\n".to_owned();
         let BvhRig { names, parents, .. } = self.rig;
-        // The open nodes, from the root inwards.
+        // The nodes whose blocks are not closed yet, from the root inwards.
         let mut open: Vec<usize> = Vec::new();
         for (node, (name, parent)) in names.iter().zip(parents).enumerate() {
             while open.last().copied() != *parent {
@@ -117,13 +119,14 @@ impl<'a> BvhWriter<'a> {
                 push_number(text, degrees(angle));
             }
         }
-        // The space in front of the first number.
+        // Removes the space in front of the first number.
         text.remove(start);
         text.push('\n');
         Ok(())
     }
 
-    /// The three numbers of a vector, each after a space. Errors name the node.
+    /// Formats the three numbers of a vector in units of the file, each after a space. Errors name
+    /// the node.
     fn vector(&self, node: usize, vector: DVec3) -> Result<String, MotionError> {
         let vector = (vector * self.scale).as_vec3();
         if !vector.is_finite() {
@@ -138,20 +141,22 @@ impl<'a> BvhWriter<'a> {
     }
 }
 
-/// Converts to f32, so that 90 stays 90.
+/// Converts an angle to degrees, rounded to f32 so that a right angle becomes exactly 90.
 fn degrees(radians: f64) -> f32 {
-    /// Smaller angles are rounding.
+    /// Angles below this, in degrees, are rounding errors and become 0.
     const ROUNDING: f32 = 1e-9;
     let degrees = radians.to_degrees() as f32;
     if degrees.abs() < ROUNDING { 0.0 } else { degrees }
 }
 
-/// Writes the fewest digits that parse to the same f32; never −0.
+/// Appends a space and the number, with the fewest digits that parse to the same f32. Writes −0 as
+/// 0.
 fn push_number(text: &mut String, number: f32) {
     let _ = write!(text, " {}", number + 0.0);
 }
 
-/// Writes an indented line. Indentation is bounded, because deep hierarchies would be mostly tabs.
+/// Appends an indented line. The indentation is bounded, because the text of a deep hierarchy would
+/// otherwise be mostly tabs.
 fn line(text: &mut String, depth: usize, line: &str) {
     const DEEPEST: usize = 32;
     text.extend(std::iter::repeat_n('\t', depth.min(DEEPEST)));
@@ -180,7 +185,7 @@ impl LostMotion {
     }
 
     fn compare(&mut self, first: &BvhPose, now: &BvhPose) {
-        // The first node has position channels.
+        // The first node is skipped: its offset may change, because it has position channels.
         for (node, moves) in self.offsets.iter_mut().enumerate().skip(1) {
             *moves |= first.offsets[node] != now.offsets[node];
         }
@@ -198,7 +203,8 @@ impl LostMotion {
         let moving: Vec<&str> =
             names().zip(&self.offsets).filter(|(_, moves)| **moves).map(|(name, _)| name).collect();
         if self.is_arm {
-            // A limb's length is the offset of its child.
+            // The lower limb's offset is the upper limb's length; the lower limb's end is its own
+            // length.
             let lengths = [(!moving.is_empty(), "upper"), (self.ends.contains(&true), "lower")];
             let changing = lengths.into_iter().filter(|(changes, _)| *changes);
             notes.extend(changing.map(|(_, limb)| BvhNote::Length(limb).to_string()));

@@ -1,4 +1,4 @@
-//! Fields of the arm, and conversions from and to a document's arm.
+//! Fields of the arm in a file, and conversions between these fields and an arm.
 
 use core::f32::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Fields of a camera, and conversions from and to a document's camera.
+//! Fields of a camera in a file, and conversions between these fields and a camera.
 
 use core::f32::consts::FRAC_PI_2;
 

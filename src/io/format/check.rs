@@ -6,11 +6,11 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, Whole};
 
-/// Largest deviation of a written unit vector's length from 1, and of the cosine between two
-/// perpendicular ones from 0.
+/// Tolerance for unit vectors in a file: the maximum difference of a length from 1, and the maximum
+/// absolute cosine of the angle between two vectors that must be perpendicular.
 pub const UNIT_TOLERANCE: f32 = 1e-3;
 
-/// `default` where the file has no number.
+/// Returns the number in the file, or `default` if the file has none.
 pub fn number(file: Option<JsonNumber>, default: f32) -> f32 {
     file.map_or(default, |JsonNumber(number)| number)
 }
@@ -19,12 +19,12 @@ pub fn above_0(at: JsonPath, value: f32) -> Result<f32, FieldError> {
     checked(value > 0.0, at, value, "above 0")
 }
 
-/// A number from 0 to 1.
+/// Checks that a number is from 0 to 1, and returns it.
 pub fn fraction(at: JsonPath, value: f32) -> Result<f32, FieldError> {
     checked((0.0..=1.0).contains(&value), at, value, "from 0 to 1")
 }
 
-/// A number from `-limit` to `limit`.
+/// Checks that a number is from `-limit` to `limit`, and returns it.
 pub fn within(at: JsonPath, value: f32, limit: f32) -> Result<f32, FieldError> {
     checked(value.abs() <= limit, at, value, &format!("from {} to {limit}", -limit))
 }
@@ -36,7 +36,8 @@ pub fn from_1_to(at: JsonPath, Whole(count): Whole, max: u32) -> Result<u32, Fie
     }
 }
 
-/// A vector of length 1. Its bits are kept if the length is 1 within rounding.
+/// Checks that the length of a vector is 1 within [`UNIT_TOLERANCE`], and returns the normalized
+/// vector. If the length is 1 within rounding, returns the vector unchanged, bit for bit.
 pub fn unit_vector(at: JsonPath, vector: Vec3) -> Result<Vec3, FieldError> {
     const ROUNDING: f32 = 1e-6;
     let length = vector.length();
@@ -46,7 +47,7 @@ pub fn unit_vector(at: JsonPath, vector: Vec3) -> Result<Vec3, FieldError> {
     Ok(if (length - 1.0).abs() <= ROUNDING { vector } else { vector.normalize() })
 }
 
-/// The index of one of `joints` joints.
+/// Checks that a joint index is below `joints`, the number of joints, and returns it.
 pub fn joint(at: JsonPath, Whole(joint): Whole, joints: usize) -> Result<usize, FieldError> {
     let index = joint as usize;
     if index < joints {

@@ -1,4 +1,4 @@
-//! All fields of a document's file, and conversions from and to a document.
+//! All fields of a document's file, and conversions between these fields and a document.
 
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +97,8 @@ impl DocumentFields {
     }
 }
 
-/// The camera of a file without one. An arm of any size gets the same camera, as in version 1.
+/// The camera for a file without a camera. An arm of any size gets the same camera, as in version
+/// 1.
 fn default_camera(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     match rig {
         RigKind::Arm => Camera::default(),

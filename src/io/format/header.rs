@@ -7,7 +7,7 @@ use crate::io::json_path::JsonPath;
 use crate::io::value::Whole;
 
 pub const FORMAT: &str = "ik-arm";
-/// The version that is written. Files from version 1 on are read.
+/// The version of saved files. Files of version 1 up to this version can be read.
 pub const VERSION: u32 = 2;
 
 #[derive(Deserialize)]
@@ -17,7 +17,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// The version, if this program reads it.
+    /// Returns the version of the file. Fails if this program cannot read the format or the
+    /// version.
     pub fn version(&self) -> Result<u32, FieldError> {
         if self.format != FORMAT {
             let reason = format!("must be {FORMAT:?}, got {:?}", self.format);

@@ -1,4 +1,5 @@
-//! Fields of keyed channels and of the timeline, and conversions from and to a document's.
+//! Fields of keyed channels and of the timeline in a file, and conversions between these fields and
+//! the keys and the timeline of a document.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -84,7 +85,7 @@ impl ChannelFields {
     }
 }
 
-/// Converts the keys; `document` has all other fields already.
+/// Converts the channels of a file to keys. `document` must have all other fields already.
 pub fn keys(
     channels: Vec<JsonObject<ChannelFields>>,
     document: &Document,

@@ -1,9 +1,9 @@
 //! The program's own format: JSON, described in docs/files.md field by field.
 //!
 //! A text of version 1 is [translated](version_1) to the names of version 2. serde parses the text
-//! to [fields](file::DocumentFields), where `None` stands for what the file leaves out; these
-//! become a document with defaults filled in and [ranges checked](check). Saving goes the same way
-//! back.
+//! to [fields](file::DocumentFields), where `None` stands for a field that the file leaves out. The
+//! fields are converted to a document: missing fields get defaults, and [ranges are
+//! checked](check). Saving converts the document to fields, and serde writes the fields as text.
 
 mod arm;
 mod camera;

@@ -8,14 +8,15 @@ use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
 
-/// Reads a document of any version.
+/// Reads a document of any supported version.
 pub fn read(source: &Source) -> Result<Opened, OpenError> {
     match source.parse::<JsonObject<Header>>(|_| {}) {
         Ok(JsonObject(header)) => match header.version().map_err(|error| source.error(&error))? {
             1 => read_fields(&source.translated(version_1::translated(source.text()))),
             _ => read_fields(source),
         },
-        // Reading all fields fails, too, and reports the exact field.
+        // The header is invalid. Reading all fields fails, too, and its error names the exact
+        // field.
         Err(_) => read_fields(source),
     }
 }

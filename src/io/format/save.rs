@@ -6,11 +6,12 @@ use crate::io::error::SaveError;
 use crate::io::json_style::to_styled_json;
 use crate::io::write::write;
 
-/// The text of a document's file. Reading it returns the same document, bit for bit.
+/// Converts a document to the text of a file. Reading this text returns the same document, bit for
+/// bit.
 ///
 /// # Errors
 ///
-/// Fails if a number is not finite.
+/// Fails if a number of the document is not finite.
 pub fn to_json(document: &Document) -> Result<String, serde_json::Error> {
     to_styled_json(&DocumentFields::new(document))
 }
@@ -19,7 +20,7 @@ pub fn to_json(document: &Document) -> Result<String, serde_json::Error> {
 ///
 /// # Errors
 ///
-/// Fails if the folder or the file cannot be written, or a number is not finite.
+/// Fails if the folder or the file cannot be written, or a number of the document is not finite.
 pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
     Ok(write(path, to_json(document)?.as_bytes())?)
 }

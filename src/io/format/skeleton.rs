@@ -1,4 +1,4 @@
-//! Fields of the skeleton, and conversions from and to a document's skeleton.
+//! Fields of the skeleton in a file, and conversions between these fields and a skeleton.
 
 use glam::{Affine3A, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -50,7 +50,8 @@ impl SkeletonFields {
         }
     }
 
-    /// Rotations beyond limits are clamped, with a warning.
+    /// Converts the fields to a skeleton. A rotation beyond the joint's limits is clamped, with a
+    /// warning. `at` is the path of the fields.
     pub fn skeleton(
         self,
         at: &JsonPath,
@@ -79,7 +80,8 @@ impl SkeletonFields {
     }
 }
 
-/// The invalid field of a skeleton.
+/// Returns the path of the field that caused `error`. `at_joints` is the path of the joints, and
+/// `names` has their names.
 fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -> JsonPath {
     let at = |joint: usize| at_joints.clone().index(joint);
     match error {
@@ -105,7 +107,7 @@ fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -
 impl JointFields {
     fn new(joint: &Joint) -> Self {
         let frame = joint.frame.to_cols_array();
-        // Compares bits, so that −0 is written.
+        // Compares bits, because −0 equals 0: a frame with −0 must be written.
         let is_identity =
             frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
         let [x, y, z] =
@@ -123,7 +125,8 @@ impl JointFields {
         }
     }
 
-    /// A joint without an offset is at the tip of its parent, which is in `preceding`.
+    /// Converts the fields to a joint. Without an offset, the joint is at the tip of its parent,
+    /// which is one of the `preceding` joints.
     fn joint(self, preceding: &[Joint]) -> Joint {
         let parent = self.parent.map(|Whole(parent)| parent as usize);
         let axis = self.axis.map_or(Vec3::ZERO, |JsonPoint(axis)| axis);

@@ -1,5 +1,5 @@
-//! Fields of targets, of the solver and of path following, and conversions from and to a
-//! document's.
+//! Fields of targets, of the solver and of path following in a file, and conversions between these
+//! fields and a skeleton's rig.
 
 use std::collections::HashSet;
 
@@ -48,7 +48,7 @@ pub struct FollowPathFields {
     period: JsonNumber,
 }
 
-/// Adds the targets of a file to a rig that has its skeleton already.
+/// Adds the targets of a file to a rig, which must have its skeleton already.
 pub fn add_targets(
     rig: &mut SkeletonRig,
     targets: Vec<JsonObject<TargetFields>>,

@@ -1,9 +1,9 @@
-//! Version 1 of the format: version 2 with other names.
+//! Version 1 of the format. It differs from version 2 only in names.
 
 use crate::io::translation::Translation;
 
-/// Names of fields and values that version 2 changed: the field around them in version 2, the name
-/// in version 1, the name in version 2.
+/// Names of fields and values that version 2 changed. Each row has the name of the enclosing field
+/// (as in version 2, empty at the top level), then the old name and the new name.
 const RENAMED: [(&str, &str, &str); 21] = [
     ("", "slither", "follow_path"),
     ("", "keys", "channels"),
@@ -28,16 +28,18 @@ const RENAMED: [(&str, &str, &str); 21] = [
     ("overlays", "references", "twist_references"),
 ];
 
-/// What version 2 calls a name of version 1; `None` where both call it alike.
+/// Returns the name in version 2 of a field or value that version 1 calls `name`. `around` is the
+/// enclosing field. `None` if both versions use the same name.
 pub fn renamed(around: &str, name: &str) -> Option<&'static str> {
     let is_this = |row: &&(&str, &str, &str)| row.0 == around && row.1 == name;
     RENAMED.iter().find(is_this).map(|(_, _, new)| *new)
 }
 
-/// A valid JSON text of version 1 with the names of version 2.
+/// Translates a text of version 1 to the names of version 2. The text must be valid JSON.
 pub fn translated(text: &str) -> Translation {
     let mut translation = Translation::default();
-    // The field that each open object or array is the value of, and the field of the next value.
+    // `around` has, for each open object or array, the field whose value it is. `field` is the
+    // field of the next value.
     let mut around: Vec<String> = Vec::new();
     let mut field = String::new();
     let mut rest = text;
@@ -70,7 +72,7 @@ pub fn translated(text: &str) -> Translation {
     translation
 }
 
-/// Bytes of the string that a text begins with, quotes included.
+/// Length in bytes of the JSON string at the start of `text`, including the quotes.
 fn string_length(text: &str) -> usize {
     let mut escaped = false;
     for (at, byte) in text.bytes().enumerate().skip(1) {

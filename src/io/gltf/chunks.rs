@@ -7,11 +7,11 @@ pub const MAGIC: &[u8] = b"glTF";
 /// The chunks of a `.glb` file.
 pub struct Chunks {
     pub json: String,
-    /// Empty without a binary chunk.
+    /// Content of the binary chunk; empty if the file has none.
     pub binary: Vec<u8>,
 }
 
-/// Splits a file into its chunks. The error is a reason.
+/// Splits a `.glb` file into its chunks. The error is the reason why the file is invalid.
 pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
     let short_header = || format!("header must have 12 bytes, got {}", bytes.len());
     let version = number(bytes, 4).ok_or_else(short_header)?;
@@ -31,7 +31,8 @@ pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
     Ok(Chunks { json, binary })
 }
 
-/// The bytes of the first chunk, and the rest.
+/// Returns the content of the first chunk and the bytes after this chunk. Fails if the chunk is not
+/// of the type `kind`. `name` is the type's name in errors.
 fn chunk<'a>(bytes: &'a [u8], name: &str, kind: [u8; 4]) -> Result<(&'a [u8], &'a [u8]), String> {
     let Some(length) = number(bytes, 0) else {
         return Err(format!("file must have a {name} chunk, got none"));
@@ -46,7 +47,7 @@ fn chunk<'a>(bytes: &'a [u8], name: &str, kind: [u8; 4]) -> Result<(&'a [u8], &'
     })
 }
 
-/// The little-endian number at a byte.
+/// The little-endian number of 4 bytes that begins at byte `at`; `None` if the bytes end earlier.
 fn number(bytes: &[u8], at: usize) -> Option<u32> {
     let bytes = bytes.get(at..at + 4)?;
     Some(u32::from_le_bytes(bytes.try_into().ok()?))

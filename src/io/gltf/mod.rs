@@ -3,26 +3,27 @@
 //!
 //! # Export
 //!
-//! Lengths are metres, times seconds from 0. No node has a scale.
+//! Lengths are in metres, times in seconds from the first frame. No node has a scale.
 //!
 //! ```text
-//! Armature             identity; skin.skeleton
+//! Armature             identity transform; the skin's `skeleton`
 //!  └ joints…           as in the document, or the arm's `upper` and `lower`: at the bone's base,
-//!                      +y along the bone, x as near to the joint's own as possible
-//!     └ NAME_tip       at the tip of a bone without children, or of a keyed length
-//! Limbs                the mesh: a cone for each bone, balls at joints; skinned
+//!                      +y along the bone, x as near to the joint's own x as possible
+//!     └ NAME_tip       at the tip of a bone that has no children or whose length changes
+//! Limbs                the skinned mesh: a cone for each bone, balls at joints
 //! ```
 //!
 //! Nodes are in the bind pose: the skeleton before any rotation, the arm straight along the Root's
-//! +x. The document's pose is in the animation, with a key in every frame; mirroring, stretching
-//! and shear of a skeleton's transform become rotations and translations in it.
+//! +x. The document's pose is in the animation, with a key in every frame. Mirroring, stretching
+//! and shear of a skeleton's transform become rotations and translations in the animation.
 //!
 //! # Import
 //!
 //! A skin's joints become a skeleton in the world, in metres, parents before their children. The
-//! nodes are the bind pose: a joint's frame is its node's rotation. Keys are at every frame of the
-//! first animation; where lengths or scales change, a joint's offset has keys. `NAME_tip` without
-//! children is the tip of NAME's bone. Meshes, materials and cameras are ignored.
+//! nodes are the bind pose: a joint's frame is its node's rotation. A joint that moves has keys at
+//! every frame of the first animation; its offset has keys if lengths or scales change. A node
+//! `NAME_tip` without children is not a joint but the tip of NAME's bone. Meshes, materials and
+//! cameras are ignored.
 //!
 //! # Source
 //!

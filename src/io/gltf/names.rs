@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-/// Names that are taken, each with the number to try next when it is asked for again.
+/// Names in use, each with the number to try as the suffix of the next equal name.
 #[derive(Default)]
 pub struct UniqueNames(HashMap<String, usize>);
 
@@ -13,7 +13,7 @@ impl<const N: usize> From<[&str; N]> for UniqueNames {
 const FIRST: usize = 2;
 
 impl UniqueNames {
-    /// Takes and returns the name, with a number if it is taken already.
+    /// Returns `name`, with a number as suffix if it is in use already. The result is then in use.
     pub fn free(&mut self, name: &str) -> String {
         let mut free = name.to_owned();
         let mut number = self.0.get(name).copied();

@@ -6,7 +6,7 @@ use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint};
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
-/// A skeleton, and the joint of every bone in the file's order.
+/// A skeleton, and for every bone in the file's order its joint in the skeleton.
 pub struct SkeletonWithOrder {
     pub skeleton: Skeleton,
     pub order: Vec<JointId>,
@@ -40,8 +40,8 @@ pub fn read(at: &JsonPath, file: &Js3dSkeleton) -> Result<SkeletonWithOrder, Fie
     Ok(SkeletonWithOrder { skeleton, order })
 }
 
-/// The bones with parents before their children, otherwise in the same order. Fails with a bone
-/// whose parent is invalid, and the reason.
+/// Sorts the bones so that parents come before their children, otherwise in the file's order.
+/// Returns their indices. The error is the index of a bone whose parent is invalid, and the reason.
 fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String)> {
     let mut sorted = Vec::with_capacity(parents.len());
     let mut is_placed = vec![false; parents.len()];
@@ -73,7 +73,8 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, (usize, String
     Ok(sorted)
 }
 
-/// The error of an index that is not one of `bones` bones.
+/// Returns the error message for the index of a bone that is not below `bones`, the number of
+/// bones.
 pub fn index_rule(bones: usize, index: usize) -> String {
     match bones {
         0 => format!("must be a bone, but there are none, got {index}"),
@@ -101,10 +102,10 @@ fn radians(degrees: DVec3) -> DVec3 {
 }
 
 impl Js3dBone {
-    /// The frame in which the bone's angles are measured: y along the bone, x as near as possible
-    /// to the skeleton's x, then turned by the roll.
+    /// The frame in which the bone's angles are measured. y is along the bone, and x is as near as
+    /// possible to the skeleton's x axis; the frame is then turned about y by the bone's roll.
     ///
-    /// In f64, so that squares of f32 numbers neither overflow nor underflow.
+    /// Computed in f64, so that squares of f32 numbers neither overflow nor underflow.
     pub fn frame(&self) -> DMat3 {
         let y = self.extent.0.as_dvec3().try_normalize().unwrap_or(DVec3::Y);
         // (1, 0, 0) − y_x·y, without cancellation.

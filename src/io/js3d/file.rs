@@ -1,4 +1,4 @@
-//! Fields of a scene that concern skeletons.
+//! Those fields of a scene that concern skeletons.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -78,7 +78,7 @@ pub struct Js3dHandle {
 }
 
 impl Js3dScene {
-    /// Skeletons with their names, in the file's order.
+    /// The skeletons in the file's order, each with its name, which is the name of its mesh.
     pub fn skeletons(&self) -> impl Iterator<Item = (&str, &Js3dSkeleton)> {
         let meshes = self.skinned_meshes.0.iter();
         meshes.filter_map(|(name, mesh)| Some((name.as_str(), &mesh.skeleton.as_ref()?.0)))
@@ -92,7 +92,7 @@ impl Js3dBone {
     }
 }
 
-/// Objects by name, in the file's order.
+/// Named objects in the file's order.
 pub struct Named<T>(pub Vec<(String, T)>);
 
 impl<T> Default for Named<T> {

@@ -5,12 +5,12 @@
 //!     base, base_offset      their sum is the base of bones without a parent
 //!     bones[]                extent, roll (degrees), radius, parent, pose (x, y, z in degrees)
 //!     handles[]              bone, target (in the skeleton's own space), enabled
-//! scene.instances.skinned_meshes.*   mesh (a NAME), transform (the name of one)
+//! scene.instances.skinned_meshes.*   mesh (a NAME), transform (a name in scene.transforms)
 //! scene.transforms.*                 parent, translation, rotation [x, y, z, w], scale
 //! ```
 //!
-//! Bones count from 0 in the file's order, and a parent may come after its children; the parent
-//! 4294967295 stands for none. The angles of a bone are measured in the frame
+//! Bones are numbered from 0 in the file's order. A parent may come after its children; the number
+//! 4294967295 stands for no parent. The angles of a bone are measured in the frame
 //! [`Js3dBone::frame`](file::Js3dBone::frame). The skeleton has the transform of the first instance
 //! of its mesh.
 
@@ -31,7 +31,7 @@ use crate::kinematics::skeleton::JointId;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
-/// Reads the skeleton called `name`, or the first one.
+/// Reads the skeleton called `name`, or with `None` the first skeleton.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let JsonObject(Js3dFile { scene: JsonObject(scene) }) =
         source.parse::<JsonObject<Js3dFile>>(|_| {})?;
@@ -90,7 +90,8 @@ fn rig(
     Ok((rig, order))
 }
 
-/// Targets of the handles. Of several on a bone, the first enabled one is used, or the first.
+/// Converts handles to targets. Of several handles on the same bone, the first enabled handle is
+/// used, or the first handle if none is enabled; the others are ignored, with a warning each.
 fn targets(
     at: &JsonPath,
     file: &Js3dSkeleton,
@@ -100,7 +101,8 @@ fn targets(
     warnings: &mut FieldWarnings,
 ) -> Result<Vec<Target>, FieldError> {
     let at_handle = |handle| at.clone().key("handles").index(handle);
-    // Targets with their handles, and the index of each joint's target.
+    // `targets` has each target with the index of its handle. `target_of` has, for each joint, the
+    // index of its target in `targets`.
     let mut targets: Vec<(usize, Target)> = Vec::new();
     let mut target_of = vec![None; order.len()];
     for (handle, JsonObject(file)) in file.handles.iter().flatten().enumerate() {

@@ -7,7 +7,7 @@ use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumbers, JsonPoint};
 
-/// World transform of the first instance of a mesh; identity without an instance.
+/// World transform of the first instance of a mesh; the identity if the mesh has no instance.
 pub fn of_mesh(
     scene: &Js3dScene,
     mesh: &str,
@@ -30,7 +30,8 @@ pub fn of_mesh(
     }
 }
 
-/// World transform: the product of a transform and all its ancestors. `field` has its name.
+/// World transform of the transform called `name`: the product of all its ancestors and itself.
+/// `field` is the path of the field that contains the name.
 fn world(scene: &Js3dScene, name: &str, field: JsonPath) -> Result<DAffine3, FieldError> {
     let mut product = DAffine3::IDENTITY;
     let (mut next, mut field) = (Some(name), field);

@@ -6,7 +6,7 @@ use crate::kinematics::ik::IkSolution;
 use crate::kinematics::twist::TwistReference;
 use crate::kinematics::two_bone::Reach;
 
-/// The pose that answers a line, written as JSON. Elbow and hand are in the world.
+/// The pose that answers a line, written as JSON. Elbow and hand are in world space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
     reach: Option<Reach>,
@@ -18,13 +18,13 @@ pub struct Answer {
     theta_e_deg: f32,
     along: f32,
     out: f32,
-    /// `None` where it is infinite.
+    /// The gain of the twist reference; `None` if it is infinite.
     reference_gain: Option<f32>,
     elbow_angle_deg: f32,
 }
 
 impl Answer {
-    /// Answer with the solved pose of an arm whose shoulder is at `root` in the world.
+    /// Returns the answer with the solved pose of an arm whose shoulder is at `root` in the world.
     ///
     /// # Errors
     ///

@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::io::error::shortened;
 use crate::kinematics::two_bone::LengthError;
 
-/// The reason why a line has no pose. Messages start with the `prefix` of the field, if known.
+/// The reason why a line has no pose. Messages start with the field, if it is known.
 #[derive(Debug, Error)]
 pub enum LineError {
     /// The line is longer than [`LineError::MAX_LENGTH`].
@@ -24,7 +24,7 @@ pub enum LineError {
     /// The line is not JSON.
     #[error("{prefix}not JSON: {reason} (byte {at})")]
     NotJson {
-        /// The field, a colon and a space; or empty.
+        /// Path of the field with a colon and a space, or empty.
         prefix: String,
         /// The parser's message.
         reason: String,
@@ -34,7 +34,7 @@ pub enum LineError {
     /// The line is JSON but not a request: a field is missing, unknown or invalid.
     #[error("{prefix}{reason}")]
     NotARequest {
-        /// The field, a colon and a space; or empty.
+        /// Path of the field with a colon and a space, or empty.
         prefix: String,
         /// The rule that is broken.
         reason: String,
@@ -42,9 +42,9 @@ pub enum LineError {
     /// A number overflows.
     #[error("{prefix}must be between -3.4028235e38 and 3.4028235e38, got {number}")]
     OutOfRange {
-        /// The field, a colon and a space; or empty.
+        /// Path of the field with a colon and a space, or empty.
         prefix: String,
-        /// The number as the line has it.
+        /// The number as written in the line.
         number: String,
     },
     /// A bone length is not finite or not above 0.
@@ -70,7 +70,7 @@ pub enum LineError {
     },
 }
 
-/// Field names of earlier versions, and the current ones.
+/// Field names of earlier versions, each with the name in this version.
 const RENAMED: [(&str, &str); 3] = [
     ("elbow_spin_deg", "twist_deg"),
     ("swivel", "reference"),
@@ -78,10 +78,10 @@ const RENAMED: [(&str, &str); 3] = [
 ];
 
 impl LineError {
-    /// The length of the longest line that is read, in bytes without its line ending.
+    /// Maximum length of a line in bytes, without its line ending.
     pub const MAX_LENGTH: usize = 64 * 1024;
 
-    /// The error's text. A long quotation in it is shortened to its start and its end.
+    /// The error's text. Of a long text, only the start and the end are returned.
     pub fn message(&self) -> String {
         shortened(self.to_string())
     }
@@ -114,7 +114,8 @@ impl LineError {
     }
 }
 
-/// Replaces the list of known fields by the new name of a renamed one.
+/// Returns `reason`, unless it is about an unknown field that was renamed. Then the result has the
+/// field's new name instead of the list of all fields.
 fn renamed(reason: String) -> String {
     let is_unknown =
         |(old, _): &&(&str, &str)| reason.starts_with(&format!("unknown field `{old}`"));
@@ -124,14 +125,15 @@ fn renamed(reason: String) -> String {
     }
 }
 
-/// The error's text without its position, in which the line is always 1.
+/// The error's text without the position at its end, because the parser numbers every line as 1.
 fn without_position(error: &serde_json::Error) -> String {
     let position = format!(" at line {} column {}", error.line(), error.column());
     let text = error.to_string();
     text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
-/// The prefix of the invalid field; empty if the field is unknown or the reason names it.
+/// The path of the invalid field with a colon and a space. Empty if the path is unknown or `reason`
+/// already contains it.
 fn prefix(path: &Path, reason: &str) -> String {
     let is_known = path.iter().len() > 0 && !path.iter().any(|s| matches!(s, Segment::Unknown));
     if !is_known || reason.contains(&format!("`{path}`")) {
@@ -140,7 +142,7 @@ fn prefix(path: &Path, reason: &str) -> String {
     format!("{path}: ")
 }
 
-/// The word around byte `read`, up to punctuation on both sides.
+/// The word around byte `read` of the line, up to the nearest space or punctuation on both sides.
 fn word_around(line: &str, read: usize) -> &str {
     let in_word = |c: char| !(c.is_whitespace() || r#",:[]{}""#.contains(c));
     let (before, after) = line.split_at_checked(read).unwrap_or((line, ""));

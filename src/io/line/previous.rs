@@ -1,7 +1,8 @@
 use crate::kinematics::ik::{IkSolution, IkState};
 
-/// The state that a transported line passes on to the next one: the Pointer, used if the hand is at
-/// the shoulder or straight above or below it, and the frame that the twist was measured in.
+/// State that a line with the transport reference passes on to the next line: its Pointer, and the
+/// frame in which its twist was measured. The Pointer is used if the hand of the next line is at
+/// the shoulder, or straight above or below the shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreviousLine(pub(super) IkState);
 

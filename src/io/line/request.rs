@@ -1,4 +1,4 @@
-//! A line's fields.
+//! The fields of a line.
 
 use std::fmt;
 use std::str;
@@ -86,7 +86,8 @@ impl Request {
     }
 
     pub fn solve(&self, ik: Ik, previous: Option<PreviousLine>) -> IkSolution {
-        // In degrees the remainder is exact; in radians a large angle would lose its turns.
+        // Whole turns are removed in degrees, where the remainder is exact. In radians, the
+        // remainder of a large angle would be inexact.
         let twist = (self.twist_deg.0 % 360.0).to_radians();
         let last = previous.map_or_else(IkState::default, |PreviousLine(state)| state);
         ik.solve(self.hand.0, twist, last)

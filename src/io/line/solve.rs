@@ -5,18 +5,19 @@ use super::request::Request;
 use crate::kinematics::twist::TwistReference;
 
 /// Solves one line of `ik-arm solve`, given without its line ending. `previous` is the state after
-/// the last valid line, and becomes the state after this one; an invalid line leaves it unchanged.
+/// the nearest valid line before this one; it becomes the state after this line. An invalid line
+/// leaves `previous` unchanged.
 ///
 /// # Errors
 ///
-/// Fails if the line is not a request, or no arm can meet it; see [`LineError`].
+/// Fails if the line is not a request, or a number in it is out of range; see [`LineError`].
 pub fn solve_line(line: &[u8], previous: &mut Option<PreviousLine>) -> Result<Answer, LineError> {
     if line.len() > LineError::MAX_LENGTH {
         return Err(LineError::TooLong);
     }
     let request = Request::parse(line)?;
     let ik = request.ik()?;
-    // Lines with any other reference are solved on their own.
+    // A line with any other reference is solved without the previous line.
     let is_transported = ik.reference == TwistReference::Transport;
     let solved = request.solve(ik, previous.filter(|_| is_transported));
     let answer = Answer::new(request.root.0, ik.reference, &solved)?;

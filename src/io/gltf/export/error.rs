@@ -17,7 +17,7 @@ pub enum GlbError {
     TooFar {
         /// Name of the joint.
         joint: String,
-        /// In seconds; `None` in the bind pose.
+        /// Time in seconds; `None` for the bind pose.
         time: Option<f64>,
     },
     /// The motion has more than [`GlbError::MAX_FRAMES`] frames or [`GlbError::MAX_SAMPLES`]

@@ -18,7 +18,7 @@ use super::motion::{JointAnimation, JointTrack};
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
 
-/// Colours of the limbs in the dark theme: sRGB.
+/// Colours of the limbs in the dark theme, as sRGB components.
 const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
 
 pub fn write(
@@ -62,8 +62,8 @@ fn to_glb(mut writer: GltfWriter) -> Result<Vec<u8>, GlbError> {
     Ok(Glb { header, json: json.into(), bin: Some(writer.bytes.into()) }.to_vec()?)
 }
 
-/// Adds the joints with the same indices as in `bones`. Returns the node above them and the node of
-/// the mesh, which follow.
+/// Adds the nodes of the joints, with the same indices as in `bones`, then a node above them and
+/// the node of the mesh. Returns these two nodes.
 fn add_nodes(writer: &mut GltfWriter, bones: &JointNodes) -> [Index<Node>; 2] {
     let mut children = vec![Vec::new(); bones.nodes.len()];
     let mut roots = Vec::new();
@@ -154,7 +154,7 @@ fn matte(colour: [u8; 3]) -> Material {
     }
 }
 
-/// Linear value of an sRGB component.
+/// Converts an sRGB component to its linear value from 0 to 1.
 fn linear(srgb: u8) -> f32 {
     let value = f32::from(srgb) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
@@ -206,13 +206,14 @@ fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation) {
     writer.root.push(animation);
 }
 
-/// Writes tracks one after the other into one buffer view, which is added at the end.
+/// Writes tracks one after the other into the same buffer view. The caller adds the view after the
+/// last track.
 struct Recorder<'a> {
     writer: &'a mut GltfWriter,
     animation: &'a mut Animation,
     input: Index<Accessor>,
     view: Index<buffer::View>,
-    /// The first byte of the view.
+    /// The byte of the buffer at which the view begins.
     start: usize,
 }
 

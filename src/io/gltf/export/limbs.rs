@@ -6,7 +6,8 @@ use super::error::GlbError;
 use super::nodes::JointNodes;
 use super::rig::GltfRig;
 
-/// The mesh in the bind pose: a cone for each bone, balls at both ends; one part for each colour.
+/// The mesh in the bind pose: a cone for each bone, with balls at its ends. Each colour has its own
+/// part.
 #[derive(Default)]
 pub struct LimbMesh {
     pub parts: [MeshPart; 2],
@@ -14,16 +15,16 @@ pub struct LimbMesh {
 
 #[derive(Default)]
 pub struct MeshPart {
-    /// In the world, in metres.
+    /// Positions of the vertices in the world, in metres.
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     /// The joint that each vertex follows.
     pub joints: Vec<u16>,
-    /// Three for each triangle, counter-clockwise seen from outside.
+    /// Indices of three vertices for each triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
 }
 
-/// Radius of a ball relative to the bone whose end it covers.
+/// Ratio of the radius of a ball to the radius of the bone's end that it covers.
 const BALL: f64 = 1.1;
 
 impl LimbMesh {
@@ -53,7 +54,7 @@ impl LimbMesh {
 }
 
 impl MeshPart {
-    /// A tapered cylinder along its frame's y, open at both ends.
+    /// Adds a tapered cylinder, open at both ends, from `base` along the y axis of `rotation`.
     fn add_cone(
         &mut self,
         base: DVec3,
@@ -78,7 +79,7 @@ impl MeshPart {
         }
     }
 
-    /// A ball with its poles on its frame's y.
+    /// Adds a ball whose poles are on the y axis of `rotation`.
     fn add_ball(&mut self, centre: DVec3, rotation: DMat3, radius: f64, joint: usize) {
         const SIDES: u32 = 8;
         const RINGS: u32 = 3;
@@ -113,12 +114,12 @@ impl MeshPart {
         self.joints.push(u16::try_from(joint).unwrap_or_default());
     }
 
-    /// Index of the next vertex.
+    /// Index of the vertex that is added next.
     fn first(&self) -> u32 {
         u32::try_from(self.positions.len()).unwrap_or_default()
     }
 
-    /// Whether the vertices of the last bone are finite.
+    /// Whether the vertices of the most recently added bone are finite.
     fn is_finite(&self) -> bool {
         const MAX_VERTICES_OF_BONE: usize = 76;
         let last = self.positions.iter().rev().take(MAX_VERTICES_OF_BONE);

@@ -1,4 +1,4 @@
-//! The shown rig as a skinned, animated mesh.
+//! Export of the shown rig as a skinned, animated mesh.
 
 mod error;
 mod file;
@@ -16,13 +16,14 @@ use motion::JointAnimation;
 use nodes::JointNodes;
 use rig::GltfRig;
 
-/// The shown rig as a `.glb` file: joints, a skinned mesh, and the motion at `frames_per_second`,
-/// clamped from 1 to 1000; by default at the timeline's frame rate. Lengths are metres, and no node
-/// has a scale.
+/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The frame
+/// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 1 to
+/// 1000. Lengths are in metres, and no node has a scale.
 ///
 /// # Errors
 ///
-/// Fails without joints, if a position overflows, with too many frames, or if cancelled.
+/// Fails if the skeleton has no joints, a position overflows, the motion has too many frames, or
+/// the export is cancelled.
 pub fn glb(
     document: &Document,
     frames_per_second: Option<u32>,

@@ -8,18 +8,19 @@ use crate::io::progress::Progress;
 
 /// The animation: the transforms of all nodes that leave the bind pose.
 pub struct JointAnimation {
-    /// Times of the frames, in seconds from the first.
+    /// Times of the frames, in seconds from the first frame.
     pub times: Vec<f32>,
-    /// Unit quaternions. Signs are chosen so that interpolation takes the shorter arc.
+    /// Rotations relative to the parents, as unit quaternions. Their signs are chosen so that
+    /// interpolation takes the shorter arc.
     pub rotations: Vec<JointTrack<4>>,
-    /// In metres.
+    /// Translations relative to the parents, in metres.
     pub translations: Vec<JointTrack<3>>,
 }
 
 /// The values of one node over time.
 pub struct JointTrack<const N: usize> {
     pub node: usize,
-    /// One for each frame.
+    /// One value for each frame.
     pub values: Vec<[f32; N]>,
 }
 
@@ -64,7 +65,8 @@ impl JointAnimation {
     }
 }
 
-/// Smaller changes are rounding: in radians, or relative to the distance from the parent.
+/// Changes below this count as rounding errors: in radians for a rotation, relative to the distance
+/// from the parent for a translation.
 const LEAST: f64 = 1e-6;
 
 impl JointTrack<4> {
@@ -88,7 +90,8 @@ impl JointTrack<3> {
     }
 }
 
-/// A quaternion or its negative, which is the same rotation, whichever is nearer to `previous`.
+/// Returns `rotation` or its negative, which is the same rotation, whichever is nearer to
+/// `previous`.
 fn same_side(previous: DQuat, rotation: DQuat) -> DQuat {
     if previous.dot(rotation) < 0.0 { -rotation } else { rotation }
 }

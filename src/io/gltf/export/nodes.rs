@@ -4,15 +4,16 @@ use super::error::GlbError;
 use super::rig::{BonePlacement, GltfRig};
 use crate::io::gltf::names::UniqueNames;
 
-/// The joint nodes of a file: one for every bone, in the same order, then those at tips.
+/// The joint nodes of a file: a node at the base of every bone, in the order of the bones, then the
+/// nodes at tips of bones.
 pub struct JointNodes {
     pub nodes: Vec<JointNode>,
-    /// Transforms in the bind pose.
+    /// Transforms of the nodes relative to their parents, in the bind pose.
     pub bind_pose: Vec<RigidTransform>,
 }
 
 pub struct JointNode {
-    /// Unique.
+    /// Name of the node, unique in the file.
     pub name: String,
     pub parent: Option<usize>,
     /// The bone at whose base or tip the node is.
@@ -28,8 +29,9 @@ pub struct RigidTransform {
 }
 
 impl JointNodes {
-    /// The names of the node above all joints and of the node with the mesh.
+    /// Name of the node above all joints.
     pub const ARMATURE: &str = "Armature";
+    /// Name of the node with the mesh.
     pub const MESH: &str = "Limbs";
 
     pub fn new(rig: &GltfRig) -> Result<Self, GlbError> {
@@ -50,7 +52,7 @@ impl JointNodes {
         Ok(bones)
     }
 
-    /// The node at the tip of each bone, if any.
+    /// The node at the tip of each bone; `None` if the bone has no such node.
     pub fn tips(&self) -> Vec<Option<usize>> {
         let mut tips = vec![None; self.nodes.len()];
         for (node, tip) in self.nodes.iter().enumerate().filter(|(_, node)| node.is_tip) {
@@ -59,7 +61,8 @@ impl JointNodes {
         tips
     }
 
-    /// Transforms relative to the parents, from placements of the bones at a time in seconds.
+    /// Transforms of the nodes relative to their parents, computed from the placements of the
+    /// bones. `time`, in seconds, appears in errors; `None` stands for the bind pose.
     pub fn locals(
         &self,
         placements: &[BonePlacement],

@@ -10,26 +10,27 @@ use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 
 /// The shown rig, arm or skeleton, as bones in the world, in metres.
 ///
-/// In f64, so that a skeleton far from the origin is exact.
+/// Computed in f64, so that a skeleton far from the origin is exact.
 pub struct GltfRig {
     document: Document,
     metres_per_unit: f64,
-    /// Parents before their children.
+    /// The bones, parents before their children.
     pub bones: Vec<RigBone>,
-    /// Placements in the bind pose.
+    /// Placements of the bones in the bind pose.
     pub bind_pose: Vec<BonePlacement>,
 }
 
-/// The constant part of a bone.
+/// The properties of a bone that do not change over time.
 pub struct RigBone {
     pub name: String,
     pub parent: Option<usize>,
-    /// Whether a node is at its tip, because no child has its length.
+    /// Whether the file has a node at the bone's tip, because the bone has no children or its
+    /// length changes over time.
     pub has_tip: bool,
     pub is_leaf: bool,
     /// Radii at base and tip, in metres.
     pub radii: [f64; 2],
-    /// Index of its colour.
+    /// Index of the bone's colour, 0 or 1.
     pub shade: usize,
 }
 
@@ -37,7 +38,7 @@ pub struct RigBone {
 #[derive(Clone, Copy)]
 pub struct BonePlacement {
     pub base: DVec3,
-    /// From base to tip.
+    /// The vector from base to tip.
     pub along: DVec3,
     /// The joint's x and y axes, of any length.
     pub x: DVec3,
@@ -45,7 +46,8 @@ pub struct BonePlacement {
 }
 
 impl BonePlacement {
-    /// Rotation in the world: y along the bone; a bone without length has the joint's y.
+    /// Rotation of the bone's node in the world, with y along the bone. For a bone without length,
+    /// y is along the joint's y axis.
     pub fn frame(&self) -> DMat3 {
         let has_direction = self.along.try_normalize().is_some();
         frame(if has_direction { self.along } else { self.y }, self.x)
@@ -75,7 +77,7 @@ impl GltfRig {
         if rig.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(rig) }
     }
 
-    /// Placements of all bones at a time, in seconds.
+    /// Placements of all bones at `time`, in seconds.
     pub fn at(&mut self, time: f64) -> Vec<BonePlacement> {
         // `Document::evaluate` would copy all keys for every frame.
         self.document.apply_keys(time);
@@ -88,12 +90,12 @@ impl GltfRig {
         })
     }
 
-    /// Whether the pose changes in time.
+    /// Whether the pose changes over time.
     pub fn is_moving(&self) -> bool {
         self.document.is_animated()
     }
 
-    /// Converts the document's units to metres.
+    /// Converts placements from the document's units to metres.
     fn metric(&self, mut placements: Vec<BonePlacement>) -> Vec<BonePlacement> {
         for bone in &mut placements {
             bone.base *= self.metres_per_unit;
@@ -158,8 +160,9 @@ impl GltfRig {
     }
 }
 
-/// Radii at base and tip, in metres: the joint's radius, clamped relative to the bone's length and
-/// the skeleton's reach.
+/// Radii of a bone at its base and its tip, in metres. The radius at the base is the joint's
+/// radius, clamped relative to the bone's length and the skeleton's reach. A slender bone tapers to
+/// the tip.
 fn radii(radius: f64, length: f64, reach: f64) -> [f64; 2] {
     const THICKEST: (f64, f64) = (0.45, 0.028);
     const POINT: f64 = 0.02;
@@ -173,7 +176,8 @@ fn radii(radius: f64, length: f64, reach: f64) -> [f64; 2] {
     [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
 }
 
-/// A joint's rotation, orthogonal in f64: f32 rounding would add up along a long chain.
+/// A joint's local rotation, made orthogonal in f64. Otherwise the errors of f32 rounding would add
+/// up along a long chain.
 fn local_rotation(joint: &Joint) -> DMat3 {
     let rotation = joint.local_rotation().as_dmat3();
     DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
@@ -212,7 +216,8 @@ fn posed_arm(document: &Document) -> Vec<BonePlacement> {
     limbs(arm, bones, [rotation(ArmPart::UpperLimb), rotation(ArmPart::LowerLimb)])
 }
 
-/// Placements of the limbs by their rotations. A limb is along x and bends about z.
+/// Placements of the limbs, which have these rotations in the world. A limb is along the x axis of
+/// its rotation and bends about the z axis.
 fn limbs(arm: &Arm, bones: TwoBone, rotations: [DMat3; 2]) -> Vec<BonePlacement> {
     let lengths = [bones.upper(), bones.lower()].map(f64::from);
     let mut base = arm.root.as_dvec3();

@@ -23,13 +23,13 @@ impl AccessorKind {
     pub const QUATERNION: Self = Self { component: ComponentType::F32, shape: Type::Vec4 };
     pub const MATRIX: Self = Self { component: ComponentType::F32, shape: Type::Mat4 };
     pub const JOINTS: Self = Self { component: ComponentType::U16, shape: Type::Vec4 };
-    /// Normalized: 255 is 1.
+    /// Normalized integers: 255 stands for 1.
     pub const WEIGHTS: Self = Self { component: ComponentType::U8, shape: Type::Vec4 };
     pub const INDEX: Self = Self { component: ComponentType::U32, shape: Type::Scalar };
 }
 
 impl GltfWriter {
-    /// Adds a view of the bytes from `start` on.
+    /// Adds a view of the bytes from `start` to the end of the buffer.
     pub fn view(&mut self, start: usize, target: Option<Target>) -> Index<View> {
         let view = View {
             buffer: Index::new(0),
@@ -44,7 +44,7 @@ impl GltfWriter {
         self.root.push(view)
     }
 
-    /// Adds an accessor of `count` values from byte `offset` of a view on.
+    /// Adds an accessor of `count` values, the first of which is at byte `offset` of a view.
     pub fn accessor(
         &mut self,
         view: Index<View>,
@@ -68,7 +68,8 @@ impl GltfWriter {
         })
     }
 
-    /// Adds bytes, a multiple of 4, with a view and an accessor.
+    /// Appends `bytes` to the buffer, and adds a view and an accessor for them. The number of bytes
+    /// must be a multiple of 4.
     pub fn array(
         &mut self,
         bytes: impl Iterator<Item = u8>,

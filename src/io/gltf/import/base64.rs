@@ -1,4 +1,4 @@
-/// Decodes base64 (RFC 4648). The error is a reason.
+/// Decodes base64 (RFC 4648). The error is the reason why the text is invalid.
 pub fn decode(text: &str) -> Result<Vec<u8>, String> {
     let digits = text.trim_end_matches('=').as_bytes();
     let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 2);

@@ -10,12 +10,13 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
 
-/// The bytes of the buffers that are needed.
+/// The bytes of the buffers that the import reads; `None` for all other buffers.
 pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 
 impl<'a> GltfBuffers<'a> {
-    /// Reads buffers from the binary chunk, data URIs or files in the same folder. Fails if they
-    /// have more than [`OpenError::MAX_BYTES`] together.
+    /// Reads the buffers with the indices `needed` from the binary chunk, from data URIs or from
+    /// files in the folder of the glTF file. Fails if these buffers have more than
+    /// [`OpenError::MAX_BYTES`] together.
     pub fn read(source: &'a Source, file: &GltfFile, needed: &[usize]) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
         let mut remaining = OpenError::MAX_BYTES;
@@ -90,7 +91,7 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     base64::decode(data)
 }
 
-/// The bytes of a file in the folder of the glTF file.
+/// Reads the first `length` bytes of a file in the folder of the glTF file.
 fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> {
     let Some(folder) = source.folder() else {
         return Err(format!(
@@ -114,7 +115,7 @@ fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, Strin
     Ok(bytes)
 }
 
-/// A URI with escapes like `%20` decoded.
+/// Decodes the escapes in a URI, like `%20`. Returns `None` if an escape or the result is invalid.
 fn unescaped(uri: &str) -> Option<String> {
     let mut parts = uri.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();

@@ -4,13 +4,14 @@ use crate::document::Timeline;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 
-/// Common frame rates, ascending.
+/// Common frame rates in frames per second, ascending.
 const COMMON_RATES: [u32; 8] = [24, 25, 30, 48, 50, 60, 100, 120];
-/// Frame rate of motions that fit no common one.
+/// Frame rate of a motion whose keys fit none of the common frame rates.
 const FALLBACK_RATE: u32 = 60;
 
-/// The timeline from the first key to the last, with the lowest frame rate that has a frame at
-/// every key; `None` if all keys are at one time. `at` is the field of the animation.
+/// Returns the timeline from the first key to the last. Its frame rate is the lowest common one
+/// that has a frame at every key, or else [`FALLBACK_RATE`]. Returns `None` if all keys are at the
+/// same time. `at` is the path of the animation.
 pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
     let Some((start, last)) = time_range(tracks) else { return Ok(None) };
     let frames_at = |rate: u32| {
@@ -33,7 +34,7 @@ pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timelin
     Ok((frames > 0.0).then_some(timeline))
 }
 
-/// Times of the first and the last key.
+/// Times of the first and the last key in seconds; `None` without keys.
 pub fn time_range(tracks: &NodeTracks<'_>) -> Option<(f64, f64)> {
     tracks.times().map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }

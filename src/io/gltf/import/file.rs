@@ -1,4 +1,4 @@
-//! Fields of a file that concern skeletons and their motions.
+//! Those fields of a file that concern skeletons and their motions.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -108,7 +108,7 @@ pub struct GltfBuffer {
 /// An array of objects. Its length is limited, so that a malicious file cannot exhaust the memory.
 pub struct List<T>(pub Vec<T>);
 
-/// The error of an index that is not below `count`, the number of `items`.
+/// Returns the error message for an index that is not below `count`, the number of `items`.
 pub fn index_rule(items: &str, count: usize, index: usize) -> String {
     format!("must be below {count}, the number of {items}, got {index}")
 }

@@ -1,4 +1,4 @@
-//! The skeleton of a skin, with its motion.
+//! Import of the skeleton of a skin, with its motion.
 
 mod base64;
 mod buffers;

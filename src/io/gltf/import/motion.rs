@@ -8,19 +8,19 @@ use crate::io::field_error::FieldError;
 use crate::io::gltf::frame::frame;
 use crate::kinematics::skeleton::Joint;
 
-/// The placement of a joint in the world.
+/// The placement of a joint in the world, in metres.
 #[derive(Clone, Copy)]
 pub struct JointPlacement {
     pub base: DVec3,
-    /// Its axes, orthonormalized.
+    /// The joint's axes, orthonormalized.
     pub frame: DMat3,
 }
 
-/// Poses the joints and their ancestors.
+/// Computes the placements of the joints from the transforms of their nodes and of all ancestors.
 pub struct NodePoser<'a> {
     nodes: &'a NodeTree,
     joints: &'a SkinJoints,
-    /// Parents before their children.
+    /// The nodes of the joints and their ancestors, parents before their children.
     needed: Vec<usize>,
     locals: Vec<NodeTransform>,
     worlds: Vec<DAffine3>,
@@ -29,7 +29,7 @@ pub struct NodePoser<'a> {
 /// The motion of a joint, frame by frame.
 #[derive(Default)]
 pub struct JointMotion {
-    /// Unwrapped angles.
+    /// Angles about x, y and z in radians, unwrapped from frame to frame.
     pub rotations: Vec<Vec3>,
     pub offsets: Vec<Vec3>,
 }
@@ -57,7 +57,7 @@ impl<'a> NodePoser<'a> {
         self.needed.len()
     }
 
-    /// Whether each node is posed.
+    /// For each node of the file, whether it is posed.
     pub fn is_needed(&self) -> Vec<bool> {
         let mut is_needed = vec![false; self.nodes.parents.len()];
         self.needed.iter().for_each(|node| is_needed[*node] = true);
@@ -69,7 +69,7 @@ impl<'a> NodePoser<'a> {
         self.placements()
     }
 
-    /// Placements of the joints in an animation at a time, in seconds.
+    /// Placements of the joints in the animation `tracks` at `time`, in seconds.
     pub fn at(
         &mut self,
         tracks: &NodeTracks<'_>,
@@ -97,7 +97,8 @@ impl<'a> NodePoser<'a> {
     }
 }
 
-/// Motions of all joints, frame by frame.
+/// Samples the motions of all joints in the first `frames` frames of `timeline`. Leaves the angles
+/// of the last frame in `joints`.
 pub fn sample(
     poser: &mut NodePoser<'_>,
     tracks: &NodeTracks<'_>,
@@ -127,7 +128,7 @@ pub fn sample(
                 let reason = "must be within ±3.4028235e38 m of its parent";
                 return Err(FieldError::new(at_node(poser.joints.nodes[index]), reason));
             }
-            // Unwrapped: the angles nearest to those of the last frame.
+            // Unwrapped: the angles nearest to those of the previous frame.
             joint.rotation =
                 joint.angles_of(Mat3A::from((parent_inverse * rotations[index]).as_mat3()));
             motion.rotations.push(joint.rotation);

@@ -5,23 +5,23 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::JsonNumbers;
 
-/// The tree of nodes.
+/// The nodes of a file as a tree.
 pub struct NodeTree {
     pub parents: Vec<Option<usize>>,
     /// All nodes, parents before their children.
     pub order: Vec<usize>,
-    /// Transforms relative to the parents, without animation.
+    /// Transforms of the nodes relative to their parents, without animation.
     pub locals: Vec<NodeTransform>,
 }
 
-/// A transform relative to the parent, as in the file.
+/// The transform of a node relative to its parent, in the form that the file has.
 #[derive(Clone, Copy)]
 pub enum NodeTransform {
     TransformParts(TransformParts),
     Matrix(DAffine3),
 }
 
-/// A transform that animations can change.
+/// A transform in parts, which animations can change one by one.
 #[derive(Clone, Copy)]
 pub struct TransformParts {
     pub translation: DVec3,
@@ -76,7 +76,8 @@ fn parents(nodes: &[GltfNode]) -> Result<Vec<Option<usize>>, FieldError> {
     Ok(parents)
 }
 
-/// All nodes, parents before their children. Fails if a node is its own ancestor.
+/// Returns the indices of all nodes, parents before their children. Fails if a node is its own
+/// ancestor.
 fn order(nodes: &[GltfNode], parents: &[Option<usize>]) -> Result<Vec<usize>, FieldError> {
     let mut order: Vec<usize> = (0..nodes.len()).filter(|node| parents[*node].is_none()).collect();
     let mut done = 0;
@@ -115,7 +116,7 @@ fn local(index: usize, node: &GltfNode) -> Result<NodeTransform, FieldError> {
     Ok(NodeTransform::TransformParts(TransformParts { translation, rotation, scale }))
 }
 
-/// The normalized quaternion; `None` for zero.
+/// The normalized quaternion; `None` if its length is almost 0 or not finite.
 pub fn unit(rotation: [f64; 4]) -> Option<DQuat> {
     const SHORTEST: f64 = 1e-6;
     let rotation = DVec4::from_array(rotation);

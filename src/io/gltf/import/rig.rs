@@ -7,7 +7,8 @@ use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
-/// All joints in the bind pose, in world space; their bones are not set yet.
+/// Returns all joints of a skin in the bind pose, with offsets and frames in world axes. The axes
+/// of their bones are zero until [`build`] sets them.
 pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]) -> Vec<Joint> {
     let mut names = UniqueNames::default();
     let joint = |(index, node): (usize, &usize)| {
@@ -25,7 +26,8 @@ pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]
     joints.nodes.iter().enumerate().map(joint).collect()
 }
 
-/// Smaller changes are rounding: in radians, or relative to the length of an offset.
+/// Changes below this count as rounding errors: in radians for an angle, relative to its length for
+/// an offset.
 const LEAST: f32 = 1e-6;
 
 impl JointMotion {
@@ -44,9 +46,11 @@ impl JointMotion {
 
 /// An imported skeleton with its motion.
 pub struct ImportedRig {
-    /// The joints in the pose of the first frame, and keys for those that move.
+    /// A document with the joints in the pose of the first frame, and keys for the joints that
+    /// move.
     pub document: Document,
-    /// The index of every joint; `None` for one that is only the tip of its parent's bone.
+    /// For every joint of the skin, its index in the skeleton; `None` if the joint is only the tip
+    /// of its parent's bone.
     pub kept: Vec<Option<usize>>,
 }
 
@@ -89,8 +93,8 @@ pub fn build(
     Ok(ImportedRig { document, kept })
 }
 
-/// Whether each joint is only the tip of its parent's bone: called `…_tip`, without children, and
-/// without motion.
+/// For each joint, whether it is only the tip of its parent's bone. A tip has the name of its
+/// parent with `_tip` at the end, no children and a constant offset.
 fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     let mut are_leaves = vec![true; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
@@ -104,8 +108,8 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     joints.iter().enumerate().map(is_tip).collect()
 }
 
-/// Sets bones: to a joint's tip, else to its only child, else to the child along the joint's y
-/// axis, else to the middle of the children.
+/// Sets the axis of each joint's bone. The axis goes from the joint to its tip, otherwise to the
+/// child along the joint's y axis, otherwise to the mean of the children.
 fn give_bones(joints: &mut [Joint], bind_offsets: &[Vec3], are_tips: &[bool]) {
     const ALONG: f32 = 0.999;
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -129,7 +133,7 @@ fn give_bones(joints: &mut [Joint], bind_offsets: &[Vec3], are_tips: &[bool]) {
     }
 }
 
-/// The mean of the offsets that are not zero.
+/// The mean of those offsets that are not zero; zero if there are none.
 fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
     let offsets: Vec<Vec3> = offsets.filter(|offset| *offset != Vec3::ZERO).collect();
     let weight = 1.0 / offsets.len().max(1) as f32;

@@ -3,7 +3,7 @@ use super::file::{GltfAccessor, GltfBufferView, GltfFile, index_rule};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 
-/// The numbers of an accessor, row by row. All are within the buffer.
+/// The numbers of an accessor, row by row. All rows are within the buffer.
 #[derive(Clone, Copy)]
 pub struct AccessorRows<'a> {
     bytes: &'a [u8],
@@ -54,7 +54,7 @@ fn at_view(index: usize) -> JsonPath {
     JsonPath::root().key("bufferViews").index(index)
 }
 
-/// An accessor, its buffer view and the index of the view.
+/// Returns the accessor `index`, its buffer view and the index of the view.
 fn find_accessor(
     file: &GltfFile,
     index: usize,
@@ -76,7 +76,7 @@ fn find_accessor(
     Ok((accessor, view, view_index))
 }
 
-/// The buffer of an accessor.
+/// Returns the index of the buffer that contains the accessor `index`.
 pub fn buffer_of(file: &GltfFile, index: usize) -> Result<usize, FieldError> {
     let (_, GltfBufferView { buffer, .. }, view) = find_accessor(file, index)?;
     let buffer = buffer.0 as usize;
@@ -88,7 +88,8 @@ pub fn buffer_of(file: &GltfFile, index: usize) -> Result<usize, FieldError> {
 }
 
 impl<'a> AccessorRows<'a> {
-    /// The accessor's rows. Fails if it has another shape, or if the buffer is too short.
+    /// Returns the rows of the accessor `index`. Fails if its type is not `shape`, or if its buffer
+    /// is too short.
     pub fn new(
         file: &GltfFile,
         buffers: &'a GltfBuffers<'_>,
@@ -143,7 +144,7 @@ impl<'a> AccessorRows<'a> {
         self.is_normalized && self.component != Component::U32
     }
 
-    /// The numbers of a row; 0 beyond its width.
+    /// The first `N` numbers of a row. Numbers beyond the row's width are unspecified.
     pub fn row<const N: usize>(&self, index: usize) -> [f64; N] {
         let size = self.component.size();
         std::array::from_fn(|column| {

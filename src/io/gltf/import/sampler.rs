@@ -7,11 +7,11 @@ use super::part::AnimatedPart;
 use super::rows::{AccessorRows, at_accessor};
 use crate::io::field_error::FieldError;
 
-/// Keys with interpolation.
+/// The keys of one animated part of a node, with their interpolation.
 #[derive(Clone, Copy)]
 pub struct KeySampler<'a> {
     times: AccessorRows<'a>,
-    /// One per time; for cubic splines three: in-tangent, value, out-tangent.
+    /// One row per time, or with cubic splines three rows: in-tangent, value, out-tangent.
     values: AccessorRows<'a>,
     part: AnimatedPart,
     interpolation: Interpolation,
@@ -35,17 +35,19 @@ impl Interpolation {
     }
 }
 
-/// Largest distance from a key at which a time counts as the key's, in seconds: files have 32-bit
-/// times, some with few decimals.
+/// Maximum difference, in seconds, at which `time` still counts as the time of a key. Times of keys
+/// are inexact: files store them in 32 bits, and some programs write few decimals.
 pub fn tolerance(time: f64) -> f64 {
     const LEAST: f64 = 1e-4;
     const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
     (time.abs() * ROUNDING).max(LEAST)
 }
 
-/// Index of a row among a cubic spline's three.
+/// Index of the in-tangent among the three rows of a cubic spline's key.
 const IN_TANGENT: usize = 0;
+/// Index of the value among the three rows of a cubic spline's key.
 const VALUE: usize = 1;
+/// Index of the out-tangent among the three rows of a cubic spline's key.
 const OUT_TANGENT: usize = 2;
 
 impl<'a> KeySampler<'a> {
@@ -84,7 +86,8 @@ impl<'a> KeySampler<'a> {
         Ok(Self { times, values, part, interpolation })
     }
 
-    /// Fails if times do not increase, values are not finite, or a rotation is zero.
+    /// Checks all keys. Fails if times are not finite or do not increase, values are not finite, or
+    /// a rotation is zero. `input` and `output` are the accessors named in errors.
     pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), FieldError> {
         for key in 0..self.len() {
             let time = self.time(key);
@@ -148,7 +151,9 @@ impl<'a> KeySampler<'a> {
         }
     }
 
-    /// The key at or before a time, and the fraction of the way to the next, if between two.
+    /// Returns the key at or before `time`, and the fraction of the way from this key to the next.
+    /// The fraction is `None` if the key's own value applies: at the key, after the last key, and
+    /// with step interpolation. Before the first key, returns the first key with `None`.
     fn locate(&self, time: f64) -> (usize, Option<f64>) {
         let near = tolerance(time);
         let (mut until, mut after) = (0, self.len());
@@ -169,7 +174,8 @@ impl<'a> KeySampler<'a> {
         (key, Some((time - start) / (self.time(key + 1) - start)))
     }
 
-    /// Interpolates by the cubic Hermite polynomial of the standard's appendix C.
+    /// Interpolates between `key` and the next key, at the fraction `s` of the way, by the cubic
+    /// Hermite polynomial in appendix C of the glTF specification.
     fn cubic(&self, key: usize, s: f64) -> DVec4 {
         let span = self.time(key + 1) - self.time(key);
         let row = |key, which| {
@@ -183,7 +189,8 @@ impl<'a> KeySampler<'a> {
             + row(key + 1, IN_TANGENT) * (span * (s3 - s2))
     }
 
-    /// The values of a key.
+    /// The numbers of a key. `which` selects the row of a cubic spline's key; other keys have one
+    /// row.
     fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
         self.values.row(match self.interpolation {
             Interpolation::CubicSpline => 3 * key + which,

@@ -9,15 +9,17 @@ use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
 /// The joints of a skin, parents before their children.
 pub struct SkinJoints {
-    /// The nodes of the joints.
+    /// The node of each joint.
     pub nodes: Vec<usize>,
-    /// The parent joint of each; nodes between the two are skipped.
+    /// The parent of each joint: the joint of its nearest ancestor node that is in the skin. Nodes
+    /// between the two joints are skipped. `None` for a root.
     pub parents: Vec<Option<usize>>,
-    /// For each joint of the skin in the file's order, its index.
+    /// For each joint in the order of the file's skin, its index in `nodes`.
     pub order: Vec<usize>,
 }
 
-/// Unique names of the skins: their own, else that of the first node with the skin, else by number.
+/// Returns a unique name for each skin: its own name, otherwise the name of the first node with the
+/// skin, otherwise `skin_` and its number.
 pub fn names(file: &GltfFile) -> Vec<String> {
     let mut users = vec![None; file.skins.0.len()];
     for node in &file.nodes.0 {
@@ -49,7 +51,8 @@ impl SkinJoints {
         if skin.joints.is_empty() {
             return Err(FieldError::new(at, "must have at least one joint"));
         }
-        // Tips are joints in the file, but not in the skeleton.
+        // The maximum is doubled, because tips of bones are joints in the file, but not in the
+        // skeleton.
         if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
             return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
         }
@@ -88,7 +91,7 @@ impl SkinJoints {
     }
 }
 
-/// For each node, its nearest listed ancestor.
+/// For each node, its nearest ancestor that is in `listed`; `None` if no ancestor is.
 fn nearest_listed_ancestors(nodes: &NodeTree, listed: &[usize]) -> Vec<Option<usize>> {
     let mut is_listed = vec![false; nodes.parents.len()];
     listed.iter().for_each(|node| is_listed[*node] = true);

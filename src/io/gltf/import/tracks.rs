@@ -19,7 +19,8 @@ struct NodeTrack<'a> {
     sampler: KeySampler<'a>,
 }
 
-/// An animation channel that is used, with the path of its animation and its accessors.
+/// An animation channel that moves a joint or an ancestor of a joint. `input` and `output` are the
+/// accessors of its times and values, and `at` is the path of its animation.
 pub struct UsedChannel<'a> {
     node: usize,
     part: AnimatedPart,
@@ -29,7 +30,7 @@ pub struct UsedChannel<'a> {
     at: &'a JsonPath,
 }
 
-/// The channels of an animation that move a needed node.
+/// Returns those channels of an animation that move a node for which `is_needed` is true.
 pub fn used_channels<'a>(
     animation: &GltfAnimation,
     at: &'a JsonPath,
@@ -73,7 +74,8 @@ pub fn used_channels<'a>(
     Ok(all)
 }
 
-/// The node and the part that a channel animates; `None` if a skeleton has no such part.
+/// Returns the node that a channel animates, and the part of the node's transform. `None` if the
+/// channel has no node or does not animate a transform.
 fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
     let JsonObject(target) = &channel.target;
     let part = match target.path.as_str() {
@@ -85,7 +87,7 @@ fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
     Some((target.node?.0 as usize, part))
 }
 
-/// Reads the buffers of the used channels.
+/// Reads the buffers that contain the times and values of the channels.
 pub fn buffers<'a>(
     source: &'a Source,
     file: &GltfFile,
@@ -105,7 +107,8 @@ impl<'a> NodeTracks<'a> {
         buffers: &'a GltfBuffers<'_>,
         channels: &[UsedChannel<'_>],
     ) -> Result<Self, FieldError> {
-        /// Bounds the time, because many channels can share the same few bytes.
+        /// Maximum number of keys in all channels together. Bounds the time, because many channels
+        /// can share the same few bytes.
         const MOST_KEYS: usize = 20_000_000;
         let mut tracks = Vec::with_capacity(channels.len());
         let mut keys = 0_usize;
@@ -125,12 +128,12 @@ impl<'a> NodeTracks<'a> {
         Ok(Self(tracks))
     }
 
-    /// Times of all keys, unsorted.
+    /// Times of all keys in seconds, unsorted.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().flat_map(|track| (0..track.sampler.len()).map(|key| track.sampler.time(key)))
     }
 
-    /// Sets the transforms of the nodes at a time, in seconds.
+    /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.
     pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
         for NodeTrack { node, part, sampler } in &self.0 {
             if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(*node) {
