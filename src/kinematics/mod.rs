@@ -8,6 +8,7 @@ pub mod fk;
 pub mod follow;
 pub mod ik;
 pub mod job;
+pub mod limb_ik;
 mod normalize;
 pub mod pop;
 mod rotation_between;

@@ -44,7 +44,7 @@ impl Stereographic {
     }
 
     /// e₀ for a Pointer in the direction `w`; `None` if that is R.
-    pub(super) fn outward(self, w: DVec3) -> Option<DVec3> {
+    pub(crate) fn outward(self, w: DVec3) -> Option<DVec3> {
         let k = (w - unit(self.singular)).cross(unit(self.up));
         k.cross(w).try_normalize()
     }

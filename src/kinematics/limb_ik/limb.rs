@@ -1,0 +1,96 @@
+use thiserror::Error;
+
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+
+/// Two bones of a skeleton that a target poses together, such as an arm or a leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limb {
+    /// The joint of the upper bone: shoulder or hip.
+    pub upper: JointId,
+    /// The joint of the lower bone: elbow or knee. Its tip is brought to the target.
+    pub lower: JointId,
+    /// The joint at the tip of the lower bone: hand or foot; `None` if there is none, or several.
+    pub hand: Option<JointId>,
+}
+
+/// The reason why a joint is not the lower joint of a limb.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum NoLimb {
+    /// The skeleton has no such joint.
+    #[error("there is no joint {0}")]
+    NoJoint(JointId),
+    /// The joint has no bone.
+    #[error("it has no bone")]
+    NoBone,
+    /// No joint above can turn, or all above are at the same point.
+    #[error("no joint above it can turn it")]
+    NoUpperJoint,
+}
+
+impl Limb {
+    /// The limb whose lower joint is `lower`. The upper joint is the nearest ancestor that is not
+    /// locked.
+    ///
+    /// # Errors
+    ///
+    /// [`NoLimb`] if there is no such limb.
+    pub fn ending_at(skeleton: &Skeleton, lower: JointId) -> Result<Self, NoLimb> {
+        let joint = skeleton.joint(lower).ok_or(NoLimb::NoJoint(lower))?;
+        if !has_length(joint.axis) {
+            return Err(NoLimb::NoBone);
+        }
+        let mut has_upper_bone = false;
+        let mut child = joint;
+        for upper in skeleton.ancestors(lower).skip(1) {
+            has_upper_bone |= has_length(child.offset);
+            child = &skeleton[upper];
+            if !child.locked {
+                let hand = hand(skeleton, lower);
+                return has_upper_bone
+                    .then_some(Self { upper, lower, hand })
+                    .ok_or(NoLimb::NoUpperJoint);
+            }
+        }
+        Err(NoLimb::NoUpperJoint)
+    }
+
+    /// The limb that a target for the tip of `joint` or for its base would pose: the one that ends at
+    /// the base of `joint`, a hand or foot, or else the one that ends at its tip. `None` unless
+    /// the joint ends an unbranched chain of two to four bones: a longer chain is better posed
+    /// as a whole.
+    pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
+        const LONGEST: usize = 4;
+        let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
+        let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
+        let is_end = skeleton.children(joint).next().is_none();
+        let above = skeleton.ancestors(joint).skip(1).take_while(is_single);
+        let bones = 1 + above.filter(has_bone).count();
+        if !is_end || bones > LONGEST {
+            return None;
+        }
+        let as_hand =
+            skeleton[joint].parent.and_then(|parent| Self::ending_at(skeleton, parent).ok());
+        as_hand
+            .filter(|limb| limb.hand == Some(joint))
+            .or_else(|| Self::ending_at(skeleton, joint).ok())
+    }
+
+    /// The joints that a solve turns.
+    pub fn joints(self) -> impl Iterator<Item = JointId> {
+        [self.upper, self.lower].into_iter().chain(self.hand)
+    }
+}
+
+/// The only child at the tip of a joint's bone.
+fn hand(skeleton: &Skeleton, joint: JointId) -> Option<JointId> {
+    let Joint { axis, .. } = skeleton[joint];
+    let is_at_tip =
+        |child: &JointId| skeleton[*child].offset.distance(axis) <= 1e-5 * axis.length();
+    let mut children = skeleton.children(joint).filter(is_at_tip);
+    children.next().filter(|_| children.next().is_none())
+}
+
+fn has_length(bone: glam::Vec3) -> bool {
+    bone.as_dvec3().length() > 0.0
+}

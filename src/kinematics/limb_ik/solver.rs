@@ -1,0 +1,420 @@
+use glam::{DMat3, DQuat, DVec3, Mat3A, Quat, Vec3};
+
+use super::aim::Aim;
+use super::bend::Bend;
+use super::joint_space::{JointSpace, axes, rotation};
+use super::limb::Limb;
+use crate::kinematics::saturate::saturate;
+use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::Stereographic;
+use crate::kinematics::two_bone::TwoBone;
+
+/// A target for the tip of a limb's lower bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbTarget {
+    /// Position in the world, finite.
+    pub point: Vec3,
+    /// Direction of the elbow at twist 0.
+    pub reference: ElbowReference,
+    /// Angle in radians by which the elbow is turned about the Pointer.
+    pub twist: f32,
+    /// Behaviour near the limits of the reach.
+    pub soft_reach: SoftReach,
+    /// Rotation of the hand in the world; `None` for a hand that keeps its own angles.
+    pub hand: Option<Quat>,
+    /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
+    pub influence: f32,
+}
+
+impl LimbTarget {
+    /// A target that the limb reaches with hard limits, the elbow on the side that it has by FK.
+    pub fn new(point: Vec3) -> Self {
+        Self {
+            point,
+            reference: ElbowReference::Fk,
+            twist: 0.0,
+            soft_reach: SoftReach::default(),
+            hand: None,
+            influence: 1.0,
+        }
+    }
+}
+
+/// The direction of the elbow at twist 0, perpendicular to the Pointer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ElbowReference {
+    /// The elbow's direction in the FK pose, carried to the Pointer by the least rotation.
+    #[default]
+    Fk,
+    /// Up, +y of the space of the upper joint's parent.
+    Limb,
+    /// The direction to a point in the world.
+    Pole(Vec3),
+    /// A stereographic map in the space of the upper joint's parent.
+    Stereographic(Stereographic),
+}
+
+/// The result of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbReport {
+    /// Distance from the tip to the target, in the world.
+    pub error: f32,
+    /// Whether the tip is at the target and, if not, why.
+    pub reach: LimbReach,
+    /// Factor by which the bones are lengthened.
+    pub stretch: f32,
+}
+
+/// Whether a limb reaches its target at full influence and, if not, what prevents it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum LimbReach {
+    /// The tip is within 1e-5 of the limb's length of the target.
+    Reached,
+    /// The target is too far away, or in the soft zone of the outer limit.
+    TooFar,
+    /// The target is too close to the upper joint.
+    TooClose,
+    /// The limits of this joint prevent it.
+    Limited(JointId),
+}
+
+/// Poses a limb for its target: writes the angles of its joints and, with stretch, the lengths of its
+/// bones. The angles that the skeleton has are the FK pose. With an influence of 0 nothing changes.
+///
+/// Returns `None`, and changes nothing, if the skeleton's transform is singular or the skeleton has no
+/// such joints.
+pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option<LimbReport> {
+    let fk = FkLimb::new(skeleton, limb)?;
+    let local = LocalTarget::new(skeleton, target)?;
+    let solved = SolvedLimb::new(skeleton, limb, &fk, &local);
+    if target.influence > 0.0 {
+        solved.write(skeleton, limb, target.influence);
+    }
+    let tip = skeleton.transform().as_daffine3().transform_point3(tip_of(skeleton, limb));
+    let error = saturate(tip.distance(target.point.as_dvec3()));
+    Some(LimbReport { error, reach: solved.reach, stretch: solved.stretch as f32 })
+}
+
+/// The twist at which the limb keeps the elbow that it has by FK, radians.
+pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> Option<f32> {
+    let fk = FkLimb::new(skeleton, limb)?;
+    let aim = fk.aim();
+    let target = LimbTarget { reference, ..LimbTarget::new(Vec3::ZERO) };
+    let local = LocalTarget::new(skeleton, &target)?;
+    Some(aim.twist_from(local.aim(&fk, aim.pointer)) as f32)
+}
+
+/// A target in skeleton space.
+struct LocalTarget<'a> {
+    point: DVec3,
+    /// The pole of [`ElbowReference::Pole`].
+    pole: DVec3,
+    /// Rotation of the hand.
+    hand: Option<DQuat>,
+    target: &'a LimbTarget,
+}
+
+impl<'a> LocalTarget<'a> {
+    fn new(skeleton: &Skeleton, target: &'a LimbTarget) -> Option<Self> {
+        let transform = skeleton.transform().as_daffine3();
+        let to_skeleton = transform.inverse();
+        let pole = match target.reference {
+            ElbowReference::Pole(pole) => to_skeleton.transform_point3(pole.as_dvec3()),
+            _ => DVec3::ZERO,
+        };
+        let point = to_skeleton.transform_point3(target.point.as_dvec3());
+        let (_, turned, _) = transform.to_scale_rotation_translation();
+        let hand = target.hand.map(|hand| (turned.inverse() * hand.as_dquat()).normalize());
+        let is_valid = point.is_finite() && pole.is_finite();
+        is_valid.then_some(Self { point, pole, hand, target })
+    }
+
+    /// The Pointer with the elbow at twist 0.
+    fn aim(&self, fk: &FkLimb, pointer: DVec3) -> Aim {
+        // Sine of the angle to the Pointer below which a direction gives no elbow.
+        const PARALLEL: f64 = 1e-6;
+        let carried = fk.aim().carried_to(pointer);
+        let above = fk.above.rotation;
+        let outward = match self.target.reference {
+            ElbowReference::Fk => None,
+            ElbowReference::Limb => Some(above.y_axis),
+            ElbowReference::Pole(_) => Some((self.pole - fk.base).normalize_or_zero()),
+            ElbowReference::Stereographic(map) => {
+                map.outward(above.transpose() * pointer).map(|outward| above * outward)
+            }
+        };
+        let outward = outward.map(|outward| outward.reject_from_normalized(pointer));
+        match outward.filter(|outward| outward.length() > PARALLEL) {
+            Some(outward) => Aim { pointer, outward: outward.normalize() },
+            None => carried,
+        }
+    }
+}
+
+/// A limb in the pose that the skeleton's angles give it.
+struct FkLimb {
+    /// The space of the upper joint's parent.
+    above: JointSpace,
+    /// Position of the upper joint in skeleton space.
+    base: DVec3,
+    /// Rotation of the upper joint in skeleton space.
+    upper_rotation: DMat3,
+    /// The space in which the lower joint turns, in the upper joint's space.
+    mount: JointSpace,
+    bend: Bend,
+    /// β in the FK pose.
+    angle: f64,
+    /// The Euler angle, x, y or z, that β is; `None` if the lower joint turns about another axis.
+    free_angle: Option<usize>,
+}
+
+impl FkLimb {
+    fn new(skeleton: &Skeleton, limb: Limb) -> Option<Self> {
+        let (upper, lower) = (skeleton.joint(limb.upper)?, skeleton.joint(limb.lower)?);
+        let above = JointSpace::of(skeleton, upper.parent);
+        let between = skeleton.ancestors(limb.lower).skip(1).take_while(|it| *it != limb.upper);
+        let between: Vec<JointId> = between.collect();
+        let space = between
+            .iter()
+            .rev()
+            .fold(JointSpace::IDENTITY, |space, joint| space.of_child(&skeleton[*joint]));
+        let mount = space.at_base_of(lower);
+        let upper_rotation = above.rotation * rotation(upper, upper.rotation);
+        let (bend, angle, free_angle) = bend_of(lower, mount);
+        let base = above.point(upper.offset);
+        Some(Self { above, base, upper_rotation, mount, bend, angle, free_angle })
+    }
+
+    /// The Pointer and elbow of the FK pose, in skeleton space.
+    fn aim(&self) -> Aim {
+        self.aim_of(self.bend.tip(self.angle), self.angle).rotated(self.upper_rotation)
+    }
+
+    /// The Pointer and elbow for a vector to the tip in the upper joint's space, bent by `angle`.
+    fn aim_of(&self, tip: DVec3, angle: f64) -> Aim {
+        Aim::of_limb(self.bend.upper, tip, self.bend.bending(angle, self.angle))
+    }
+
+    /// Distance of the tip and stretch of the bones for a target at `distance`, in skeleton space.
+    fn distance_for(&self, distance: f64, soft_reach: SoftReach) -> (f64, f64) {
+        let (least, most) = self.bend.reach();
+        let (upper, lower) = (self.bend.upper.length(), self.bend.lower.length());
+        let cos = f64::from(soft_reach.min_elbow_angle()).cos();
+        let open = (upper * upper + lower * lower - 2.0 * upper * lower * cos).max(0.0).sqrt();
+        let least =
+            if soft_reach.min_elbow_angle() > 0.0 { least.max(open).min(most) } else { least };
+        let is_plain = soft_reach.softness() == 0.0 && soft_reach.max_stretch() == 1.0;
+        // Soft limits depend on the bones only by the least and the greatest distance.
+        let bones = TwoBone::new(((most + least) / 2.0) as f32, ((most - least) / 2.0) as f32);
+        let soft = SoftReach::new(soft_reach.softness(), soft_reach.max_stretch(), 0.0);
+        match (bones, soft) {
+            (Ok(bones), Ok(soft)) if !is_plain => {
+                let hand = soft.hand_distance(bones, saturate(distance));
+                (f64::from(hand.distance), f64::from(hand.stretch))
+            }
+            _ => (distance.clamp(least, most), 1.0),
+        }
+    }
+}
+
+/// The bend of a lower joint, its angle β in the FK pose, and the Euler angle that β is, if any.
+fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<usize>) {
+    // Sine of the elbow's angle below which the limb counts as straight.
+    const STRAIGHT: f64 = 1e-6;
+    const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+    let axis = lower.axis.as_dvec3();
+    let turned = mount.rotation * rotation(lower, lower.rotation) * axis;
+    let about = |index: usize| {
+        let angles = Vec3::from_array(core::array::from_fn(|it| {
+            if it == index { 0.0 } else { lower.rotation[it] }
+        }));
+        let bend = Bend {
+            axis: mount.rotation * axes(lower, lower.rotation).col(index),
+            upper: mount.origin,
+            lower: mount.rotation * rotation(lower, angles) * axis,
+            limits: lower.limits[index]
+                .map_or(UNLIMITED, |limit| (f64::from(limit.min), f64::from(limit.max))),
+        };
+        (bend, f64::from(lower.rotation[index]), Some(index))
+    };
+    let free = |axis: DVec3, limits: (f64, f64)| {
+        (Bend { axis, upper: mount.origin, lower: turned, limits }, 0.0, None)
+    };
+    let is_fixed = |limit: &Option<Limit>| limit.is_some_and(|it| it.max - it.min < 1e-6);
+    let movable: Vec<usize> = (0..3).filter(|index| !is_fixed(&lower.limits[*index])).collect();
+    if lower.locked || movable.is_empty() {
+        return free(DVec3::X, (0.0, 0.0));
+    }
+    if let [hinge] = movable[..] {
+        return about(hinge);
+    }
+    let normal = mount.origin.cross(turned);
+    if normal.length() > STRAIGHT * mount.origin.length() * turned.length() {
+        return free(normal.normalize(), UNLIMITED);
+    }
+    // Straight: the angle by which the limb may bend most, weighted by how far it swings the bone.
+    let swing = |index: usize| {
+        let (bend, angle, _) = about(index);
+        let room = f64::max(bend.limits.1 - angle, angle - bend.limits.0);
+        room.min(core::f64::consts::PI) * bend.axis.cross(turned.normalize_or_zero()).length()
+    };
+    let rank = |one: &usize, other: &usize| swing(*one).total_cmp(&(swing(*other) + 1e-6));
+    let widest = movable.into_iter().reduce(
+        |best, index| {
+            if rank(&index, &best).is_gt() { index } else { best }
+        },
+    );
+    widest.map_or_else(|| free(DVec3::X, (0.0, 0.0)), about)
+}
+
+/// The angles of a limb that reaches for its target.
+struct SolvedLimb {
+    upper: Vec3,
+    lower: Vec3,
+    hand: Option<Vec3>,
+    stretch: f64,
+    reach: LimbReach,
+}
+
+impl SolvedLimb {
+    fn new(skeleton: &Skeleton, limb: Limb, fk: &FkLimb, local: &LocalTarget<'_>) -> Self {
+        let target = local.target;
+        let to_target = local.point - fk.base;
+        let wanted = to_target.length();
+        let pointer = to_target.try_normalize().unwrap_or_else(|| fk.aim().pointer);
+        let (distance, stretch) = fk.distance_for(wanted, target.soft_reach);
+
+        let lower = fk.lower_angles(&skeleton[limb.lower], distance / stretch);
+        let lower_rotation = fk.mount.rotation * rotation(&skeleton[limb.lower], lower.angles);
+        let tip = fk.mount.origin + lower_rotation * skeleton[limb.lower].axis.as_dvec3();
+
+        let aim = local.aim(fk, pointer).twisted(f64::from(target.twist));
+        let upper_rotation = fk.aim_of(tip, lower.bend).rotation_to(aim);
+        let upper =
+            angles_within(&skeleton[limb.upper], fk.above.rotation.transpose() * upper_rotation);
+
+        let above_hand =
+            fk.above.rotation * rotation(&skeleton[limb.upper], upper.angles) * lower_rotation;
+        let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
+            let turned = above_hand.transpose() * DMat3::from_quat(turned);
+            angles_within(&skeleton[hand], turned).angles
+        });
+
+        let is_reached = (distance - wanted).abs() <= 1e-5 * distance.max(wanted);
+        let reach = if upper.is_limited {
+            LimbReach::Limited(limb.upper)
+        } else if lower.is_limited {
+            LimbReach::Limited(limb.lower)
+        } else if is_reached {
+            LimbReach::Reached
+        } else if wanted > distance {
+            LimbReach::TooFar
+        } else {
+            LimbReach::TooClose
+        };
+        Self { upper: upper.angles, lower: lower.angles, hand, stretch, reach }
+    }
+
+    /// Writes the angles, blended with those of the FK pose by the influence.
+    fn write(&self, skeleton: &mut Skeleton, limb: Limb, influence: f32) {
+        let turns = [(limb.upper, Some(self.upper)), (limb.lower, Some(self.lower))];
+        for (joint, angles) in turns.into_iter().chain(limb.hand.map(|hand| (hand, self.hand))) {
+            let Some(angles) = angles else { continue };
+            let angles = blended(&skeleton[joint], angles, influence);
+            skeleton.write_local(joint, |joint| joint.rotation = angles);
+        }
+        let stretch = 1.0 + (self.stretch as f32 - 1.0) * influence;
+        if stretch != 1.0 {
+            lengthen(skeleton, limb, stretch);
+        }
+    }
+}
+
+/// Angles of a lower joint.
+struct LowerAngles {
+    angles: Vec3,
+    /// β.
+    bend: f64,
+    /// Whether limits changed the angles.
+    is_limited: bool,
+}
+
+impl FkLimb {
+    /// The angles of the lower joint for which the tip is at `distance` from the upper joint, nearest to
+    /// the FK pose within the limits.
+    fn lower_angles(&self, lower: &Joint, distance: f64) -> LowerAngles {
+        let angles_at = |bend: f64| {
+            if let Some(index) = self.free_angle {
+                let mut angles = lower.rotation;
+                angles[index] = bend as f32;
+                return LowerAngles { angles: lower.clamped(angles), bend, is_limited: false };
+            }
+            let turn = DMat3::from_axis_angle(self.bend.axis, bend);
+            let turned = self.mount.rotation.transpose()
+                * turn
+                * self.mount.rotation
+                * rotation(lower, lower.rotation);
+            let Within { angles, is_limited } = angles_within(lower, turned);
+            LowerAngles { angles, bend, is_limited }
+        };
+        let [first, second] = self.bend.angles_at(distance, self.angle).map(angles_at);
+        if first.is_limited && !second.is_limited { second } else { first }
+    }
+}
+
+/// Angles within the limits of a joint.
+struct Within {
+    angles: Vec3,
+    /// Whether limits changed the angles.
+    is_limited: bool,
+}
+
+/// The angles of a joint for a rotation in the space of its base: of all equivalent angles those that
+/// the limits change least, then those nearest to the joint's own.
+fn angles_within(joint: &Joint, rotation: DMat3) -> Within {
+    const ROUNDING: f32 = 1e-5;
+    let all = joint.equivalent_angles(Mat3A::from_cols(
+        rotation.x_axis.as_vec3a(),
+        rotation.y_axis.as_vec3a(),
+        rotation.z_axis.as_vec3a(),
+    ));
+    let [first, second] = all.map(|angles| {
+        let within = joint.clamped(angles);
+        let changed = (within - angles).abs().max_element();
+        (Within { angles: within, is_limited: changed > ROUNDING }, changed)
+    });
+    if second.1 + ROUNDING < first.1 { second.0 } else { first.0 }
+}
+
+/// A joint's angles turned towards `solved` by the shortest rotation.
+fn blended(joint: &Joint, solved: Vec3, influence: f32) -> Vec3 {
+    if influence >= 1.0 {
+        return solved;
+    }
+    let [from, to] =
+        [joint.rotation, solved].map(|angles| DQuat::from_mat3(&rotation(joint, angles)));
+    let turned = DMat3::from_quat(from.slerp(to, f64::from(influence)));
+    angles_within(joint, turned).angles
+}
+
+/// Multiplies the lengths of a limb's bones.
+fn lengthen(skeleton: &mut Skeleton, limb: Limb, factor: f32) {
+    let between = skeleton.ancestors(limb.lower).take_while(|joint| *joint != limb.upper);
+    for joint in between.chain(limb.hand).collect::<Vec<_>>() {
+        skeleton.write_local(joint, |joint| joint.offset *= factor);
+    }
+    for joint in [limb.upper, limb.lower] {
+        skeleton.write_local(joint, |joint| joint.axis *= factor);
+    }
+}
+
+/// Position of the limb's tip in skeleton space.
+fn tip_of(skeleton: &Skeleton, limb: Limb) -> DVec3 {
+    JointSpace::of(skeleton, Some(limb.lower)).point(skeleton[limb.lower].axis)
+}
