@@ -23,8 +23,8 @@
 //! | module | contents | feature |
 //! | --- | --- | --- |
 //! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons; skeletons; chain solvers; path following; splines | |
-//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; crowds of arms | |
-//! | `document` | saved state: arm, skeleton with targets, keys, timeline, camera, display | `document` |
+//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets; crowds of arms | |
+//! | `document` | saved state: both rigs, keys, timeline, camera, display | `document` |
 //! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH and CSV; reads and writes lines of `ik-arm solve` | `document` |
 //! | `session` | the open document and state that is not saved; actions, undo and redo | `document` |
 //! | `scene` | what to draw, as plain lists | `document` |

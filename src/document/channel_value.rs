@@ -4,8 +4,8 @@ use super::channel::Channel;
 use super::cursor::Cursor;
 use super::document::Document;
 use super::rig_kind::RigKind;
-use super::skeleton_rig::SkeletonRig;
 use crate::kinematics::skeleton::JointId;
+use crate::rig::SkeletonRig;
 
 /// Access to the values of channels in a document.
 impl Channel {

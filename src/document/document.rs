@@ -3,9 +3,9 @@ use super::camera::Camera;
 use super::display::Display;
 use super::keys::Keys;
 use super::rig_kind::RigKind;
-use super::skeleton_rig::SkeletonRig;
 use super::timeline::Timeline;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
+use crate::rig::SkeletonRig;
 
 /// Everything that a document file stores.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,7 +71,7 @@ impl Document {
                 let (centre, radius) = self.arm.bounds(&self.arm.pose());
                 Camera::default().framing(centre, radius, 1.0)
             }
-            RigKind::Skeleton => self.skeleton_rig.default_camera(),
+            RigKind::Skeleton => Camera::framing_skeleton(&self.skeleton_rig),
         }
     }
 

@@ -6,7 +6,7 @@ use super::motion::{self, MotionData};
 use super::names::distinct;
 use super::text::{Scanner, TextError};
 use super::unit::METRES_PER_UNIT;
-use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
+use crate::document::{self, Camera, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
@@ -86,7 +86,7 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     let rig = SkeletonRig::new(skeleton);
     Ok(Document {
         rig: RigKind::Skeleton,
-        camera: rig.default_camera(),
+        camera: Camera::framing_skeleton(&rig),
         skeleton_rig: rig,
         keys,
         timeline: timeline(motion),

@@ -102,6 +102,6 @@ impl DocumentFields {
 fn default_camera(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
     match rig {
         RigKind::Arm => Camera::default(),
-        RigKind::Skeleton => skeleton.default_camera(),
+        RigKind::Skeleton => Camera::framing_skeleton(skeleton),
     }
 }

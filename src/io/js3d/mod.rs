@@ -26,7 +26,7 @@ use super::json_path::JsonPath;
 use super::opened::Opened;
 use super::source::Source;
 use super::value::JsonObject;
-use crate::document::{Document, RigKind, SkeletonRig, Target};
+use crate::document::{Camera, Document, RigKind, SkeletonRig, Target};
 use crate::kinematics::skeleton::JointId;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
@@ -54,7 +54,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let mut warnings = FieldWarnings::default();
     let (rig, order) =
         rig(&scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
-    let camera = rig.default_camera();
+    let camera = Camera::framing_skeleton(&rig);
     Ok(Opened {
         document: Document {
             rig: RigKind::Skeleton,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{Document, RigKind, SkeletonRig};
+use ik_arm::document::{Camera, Document, RigKind, SkeletonRig};
 use ik_arm::io::{Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{Dialog, Export, ExportJob, FileAction, PathDialog};
@@ -88,7 +88,7 @@ fn skeleton(skeleton: Skeleton) -> Document {
     let skeleton_rig = SkeletonRig::new(skeleton);
     Document {
         rig: RigKind::Skeleton,
-        camera: skeleton_rig.default_camera(),
+        camera: Camera::framing_skeleton(&skeleton_rig),
         skeleton_rig,
         ..Document::default()
     }

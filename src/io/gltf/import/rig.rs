@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::file::GltfFile;
 use super::motion::{JointMotion, JointPlacement};
 use super::skins::SkinJoints;
-use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use crate::document::{Camera, Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 
@@ -89,7 +89,7 @@ pub fn build(
         kept_joints.extend((!is_tip).then_some(joint));
     }
     document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(kept_joints)?);
-    document.camera = document.skeleton_rig.default_camera();
+    document.camera = Camera::framing_skeleton(&document.skeleton_rig);
     Ok(ImportedRig { document, kept })
 }
 

@@ -1,6 +1,5 @@
 use glam::{Vec3, Vec3A};
 
-use super::camera::Camera;
 use super::follow_path::FollowPath;
 use super::target::{Target, TargetPath};
 use crate::kinematics::Shared;
@@ -94,14 +93,8 @@ impl SkeletonRig {
     }
 }
 
-/// Size of the skeleton, and the camera, grid and bounding spheres that fit it.
+/// Size of the skeleton, and the grid and bounding spheres that fit it.
 impl SkeletonRig {
-    /// A camera that frames the skeleton and its targets at time 0.
-    pub fn default_camera(&self) -> Camera {
-        let (centre, radius) = self.bounds(&self.skeleton_at(0.0).pose(), 0.0);
-        Camera::default().framing(centre, radius, 1.0)
-    }
-
     /// Radius of the path of a new target, in world units.
     pub fn default_path_radius(&self) -> f32 {
         const FRACTION: f32 = 0.15;
@@ -134,7 +127,7 @@ impl SkeletonRig {
 
     /// Width of a cell of the grid around a skeleton of this reach: the largest power of ten that
     /// is at most half the reach.
-    pub(crate) fn grid_cell_for(reach: f32) -> f32 {
+    pub fn grid_cell_for(reach: f32) -> f32 {
         let cell = 10_f32.powf((reach * 0.5).log10().floor());
         if cell.is_normal() { cell } else { 1.0 }
     }

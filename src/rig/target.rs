@@ -1,7 +1,6 @@
 use core::f32::consts::TAU;
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 use crate::kinematics::skeleton::JointId;
 
@@ -32,8 +31,12 @@ pub struct TargetMotion {
 }
 
 /// The shape of a target's path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum TargetPath {
     /// The target stays at its home.
     #[default]
