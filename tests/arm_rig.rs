@@ -7,6 +7,7 @@ use common::strategies::{
     within, yaw_and_pitch,
 };
 use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::rig::{ArmPart, ArmRig, TaperedCylinder};
 use proptest::prelude::*;
@@ -74,7 +75,8 @@ fn places() -> impl Strategy<Value = Vec3> {
 fn posed_arms() -> impl Strategy<Value = PosedArm> {
     (anywhere(), places()).prop_map(|(case, root)| {
         let pose = case.solve();
-        let rig = ArmRig::new(case.arm, root, case.cursor, &pose);
+        let rig =
+            ArmRig::new(case.arm, SoftReach::default().limits(case.arm), root, case.cursor, &pose);
         PosedArm { case, root, pose, rig }
     })
 }
@@ -158,8 +160,8 @@ proptest! {
     #[test]
     fn the_limit_spheres_are_centred_on_the_shoulder(arm in posed_arms()) {
         for (part, radius, limit) in [
-            (ArmPart::InnerLimit, arm.rig.inner_limit(), limits(arm.case.arm).0),
-            (ArmPart::OuterLimit, arm.rig.outer_limit(), limits(arm.case.arm).1),
+            (ArmPart::InnerLimit, arm.rig.limits().inner, limits(arm.case.arm).0),
+            (ArmPart::OuterLimit, arm.rig.limits().outer, limits(arm.case.arm).1),
         ] {
             prop_assert_eq!(arm.rig.world(part), Affine3A::from_translation(arm.root));
             prop_assert_eq!(radius, limit as f32);

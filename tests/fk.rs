@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use ik_arm::kinematics::euler;
-use ik_arm::kinematics::fk::{Fk, blended};
+use ik_arm::kinematics::fk::{Fk, blended, blended_limits};
 use ik_arm::kinematics::ik::{Ik, IkState};
-use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::soft_reach::{ReachLimits, SoftReach};
 use ik_arm::kinematics::twist::TwistReference;
 use ik_arm::kinematics::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use proptest::prelude::*;
@@ -182,6 +182,69 @@ proptest! {
         prop_assert!((before - 0.5 * turn).abs() < 1e-3 && (after - 0.5 * turn).abs() < 1e-3);
         prop_assert!((half - 0.5 * (bent + solved)).abs() < 1e-3);
     }
+}
+
+proptest! {
+    #![proptest_config(config(20_000, 0x1111_1775))]
+
+    #[test]
+    fn the_hand_is_within_its_limits_whatever_the_blend(
+        bones in arms(), shoulder in angles(), bend in bends(), stretch in 0.1..4.0_f32,
+        soft_reach in soft_reaches(), direction in uniform_directions(), part in 0.0..6.0_f32,
+        influence in influences()
+    ) {
+        let fk = Fk { shoulder, bend, stretch };
+        let cursor = direction.as_vec3() * part * bones.outer_limit();
+        let pose = blend(fk, soft_reach, influence, bones, cursor);
+        let ReachLimits { inner, outer } = blended_limits(fk, soft_reach, influence, bones);
+        let rounding = 1e-6 * outer;
+        prop_assert!(
+            inner - rounding <= pose.distance && pose.distance <= outer + rounding,
+            "{} is not from {inner} to {outer}", pose.distance
+        );
+    }
+
+    #[test]
+    fn the_hand_reaches_both_limits_of_a_blend(
+        bones in arms(), stretch in 0.1..4.0_f32, soft_reach in soft_reaches(), influence in influences()
+    ) {
+        let hard = SoftReach::new(0.0, soft_reach.max_stretch(), soft_reach.min_elbow_angle());
+        let soft_reach = hard.expect("soft limits");
+        let at = |bend, cursor| {
+            let fk = Fk { shoulder: Vec3::ZERO, bend, stretch };
+            f64::from(blend(fk, soft_reach, influence, bones, cursor).distance)
+        };
+        let ReachLimits { inner, outer } =
+            blended_limits(Fk { stretch, ..Fk::default() }, soft_reach, influence, bones);
+        let rounding = 1e-6 * f64::from(outer);
+        let straight = at(0.0, Vec3::X * bones.outer_limit() * 20.0);
+        prop_assert!((straight - f64::from(outer)).abs() <= rounding, "{straight} is not {outer}");
+        let folded = at(PI as f32, Vec3::ZERO);
+        prop_assert!((folded - f64::from(inner)).abs() <= rounding, "{folded} is not {inner}");
+    }
+}
+
+fn soft_reaches() -> impl Strategy<Value = SoftReach> {
+    let often_off = |off: f32, values: core::ops::Range<f32>| prop_oneof![Just(off), values];
+    (often_off(0.0, 0.0..0.99), often_off(1.0, 1.0..4.0), often_off(0.0, 0.0..3.1)).prop_map(
+        |(softness, stretch, angle)| SoftReach::new(softness, stretch, angle).expect("soft limits"),
+    )
+}
+
+fn influences() -> impl Strategy<Value = f32> {
+    prop_oneof![Just(0.0_f32), Just(1.0), 0.0..1.0_f32]
+}
+
+fn blend(
+    fk: Fk,
+    soft_reach: SoftReach,
+    influence: f32,
+    bones: TwoBone,
+    cursor: Vec3,
+) -> TwoBonePose {
+    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
+    let solved = ik.solve(cursor, 0.3, IkState::default()).pose;
+    blended(fk, &solved, influence, bones, cursor)
 }
 
 /// The upper limb's axes as its points tell: x along it, z the hinge.

@@ -14,6 +14,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{self, Method};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Colour, Scene};
 use ik_arm::session::{Overlays, SolverGhost};
@@ -63,6 +64,24 @@ fn inside_the_outer_limit() -> Document {
     from(document, Vec3::new(60.0, 120.0, -40.0), 380.0)
 }
 
+fn soft(mut document: Document, stretch: f32, elbow_degrees: f32) -> Document {
+    document.arm.soft_reach =
+        SoftReach::new(0.0, stretch, elbow_degrees.to_radians()).expect("soft limits");
+    document
+}
+
+/// Limbs that are half as long again, with the hand on the Outer Limit.
+fn stretched() -> Document {
+    let document = soft(posed(Vec3::new(560.0, 520.0, 100.0)), 1.5, 0.0);
+    from(showing(document, &Overlay::GUIDES), Vec3::ZERO, 2600.0)
+}
+
+/// A Cursor near the shoulder, with the hand on the Inner Limit at the minimum elbow angle.
+fn held_open() -> Document {
+    let document = soft(posed(Vec3::new(60.0, 80.0, 40.0)), 1.0, 75.0);
+    from(showing(document, &[Overlay::InnerLimit]), Vec3::new(40.0, 40.0, 0.0), 1200.0)
+}
+
 fn top_view() -> Document {
     let mut document = posed(Vec3::new(220.0, 150.0, 160.0));
     document.camera = document.camera.along(AxisView::Top);
@@ -103,6 +122,21 @@ fn a_folded_arm_with_its_inner_limit() {
 }
 
 #[test]
+fn a_stretched_hand_on_its_outer_limit() {
+    let arm = stretched().arm;
+    assert_eq!(arm.reach_limits().outer, 750.0);
+    assert!((arm.pose().distance - 750.0).abs() < 1e-3);
+    check("stretched", &stretched(), Theme::Dark);
+}
+
+#[test]
+fn a_hand_at_the_minimum_elbow_angle_on_its_inner_limit() {
+    let arm = held_open().arm;
+    assert_eq!(arm.pose().distance, arm.reach_limits().inner);
+    check("min_elbow_angle", &held_open(), Theme::Light);
+}
+
+#[test]
 fn the_arm_from_above() {
     check("top", &top_view(), Theme::Light);
 }
@@ -114,6 +148,9 @@ fn a_guide_that_is_missing_is_noticed() {
         (Overlay::Pointer, "default", Document::default(), Theme::Dark),
         (Overlay::InnerLimit, "folded", folded(), Theme::Dark),
         (Overlay::OuterLimit, "all_guides", all_guides(), Theme::Dark),
+        (Overlay::OuterLimit, "stretched", stretched(), Theme::Dark),
+        (Overlay::Pointer, "min_elbow_angle", held_open(), Theme::Light),
+        (Overlay::InnerLimit, "min_elbow_angle", held_open(), Theme::Light),
         (Overlay::Shadow, "default", Document::default(), Theme::Dark),
         (Overlay::Axes, "folded", folded(), Theme::Dark),
         (Overlay::Ground, "light", Document::default(), Theme::Light),

@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::Random;
 use common::strategies::config;
 use glam::Vec3;
 use ik_arm::document::{
@@ -575,4 +576,43 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
 /// Equal, and NaN equals NaN.
 fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
     a == b || format!("{a:?}") == format!("{b:?}")
+}
+
+#[test]
+fn home_frames_all_that_the_hand_can_reach() {
+    let mut random = Random(0x0f2a_9e55);
+    for case in 0..2_000 {
+        let arm = reaching_arm(&mut random);
+        let limits = arm.reach_limits();
+        let document = Document { arm, ..Document::default() };
+        let session = Session::with_document(Default::default(), document);
+        let projection = session.framing_all().projection(1.0);
+        for _ in 0..20 {
+            let far = arm.root + random.direction() * limits.outer;
+            let at = projection.project(far).expect("before the eye");
+            assert!(at.abs().max_element() <= 1.0, "case {case}: {far} is drawn at {at}");
+        }
+        let distance = session.pose().distance;
+        let rounding = 1e-6 * limits.outer;
+        let reach = limits.inner - rounding..=limits.outer + rounding;
+        assert!(reach.contains(&distance), "case {case}: {distance} is not in {reach:?}");
+        let rig = arm.rig(session.pose());
+        assert_eq!((rig.limits(), rig.pointer().length), (limits, limits.outer), "case {case}");
+    }
+}
+
+/// An arm whose Cursor is in reach, too far or too close, by IK, FK or a blend.
+fn reaching_arm(random: &mut Random) -> Arm {
+    let stretch = random.one_of(&[1.0, 1.0, 1.5, 3.0]);
+    let angle = random.one_of(&[0.0, 0.0, 0.5, 1.5]);
+    let lengths = [random.within(10.0..500.0), random.within(10.0..500.0)];
+    let mut arm = Arm::new(lengths[0], lengths[1]).expect("lengths");
+    arm.root = random.vector(300.0);
+    arm.soft_reach =
+        SoftReach::new(random.one_of(&[0.0, 0.3]), stretch, angle).expect("soft limits");
+    arm.influence = random.one_of(&[0.0, 0.4, 1.0, 1.0]);
+    arm.fk.bend = random.within(-3.1..3.1);
+    arm.fk.stretch = random.one_of(&[1.0, 0.5, 2.0]);
+    arm.set_cursor(random.direction() * arm.bones.outer_limit() * random.within(0.0..4.0));
+    arm
 }

@@ -2,9 +2,9 @@ use glam::Vec3;
 
 use super::cursor::Cursor;
 use super::hand_orientation::HandOrientation;
-use crate::kinematics::fk::Fk;
+use crate::kinematics::fk::{Fk, blended_limits};
 use crate::kinematics::ik::IkState;
-use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::soft_reach::{ReachLimits, SoftReach};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone, TwoBonePose};
 use crate::rig::ArmRig;
@@ -98,10 +98,9 @@ impl Arm {
         if pinned == self.is_pinned() { self } else { Self { cursor, ..self } }
     }
 
-    /// Minimum and maximum distance of the hand from the shoulder by IK.
-    pub fn reach(&self) -> (f32, f32) {
-        let most = self.bones.outer_limit() * self.soft_reach.max_stretch();
-        (self.soft_reach.least_distance(self.bones), most.min(f32::MAX))
+    /// Limits of the hand's distance from the shoulder, at the present influence and FK stretch.
+    pub fn reach_limits(&self) -> ReachLimits {
+        blended_limits(self.fk, self.soft_reach, self.influence, self.bones)
     }
 
     /// Whether the limbs are stretched by FK, or can be by IK.
@@ -121,7 +120,7 @@ impl Arm {
 
     /// The hierarchy Root → Limb → Socket of a pose.
     pub fn rig(&self, pose: &TwoBonePose) -> ArmRig {
-        ArmRig::new(self.bones, self.root, self.cursor_in_root(), pose)
+        ArmRig::new(self.bones, self.reach_limits(), self.root, self.cursor_in_root(), pose)
     }
 
     /// Width of a cell of the grid: the power of ten nearest to a fifth of the arm's length.

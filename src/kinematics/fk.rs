@@ -22,6 +22,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 use super::ik::{length, reach};
 use super::saturate::{saturate, saturate_vector};
+use super::soft_reach::{ReachLimits, SoftReach};
 use super::twist::angle_from_limb;
 use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
 use super::{angle, euler};
@@ -106,6 +107,29 @@ pub fn blended(
         _ => Reach::TooFar,
     };
     TwoBonePose { reach: Some(reach), ..pose }
+}
+
+/// Limits of the hand's distance from the shoulder in a blend of FK angles and IK poses, as
+/// [`blended`] makes it: whatever the FK bend and the cursor, the hand is within them. Stretch and
+/// minimum elbow angle are blended as the poses are; FK has the stretch of `fk`, and its elbow
+/// folds to 0°.
+#[must_use]
+pub fn blended_limits(
+    fk: Fk,
+    soft_reach: SoftReach,
+    influence: f32,
+    bones: TwoBone,
+) -> ReachLimits {
+    if influence >= 1.0 {
+        return soft_reach.limits(bones);
+    }
+    let influence = influence.max(0.0);
+    let stretched = |ik: f32| bones.stretched(fk.stretch + (ik - fk.stretch) * influence);
+    let elbow_angle = f64::from(soft_reach.min_elbow_angle() * influence);
+    ReachLimits {
+        inner: saturate(stretched(1.0).distance_at(elbow_angle)),
+        outer: stretched(soft_reach.max_stretch()).outer_limit(),
+    }
 }
 
 /// The upper limb's rotation and the elbow's bend, in f64 because a long limb magnifies the

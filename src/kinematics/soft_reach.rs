@@ -75,6 +75,15 @@ pub enum SoftReachField {
     MinElbowAngle,
 }
 
+/// Limits of the hand's distance from the shoulder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReachLimits {
+    /// Radius of the Inner Limit, the sphere around the shoulder that the hand cannot enter.
+    pub inner: f32,
+    /// Radius of the Outer Limit, the sphere around the shoulder that the hand cannot leave.
+    pub outer: f32,
+}
+
 /// Distance of the hand from the shoulder, with stretch and slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandDistance {
@@ -153,6 +162,14 @@ impl SoftReach {
         self == Self::default()
     }
 
+    /// Limits of the hand's distance from the shoulder: d_min, and L times the maximum stretch.
+    pub fn limits(self, bones: TwoBone) -> ReachLimits {
+        ReachLimits {
+            inner: self.least_distance(bones),
+            outer: bones.stretched(self.max_stretch).outer_limit(),
+        }
+    }
+
     /// d_min, the hand's minimum distance from the shoulder.
     pub fn least_distance(self, bones: TwoBone) -> f32 {
         SoftLimits::new(self, bones).least as f32
@@ -208,11 +225,8 @@ struct SoftLimits {
 impl SoftLimits {
     fn new(soft_reach: SoftReach, bones: TwoBone) -> Self {
         let (upper, lower) = (f64::from(bones.upper()), f64::from(bones.lower()));
-        let (least, most) = ((upper - lower).abs(), upper + lower);
-        // (d₁ − d₂)² + 2 d₁ d₂ (1 − cos φ), which does not cancel.
-        let half = (0.5 * f64::from(soft_reach.min_elbow_angle)).sin();
-        let open = (least * least + 4.0 * upper * lower * half * half).sqrt();
-        let least = least.max(open).min(most);
+        let least = bones.distance_at(f64::from(soft_reach.min_elbow_angle));
+        let most = upper + lower;
         Self { least, most, width: 0.5 * f64::from(soft_reach.softness) * (most - least) }
     }
 

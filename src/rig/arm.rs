@@ -1,6 +1,7 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
 use super::TaperedCylinder;
+use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 
 /// A part of the arm. Parents come before their children in the order of the variants.
@@ -16,10 +17,10 @@ use crate::kinematics::two_bone::{TwoBone, TwoBonePose};
 ///  │  │  ├ LowerLimb   from (h_e, o_e, 0) to (D, 0, 0)
 ///  │  │  ├ Elbow       at (h_e, o_e, 0)
 ///  │  │  └ Hand        at (D, 0, 0)
-///  │  └ Pointer        along +x, as long as the whole arm
+///  │  └ Pointer        along +x, as far as the hand can reach
 ///  ├ Cursor            the hand's target
-///  ├ InnerLimit        sphere of radius |d₁ − d₂|
-///  └ OuterLimit        sphere of radius d₁ + d₂
+///  ├ InnerLimit        sphere of radius ReachLimits::inner, |d₁ − d₂| with hard limits
+///  └ OuterLimit        sphere of radius ReachLimits::outer, d₁ + d₂ with hard limits
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmPart {
@@ -84,8 +85,7 @@ pub struct ArmRig {
     upper: TaperedCylinder,
     lower: TaperedCylinder,
     pointer: TaperedCylinder,
-    inner_limit: f32,
-    outer_limit: f32,
+    limits: ReachLimits,
 }
 
 impl ArmRig {
@@ -97,9 +97,15 @@ impl ArmRig {
     const POINTER_RADIUS: f32 = 4.0;
     const SEED_LENGTH: f32 = 500.0;
 
-    /// Makes the hierarchy of `pose`, with the shoulder at `root` in the world. `pose` and `cursor`
-    /// are in Root space.
-    pub fn new(arm: TwoBone, root: Vec3, cursor: Vec3, pose: &TwoBonePose) -> Self {
+    /// Makes the hierarchy of `pose`, with the shoulder at `root` in the world and guides that show
+    /// `limits`. `pose` and `cursor` are in Root space.
+    pub fn new(
+        arm: TwoBone,
+        limits: ReachLimits,
+        root: Vec3,
+        cursor: Vec3,
+        pose: &TwoBonePose,
+    ) -> Self {
         let thickness = Self::thickness(arm);
         let (base_radius, tip_radius) =
             (Self::BASE_RADIUS * thickness, Self::TIP_RADIUS * thickness);
@@ -127,12 +133,11 @@ impl ArmRig {
             upper,
             lower,
             pointer: TaperedCylinder {
-                length: arm.outer_limit(),
+                length: limits.outer,
                 base_radius: pointer_radius,
                 tip_radius: pointer_radius,
             },
-            inner_limit: arm.inner_limit(),
-            outer_limit: arm.outer_limit(),
+            limits,
         }
     }
 
@@ -176,13 +181,8 @@ impl ArmRig {
         self.pointer
     }
 
-    /// Radius of the sphere that the hand cannot enter.
-    pub fn inner_limit(&self) -> f32 {
-        self.inner_limit
-    }
-
-    /// Radius of the sphere that the hand cannot leave.
-    pub fn outer_limit(&self) -> f32 {
-        self.outer_limit
+    /// Radii of [`ArmPart::InnerLimit`] and [`ArmPart::OuterLimit`].
+    pub fn limits(&self) -> ReachLimits {
+        self.limits
     }
 }

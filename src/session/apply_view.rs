@@ -61,7 +61,7 @@ impl Session {
             return self.settled_camera().framing(centre, radius, ASPECT);
         }
         let (centre, radius) = match self.rig() {
-            RigKind::Arm => (self.arm().root, self.arm().bones.outer_limit()),
+            RigKind::Arm => (self.arm().root, self.arm().reach_limits().outer),
             RigKind::Skeleton => self.skeleton_rig().bounds(self.skeleton_pose(), self.time()),
         };
         self.settled_camera().framing(centre, radius, ASPECT)

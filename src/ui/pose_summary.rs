@@ -1,6 +1,7 @@
 //! Sentences about the current pose.
 
 use crate::document::{Arm, RigKind};
+use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
 use crate::session::{Session, SolverStatus};
@@ -25,8 +26,11 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
         Some(Reach::TooFar) if arm.soft_reach.softness() > 0.0 => {
             format!("Soft: the hand stays {gap} behind the Cursor, so the elbow does not snap.")
         }
-        Some(Reach::TooClose) if !arm.soft_reach.is_hard() => {
+        Some(Reach::TooClose) if arm.soft_reach.softness() > 0.0 => {
             format!("Soft: the hand stays off the shoulder, {gap} from the Cursor.")
+        }
+        Some(Reach::TooClose) if arm.soft_reach.min_elbow_angle() > 0.0 => {
+            format!("Too close: the elbow does not bend further, {gap} past the Cursor.")
         }
         Some(Reach::TooFar) => {
             format!("Too far: the arm is straight and points at the Cursor, {gap} short.")
@@ -100,11 +104,11 @@ fn describe_pose(session: &Session) -> String {
         Some(Reach::TooClose) => "Too close",
     };
     let hand = pose.hand;
-    let (least, most) = arm.reach();
+    let ReachLimits { inner, outer } = arm.reach_limits();
     let [x, y, z] = hand.to_array().map(|coordinate| arm.format_length(coordinate));
     let distance = arm.format_length(pose.distance);
     let digits = decimals_of_cell(arm.grid_cell());
     format!(
-        "{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {least:.digits$}–{most:.digits$}"
+        "{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {inner:.digits$}–{outer:.digits$}"
     )
 }

@@ -40,7 +40,7 @@ fn five_toggles_f_frames_the_arm_home_frames_all() {
         let (arm, pose) = (bench.session().arm(), bench.session().pose());
         let (centre, radius) = match key {
             Key::F => arm.bounds(pose),
-            _ => (arm.root, arm.bones.outer_limit()),
+            _ => (arm.root, arm.reach_limits().outer),
         };
         assert_eq!(bench.session().camera().target, centre, "{key:?}");
         let (_, right, up) = bench.session().camera().basis();

@@ -106,7 +106,7 @@ fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
 fn arm_bounds(arm: &Arm, display: Display) -> (Vec3, f32) {
     let (centre, radius) = arm.bounds(&arm.pose());
     if display.shows(Overlay::OuterLimit) {
-        (arm.root, arm.bones.outer_limit().max(arm.root.distance(centre) + radius))
+        (arm.root, arm.reach_limits().outer.max(arm.root.distance(centre) + radius))
     } else if display.shows(Overlay::Cursor) {
         let cursor = arm.cursor_in_world();
         let excess = (centre.distance(cursor) - radius).max(0.0);

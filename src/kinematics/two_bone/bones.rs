@@ -97,6 +97,17 @@ impl TwoBone {
     pub fn inner_limit(self) -> f32 {
         (self.upper - self.lower).abs()
     }
+
+    /// Distance of the hand from the shoulder if the elbow's inner angle is `elbow_angle` (φ,
+    /// radians, from 0 to π).
+    pub(in crate::kinematics) fn distance_at(self, elbow_angle: f64) -> f64 {
+        let (upper, lower) = (f64::from(self.upper), f64::from(self.lower));
+        let (least, most) = ((upper - lower).abs(), upper + lower);
+        // (d₁ − d₂)² + 2 d₁ d₂ (1 − cos φ), which does not cancel.
+        let half = (0.5 * elbow_angle).sin();
+        let open = (least * least + 4.0 * upper * lower * half * half).sqrt();
+        least.max(open).min(most)
+    }
 }
 
 impl fmt::Display for Bone {

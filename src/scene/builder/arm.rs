@@ -29,7 +29,7 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
     }
     add_guides(scene, &rig, display);
     if display.shows(Overlay::SingularityGlobe) {
-        let (centre, radius) = (arm.root, rig.outer_limit());
+        let (centre, radius) = (arm.root, rig.limits().outer);
         scene.add_globe(Globe { centre, radius, reference: arm.reference() });
     }
     if display.shows(Overlay::Cursor) && arm.uses_ik() {
@@ -121,8 +121,8 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
         });
     }
     for (overlay, part, radius) in [
-        (Overlay::InnerLimit, ArmPart::InnerLimit, rig.inner_limit()),
-        (Overlay::OuterLimit, ArmPart::OuterLimit, rig.outer_limit()),
+        (Overlay::InnerLimit, ArmPart::InnerLimit, rig.limits().inner),
+        (Overlay::OuterLimit, ArmPart::OuterLimit, rig.limits().outer),
     ] {
         if display.shows(overlay) && radius > 0.0 {
             scene.shells.push(SphereShell { centre: rig.origin(part), radius, colour });

@@ -64,7 +64,11 @@ impl SceneBuilder {
             }
             return;
         }
-        scene.planes = Planes::around(centre, reach, cell, display);
+        let ground_reach = match document.rig {
+            RigKind::Arm => reach.max(document.arm.reach_limits().outer),
+            RigKind::Skeleton => reach,
+        };
+        scene.planes = Planes::around(centre, ground_reach, cell, display);
         if display.shows(Overlay::Axes) {
             axes::add(scene, reach);
         }

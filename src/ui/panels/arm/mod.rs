@@ -50,7 +50,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         labels: AXES,
         value: arm.cursor_in_root(),
         default,
-        range: arm.bones.outer_limit(),
+        range: arm.reach_limits().outer,
         step: session.arm_unit(),
         tooltip: "Move the Cursor, the hand's target, relative to the Root",
         disabled,
@@ -61,7 +61,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             let pinned = PointSliders {
                 value: pin,
                 default: arm.root + default,
-                range: arm.bones.outer_limit().max(ROOT_RANGE * session.arm_unit()),
+                range: arm.reach_limits().outer.max(ROOT_RANGE * session.arm_unit()),
                 tooltip: "Move the Cursor, the hand's target, in world space",
                 ..hand
             };

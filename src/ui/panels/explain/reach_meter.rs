@@ -2,6 +2,7 @@
 
 use egui::{Sense, Ui, vec2};
 
+use crate::kinematics::soft_reach::ReachLimits;
 use crate::session::Session;
 use crate::ui::style;
 use crate::ui::widgets::format;
@@ -12,7 +13,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     const BAR: f32 = 8.0;
     const BEYOND: f32 = 1.25;
     let arm = session.arm();
-    let (inner, outer) = arm.reach();
+    let ReachLimits { inner, outer } = arm.reach_limits();
     let digits = format::decimals_of_cell(arm.grid_cell());
     let (what, distance) = match arm.uses_ik() {
         true => ("Cursor", arm.cursor_in_root().length()),
