@@ -1,7 +1,7 @@
 use glam::{Mat3A, Quat, Vec3, Vec3A};
 
 use super::problem::{EndEffector, Problem};
-use crate::kinematics::skeleton::JointAngles;
+use crate::kinematics::skeleton::{JointAngles, nearest_angles};
 
 /// Angles of all links, shifts of all trees, and the positions that follow from both, in problem
 /// space (see [`Problem`]).
@@ -67,6 +67,24 @@ impl Configuration {
     pub fn set_orientations(&mut self) {
         self.orientations.clear();
         self.orientations.extend(self.frames.iter().map(Quat::from_mat3a));
+    }
+
+    /// Euler angles of a link. If they follow from orientations, they are those nearest to `near`.
+    pub fn angles_near(&self, problem: &Problem, index: usize, near: Vec3) -> Vec3 {
+        let link = &problem.links[index];
+        if link.is_limited() || self.orientations.is_empty() {
+            return self.angles[index];
+        }
+        let parent = link.parent.map_or(Quat::IDENTITY, |parent| self.orientations[parent]);
+        let mounted = Mat3A::from_quat(parent) * link.mount;
+        nearest_angles(mounted.transpose() * Mat3A::from_quat(self.orientations[index]), near)
+    }
+
+    /// Sets the angles that follow from `orientations`.
+    pub fn update_angles(&mut self, problem: &Problem) {
+        for index in 0..problem.links.len() {
+            self.angles[index] = self.angles_near(problem, index, self.angles[index]);
+        }
     }
 
     /// The cost f = Σ ½ w |tip − target|².

@@ -291,23 +291,20 @@ impl Fabrik {
         }
     }
 
-    /// Orientations of all links. The orientation of a link with one point is turned, by the
-    /// smallest angle, until the link points at that point.
-    pub fn orientations(&self, config: &Configuration) -> Vec<Quat> {
-        let mut orientations = config.orientations.clone();
+    /// Updates the orientations of links with one point, which iterations move only: turns each, by
+    /// the smallest angle, until the link points at its point.
+    pub fn update_orientations(&self, config: &mut Configuration) {
         if self.limited {
-            return orientations;
+            return;
         }
-        for ((from, to), (orientation, base)) in
-            self.ranges.iter().zip(orientations.iter_mut().zip(&config.bases))
-        {
+        for (link, (from, to)) in self.ranges.iter().enumerate() {
             if let [point] = &self.points[*from..*to] {
-                let arm = point.position_in(config) - *base;
+                let arm = point.position_in(config) - config.bases[link];
+                let orientation = &mut config.orientations[link];
                 let rotation = rotation_between(*orientation * point.position, arm);
                 *orientation = (rotation * *orientation).normalize();
             }
         }
-        orientations
     }
 }
 

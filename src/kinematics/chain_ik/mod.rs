@@ -19,12 +19,18 @@
 //! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short |
 //! | [`Method::TwoBone`] | two joints, at once | stops short |
 //!
+//! A straight chain that must shorten is bent before the first iteration if no method can bend it:
+//! with its target on its line, or with joints that the target pushes against their limits, as a
+//! knee limited to 0 … 143°.
+//!
 //! A target out of reach is not an error: the chain straightens towards the target and the solver
 //! stalls. Results are deterministic.
 //!
 //! # What breaks
 //!
 //! - A solver stalls at a *local* minimum of f. Limits can cause such minima away from the target.
+//!   There the angles at limits, then all limited angles, are moved inside their limits and the
+//!   method starts again, up to six times; the best pose counts. That is no guarantee.
 //! - Near y = ±90° (gimbal lock) two of a joint's angles rotate about the same axis; methods that
 //!   move angles cannot rotate the joint in one direction there. CCD and FABRIK can, at joints
 //!   without limits.
@@ -36,6 +42,7 @@ mod ccd;
 mod configuration;
 mod damped_least_squares;
 mod error;
+mod escape;
 mod fabrik;
 mod jacobian;
 mod method;

@@ -1,12 +1,11 @@
-use glam::{Mat3A, Quat, Vec3};
-
 use super::configuration::Configuration;
+use super::escape::Escape;
 use super::method_state::MethodState;
 use super::problem::{self, Problem};
 use super::stall::StallDetector;
 use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
 use crate::kinematics::saturate::saturate;
-use crate::kinematics::skeleton::{Skeleton, nearest_angles};
+use crate::kinematics::skeleton::Skeleton;
 
 /// An iterative solver that moves the bone tips of a skeleton to targets.
 ///
@@ -39,6 +38,7 @@ pub struct ChainSolver {
     start: Configuration,
     state: MethodState,
     stall: StallDetector,
+    escape: Escape,
 }
 
 impl ChainSolver {
@@ -65,9 +65,18 @@ impl ChainSolver {
         let report =
             Report { method: options.method, iterations: 0, error: 0.0, status: Status::Iterating };
         let max_iterations = options.iterations.unwrap_or(options.method.budget());
-        let start = config.clone();
-        let mut solver =
-            Self { report, max_iterations, tolerance, problem, config, start, state, stall };
+        let (start, escape) = (config.clone(), Escape::new(&config));
+        let mut solver = Self {
+            report,
+            max_iterations,
+            tolerance,
+            problem,
+            config,
+            start,
+            state,
+            stall,
+            escape,
+        };
         solver.set_targets(targets);
         Ok(solver)
     }
@@ -85,7 +94,7 @@ impl ChainSolver {
             return self.report;
         }
         if self.report.iterations == 0 {
-            self.perturb();
+            self.start();
         }
         let can_go_on = self.state.iterate(&self.problem, &mut self.config);
         self.report.iterations += 1;
@@ -93,7 +102,11 @@ impl ChainSolver {
         if !self.report.converged()
             && (!can_go_on || self.stall.observe(&self.problem, &self.config))
         {
-            self.restart_or_stall();
+            self.escape_or_stall();
+        }
+        if self.report.status == Status::OutOfIterations {
+            self.escape.restore_best(&self.problem, &mut self.config);
+            self.measure();
         }
         self.report
     }
@@ -154,13 +167,14 @@ impl ChainSolver {
             }
             return;
         }
-        let near = |link: usize| {
-            let joint = skeleton.joint(self.problem.links[link].joint);
-            joint.map_or(Vec3::ZERO, |joint| joint.rotation)
-        };
-        let angles = self.angles(near);
-        for (link, angles) in self.problem.links.iter().zip(angles) {
-            skeleton.write_local(link.joint, |joint| joint.rotation = angles);
+        let mut config = self.config.clone();
+        if let MethodState::Fabrik(fabrik) = &self.state {
+            fabrik.update_orientations(&mut config);
+        }
+        for (index, link) in self.problem.links.iter().enumerate() {
+            skeleton.write_local(link.joint, |joint| {
+                joint.rotation = config.angles_near(&self.problem, index, joint.rotation);
+            });
         }
     }
 
@@ -172,6 +186,7 @@ impl ChainSolver {
         }
         self.report.iterations = 0;
         self.measure();
+        self.escape.reset();
         self.stall.set_reference(&self.problem, &self.config);
     }
 
@@ -188,66 +203,86 @@ impl ChainSolver {
         };
     }
 
-    /// Bends chains that cannot start because they lie on one line with their target.
-    fn perturb(&mut self) {
-        let is_closed_form = matches!(self.state, MethodState::TwoBone(_));
-        if is_closed_form
-            || self.problem.free_roots
-            || !perturb::is_stuck(&self.problem, &self.config)
-        {
-            return;
-        }
-        let uses_orientations = self.state.uses_orientations();
-        if uses_orientations {
-            self.config.angles = self.angles(|link| self.config.angles[link]);
-            self.config.forward(&self.problem);
-        }
-        perturb::bend(&self.problem, &mut self.config);
-        self.config.forward(&self.problem);
-        if uses_orientations {
-            self.config.set_orientations();
+    /// Bends straight chains that no method can bend. Without any, the configuration keeps its bits.
+    fn start(&mut self) {
+        self.escape.best.copy_from(&self.config);
+        if !self.bend() {
+            self.config.copy_from(&self.escape.best);
         }
     }
 
-    /// Returns to the reference of the stall detector, the last configuration that was an
-    /// improvement, and restarts the method there. If a restart from the reference has failed
-    /// already, or the method has nothing to restart, the solver has stalled: another run from
-    /// there would change nothing.
-    fn restart_or_stall(&mut self) {
+    /// Bends straight chains that no method can bend. Returns whether there was one.
+    fn bend(&mut self) -> bool {
+        let mut scratch = std::mem::take(&mut self.escape.scratch);
+        let any =
+            self.change_angles(|problem, config| perturb::bend(problem, config, &mut scratch));
+        self.escape.scratch = scratch;
+        any
+    }
+
+    /// Whether the method may start from another pose than it has come to.
+    fn can_escape(&self) -> bool {
+        let is_closed_form = matches!(self.state, MethodState::TwoBone(_));
+        !is_closed_form && !self.problem.free_roots
+    }
+
+    /// Changes the configuration's angles. If `change` returns `false`, nothing has changed but for
+    /// rounding.
+    fn change_angles(&mut self, change: impl FnOnce(&Problem, &mut Configuration) -> bool) -> bool {
+        if !self.can_escape() {
+            return false;
+        }
+        let config = &mut self.config;
+        if let MethodState::Fabrik(fabrik) = &self.state {
+            fabrik.update_orientations(config);
+        }
+        let uses_orientations = self.state.uses_orientations();
+        if uses_orientations {
+            config.update_angles(&self.problem);
+            config.forward(&self.problem);
+        }
+        let any = change(&self.problem, config);
+        if any && uses_orientations {
+            config.set_orientations();
+        }
+        any
+    }
+
+    /// Returns to the best configuration so far and starts again from there in another way. If all
+    /// ways have failed, the solver has stalled: another run from there would change nothing.
+    fn escape_or_stall(&mut self) {
         if matches!(self.state, MethodState::TwoBone(_)) {
             self.report.status = Status::Stalled;
             return;
         }
-        self.config.copy_from(&self.stall.reference);
+        self.escape.observe(&self.problem, &self.stall.reference);
+        let can_go_on = self.escape();
         self.measure();
-        if (self.stall.restarted || !self.state.restart()) && !self.report.converged() {
+        self.stall.set_reference(&self.problem, &self.config);
+        if !can_go_on && !self.report.converged() {
             self.report.status = Status::Stalled;
         }
-        self.stall.idle = 0;
-        self.stall.restarted = true;
     }
 
-    /// Euler angles of every link. Angles that follow from an orientation are the ones nearest to
-    /// those that `near` gives for the link.
-    fn angles(&self, near: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
-        let from_points;
-        let orientations = match &self.state {
-            MethodState::Fabrik(fabrik) => {
-                from_points = fabrik.orientations(&self.config);
-                &from_points
+    /// Changes the best configuration so far in the next way that changes anything. Returns whether
+    /// there was one.
+    fn escape(&mut self) -> bool {
+        loop {
+            self.config.copy_from(&self.escape.best);
+            let attempt = self.escape.attempts;
+            self.escape.attempts += 1;
+            let learns = self.state.restart();
+            let goes_on = match attempt {
+                0 => self.bend() || learns,
+                1..=perturb::STARTS_INSIDE => self.change_angles(|problem, config| {
+                    perturb::leave_limits(problem, config, attempt - 1)
+                }),
+                _ => return false,
+            };
+            if goes_on {
+                return true;
             }
-            _ => &self.config.orientations,
-        };
-        let angles_of = |index: usize| {
-            let link = &self.problem.links[index];
-            if link.is_limited() || orientations.is_empty() {
-                return self.config.angles[index];
-            }
-            let parent = link.parent.map_or(Quat::IDENTITY, |parent| orientations[parent]);
-            let mounted = Mat3A::from_quat(parent) * link.mount;
-            nearest_angles(mounted.transpose() * Mat3A::from_quat(orientations[index]), near(index))
-        };
-        (0..self.problem.links.len()).map(angles_of).collect()
+        }
     }
 }
 

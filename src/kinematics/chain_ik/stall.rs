@@ -12,7 +12,7 @@ pub(super) struct StallDetector {
     /// Mean distance of the reference from the targets, in the problem's units.
     mean: f64,
     /// Number of iterations since the reference was set.
-    pub idle: u32,
+    idle: u32,
     /// Number of idle iterations after which a method has stalled.
     patience: u32,
     /// Decrease of the distance up to which an iteration is idle.
@@ -23,8 +23,6 @@ pub(super) struct StallDetector {
     /// Number of iterations in which joints moved without an improvement, since the last
     /// improvement.
     drifts: u32,
-    /// Whether the method was restarted since the reference was set.
-    pub restarted: bool,
 }
 
 impl StallDetector {
@@ -54,7 +52,6 @@ impl StallDetector {
             least,
             least_moving,
             drifts: 0,
-            restarted: false,
         }
     }
 
@@ -65,7 +62,6 @@ impl StallDetector {
         self.mean = config.mean_distance(problem);
         self.idle = 0;
         self.drifts = 0;
-        self.restarted = false;
     }
 
     /// Updates the reference after an iteration. Returns whether the method has stalled.

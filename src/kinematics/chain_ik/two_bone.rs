@@ -9,7 +9,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::ccd::move_roots;
 use super::configuration::Configuration;
-use super::perturb::bend_link;
+use super::perturb::bent_angles;
 use super::problem::Problem;
 use super::{SolveError, TwoBoneRefusal};
 use crate::kinematics::skeleton::{JointId, Limit, Skeleton, angle_triples, clamp_to_limits};
@@ -79,7 +79,7 @@ impl TwoBones {
         let lower =
             normalize(config.tips[limb.effector] - config.bases[limb.lower]).unwrap_or_default();
         if upper.cross(lower).length() < STRAIGHT {
-            bend_link(problem, config, limb.lower, upper, BEND);
+            config.angles[limb.lower] = bent_angles(problem, config, limb.lower, upper, BEND);
             config.forward(problem);
         }
     }
