@@ -3,8 +3,10 @@
 mod common;
 
 use common::Random;
-use common::skeletons::{chain, forest, length, limit, reachable, shake, transform, tree};
-use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3A, Vec3};
+use common::skeletons::{
+    chain, forest, length, limit, reachable, shake, space_f64, transform, tree,
+};
+use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, OptionField, Report, Root, SolveError, SolverOptions, Status, TipTarget,
     TwoBoneRefusal, jacobian, solve,
@@ -40,6 +42,12 @@ fn straight(joints: usize) -> Skeleton {
 /// The largest distance from a tip to its target, from the skeleton alone.
 fn error(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
     targets.iter().map(|t| skeleton.tip(t.joint).distance(t.point)).fold(0.0, f32::max)
+}
+
+/// Root mean square distance of tips from their targets.
+fn rms(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
+    let squares = targets.iter().map(|t| skeleton.tip(t.joint).distance_squared(t.point));
+    (squares.sum::<f32>() / targets.len() as f32).sqrt()
 }
 
 /// Number of cases that end within `share` of the chain's length, by the method's budget.
@@ -118,30 +126,62 @@ fn the_closed_form_reaches_every_reachable_target() {
 }
 
 #[test]
-fn trees_bring_several_tips_to_their_targets_by_fabrik() {
-    for targets in 2..=5 {
-        let count = trees_reached(Method::Fabrik, targets);
-        assert!(count * 100 >= CASES * 99, "{count} of {CASES} with {targets} targets");
+fn trees_bring_several_tips_to_their_targets() {
+    for (method, least) in [
+        (Method::Fabrik, 99),
+        (Method::DampedLeastSquares, 99),
+        (Method::Ccd, 99),
+        (Method::Transpose, 99),
+    ] {
+        for targets in 2..=5 {
+            let count = trees_reached(method, targets);
+            assert!(
+                count * 100 >= CASES * least,
+                "{method:?}: {count} of {CASES} with {targets} targets"
+            );
+        }
     }
 }
 
 #[test]
-fn trees_bring_several_tips_to_their_targets_by_damped_least_squares() {
-    for targets in 2..=5 {
-        let count = trees_reached(Method::DampedLeastSquares, targets);
-        assert!(count * 100 >= CASES * 99, "{count} of {CASES} with {targets} targets");
+fn a_fixed_step_brings_several_tips_nearer_to_their_targets() {
+    for ends in 2..=5 {
+        let mut random = Random(21);
+        for _ in 0..100 {
+            let (mut skeleton, tips) = tree(&mut random, ends, 1.0);
+            let targets = reachable(&mut random, &skeleton, &tips);
+            let before = rms(&skeleton, &targets);
+            let options = SolverOptions::new(Method::TransposeFixed).with_step(0.5);
+            solve(&mut skeleton, &targets, &options).expect("solve");
+            let after = rms(&skeleton, &targets);
+            assert!(after < 0.5 * before, "{after} of {before} with {ends} targets");
+        }
     }
 }
 
-/// X of a joint's own space in f64, from the formula, in skeleton space.
-fn twin(skeleton: &Skeleton, joint: JointId, angles: &[DVec3]) -> DMat4 {
-    let Joint { parent, offset, frame, .. } = &skeleton[joint];
-    let above = parent.map_or(DMat4::IDENTITY, |parent| twin(skeleton, parent, angles));
-    let DVec3 { x, y, z } = angles[joint.index()];
-    let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
-    let frame = frame.as_dmat3();
-    let rotation = frame * turned * frame.transpose();
-    above * DMat4::from_translation(offset.as_dvec3()) * DMat4::from_mat3(rotation)
+#[test]
+fn the_closed_form_brings_several_limbs_to_their_targets() {
+    for limbs in 2..=5 {
+        let mut random = Random(22);
+        for _ in 0..100 {
+            let mut skeleton = Skeleton::with_root("root");
+            let mut tips = Vec::new();
+            for _ in 0..limbs {
+                let mut limb = Joint::new("upper", Some(JointId::new(0)), random.direction());
+                limb.offset = random.vector(1.0);
+                limb.name = skeleton.free_name("upper");
+                let upper = skeleton.add(limb).expect("upper");
+                let name = skeleton.free_name("lower");
+                let lower = Joint::new(&name, Some(upper), random.direction());
+                let offset = skeleton[upper].axis;
+                tips.push(skeleton.add(Joint { offset, ..lower }).expect("lower"));
+            }
+            let targets = reachable(&mut random, &skeleton, &tips);
+            let options = SolverOptions::new(Method::TwoBone);
+            solve(&mut skeleton, &targets, &options).expect("solve");
+            assert!(error(&skeleton, &targets) <= 1e-5 * length(&skeleton, &tips));
+        }
+    }
 }
 
 #[test]
@@ -161,7 +201,7 @@ fn the_jacobian_is_the_derivative_of_the_tip() {
                 let mut tip = |by: f64| {
                     let before = angles[turning][angle];
                     angles[turning][angle] += by;
-                    let tip = twin(&skeleton, joint, &angles).transform_point3(axis);
+                    let tip = space_f64(&skeleton, joint, &angles).transform_point3(axis);
                     angles[turning][angle] = before;
                     tip
                 };

@@ -113,7 +113,7 @@ pub(in crate::ui) fn method(method: Method) -> &'static str {
 pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
     match method {
         Method::TransposeFixed => "Descend the gradient with a fixed step: smooth but slow",
-        Method::Transpose => "Descend the gradient with a line search: slow near the target",
+        Method::Transpose => "Descend the gradient with steps that fit its curvature",
         Method::DampedLeastSquares => {
             "Solve damped least squares: few iterations, handles limits and many targets"
         }

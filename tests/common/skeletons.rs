@@ -1,6 +1,6 @@
 //! Random skeletons and targets, the same on every run.
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
 use ik_arm::kinematics::chain_ik::TipTarget;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
@@ -86,6 +86,17 @@ pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[JointId]) -> 
     let target =
         |joint: &JointId| TipTarget { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
     tips.iter().map(target).collect()
+}
+
+/// X of a joint's own space in f64, from the formula, in skeleton space.
+pub fn space_f64(skeleton: &Skeleton, joint: JointId, angles: &[DVec3]) -> DMat4 {
+    let Joint { parent, offset, frame, .. } = &skeleton[joint];
+    let above = parent.map_or(DMat4::IDENTITY, |parent| space_f64(skeleton, parent, angles));
+    let DVec3 { x, y, z } = angles[joint.index()];
+    let turned = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+    let frame = frame.as_dmat3();
+    let rotation = frame * turned * frame.transpose();
+    above * DMat4::from_translation(offset.as_dvec3()) * DMat4::from_mat3(rotation)
 }
 
 /// Length of the longest chain from a root to one of the tips, without the root's own offset.

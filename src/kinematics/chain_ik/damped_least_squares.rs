@@ -15,6 +15,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::configuration::Configuration;
+use super::coordinates::Coordinates;
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
@@ -28,8 +29,8 @@ pub(super) struct DampedLeastSquares {
     /// Factor by which λ is raised, at least 1.
     raised: f32,
     wrenches: Wrenches,
-    step: (Vec<Vec3>, Vec<Vec3A>),
-    before: (Vec<Vec3>, Vec<Vec3A>),
+    step: Coordinates,
+    before: Coordinates,
     /// Rotation axes of the configuration, as columns; zero for fixed angles.
     axes: Vec<Mat3A>,
     /// JJᵀ; only the lower triangle is used.
@@ -47,8 +48,8 @@ impl DampedLeastSquares {
             damping: damping * problem.length,
             raised: 1.0,
             wrenches: Wrenches::default(),
-            step: Default::default(),
-            before: Default::default(),
+            step: Coordinates::default(),
+            before: Coordinates::default(),
             axes: Vec::new(),
             square: DMatrix::zeros(rows, rows),
             factored: DMatrix::zeros(rows, rows),
@@ -72,13 +73,12 @@ impl DampedLeastSquares {
         let cost = config.cost(problem);
         for _ in 0..TRIES {
             if self.solve_within(problem, config) {
-                let (from, by) = (&self.before, &self.step);
-                advance(problem, (&from.0, &from.1), (&by.0, &by.1), 1.0, config);
+                advance(problem, &self.before, &self.step, 1.0, config);
                 if config.cost(problem) < cost {
                     self.raised = (self.raised / GROWTH).max(1.0);
                     return true;
                 }
-                advance(problem, (&from.0, &from.1), (&by.0, &by.1), 0.0, config);
+                advance(problem, &self.before, &self.step, 0.0, config);
             }
             self.raised *= GROWTH;
         }
@@ -93,8 +93,7 @@ impl DampedLeastSquares {
             let row = residual * effector.weight.sqrt();
             self.residuals.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
         }
-        self.before.0.clone_from(&config.angles);
-        self.before.1.clone_from(&config.shifts);
+        self.before.copy_from(config);
     }
 
     /// Solves for the step, with those angles fixed that would leave their limits. Returns whether
@@ -181,7 +180,7 @@ impl DampedLeastSquares {
         let force = |effector: usize| {
             Vec3A::from_slice(&forces[3 * effector..]) * problem.effectors[effector].weight.sqrt()
         };
-        self.wrenches.apply_transpose(problem, config, force, &mut self.step.0, &mut self.step.1);
+        self.wrenches.apply_transpose(problem, config, force, &mut self.step);
         true
     }
 
@@ -191,7 +190,8 @@ impl DampedLeastSquares {
         for (index, link) in problem.links.iter().enumerate().filter(|(_, link)| link.is_limited())
         {
             for (angle, limit) in link.limits.iter().enumerate() {
-                let (from, by) = (self.before.0[index][angle], &mut self.step.0[index][angle]);
+                let (from, by) =
+                    (self.before.angles[index][angle], &mut self.step.angles[index][angle]);
                 let axis = self.axes[index].col_mut(angle);
                 if *axis == Vec3A::ZERO {
                     *by = 0.0;

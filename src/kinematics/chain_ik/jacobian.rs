@@ -13,6 +13,7 @@
 use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::Configuration;
+use super::coordinates::Coordinates;
 use super::problem::Problem;
 use crate::kinematics::skeleton::{JointAngles, JointId, Skeleton, clamp_to_limits};
 
@@ -42,15 +43,28 @@ pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
 pub(super) struct Wrenches(Vec<(Vec3A, Vec3A)>);
 
 impl Wrenches {
-    /// Writes Jᵀ F into `angles` for every link, and the sum of forces on every tree into `shifts`.
-    /// `force` gives the force F at the tip of an end effector.
+    /// Writes the negative gradient of the cost, Jᵀ W (target − p), to `descent`.
+    pub fn descend(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        descent: &mut Coordinates,
+    ) {
+        let force = |index: usize| {
+            let effector = &problem.effectors[index];
+            (effector.target - config.tips[index]) * effector.weight
+        };
+        self.apply_transpose(problem, config, force, descent);
+    }
+
+    /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F at
+    /// the tip of an end effector.
     pub fn apply_transpose(
         &mut self,
         problem: &Problem,
         config: &Configuration,
         force: impl Fn(usize) -> Vec3A,
-        angles: &mut Vec<Vec3>,
-        shifts: &mut Vec<Vec3A>,
+        Coordinates { angles, shifts }: &mut Coordinates,
     ) {
         self.0.clear();
         self.0.resize(problem.links.len(), (Vec3A::ZERO, Vec3A::ZERO));
@@ -85,13 +99,13 @@ impl Wrenches {
 /// Applies a step within the limits; non-finite components are left unchanged.
 pub(super) fn advance(
     problem: &Problem,
-    from: (&[Vec3], &[Vec3A]),
-    by: (&[Vec3], &[Vec3A]),
+    from: &Coordinates,
+    by: &Coordinates,
     factor: f32,
     config: &mut Configuration,
 ) {
     for (index, link) in problem.links.iter().enumerate() {
-        let (before, angles) = (from.0[index], from.0[index] + factor * by.0[index]);
+        let (before, angles) = (from.angles[index], from.angles[index] + factor * by.angles[index]);
         let angles = if angles.is_finite() { angles } else { before };
         config.angles[index] = clamp_to_limits(&link.limits, angles);
     }
@@ -99,7 +113,8 @@ pub(super) fn advance(
         // The square of the chain's length converts the units of angles to those of shifts.
         let lever = factor * problem.length * problem.length;
         for (index, shifts) in config.shifts.iter_mut().enumerate() {
-            let (before, moved) = (from.1[index], from.1[index] + lever * by.1[index]);
+            let (before, moved) =
+                (from.shifts[index], from.shifts[index] + lever * by.shifts[index]);
             *shifts = if problem.can_shift(index, moved) { moved } else { before };
         }
     }

@@ -13,7 +13,7 @@ use thiserror::Error;
 pub enum Method {
     /// Jacobian transpose with a fixed step length.
     TransposeFixed,
-    /// Jacobian transpose with a line search.
+    /// Jacobian transpose with a variable step length (Barzilai and Borwein).
     Transpose,
     /// Damped least squares (Levenberg–Marquardt).
     DampedLeastSquares,

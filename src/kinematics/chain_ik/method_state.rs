@@ -1,3 +1,4 @@
+use super::barzilai_borwein::BarzilaiBorwein;
 use super::ccd::Ccd;
 use super::configuration::Configuration;
 use super::damped_least_squares::DampedLeastSquares;
@@ -12,6 +13,7 @@ use crate::kinematics::skeleton::Skeleton;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MethodState {
     Transpose(Transpose),
+    BarzilaiBorwein(BarzilaiBorwein),
     DampedLeastSquares(DampedLeastSquares),
     Ccd(Ccd),
     Fabrik(Fabrik),
@@ -25,8 +27,8 @@ impl MethodState {
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         Ok(match options.method {
-            Method::TransposeFixed => Self::Transpose(Transpose::new(problem, options.step, false)),
-            Method::Transpose => Self::Transpose(Transpose::new(problem, 1.0, true)),
+            Method::TransposeFixed => Self::Transpose(Transpose::new(problem, options.step)),
+            Method::Transpose => Self::BarzilaiBorwein(BarzilaiBorwein::new(problem)),
             Method::DampedLeastSquares => {
                 Self::DampedLeastSquares(DampedLeastSquares::new(problem, options.damping))
             }
@@ -45,19 +47,26 @@ impl MethodState {
     /// lengths at all.
     pub fn restart(&mut self) -> bool {
         match self {
-            Self::Transpose(transpose) => transpose.restart(),
+            Self::BarzilaiBorwein(descent) => {
+                descent.restart();
+                true
+            }
             Self::DampedLeastSquares(damped) => {
                 damped.restart();
                 true
             }
-            Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
+            Self::Transpose(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
         }
     }
 
     /// Makes one iteration. Returns whether another iteration could improve the result.
     pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         match self {
-            Self::Transpose(transpose) => transpose.iterate(problem, config),
+            Self::Transpose(transpose) => {
+                transpose.iterate(problem, config);
+                true
+            }
+            Self::BarzilaiBorwein(descent) => descent.iterate(problem, config),
             Self::DampedLeastSquares(damped) => damped.iterate(problem, config),
             Self::Ccd(ccd) => {
                 ccd.iterate(problem, config);

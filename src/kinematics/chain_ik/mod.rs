@@ -38,8 +38,10 @@
 //!   start loses precision.
 
 mod align;
+mod barzilai_borwein;
 mod ccd;
 mod configuration;
+mod coordinates;
 mod damped_least_squares;
 mod error;
 mod escape;

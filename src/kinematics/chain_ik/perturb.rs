@@ -42,7 +42,7 @@ pub(super) fn bend(
             && is_stuck(problem, config, end)
         {
             straight.copy_from(config);
-            if must_bend(problem, config, end) {
+            if can_bend(problem, config, end) && must_bend(problem, config, end) {
                 bend_to_target(problem, config, straight, end);
             }
             align_top(problem, config, end);
@@ -135,7 +135,7 @@ fn is_stuck(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool
     }
     let towards = problem.effectors[end.effector].target - config.bases[end.top];
     let is_behind = towards.dot(end.line) < 0.0 && is_held(problem, config, end.effector, end.top);
-    is_behind || (end.links > 1 && must_bend(problem, config, end))
+    is_behind || (can_bend(problem, config, end) && must_bend(problem, config, end))
 }
 
 /// Whether an end effector has no moment about a link, or its moments push the link against its
@@ -157,6 +157,15 @@ fn is_held(problem: &Problem, config: &Configuration, effector: usize, link: usi
 /// Links of a straight end below its top.
 fn inner_links(problem: &Problem, end: StraightEnd) -> impl Iterator<Item = usize> + '_ {
     path(problem, end.effector).take(end.links - 1)
+}
+
+/// Whether a straight end has a joint between its ends that brings them nearer to each other.
+fn can_bend(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool {
+    let (base, tip) = (config.bases[end.top], config.tips[end.effector]);
+    let least = STRAIGHT * tip.distance(base);
+    inner_links(problem, end)
+        .map(|link| config.bases[link])
+        .any(|joint| joint.distance(base) > least && joint.distance(tip) > least)
 }
 
 /// Whether a straight end is folded, or longer than its target is far.

@@ -186,6 +186,7 @@ impl ChainSolver {
         }
         self.report.iterations = 0;
         self.measure();
+        self.state.restart();
         self.escape.reset();
         self.stall.set_reference(&self.problem, &self.config);
     }
