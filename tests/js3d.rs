@@ -55,16 +55,42 @@ fn the_camera_shows_all_of_a_small_skeleton_and_of_a_large_one() {
 }
 
 #[test]
-fn everything_but_skeletons_is_ignored() {
+fn everything_but_skeletons_is_counted_in_a_warning() {
     let mesh = "AAECAwQF".repeat(100_000);
     let text = format!(
-        r#"{{"animator":{{"x":[{{}}]}},"scene":{{"FORMAT":"js3d-v1","cameras":{{"c":1}},
+        r#"{{"animator":{{"FORMAT":"js3d-v1","splines":{{"a":{{}},"b":{{}}}}}},
+        "scene":{{"FORMAT":"js3d-v1","cameras":{{"c":1}},
         "skinned_meshes":{{"X":{{"mesh":{{"positions":"vec3:{mesh}"}},
-        "skeleton":{{"bones":[{{"extent":[0,1,0],"colour":5}}]}}}},"Y":{{"mesh":{{}}}}}},
+        "skeleton":{{"bones":[{{"extent":[0,1,0],"colour":5}}]}}}},
+        "Y":{{"mesh":{{"indices":[0]}}}},"Z":{{"mesh":{{}}}}}},
+        "particles":{{"p":{{}},"q":{{}}}},"delta_lights":{{"d":1}},"env_lights":{{"e":[2]}},
         "textures":{{"t":null}}}}}}"#
     );
     let opened = open(&text);
-    assert_eq!((opened.warnings, opened.skeletons), (vec![], vec!["X".to_owned()]));
+    let said: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
+    let expected = [
+        "line 1, column 43: animator.splines: not read: 2 animated channels",
+        "line 2, column 17: scene: not read: 2 meshes, 2 particle systems, 1 camera, 2 lights, \
+         1 texture",
+    ];
+    assert_eq!(
+        (said, opened.skeletons),
+        (expected.map(str::to_owned).to_vec(), vec!["X".to_owned()])
+    );
+}
+
+#[test]
+fn contents_that_are_not_read_may_be_of_any_kind() {
+    for value in ["null", "true", "-1", "2", "0.5", "\"text\"", "[]", "{}"] {
+        let text = format!(
+            "{{\"animator\":{{\"splines\":{value}}},\"scene\":{{\"meshes\":{value},\"cameras\":{value},\
+             \"skinned_meshes\":{{\"X\":{{\"mesh\":{value},\"skeleton\":{{\"bones\":[]}}}}}}}}}}"
+        );
+        assert_eq!(open(&text).warnings, [], "{value}");
+    }
+    let alone = bones(r#"{"extent":[0,1,0]}"#);
+    let without = alone.replacen('{', "{\"animator\":null,", 1);
+    assert_eq!((open(&alone).warnings, open(&without).warnings), (vec![], vec![]));
 }
 
 #[test]

@@ -1,17 +1,24 @@
-//! Those fields of a scene that concern skeletons.
+//! Those fields of a scene that concern skeletons, and the number of entries of the others.
 
 use std::collections::HashSet;
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
 pub struct Js3dFile {
     pub scene: JsonObject<Js3dScene>,
+    animator: Option<JsonObject<Js3dAnimator>>,
+}
+
+#[derive(Deserialize)]
+struct Js3dAnimator {
+    #[serde(default)]
+    splines: Unread,
 }
 
 #[derive(Deserialize)]
@@ -22,6 +29,22 @@ pub struct Js3dScene {
     skinned_meshes: Named<Js3dMesh>,
     #[serde(default)]
     pub instances: JsonObject<Js3dInstances>,
+    #[serde(default)]
+    meshes: Unread,
+    #[serde(default)]
+    shapes: Unread,
+    #[serde(default)]
+    particles: Unread,
+    #[serde(default)]
+    cameras: Unread,
+    #[serde(default)]
+    delta_lights: Unread,
+    #[serde(default)]
+    env_lights: Unread,
+    #[serde(default)]
+    materials: Unread,
+    #[serde(default)]
+    textures: Unread,
 }
 
 #[derive(Deserialize)]
@@ -34,6 +57,8 @@ pub struct Js3dTransform {
 
 #[derive(Deserialize)]
 struct Js3dMesh {
+    #[serde(default)]
+    mesh: Unread,
     skeleton: Option<JsonObject<Js3dSkeleton>>,
 }
 
@@ -77,7 +102,34 @@ pub struct Js3dHandle {
     pub enabled: Option<bool>,
 }
 
+/// Number of entries of an object or array that is not read; 0 for any other value.
+#[derive(Clone, Copy, Default)]
+struct Unread(usize);
+
+impl Js3dFile {
+    /// Number of animated channels, which are not read.
+    pub fn animated_channels(&self) -> usize {
+        self.animator.as_ref().map_or(0, |JsonObject(animator)| animator.splines.0)
+    }
+}
+
 impl Js3dScene {
+    /// Contents of the scene that are not read: their name in the singular, and how many there are.
+    pub fn unread(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let is_mesh = |(_, mesh): &&(String, Js3dMesh)| mesh.mesh.0 > 0;
+        let meshes = self.meshes.0 + self.skinned_meshes.0.iter().filter(is_mesh).count();
+        let contents = [
+            ("mesh", meshes),
+            ("shape", self.shapes.0),
+            ("particle system", self.particles.0),
+            ("camera", self.cameras.0),
+            ("light", self.delta_lights.0 + self.env_lights.0),
+            ("material", self.materials.0),
+            ("texture", self.textures.0),
+        ];
+        contents.into_iter().filter(|(_, count)| *count > 0)
+    }
+
     /// The skeletons in the file's order, each with its name, which is the name of its mesh.
     pub fn skeletons(&self) -> impl Iterator<Item = (&str, &Js3dSkeleton)> {
         let meshes = self.skinned_meshes.0.iter();
@@ -89,6 +141,62 @@ impl Js3dBone {
     pub fn parent(&self) -> Option<usize> {
         const NONE: u32 = u32::MAX;
         self.parent.filter(|parent| parent.0 != NONE).map(|parent| parent.0 as usize)
+    }
+}
+
+impl<'de> Deserialize<'de> for Unread {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct UnreadVisitor;
+
+        impl<'de> Visitor<'de> for UnreadVisitor {
+            type Value = Unread;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("any value")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Unread, A::Error> {
+                let mut count = 0;
+                while map.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {
+                    count += 1;
+                }
+                Ok(Unread(count))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Unread, A::Error> {
+                let mut count = 0;
+                while seq.next_element::<IgnoredAny>()?.is_some() {
+                    count += 1;
+                }
+                Ok(Unread(count))
+            }
+
+            fn visit_bool<E>(self, _: bool) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+
+            fn visit_i64<E>(self, _: i64) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+
+            fn visit_u64<E>(self, _: u64) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+
+            fn visit_f64<E>(self, _: f64) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+
+            fn visit_str<E>(self, _: &str) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+
+            fn visit_unit<E>(self) -> Result<Unread, E> {
+                Ok(Unread(0))
+            }
+        }
+
+        deserializer.deserialize_any(UnreadVisitor)
     }
 }
 

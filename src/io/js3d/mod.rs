@@ -12,7 +12,7 @@
 //! Bones are numbered from 0 in the file's order. A parent may come after its children; the number
 //! 4294967295 stands for no parent. The angles of a bone are measured in the frame
 //! [`Js3dBone::frame`](file::Js3dBone::frame). The skeleton has the transform of the first instance
-//! of its mesh.
+//! of its mesh. Animation and everything else in the scene are not read, with a warning.
 
 mod bones;
 mod file;
@@ -33,8 +33,8 @@ use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
 /// Reads the skeleton called `name`, or with `None` the first skeleton.
 pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
-    let JsonObject(Js3dFile { scene: JsonObject(scene) }) =
-        source.parse::<JsonObject<Js3dFile>>(|_| {})?;
+    let JsonObject(file) = source.parse::<JsonObject<Js3dFile>>(|_| {})?;
+    let JsonObject(scene) = &file.scene;
     let names: Vec<String> = scene.skeletons().map(|(name, _)| name.to_owned()).collect();
     let mut skeletons = scene.skeletons();
     let chosen = match name {
@@ -53,7 +53,8 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     };
     let mut warnings = FieldWarnings::default();
     let (rig, order) =
-        rig(&scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
+        rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
+    warn_of_unread(&file, &mut warnings);
     let camera = Camera::framing_skeleton(&rig);
     Ok(Opened {
         document: Document {
@@ -66,6 +67,25 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
         order,
         skeletons: names,
     })
+}
+
+/// Warns of animation, and of everything else in the scene that is not read.
+fn warn_of_unread(file: &Js3dFile, warnings: &mut FieldWarnings) {
+    let count = |count: usize, one: &str| match (count, one) {
+        (1, _) => format!("1 {one}"),
+        (_, "mesh") => format!("{count} meshes"),
+        _ => format!("{count} {one}s"),
+    };
+    let channels = file.animated_channels();
+    if channels > 0 {
+        let field = JsonPath::root().key("animator").key("splines");
+        warnings.push(field, format!("not read: {}", count(channels, "animated channel")));
+    }
+    let JsonObject(scene) = &file.scene;
+    let unread: Vec<_> = scene.unread().map(|(one, many)| count(many, one)).collect();
+    if !unread.is_empty() {
+        warnings.push(JsonPath::root().key("scene"), format!("not read: {}", unread.join(", ")));
+    }
 }
 
 fn no_skeleton() -> FieldError {
