@@ -17,6 +17,22 @@
 //! maps skeleton space to the world and may mirror and scale. The bind pose is the skeleton as
 //! built, before any rotation.
 //!
+//! # Euler order
+//!
+//! x is applied first, then y, then z, about axes that do not turn with the joint; equivalently z
+//! first, then y, then x, about axes that do. With A = 1, R = R_z·R_y·R_x. This is the order of
+//! Scotty3D's present code; the formula on the wiki page below is not preserved.
+//!
+//! # Roots
+//!
+//! A root is a joint without a parent; its offset is its position in skeleton space. Solvers rotate
+//! a root like any other joint unless it is `locked`, and never move it unless the solver's options
+//! free it ([`chain_ik::Root::Free`](super::chain_ik::Root::Free)). [`Skeleton::with_root`] starts
+//! with a locked root without a bone, which neither turns nor moves. A js3d file locks no
+//! joint: its roots turn, but do not move.
+//!
+//! # Units
+//!
 //! Angles are radians. Offsets, axes and radii are in skeleton units; positions in the world are in
 //! world units.
 //!
