@@ -53,6 +53,8 @@ fn grips() -> impl Strategy<Value = Grip> {
     prop_oneof![
         handles.clone().prop_map(Grip::Hand),
         handles.clone().prop_map(Grip::Pole),
+        handles.clone().prop_map(Grip::Root),
+        Just(Grip::Twist),
         (0..3_usize).prop_map(Grip::Shoulder),
         Just(Grip::Bend),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),

@@ -22,9 +22,7 @@ impl Session {
     fn edit(&mut self, action: EditAction) {
         match action {
             EditAction::SetHand(hand) => self.set_point("hand", hand, Arm::set_cursor),
-            EditAction::SetRoot(root) => {
-                self.set_point("shoulder", root, |arm, root| arm.root = root);
-            }
+            EditAction::SetRoot(root) => self.set_root(root),
             EditAction::SetTwist(twist) => self.set_twist(twist),
             EditAction::SetPin(pin) => {
                 self.set_point("hand", pin, |arm, pin| arm.cursor = Cursor::World(pin));

@@ -1,3 +1,4 @@
+use super::arm_joint::ArmJoint;
 use super::effect::Effect;
 use super::select_action::SelectAction;
 use super::session::Session;
@@ -20,10 +21,16 @@ impl Session {
         self.selection.hovered()
     }
 
+    /// The selected joint of the arm, whose handles are shown; `None` without one.
+    pub fn selected_arm_joint(&self) -> Option<ArmJoint> {
+        self.selection.arm_joint()
+    }
+
     pub(super) fn apply_selection(&mut self, action: SelectAction) -> Option<Effect> {
         match action {
             SelectAction::Joints(joints) => self.select(joints),
             SelectAction::Hover(joint) => self.hover(joint),
+            SelectAction::ArmJoint(joint) => self.selection.set_arm_joint(joint),
             SelectAction::Keys(keys) => {
                 self.selection.set_keys(keys);
                 self.retain_keys();

@@ -204,13 +204,15 @@ impl Session {
             return;
         }
         self.view.stop_glide();
+        self.selection.set_arm_joint(grip.arm_joint());
         match grip {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
             Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
             Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
             Grip::Pole(handle) => self.grab_pole(handle, ray, forward),
-            Grip::Shoulder(_) | Grip::Bend => self.grab_arm_ring(grip, ray),
+            Grip::Root(handle) => self.grab_root(handle, ray, forward),
+            Grip::Twist | Grip::Shoulder(_) | Grip::Bend => self.grab_arm_ring(grip, ray),
         }
     }
 
@@ -218,7 +220,7 @@ impl Session {
         let Some((drag, shown)) = self.editing.drag_mut() else { return };
         change(drag);
         let grip = drag.grip;
-        let Arm { cursor, pole, fk, .. } = shown.arm;
+        let Arm { cursor, pole, root, fk, .. } = shown.arm;
         let mut angles = fk.shoulder;
         match (grip, &mut drag.kind) {
             (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
@@ -245,6 +247,15 @@ impl Session {
                 let dragged = point.point();
                 let pole = if point.has_moved() { dragged } else { pole };
                 self.set_pole(pole);
+            }
+            (Grip::Root(_), DragKind::Point(point)) => {
+                let dragged = point.point();
+                let root = if point.has_moved() { dragged } else { root };
+                self.set_root(root);
+            }
+            (Grip::Twist, DragKind::Turn(turn)) => {
+                let twist = turn.angle();
+                self.set_twist(twist);
             }
             (_, DragKind::Point(point)) => {
                 let to = point.point();

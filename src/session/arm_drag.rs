@@ -4,7 +4,7 @@ use super::drag::{Drag, DragKind, Grip};
 use super::point_drag::{PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{Ray, TwistReferenceKind};
+use crate::document::{Arm, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
 
 /// Drags of the arm.
@@ -34,9 +34,16 @@ impl Session {
         }
     }
 
+    pub(super) fn grab_root(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
+        let drag = PointDrag::new(handle, self.arm().root, Vec3::ZERO, forward, ray);
+        let drag = drag.with_step(self.snap());
+        self.begin_edit(Some(Drag { grip: Grip::Root(handle), kind: DragKind::Point(drag) }));
+    }
+
     pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
-        let fk = self.arm().fk;
+        let Arm { twist, fk, .. } = *self.arm();
         let start = match grip {
+            Grip::Twist => twist,
             Grip::Shoulder(axis) => fk.shoulder[axis],
             _ => fk.bend,
         };
@@ -46,13 +53,25 @@ impl Session {
         }
     }
 
-    /// The ring, in world space, of a shoulder angle about x, y or z or of the elbow's bend. `None`
-    /// for other grips, or if IK poses the arm.
+    /// The ring of a grip, in world space. With IK it is the ring of the Socket twist, around the
+    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend. `None`
+    /// for other grips.
     pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
-        let arm = self.arm();
-        if arm.uses_ik() {
-            return None;
+        match (grip, self.arm().uses_ik()) {
+            (Grip::Twist, true) => Some(self.twist_ring()),
+            (_, false) => self.fk_ring(grip),
+            _ => None,
         }
+    }
+
+    fn twist_ring(&self) -> GripRing {
+        let pose = self.pose();
+        let axis = pose.pointer.direction;
+        GripRing { centre: self.arm().root + axis * pose.along, axis }
+    }
+
+    fn fk_ring(&self, grip: Grip) -> Option<GripRing> {
+        let arm = self.arm();
         let angles = arm.fk.shoulder;
         let yaw = Mat3::from_rotation_y(angles.y);
         let axis = match grip {

@@ -18,6 +18,10 @@ impl Session {
         }
     }
 
+    pub(super) fn set_root(&mut self, root: Vec3) {
+        self.set_point("shoulder", root, |arm, root| arm.root = root);
+    }
+
     pub(super) fn set_twist(&mut self, twist: f32) {
         if twist.is_finite() {
             self.replace_arm(Arm { twist: wrapped(twist), ..*self.arm() });

@@ -1,3 +1,4 @@
+use super::arm_joint::ArmJoint;
 use super::point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn_drag::TurnDrag;
 use crate::kinematics::skeleton::JointId;
@@ -9,6 +10,10 @@ pub enum Grip {
     Hand(PointHandle),
     /// The pole, towards which the elbow points.
     Pole(PointHandle),
+    /// The Root, which is the shoulder.
+    Root(PointHandle),
+    /// The ring of the Socket twist, about the Pointer.
+    Twist,
     /// The ring of the shoulder's angle about x, y or z (0, 1, 2).
     Shoulder(usize),
     /// The ring of the elbow's bend.
@@ -27,10 +32,20 @@ impl Grip {
         match self {
             Self::Hand(handle)
             | Self::Pole(handle)
+            | Self::Root(handle)
             | Self::Target(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
             Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
-            Self::Bend => true,
+            Self::Bend | Self::Twist => true,
+        }
+    }
+
+    /// The joint of the arm that the grip selects; `None` for handles that are always shown.
+    pub(super) fn arm_joint(self) -> Option<ArmJoint> {
+        match self {
+            Self::Root(_) => Some(ArmJoint::Root),
+            Self::Twist => Some(ArmJoint::Elbow),
+            _ => None,
         }
     }
 }

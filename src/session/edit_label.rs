@@ -74,6 +74,8 @@ impl Grip {
         match self {
             Self::Hand(_) => "Move hand",
             Self::Pole(_) => "Move pole",
+            Self::Root(_) => "Move shoulder",
+            Self::Twist => "Set Socket twist",
             Self::Shoulder(_) => "Turn shoulder",
             Self::Bend => "Bend elbow",
             Self::Target(..) => "Move target",

@@ -13,6 +13,7 @@ mod apply_transaction;
 mod apply_view;
 mod arm_drag;
 mod arm_edits;
+mod arm_joint;
 mod cached;
 mod comparison;
 mod dialog;
@@ -65,6 +66,7 @@ mod view_action;
 mod view_drag;
 
 pub use action::{Action, Actions};
+pub use arm_joint::ArmJoint;
 pub use comparison::{ComparedSolver, Comparison};
 pub use dialog::Dialog;
 pub use drag::{Drag, Grip};

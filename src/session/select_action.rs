@@ -1,3 +1,4 @@
+use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
@@ -9,6 +10,8 @@ pub enum SelectAction {
     Joints(Vec<JointId>),
     /// Sets the joint under the mouse; `None` if there is none.
     Hover(Option<JointId>),
+    /// Selects a joint of the arm, or none.
+    ArmJoint(Option<ArmJoint>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),
     /// Selects these channels and no others.

@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
+use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::{JointId, JointRemap};
@@ -15,6 +16,7 @@ pub(super) struct Selection {
     /// Selected joints; the last of them is the active joint.
     joints: Vec<JointId>,
     hovered: Option<JointId>,
+    arm_joint: Option<ArmJoint>,
     keys: Vec<Key>,
     channels: BTreeSet<Channel>,
     clipboard: Clipboard,
@@ -27,6 +29,10 @@ impl Selection {
 
     pub fn hovered(&self) -> Option<JointId> {
         self.hovered
+    }
+
+    pub fn arm_joint(&self) -> Option<ArmJoint> {
+        self.arm_joint
     }
 
     pub fn keys(&self) -> &[Key] {
@@ -47,6 +53,10 @@ impl Selection {
 
     pub fn set_hovered(&mut self, joint: Option<JointId>) {
         self.hovered = joint;
+    }
+
+    pub fn set_arm_joint(&mut self, joint: Option<ArmJoint>) {
+        self.arm_joint = joint;
     }
 
     pub fn set_keys(&mut self, keys: Vec<Key>) {

@@ -65,6 +65,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         Grip::Tip(..) => "Pose",
         Grip::Target(..) => "Target",
         Grip::Pole(_) => "Pole",
+        Grip::Root(_) => "Root",
         _ => "Move",
     };
     let digits = match session.rig() {
@@ -97,6 +98,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
         Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
             format!("Rotate about {}", ["x", "y", "z"][axis.min(2)])
         }
+        Grip::Twist => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),
     };
     format!(

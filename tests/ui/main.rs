@@ -3,6 +3,7 @@
 #![cfg(feature = "app")]
 
 mod accessibility;
+mod arm_handles;
 mod arm_posing;
 mod bench;
 mod crowd;

@@ -1,12 +1,13 @@
-//! The gizmo of the arm: handles of Cursor and Pole, and rings of the joint angles.
+//! The gizmo of the arm: handles of Cursor, Pole and Root, and rings of the angles.
 
 use egui::{Color32, Painter, Pos2, Ui};
 
 use super::rotate::RotateRing;
 use super::shape::bright;
 use super::translate::TranslateHandles;
+use super::twist::TwistRing;
 use crate::document::TwistReferenceKind;
-use crate::session::{Grip, PointHandle, Session};
+use crate::session::{ArmJoint, Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
 
@@ -15,6 +16,9 @@ use crate::ui::viewport::projection::ScreenProjection;
 pub(in crate::ui) struct ArmGizmo {
     hand: Option<TranslateHandles>,
     pole: Option<TranslateHandles>,
+    root: Option<TranslateHandles>,
+    is_root_selected: bool,
+    twist: Option<TwistRing>,
     rings: Vec<RotateRing>,
 }
 
@@ -35,6 +39,9 @@ impl ArmGizmo {
             pole: has_pole
                 .then(|| TranslateHandles::new(screen, arm.root + arm.pole, None))
                 .flatten(),
+            root: TranslateHandles::new(screen, arm.root, None),
+            is_root_selected: session.selected_arm_joint() == Some(ArmJoint::Root),
+            twist: TwistRing::new(screen, session),
             rings: angles.filter_map(ring).collect(),
         }
     }
@@ -44,7 +51,19 @@ impl ArmGizmo {
         let on = |handles: &Option<TranslateHandles>| handles.as_ref()?.at(mouse);
         let of_hand = on(&self.hand).map(Grip::Hand);
         let of_pole = || on(&self.pole).map(Grip::Pole);
-        of_hand.or_else(of_pole).or_else(|| RotateRing::at(&self.rings, mouse))
+        of_hand
+            .or_else(of_pole)
+            .or_else(|| self.root_at(mouse))
+            .or_else(|| self.twist.as_ref()?.at(mouse))
+            .or_else(|| RotateRing::at(&self.rings, mouse))
+    }
+
+    /// The handle of the Root at a screen position. Until the Root is selected, it has no arrows
+    /// and squares.
+    fn root_at(&self, mouse: Pos2) -> Option<Grip> {
+        let root = self.root.as_ref()?;
+        let handle = if self.is_root_selected { root.at(mouse) } else { root.free_at(mouse) };
+        handle.map(Grip::Root)
     }
 
     pub fn paint(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
@@ -56,9 +75,15 @@ impl ArmGizmo {
             Some(Grip::Pole(handle)) => Some(handle),
             _ => None,
         };
+        self.paint_root(painter, ui, pointed, dragged);
         paint(self.pole.as_ref(), painter, ui, [pointed, dragged].map(of_pole), dragged);
         paint(self.hand.as_ref(), painter, ui, [pointed, dragged].map(of_hand), dragged);
         let palette = style::palette(ui);
+        if let Some(twist) = &self.twist {
+            let stands_out = dragged.or(pointed) == Some(Grip::Twist);
+            let colour = style::colour(palette.accent);
+            twist.paint(painter, look(colour, stands_out, dragged.is_some()), stands_out);
+        }
         for ring in &self.rings {
             let colour = style::colour(match ring.grip {
                 Grip::Shoulder(axis) => palette.axes[axis.min(2)],
@@ -66,6 +91,25 @@ impl ArmGizmo {
             });
             let stands_out = dragged.or(pointed) == Some(ring.grip);
             ring.paint(painter, look(colour, stands_out, dragged.is_some()), stands_out);
+        }
+    }
+}
+
+impl ArmGizmo {
+    fn paint_root(&self, painter: &Painter, ui: &Ui, pointed: Option<Grip>, dragged: Option<Grip>) {
+        let of_root = |grip: Option<Grip>| match grip {
+            Some(Grip::Root(handle)) => Some(handle),
+            _ => None,
+        };
+        let own = [pointed, dragged].map(of_root);
+        match &self.root {
+            Some(root) if !self.is_root_selected && dragged.is_none() && own[0].is_some() => {
+                root.paint_free(painter, ui);
+            }
+            root => {
+                let shown = root.as_ref().filter(|_| self.is_root_selected);
+                paint(shown, painter, ui, own, dragged);
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ mod rotate;
 mod shape;
 mod skeleton;
 mod translate;
+mod twist;
 pub(in crate::ui) mod view_axes;
 
 use egui::{Painter, Pos2, Ui};

@@ -1,8 +1,9 @@
-//! A ring of constant size on screen; a drag of the ring rotates about one axis.
+//! A ring; a drag of the ring rotates about one axis.
 
 use core::f32::consts::TAU;
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
+use glam::Vec3;
 
 use super::shape::to_segment;
 use crate::session::{Grip, GripRing};
@@ -24,18 +25,49 @@ pub(in crate::ui) struct RotateRing {
 }
 
 impl RotateRing {
-    /// Computes the screen positions of `ring`; `None` if its centre is behind the eye.
+    /// Screen positions of `ring` with a constant size on screen; `None` if its centre is behind
+    /// the eye.
     pub fn new(screen: &ScreenProjection, grip: Grip, ring: GripRing) -> Option<Self> {
         let GripRing { centre, axis } = ring;
         let radius = RADIUS * screen.units_per_point(centre);
         let (u, v) = axis.any_orthonormal_pair();
+        let middle = screen.place(centre)?;
+        Self::sampled(screen, grip, centre, [u * radius, v * radius], |aside| {
+            Some(middle + screen.direction(aside, centre))
+        })
+    }
+
+    /// Screen positions of `ring` with the size at which it goes through `point` of the world;
+    /// `None` if a part of it is behind the eye.
+    pub fn through(
+        screen: &ScreenProjection,
+        grip: Grip,
+        ring: GripRing,
+        point: Vec3,
+    ) -> Option<Self> {
+        let GripRing { centre, axis } = ring;
+        let radius = point - centre;
+        Self::sampled(screen, grip, centre, [radius, axis.cross(radius)], |aside| {
+            screen.place(centre + aside)
+        })
+    }
+
+    /// Samples the ring around `centre` with two perpendicular radii; `place` gives the screen
+    /// position of an offset from the centre.
+    fn sampled(
+        screen: &ScreenProjection,
+        grip: Grip,
+        centre: Vec3,
+        [u, v]: [Vec3; 2],
+        place: impl Fn(Vec3) -> Option<Pos2>,
+    ) -> Option<Self> {
         let mut points = Vec::with_capacity(STEPS + 1);
         let mut near = Vec::with_capacity(STEPS + 1);
         for step in 0..=STEPS {
             let (sin, cos) = (step as f32 / STEPS as f32 * TAU).sin_cos();
-            let aside = (u * cos + v * sin) * radius;
-            points.push(screen.place(centre)? + screen.direction(aside, centre));
-            near.push(screen.depth(centre + aside) <= screen.depth(centre) + 0.05 * radius);
+            let aside = u * cos + v * sin;
+            points.push(place(aside)?);
+            near.push(screen.depth(centre + aside) <= screen.depth(centre) + 0.05 * u.length());
         }
         Some(Self { grip, points, near })
     }

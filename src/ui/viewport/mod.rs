@@ -13,8 +13,8 @@ use egui::{
 use crate::document::{Camera, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Actions, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction, SelectAction,
-    Session, TransactionAction, ViewAction,
+    Action, Actions, ArmJoint, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction,
+    SelectAction, Session, TransactionAction, ViewAction,
 };
 use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
@@ -68,6 +68,10 @@ pub(in crate::ui) fn ui(
     if has_joints(session) && response.clicked() && !on_view_axes {
         select(ui, session, &screen, &gizmo, mouse, actions);
     }
+    let is_beside = pointed.is_none() && held_grip.is_none();
+    if response.clicked() && is_beside && session.selected_arm_joint().is_some() {
+        actions.push(SelectAction::ArmJoint(None));
+    }
     if response.double_clicked() && !on_view_axes {
         actions.push(match pointed {
             Some(_) => commands::frame_selection(session),
@@ -79,8 +83,27 @@ pub(in crate::ui) fn ui(
         });
     }
     show_cursor(ui, session, pointed.or(held_grip));
+    if let Some(hint) = pointed.and_then(|grip| hint(session, grip)) {
+        response.clone().on_hover_text_at_pointer(hint);
+    }
     keys(ui, &response, session, actions);
     rect
+}
+
+/// Tooltip of a handle that is hidden until the mouse is over it; `None` for other handles, while
+/// its joint is selected, and during a drag.
+fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
+    let selected = session.selected_arm_joint();
+    match grip {
+        _ if session.is_editing() => None,
+        Grip::Root(_) if selected != Some(ArmJoint::Root) => {
+            Some("Move the Root; click to show its arrows")
+        }
+        Grip::Twist if selected != Some(ArmJoint::Elbow) => {
+            Some("Turn the elbow about the Pointer (Socket twist)")
+        }
+        _ => None,
+    }
 }
 
 fn has_joints(session: &Session) -> bool {

@@ -60,13 +60,15 @@ impl Values<'_> {
 
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
-        match self.random.below(8) {
+        match self.random.below(10) {
             0 | 1 => Grip::Hand(self.handle()),
             2 => Grip::Pole(self.handle()),
             3 => Grip::Shoulder(self.axis()),
             4 => Grip::Bend,
             5 => Grip::Target(self.aimed(), self.handle()),
             6 => Grip::Tip(joint, self.handle()),
+            7 => Grip::Root(self.handle()),
+            8 => Grip::Twist,
             _ => Grip::Ring(joint, self.axis()),
         }
     }
