@@ -30,7 +30,7 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
             format!("Soft: the hand stays off the shoulder, {gap} from the Cursor.")
         }
         Some(Reach::TooClose) if arm.soft_reach.min_elbow_angle() > 0.0 => {
-            format!("Too close: the elbow does not bend further, {gap} past the Cursor.")
+            format!("Too close: the elbow is at its minimum angle, the hand {gap} past the Cursor.")
         }
         Some(Reach::TooFar) => {
             format!("Too far: the arm is straight and points at the Cursor, {gap} short.")

@@ -5,7 +5,7 @@ use egui::{Rect, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{EditAction, Preferences};
+use ik_arm::session::{EditAction, PoseMode, Preferences};
 
 use crate::bench::Bench;
 
@@ -42,6 +42,35 @@ fn the_position_of_the_cursor_on_the_arms_curve_is_stated() {
         assert!(bench.shows(Role::Label, &said), "{said}");
         assert!(bench.shows(Role::Image, &format!("Reach curve: {said}")), "{said}");
     }
+}
+
+#[test]
+fn status_bar_and_reach_meter_state_the_limits_of_the_hand() {
+    for (stretch, degrees, mode, rounded, exact) in [
+        (1.0, 0.0, PoseMode::Hand, "of 100–500", "from 100.0 to 500.0"),
+        (1.5, 0.0, PoseMode::Hand, "of 100–750", "from 100.0 to 750.0"),
+        (1.0, 90.0_f32, PoseMode::Hand, "of 361–500", "from 360.6 to 500.0"),
+        (1.5, 90.0, PoseMode::Angles, "of 100–500", "from 100.0 to 500.0"),
+    ] {
+        let soft_reach = SoftReach::new(0.0, stretch, degrees.to_radians()).expect("soft limits");
+        let bench = Bench::after([
+            EditAction::SetHand(Vec3::X * 400.0),
+            EditAction::SetSoftReach(soft_reach),
+            EditAction::SwitchPoseMode(mode),
+        ]);
+        assert!(bench.says(rounded), "{rounded}");
+        let meter = format!("the hand reaches {exact}");
+        assert!(bench.harness.query_by_label_contains(&meter).is_some(), "{meter}");
+    }
+}
+
+#[test]
+fn a_hand_at_the_minimum_elbow_angle_says_so() {
+    let soft_reach = SoftReach::new(0.0, 1.0, core::f32::consts::FRAC_PI_2).expect("soft limits");
+    let bench =
+        Bench::after([EditAction::SetHand(Vec3::X * 300.0), EditAction::SetSoftReach(soft_reach)]);
+    let said = "Too close: the elbow is at its minimum angle, the hand 60.6 past the Cursor.";
+    assert!(bench.says(said));
 }
 
 #[test]
