@@ -3,7 +3,7 @@
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, EditAction, FileAction, Navigation, PlaybackAction, PoseMode, SelectAction,
+    Action, ArmJoint, EditAction, FileAction, Navigation, PlaybackAction, PoseMode, SelectAction,
     ShellAction, SolverAction, TransactionAction, ViewAction,
 };
 
@@ -145,6 +145,10 @@ kinds! {
     Select(SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
         Hover: Look 2, |v| SelectAction::Hover(if v.coin() { None } else { Some(v.joint()) });
+        ArmJoint: Look 1, |v| {
+            let joints = [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow)];
+            SelectAction::ArmJoint(v.one_of(&joints))
+        };
         Keys: Look 3, |v| SelectAction::Keys(v.keys());
         Channels: Look 1, |v| SelectAction::Channels(v.channels());
         CopyKeys: Look 2, |_| SelectAction::CopyKeys;
