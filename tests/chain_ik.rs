@@ -464,6 +464,53 @@ fn free_roots_move_to_their_targets() {
 }
 
 #[test]
+fn roots_turn_and_move_only_as_they_may() {
+    for method in ITERATIVE {
+        let mut random = Random(38);
+        for case in 0..60 {
+            let (mut skeleton, tips) = tree(&mut random, 2, 1.0);
+            skeleton.set_axis(JointId::new(0), Vec3::Y).expect("axis");
+            shake(&mut random, &mut skeleton);
+            skeleton.change(JointId::new(0), |root| root.locked = false).expect("unlock");
+            let before = skeleton.clone();
+            let mut targets = reachable(&mut random, &skeleton, &tips);
+            targets.iter_mut().for_each(|target| target.point += Vec3::X);
+            let root = Root::ALL[case % 3];
+            let options = SolverOptions::new(method).with_root(root).with_iterations(20);
+            solve(&mut skeleton, &targets, &options).expect("solve");
+            let [was, is] = [&before, &skeleton].map(|skeleton| &skeleton[JointId::new(0)]);
+            let turns = tips.iter().any(|tip| skeleton.tip(*tip) != before.tip(*tip));
+            assert!(turns, "{method:?} {root:?}");
+            assert_eq!(is.rotation != was.rotation, root != Root::Locked, "{method:?} {root:?}");
+            assert_eq!(is.offset != was.offset, root == Root::Free, "{method:?} {root:?}");
+        }
+    }
+}
+
+#[test]
+fn a_locked_root_solves_like_a_root_joint_that_is_locked() {
+    for method in Method::ALL {
+        let mut random = Random(39);
+        for _ in 0..30 {
+            let joints = if method == Method::TwoBone { 2 } else { 5 };
+            let mut skeleton = chain(&mut random, joints, 1.0);
+            let mut unlocked = skeleton.clone();
+            unlocked.change(JointId::new(0), |root| root.locked = false).expect("unlock");
+            let targets = reachable(&mut random, &skeleton, &[JointId::new(joints)]);
+            let options = SolverOptions::new(method);
+            let expected = solve(&mut skeleton, &targets, &options).expect("solve");
+            let options = options.with_root(Root::Locked);
+            let report = solve(&mut unlocked, &targets, &options).expect("solve");
+            assert_eq!(report, expected);
+            let rotations = |skeleton: &Skeleton| -> Vec<Vec3> {
+                skeleton.joints().iter().map(|joint| joint.rotation).collect()
+            };
+            assert_eq!(rotations(&unlocked), rotations(&skeleton));
+        }
+    }
+}
+
+#[test]
 fn the_heavier_of_two_targets_that_conflict_is_nearer() {
     for method in ITERATIVE {
         let mut skeleton = Skeleton::with_root("root");
@@ -595,7 +642,7 @@ fn a_bone_negligibly_short_beside_its_chain_keeps_the_closed_form_finite() {
 
 #[test]
 fn a_step_that_overflows_leaves_finite_angles() {
-    for root in [Root::Fixed, Root::Free] {
+    for root in Root::ALL {
         let mut skeleton = straight(3);
         let options =
             SolverOptions::new(Method::TransposeFixed).with_step(f32::MAX).with_root(root);
@@ -631,7 +678,7 @@ fn without_targets_there_is_nothing_to_do() {
 fn poses_stay_finite_at_every_edge() {
     let scales = [1e-30, 1e-20, 1e-3, 1.0, 1e3, 1e20, 1e30];
     for method in ITERATIVE {
-        for root in [Root::Fixed, Root::Free] {
+        for root in Root::ALL {
             let mut random = Random(47);
             for case in 0..scales.len() * 12 {
                 let scale = scales[case % scales.len()];
@@ -852,7 +899,7 @@ fn an_unreachable_target_does_not_stop_another_chain_from_reaching_its_own() {
 fn bones_whose_squares_overflow_get_finite_rotations_or_none() {
     let mut random = Random(19);
     for unit in [3e18, 1e19, 1e30, 1e38] {
-        let roots = [Root::Fixed, Root::Free];
+        let roots = Root::ALL;
         for (method, root) in Method::ALL.into_iter().flat_map(|it| roots.map(|root| (it, root))) {
             for _ in 0..20 {
                 let mut skeleton = chain(&mut random, 3, 1.0);

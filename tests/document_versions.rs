@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use common::damage::message;
 use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::chain_ik::Root;
 
 const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -60,6 +61,22 @@ fn a_saved_document_of_version_2_is_saved_as_the_same_text() {
             let json = io::to_json(&open(&path).document).expect("finite numbers");
             assert_eq!(json, text, "{}", path.display());
         }
+    }
+}
+
+#[test]
+fn a_root_that_older_files_call_fixed_turns() {
+    for version in [1, 2] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fixed.json");
+        let text = format!(
+            "{{\"format\":\"ik-arm\",\"version\":{version},\"rig\":\"skeleton\",\
+             \"solver\":{{\"root\":\"fixed\"}}}}"
+        );
+        fs::write(&path, text).expect("written");
+        let Opened { document, warnings, .. } = open(&path);
+        assert_eq!((document.skeleton_rig.solver.root, warnings), (Root::Turns, vec![]));
+        assert!(io::to_json(&document).expect("finite numbers").contains("\"root\": \"turns\""));
     }
 }
 

@@ -103,8 +103,8 @@ fn posing() -> impl Strategy<Value = Action> {
                 joint, home, weight, enabled, motion
             }))
         ),
-        1 => (0..6_usize, numbers(), any::<bool>()).prop_map(|(method, damping, free)| {
-            let root = if free { Root::Free } else { Root::Fixed };
+        1 => (0..6_usize, numbers(), 0..3_usize).prop_map(|(method, damping, root)| {
+            let root = Root::ALL[root];
             Action::from(EditAction::SetSolver(
                 SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
             ))

@@ -106,9 +106,11 @@ fn options(bits: &mut Bits<'_>) -> SolverOptions {
     if any & 4 != 0 {
         options.step = bits.number();
     }
-    if any & 24 == 24 {
-        options.root = Root::Free;
-    }
+    options.root = match any & 24 {
+        24 => Root::Free,
+        16 => Root::Locked,
+        _ => Root::Turns,
+    };
     options
 }
 
@@ -154,7 +156,8 @@ impl Case<'_> {
             assert!(is.rotation.is_finite() && is.offset.is_finite(), "{by:?}: {is:?}");
             assert_eq!(is.clamped(is.rotation), is.rotation, "{by:?}: {is:?}");
             let may_move = is_free && is.parent.is_none() && on_path.contains(&joint);
-            let may_turn = !was.locked && on_path.contains(&joint);
+            let is_locked = was.locked || (options.root == Root::Locked && was.parent.is_none());
+            let may_turn = !is_locked && on_path.contains(&joint);
             let offset = if may_move { is.offset } else { was.offset };
             let rotation = if may_turn { is.rotation } else { was.rotation };
             assert_eq!(**is, Joint { offset, rotation, ..was.clone() }, "{by:?}");

@@ -37,7 +37,7 @@ pub fn document(random: &mut Random) -> Document {
     rig.solver.tolerance = random.coin().then(|| random.positive());
     rig.solver.damping = random.positive();
     rig.solver.step = random.positive();
-    rig.solver.root = random.one_of(&[Root::Fixed, Root::Free]);
+    rig.solver.root = random.one_of(&Root::ALL);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
     rig.follow_path = random.coin().then(|| FollowPath {
         radius: random.finite(),

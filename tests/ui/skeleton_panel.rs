@@ -437,10 +437,20 @@ fn lengthening_a_bone_moves_the_children_on_its_tip() {
 }
 
 #[test]
+fn the_mobility_of_roots_is_one_choice_of_three() {
+    let mut bench = built();
+    bench.click(Role::Button, "Add target");
+    for (name, root) in [("Locked", Root::Locked), ("Free", Root::Free), ("Turns", Root::Turns)] {
+        bench.click(Role::Button, name);
+        assert_eq!(bench.session().skeleton_rig().solver.root, root);
+    }
+}
+
+#[test]
 fn a_root_that_is_free_is_moved_by_the_solver() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
-    bench.click(Role::CheckBox, "Free root");
+    bench.click(Role::Button, "Free");
     assert_eq!(bench.session().skeleton_rig().solver.root, Root::Free);
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());

@@ -116,7 +116,7 @@ impl BarzilaiBorwein {
             advance(problem, &self.before, &self.descent, self.step, config);
             let mut expected = 0.0;
             self.for_each_change(problem, config, |change, _, descent| {
-                expected += change * descent
+                expected += change * descent;
             });
             if expected > 0.0 && config.cost(problem) <= greatest - DECREASE * expected {
                 return true;

@@ -91,10 +91,10 @@ pub enum TwoBoneRefusal {
     /// The joint is a root.
     #[error("it has no parent")]
     NoParent,
-    /// The joint is locked.
+    /// The joint is locked, or a locked root.
     #[error("it is locked")]
     Locked,
-    /// The joint's parent is locked.
+    /// The joint's parent is locked, or a locked root.
     #[error("its parent is locked")]
     ParentLocked,
     /// One of the two bones has length 0, or a length that the closed form cannot solve.

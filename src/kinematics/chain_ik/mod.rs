@@ -7,7 +7,8 @@
 //! ```
 //!
 //! by rotating the joints between targets and roots within their limits. Locked joints, and joints
-//! that are not between a target and a root, are unchanged, bit for bit. Targets, errors and the
+//! that are not between a target and a root, are unchanged, bit for bit; so are roots that are
+//! [locked](Root::Locked). Targets, errors and the
 //! tolerance are in the world; solvers work in skeleton space, so that mirrored and scaled
 //! skeletons are solved correctly.
 //!

@@ -24,7 +24,7 @@ pub struct SolverOptions {
     /// Step length of [`Method::TransposeFixed`], in units of 1/Σ w r², with the weights w of the
     /// targets and the distances r from joints to tips in the bind pose.
     pub step: f32,
-    /// Whether solvers move roots.
+    /// What solvers may change of roots.
     pub root: Root,
 }
 
@@ -36,7 +36,7 @@ impl Default for SolverOptions {
             tolerance: None,
             damping: 0.05,
             step: 1.0,
-            root: Root::Fixed,
+            root: Root::Turns,
         }
     }
 }
@@ -78,7 +78,7 @@ impl SolverOptions {
         Self { step, ..self }
     }
 
-    /// These options with fixed or free roots.
+    /// These options with another mobility of roots.
     #[must_use]
     pub fn with_root(self, root: Root) -> Self {
         Self { root, ..self }
@@ -110,9 +110,17 @@ impl SolverOptions {
     serde(rename_all = "snake_case")
 )]
 pub enum Root {
-    /// Roots keep their offsets.
+    /// Roots keep their angles and offsets.
+    Locked,
+    /// Roots rotate and keep their offsets. Files of earlier versions call it `fixed`.
     #[default]
-    Fixed,
-    /// Solvers change the offsets of roots.
+    #[cfg_attr(feature = "serde", serde(alias = "fixed"))]
+    Turns,
+    /// Roots rotate, and solvers change their offsets.
     Free,
+}
+
+impl Root {
+    /// All mobilities.
+    pub const ALL: [Self; 3] = [Self::Locked, Self::Turns, Self::Free];
 }

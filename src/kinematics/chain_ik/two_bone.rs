@@ -38,7 +38,7 @@ impl TwoBones {
             let refuse = |reason| SolveError::TwoBone { joint: effector.joint, reason };
             let parent = skeleton[effector.joint].parent;
             let parent = parent.ok_or_else(|| refuse(TwoBoneRefusal::NoParent))?;
-            // All unlocked ancestors of a target have links.
+            // All ancestors of a target that may turn have links.
             let link = |joint: JointId| problem.links.iter().position(|link| link.joint == joint);
             let lower = link(effector.joint).ok_or_else(|| refuse(TwoBoneRefusal::Locked))?;
             let upper = link(parent).ok_or_else(|| refuse(TwoBoneRefusal::ParentLocked))?;

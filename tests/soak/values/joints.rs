@@ -112,7 +112,7 @@ impl Values<'_> {
         options.tolerance = self.chance(0.3).then_some(tolerance);
         options.damping = self.above_0(0.2);
         options.step = self.above_0(2.0);
-        options.root = if self.chance(0.2) { Root::Free } else { Root::Fixed };
+        options.root = if self.chance(0.4) { self.one_of(&Root::ALL) } else { Root::Turns };
         options
     }
 

@@ -40,7 +40,7 @@ pub fn build(
         to_world,
         unit,
     };
-    let attachments = problem.add_links(skeleton, &on_path);
+    let attachments = problem.add_links(skeleton, &on_path, options.root);
     problem.add_effectors(skeleton, targets, &attachments, options.method);
     problem.list_below();
     problem.inertia = problem.bind_inertia(skeleton);
@@ -49,14 +49,24 @@ pub fn build(
 }
 
 impl Problem {
-    fn add_links(&mut self, skeleton: &Skeleton, on_path: &[bool]) -> Vec<Option<Attachment>> {
+    fn add_links(
+        &mut self,
+        skeleton: &Skeleton,
+        on_path: &[bool],
+        root: Root,
+    ) -> Vec<Option<Attachment>> {
         let mut attachments: Vec<Option<Attachment>> = vec![None; on_path.len()];
         for (id, joint) in skeleton.iter().filter(|(id, _)| on_path[id.index()]) {
             let base = match joint.parent.and_then(|parent| attachments[parent.index()]) {
                 Some(parent) => self.at_offset(joint, parent),
                 None => self.add_tree(id, joint),
             };
-            attachments[id.index()] = Some(self.add_joint(id, joint, base));
+            let is_locked = joint.locked || (root == Root::Locked && joint.parent.is_none());
+            attachments[id.index()] = Some(if is_locked {
+                Self::fuse_joint(joint, base)
+            } else {
+                self.add_link(id, joint, base)
+            });
         }
         attachments
     }
@@ -75,13 +85,14 @@ impl Problem {
         Attachment { to_link: Affine3A { translation, ..parent.to_link }, path, ..parent }
     }
 
-    /// The space of a joint from the space of its base. Adds a link for the joint unless the joint
-    /// is locked.
-    fn add_joint(&mut self, id: JointId, joint: &Joint, base: Attachment) -> Attachment {
-        if joint.locked {
-            let matrix3 = base.to_link.matrix3 * joint.local_rotation();
-            return Attachment { to_link: Affine3A { matrix3, ..base.to_link }, ..base };
-        }
+    /// The space of a locked joint from the space of its base.
+    fn fuse_joint(joint: &Joint, base: Attachment) -> Attachment {
+        let matrix3 = base.to_link.matrix3 * joint.local_rotation();
+        Attachment { to_link: Affine3A { matrix3, ..base.to_link }, ..base }
+    }
+
+    /// Adds a link for a joint. Returns the space of the joint from the space of its base.
+    fn add_link(&mut self, id: JointId, joint: &Joint, base: Attachment) -> Attachment {
         let frame = Mat3A::from(joint.frame);
         self.links.push(Link {
             joint: id,

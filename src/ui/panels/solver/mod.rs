@@ -4,7 +4,7 @@ mod can_solve;
 mod comparison;
 mod convergence;
 
-use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
+use egui::{Align, Button, ComboBox, Layout, RichText, ScrollArea, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, EditAction, Session, SolverAction};
@@ -104,17 +104,29 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
         Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
     }
-    let mut free = options.root == Root::Free;
-    let tooltip = "Let the solver move the roots";
-    if ui.checkbox(&mut free, "Free root").on_hover_text(tooltip).changed() {
-        let root = if free { Root::Free } else { Root::Fixed };
-        actions.push(set(SolverOptions { root, ..options }));
-    }
+    roots(ui, options, actions);
     let mut follow = session.preferences().follow;
     let tooltip = "Solve fully while a target is dragged";
     if ui.checkbox(&mut follow, "Solve during drags").on_hover_text(tooltip).changed() {
         actions.push(SolverAction::SetFollow(follow));
     }
+}
+
+fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
+    widgets::pair(ui, "Root", |ui| {
+        for root in Root::ALL {
+            let (name, tooltip) = match root {
+                Root::Locked => ("Locked", "Keep the roots' angles and positions"),
+                Root::Turns => ("Turns", "Let the solver turn the roots in place"),
+                Root::Free => ("Free", "Let the solver turn and move the roots"),
+            };
+            let is_chosen = root == options.root;
+            let button = Button::selectable(is_chosen, name).frame_when_inactive(true);
+            if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
+                actions.push(EditAction::SetSolver(SolverOptions { root, ..options }));
+            }
+        }
+    });
 }
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
