@@ -25,11 +25,11 @@
 //!
 //! # Roots
 //!
-//! A root is a joint without a parent; its offset is its position in skeleton space. Solvers rotate
-//! a root like any other joint unless it is `locked`, and never move it unless the solver's options
-//! free it ([`chain_ik::Root::Free`](super::chain_ik::Root::Free)). [`Skeleton::with_root`] starts
-//! with a locked root without a bone, which neither turns nor moves. A js3d file locks no
-//! joint: its roots turn, but do not move.
+//! A root is a joint without a parent; its offset is its position in skeleton space. Solvers leave
+//! a `locked` root as it is; what they do with other roots is one of three modes
+//! ([`chain_ik::Root`](super::chain_ik::Root)): locked, turns (the default) or free to move too.
+//! [`Skeleton::with_root`] starts with a locked root without a bone. A js3d file locks no joint, so
+//! that its roots turn but do not move.
 //!
 //! # Units
 //!
