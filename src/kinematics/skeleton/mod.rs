@@ -25,11 +25,11 @@
 //!
 //! # Roots
 //!
-//! A root is a joint without a parent; its offset is its position in skeleton space. Solvers leave
-//! a `locked` root as it is; what they do with other roots is one of three modes
+//! A root is a joint without a parent; its offset is its position in skeleton space. A root
+//! whose joint is `locked` keeps its angles. What else solvers do with roots is one of three modes
 //! ([`chain_ik::Root`](super::chain_ik::Root)): locked, turns (the default) or free to move too.
 //! [`Skeleton::with_root`] starts with a locked root without a bone. A js3d file locks no joint, so
-//! that its roots turn but do not move.
+//! that by default its roots turn but do not move.
 //!
 //! # Units
 //!
