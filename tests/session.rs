@@ -100,7 +100,7 @@ fn posing() -> impl Strategy<Value = Action> {
         1 => joints().prop_map(EditAction::RemoveTarget).prop_map(Action::from),
         2 => (joints(), points(), numbers(), any::<bool>(), motion).prop_map(
             |(joint, home, weight, enabled, motion)| Action::from(EditAction::SetTarget(Target {
-                joint, home, weight, enabled, motion
+                weight, enabled, motion, ..Target::new(joint, home, 1.0)
             }))
         ),
         1 => (0..6_usize, numbers(), 0..3_usize).prop_map(|(method, damping, root)| {

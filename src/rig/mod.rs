@@ -3,6 +3,7 @@
 
 mod arm;
 mod crowd;
+mod evaluate;
 mod follow_path;
 mod skeleton_rig;
 mod tapered_cylinder;
@@ -10,7 +11,8 @@ mod target;
 
 pub use arm::{ArmPart, ArmRig};
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
+pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 pub use follow_path::FollowPath;
 pub use skeleton_rig::SkeletonRig;
 pub use tapered_cylinder::TaperedCylinder;
-pub use target::{Target, TargetMotion, TargetPath};
+pub use target::{LimbSettings, Target, TargetKind, TargetMotion, TargetPath};

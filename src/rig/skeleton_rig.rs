@@ -58,8 +58,14 @@ impl SkeletonRig {
         enabled.map(target_at).collect()
     }
 
-    /// The skeleton at a time in seconds: on the followed path if there is one, else as it is.
+    /// The skeleton at a time in seconds, posed by its targets.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
+        self.evaluate(time).solved
+    }
+
+    /// The FK pose at a time in seconds: on the followed path if there is one, else by the
+    /// skeleton's own angles.
+    pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
         match &self.follow_path {
             None => self.skeleton.clone(),
             Some(follow_path) => Shared::from(follow_path.pose(&self.skeleton, time)),
@@ -69,6 +75,9 @@ impl SkeletonRig {
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
         match &self.follow_path {
+            _ if self.targets.iter().any(Target::is_posing) => {
+                self.skeleton_at(time).write_pose(pose);
+            }
             None => self.skeleton.write_pose(pose),
             Some(follow_path) => follow_path.write_pose(&self.skeleton, time, pose),
         }

@@ -1,8 +1,10 @@
 use core::f32::consts::TAU;
 
-use glam::Vec3;
+use glam::{EulerRot, Quat, Vec3};
 
+use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
+use crate::kinematics::soft_reach::SoftReach;
 
 /// A target of a skeleton: a point that the tip of a joint's bone should reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,12 +13,49 @@ pub struct Target {
     pub joint: JointId,
     /// Position at time 0, in the world.
     pub home: Vec3,
-    /// Weight relative to the other targets, above 0.
+    /// The joints that the target moves, and how.
+    pub kind: TargetKind,
+    /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
+    pub influence: f32,
+    /// Weight relative to the other whole-body targets, above 0.
     pub weight: f32,
-    /// Whether solvers use the target.
+    /// Whether the target has any effect.
     pub enabled: bool,
     /// Motion in time.
     pub motion: TargetMotion,
+}
+
+/// The joints that a target moves, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum TargetKind {
+    /// All joints from the root to the target's joint, together with those of the other whole-body
+    /// targets, by the rig's solver.
+    #[default]
+    WholeBody,
+    /// The two bones of the [`Limb`](crate::kinematics::limb_ik::Limb) that ends at the tip of the
+    /// target's joint, in closed form.
+    Limb(LimbSettings),
+}
+
+/// Settings of a limb target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LimbSettings {
+    /// Direction of the elbow at twist 0.
+    pub reference: ElbowReference,
+    /// Angle in radians by which the elbow is turned about the axis from the limb's base to the target.
+    pub twist: f32,
+    /// Behaviour near the limits of the reach.
+    pub soft_reach: SoftReach,
+    /// Euler angles in radians of the hand or foot in the world, R_z · R_y · R_x; `None` for a hand
+    /// that follows the lower bone.
+    pub orientation: Option<Vec3>,
+}
+
+impl LimbSettings {
+    /// Rotation of the hand in the world; `None` for a hand that follows the lower bone.
+    pub fn hand(&self) -> Option<Quat> {
+        self.orientation.map(|Vec3 { x, y, z }| Quat::from_euler(EulerRot::ZYX, z, y, x))
+    }
 }
 
 /// Motion of a target along a closed curve through its home, in a plane perpendicular to z.
@@ -63,11 +102,29 @@ impl TargetMotion {
 }
 
 impl Target {
-    /// An enabled target that stays at its home. `radius` is the radius of the path that it will
+    /// An enabled whole-body target without influence that stays at its home. `radius` is the radius of the path that it will
     /// have once it moves.
     pub fn new(joint: JointId, home: Vec3, radius: f32) -> Self {
         let motion = TargetMotion { path: TargetPath::Still, radius, period: 4.0 };
-        Self { joint, home, weight: 1.0, enabled: true, motion }
+        let kind = TargetKind::WholeBody;
+        Self { joint, home, kind, influence: 0.0, weight: 1.0, enabled: true, motion }
+    }
+
+    /// Whether the settings of a limb target are finite.
+    pub fn has_finite_kind(&self) -> bool {
+        let TargetKind::Limb(settings) = &self.kind else { return true };
+        let is_pole_finite = match settings.reference {
+            ElbowReference::Pole(pole) => pole.is_finite(),
+            _ => true,
+        };
+        is_pole_finite
+            && settings.twist.is_finite()
+            && settings.orientation.is_none_or(Vec3::is_finite)
+    }
+
+    /// Whether the target poses the skeleton.
+    pub fn is_posing(&self) -> bool {
+        self.enabled && self.influence > 0.0
     }
 
     /// Position at a time in seconds, in the world.

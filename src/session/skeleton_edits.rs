@@ -166,6 +166,11 @@ impl Session {
             self.fail(format!("The weight of a target must be finite and above 0, got {weight}"));
         } else if !(above_0(motion.period) && motion.radius.is_finite()) {
             self.fail("The path of a target must have a period above 0 and a finite radius");
+        } else if !(0.0..=1.0).contains(&target.influence) {
+            let influence = target.influence;
+            self.fail(format!("The influence of a target must be from 0 to 1, got {influence}"));
+        } else if !target.has_finite_kind() {
+            self.fail("The twist, pole and orientation of a limb's target must be finite");
         } else if let Some(index) = self.skeleton_rig().target(target.joint) {
             self.edit_skeleton(|rig| {
                 rig.targets[index] = target;

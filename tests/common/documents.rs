@@ -9,10 +9,12 @@ use ik_arm::document::{
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
+use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::kinematics::twist::TransportedFrame;
+use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
+use ik_arm::rig::{LimbSettings, TargetKind};
 
 use super::Random;
 
@@ -29,7 +31,9 @@ pub fn document(random: &mut Random) -> Document {
                 period: random.positive(),
             };
             let (home, weight) = (random.finite_vector(), random.positive());
-            rig.targets.push(Target { joint, home, weight, enabled: random.coin(), motion });
+            let enabled = random.coin();
+            let (kind, influence) = (target_kind(random), random.within(0.0..1.0));
+            rig.targets.push(Target { joint, home, kind, influence, weight, enabled, motion });
         }
     }
     rig.solver.method = random.one_of(&Method::ALL);
@@ -69,6 +73,25 @@ pub fn document(random: &mut Random) -> Document {
         other_rig_camera: random.coin().then(Camera::default),
         display: Overlay::all().filter(|_| random.coin()).collect::<Display>(),
     }
+}
+
+fn target_kind(random: &mut Random) -> TargetKind {
+    if random.coin() {
+        return TargetKind::WholeBody;
+    }
+    let reference = match random.below(4) {
+        0 => ElbowReference::Fk,
+        1 => ElbowReference::Limb,
+        2 => ElbowReference::Pole(random.finite_vector()),
+        _ => ElbowReference::Stereographic(Stereographic::default()),
+    };
+    let soft_reach = SoftReach::new(random.within(0.0..0.9), 1.0 + random.within(0.0..2.0), 0.5);
+    TargetKind::Limb(LimbSettings {
+        reference,
+        twist: random.finite(),
+        soft_reach: soft_reach.expect("in range"),
+        orientation: random.coin().then(|| random.finite_vector()),
+    })
 }
 
 fn arm(random: &mut Random) -> Arm {

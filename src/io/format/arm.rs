@@ -1,17 +1,15 @@
 //! Fields of the arm in a file, and conversions between these fields and an arm.
 
-use core::f32::consts::PI;
-
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use super::check::{UNIT_TOLERANCE, above_0, fraction, number, unit_vector};
+use super::soft_reach::SoftReachFields;
 use crate::document::{Arm, Cursor, HandOrientation, HandSpace, TwistReferenceKind};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
 use crate::kinematics::fk::Fk;
-use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::{Pointer, TwoBone};
 
@@ -51,13 +49,6 @@ struct TwistReferenceFields {
 struct TransportedFields {
     direction: JsonPoint,
     outward: JsonPoint,
-}
-
-#[derive(Serialize, Deserialize)]
-struct SoftReachFields {
-    softness: Option<JsonNumber>,
-    max_stretch: Option<JsonNumber>,
-    min_elbow_angle: Option<JsonNumber>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -200,33 +191,6 @@ impl TransportedFields {
             return Err(FieldError::new(at.clone().key("outward"), reason));
         }
         Ok(TransportedFrame { direction, outward })
-    }
-}
-
-impl SoftReachFields {
-    fn new(soft_reach: SoftReach) -> Self {
-        Self {
-            softness: Some(JsonNumber(soft_reach.softness())),
-            max_stretch: Some(JsonNumber(soft_reach.max_stretch())),
-            min_elbow_angle: Some(JsonNumber(soft_reach.min_elbow_angle())),
-        }
-    }
-
-    fn soft_reach(&self, at: &JsonPath) -> Result<SoftReach, FieldError> {
-        let default = SoftReach::default();
-        let soft_reach = SoftReach::new(
-            number(self.softness, default.softness()),
-            number(self.max_stretch, default.max_stretch()),
-            number(self.min_elbow_angle, default.min_elbow_angle()),
-        );
-        soft_reach.map_err(|error| {
-            let range = match error.field {
-                SoftReachField::MinElbowAngle => format!("from 0 to less than {PI}"),
-                _ => error.range.to_owned(),
-            };
-            let reason = format!("must be {range}, got {}", error.value);
-            FieldError::new(at.clone().key(&error.field.to_string()), reason)
-        })
     }
 }
 

@@ -14,6 +14,7 @@ mod keys;
 mod read;
 mod save;
 mod skeleton;
+mod soft_reach;
 mod targets;
 mod version_1;
 

@@ -5,21 +5,52 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::check::{above_0, from_1_to, joint, number};
+use super::check::{above_0, fraction, from_1_to, joint, number};
+use super::soft_reach::SoftReachFields;
 use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
+use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::Stereographic;
+use crate::rig::{LimbSettings, TargetKind};
 
 #[derive(Serialize, Deserialize)]
 pub struct TargetFields {
     joint: Whole,
     home: JsonPoint,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limb: Option<JsonObject<LimbFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    influence: Option<JsonNumber>,
     weight: Option<JsonNumber>,
     enabled: Option<bool>,
     motion: Option<JsonObject<TargetMotionFields>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct LimbFields {
+    reference: Option<ElbowReferenceName>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pole: Option<JsonPoint>,
+    twist: Option<JsonNumber>,
+    soft_reach: Option<JsonObject<SoftReachFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    orientation: Option<JsonPoint>,
+}
+
+/// An [`ElbowReference`] without its pole or map.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum ElbowReferenceName {
+    #[default]
+    Fk,
+    Limb,
+    Pole,
+    Stereographic,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -78,6 +109,11 @@ impl TargetFields {
         Self {
             joint: Whole(u32::try_from(target.joint.index()).unwrap_or(u32::MAX)),
             home: JsonPoint(target.home),
+            limb: match &target.kind {
+                TargetKind::WholeBody => None,
+                TargetKind::Limb(settings) => Some(JsonObject(LimbFields::new(settings))),
+            },
+            influence: (target.influence != 0.0).then_some(JsonNumber(target.influence)),
             weight: Some(JsonNumber(target.weight)),
             enabled: Some(target.enabled),
             motion: Some(JsonObject(motion)),
@@ -91,11 +127,60 @@ impl TargetFields {
             Some(JsonObject(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
             None => default.motion,
         };
+        let kind = match &self.limb {
+            Some(JsonObject(fields)) => TargetKind::Limb(fields.settings(&at.clone().key("limb"))?),
+            None => TargetKind::WholeBody,
+        };
+        let influence = number(self.influence, default.influence);
         Ok(Target {
+            kind,
+            influence: fraction(at.clone().key("influence"), influence)?,
             weight: above_0(at.clone().key("weight"), number(self.weight, default.weight))?,
             enabled: self.enabled.unwrap_or(default.enabled),
             motion,
             ..default
+        })
+    }
+}
+
+impl LimbFields {
+    fn new(settings: &LimbSettings) -> Self {
+        let (reference, pole) = match settings.reference {
+            ElbowReference::Fk => (ElbowReferenceName::Fk, None),
+            ElbowReference::Limb => (ElbowReferenceName::Limb, None),
+            ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(JsonPoint(pole))),
+            ElbowReference::Stereographic(_) => (ElbowReferenceName::Stereographic, None),
+        };
+        Self {
+            reference: Some(reference),
+            pole,
+            twist: Some(JsonNumber(settings.twist)),
+            soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
+            orientation: settings.orientation.map(JsonPoint),
+        }
+    }
+
+    fn settings(&self, at: &JsonPath) -> Result<LimbSettings, FieldError> {
+        let reference = match (self.reference.unwrap_or_default(), self.pole) {
+            (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
+            (ElbowReferenceName::Limb, _) => ElbowReference::Limb,
+            (ElbowReferenceName::Pole, Some(JsonPoint(pole))) => ElbowReference::Pole(pole),
+            (ElbowReferenceName::Pole, None) => {
+                return Err(FieldError::new(at.clone(), "must have `pole` for reference `pole`"));
+            }
+            (ElbowReferenceName::Stereographic, _) => {
+                ElbowReference::Stereographic(Stereographic::default())
+            }
+        };
+        let soft_reach = match &self.soft_reach {
+            Some(JsonObject(fields)) => fields.soft_reach(&at.clone().key("soft_reach"))?,
+            None => SoftReach::default(),
+        };
+        Ok(LimbSettings {
+            reference,
+            twist: number(self.twist, 0.0),
+            soft_reach,
+            orientation: self.orientation.map(|JsonPoint(angles)| angles),
         })
     }
 }

@@ -1,11 +1,11 @@
-use glam::{DMat3, DQuat, DVec3, Mat3A, Quat, Vec3};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::aim::Aim;
 use super::bend::Bend;
-use super::joint_space::{JointSpace, axes, rotation};
+use super::joint_space::JointSpace;
 use super::limb::Limb;
 use crate::kinematics::saturate::saturate;
-use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use crate::kinematics::skeleton::{AnglesWithin, Joint, JointId, Limit, Skeleton};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::Stereographic;
 use crate::kinematics::two_bone::TwoBone;
@@ -185,7 +185,7 @@ impl FkLimb {
             .rev()
             .fold(JointSpace::IDENTITY, |space, joint| space.of_child(&skeleton[*joint]));
         let mount = space.at_base_of(lower);
-        let upper_rotation = above.rotation * rotation(upper, upper.rotation);
+        let upper_rotation = above.rotation * upper.rotation_f64(upper.rotation);
         let (bend, angle, free_angle) = bend_of(lower, mount);
         let base = above.point(upper.offset);
         Some(Self { above, base, upper_rotation, mount, bend, angle, free_angle })
@@ -229,15 +229,15 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<usize>) {
     const STRAIGHT: f64 = 1e-6;
     const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
     let axis = lower.axis.as_dvec3();
-    let turned = mount.rotation * rotation(lower, lower.rotation) * axis;
+    let turned = mount.rotation * lower.rotation_f64(lower.rotation) * axis;
     let about = |index: usize| {
         let angles = Vec3::from_array(core::array::from_fn(|it| {
             if it == index { 0.0 } else { lower.rotation[it] }
         }));
         let bend = Bend {
-            axis: mount.rotation * axes(lower, lower.rotation).col(index),
+            axis: mount.rotation * lower.rotation_axes_f64(lower.rotation).col(index),
             upper: mount.origin,
-            lower: mount.rotation * rotation(lower, angles) * axis,
+            lower: mount.rotation * lower.rotation_f64(angles) * axis,
             limits: lower.limits[index]
                 .map_or(UNLIMITED, |limit| (f64::from(limit.min), f64::from(limit.max))),
         };
@@ -291,19 +291,19 @@ impl SolvedLimb {
         let (distance, stretch) = fk.distance_for(wanted, target.soft_reach);
 
         let lower = fk.lower_angles(&skeleton[limb.lower], distance / stretch);
-        let lower_rotation = fk.mount.rotation * rotation(&skeleton[limb.lower], lower.angles);
+        let lower_rotation = fk.mount.rotation * skeleton[limb.lower].rotation_f64(lower.angles);
         let tip = fk.mount.origin + lower_rotation * skeleton[limb.lower].axis.as_dvec3();
 
         let aim = local.aim(fk, pointer).twisted(f64::from(target.twist));
         let upper_rotation = fk.aim_of(tip, lower.bend).rotation_to(aim);
         let upper =
-            angles_within(&skeleton[limb.upper], fk.above.rotation.transpose() * upper_rotation);
+            skeleton[limb.upper].angles_within(fk.above.rotation.transpose() * upper_rotation);
 
         let above_hand =
-            fk.above.rotation * rotation(&skeleton[limb.upper], upper.angles) * lower_rotation;
+            fk.above.rotation * skeleton[limb.upper].rotation_f64(upper.angles) * lower_rotation;
         let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
             let turned = above_hand.transpose() * DMat3::from_quat(turned);
-            angles_within(&skeleton[hand], turned).angles
+            skeleton[hand].angles_within(turned).angles
         });
 
         let is_reached = (distance - wanted).abs() <= 1e-5 * distance.max(wanted);
@@ -326,7 +326,7 @@ impl SolvedLimb {
         let turns = [(limb.upper, Some(self.upper)), (limb.lower, Some(self.lower))];
         for (joint, angles) in turns.into_iter().chain(limb.hand.map(|hand| (hand, self.hand))) {
             let Some(angles) = angles else { continue };
-            let angles = blended(&skeleton[joint], angles, influence);
+            let angles = skeleton[joint].angles_towards(angles, influence);
             skeleton.write_local(joint, |joint| joint.rotation = angles);
         }
         let stretch = 1.0 + (self.stretch as f32 - 1.0) * influence;
@@ -359,48 +359,13 @@ impl FkLimb {
             let turned = self.mount.rotation.transpose()
                 * turn
                 * self.mount.rotation
-                * rotation(lower, lower.rotation);
-            let Within { angles, is_limited } = angles_within(lower, turned);
+                * lower.rotation_f64(lower.rotation);
+            let AnglesWithin { angles, is_limited } = lower.angles_within(turned);
             LowerAngles { angles, bend, is_limited }
         };
         let [first, second] = self.bend.angles_at(distance, self.angle).map(angles_at);
         if first.is_limited && !second.is_limited { second } else { first }
     }
-}
-
-/// Angles within the limits of a joint.
-struct Within {
-    angles: Vec3,
-    /// Whether limits changed the angles.
-    is_limited: bool,
-}
-
-/// The angles of a joint for a rotation in the space of its base: of all equivalent angles those that
-/// the limits change least, then those nearest to the joint's own.
-fn angles_within(joint: &Joint, rotation: DMat3) -> Within {
-    const ROUNDING: f32 = 1e-5;
-    let all = joint.equivalent_angles(Mat3A::from_cols(
-        rotation.x_axis.as_vec3a(),
-        rotation.y_axis.as_vec3a(),
-        rotation.z_axis.as_vec3a(),
-    ));
-    let [first, second] = all.map(|angles| {
-        let within = joint.clamped(angles);
-        let changed = (within - angles).abs().max_element();
-        (Within { angles: within, is_limited: changed > ROUNDING }, changed)
-    });
-    if second.1 + ROUNDING < first.1 { second.0 } else { first.0 }
-}
-
-/// A joint's angles turned towards `solved` by the shortest rotation.
-fn blended(joint: &Joint, solved: Vec3, influence: f32) -> Vec3 {
-    if influence >= 1.0 {
-        return solved;
-    }
-    let [from, to] =
-        [joint.rotation, solved].map(|angles| DQuat::from_mat3(&rotation(joint, angles)));
-    let turned = DMat3::from_quat(from.slerp(to, f64::from(influence)));
-    angles_within(joint, turned).angles
 }
 
 /// Multiplies the lengths of a limb's bones.

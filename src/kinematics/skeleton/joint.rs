@@ -1,8 +1,8 @@
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
 use super::{
-    JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, angle_triples,
-    clamp_to_limits, nearest_angles,
+    JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
+    nearest_angles,
 };
 
 /// A ball joint and its bone.
@@ -85,13 +85,6 @@ impl Joint {
     pub fn angles_of(&self, rotation: Mat3A) -> Vec3 {
         let frame = Mat3A::from(self.frame);
         nearest_angles(frame.transpose() * rotation * frame, self.rotation)
-    }
-
-    /// Both triples of Euler angles of `rotation`, which is in the space of the joint's base, each
-    /// shifted by full turns to be nearest to the joint's present angles; the nearer one first.
-    pub(crate) fn equivalent_angles(&self, rotation: Mat3A) -> [Vec3; 2] {
-        let frame = Mat3A::from(self.frame);
-        angle_triples(frame.transpose() * rotation * frame, self.rotation)
     }
 
     /// The Euler angles `rotation` clamped to the limits.

@@ -47,6 +47,7 @@ mod joint;
 mod joint_angles;
 mod joint_id;
 mod joint_remap;
+mod joint_rotation;
 mod limit;
 mod pose;
 #[cfg(feature = "serde")]
@@ -62,4 +63,5 @@ pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 
 pub(crate) use joint_angles::{JointAngles, angle_triples, nearest_angles};
+pub(crate) use joint_rotation::AnglesWithin;
 pub(crate) use limit::clamp_to_limits;

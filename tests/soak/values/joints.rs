@@ -92,7 +92,8 @@ impl Values<'_> {
         let motion =
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
-        Target { joint, home, weight: self.above_0(2.0), enabled: self.chance(0.9), motion }
+        let (weight, enabled) = (self.above_0(2.0), self.chance(0.9));
+        Target { weight, enabled, motion, ..Target::new(joint, home, 1.0) }
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {

@@ -3,8 +3,11 @@
 use egui::{ComboBox, RichText, Ui};
 
 use crate::document::{Target, TargetMotion, TargetPath};
+use crate::kinematics::limb_ik::{ElbowReference, Limb};
+use crate::kinematics::twist::Stereographic;
+use crate::rig::{LimbSettings, TargetKind};
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
-use crate::ui::widgets::{self, AXES, NumberField, PointSliders, format};
+use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
 
 const PATHS: [(TargetPath, &str); 3] = [
     (TargetPath::Still, "Still"),
@@ -55,6 +58,11 @@ pub(in crate::ui) fn selected(
 ) {
     let step = session.shown().grid_cell() * 0.1;
     place(ui, session, target, step, actions);
+    influence(ui, session, target, actions);
+    solved_as(ui, session, target, actions);
+    if let TargetKind::Limb(settings) = target.kind {
+        return limb(ui, session, target, settings, actions);
+    }
     widgets::pair(ui, "Weight", |ui| {
         let tooltip = "Weigh this target against the others";
         let field = NumberField {
@@ -72,6 +80,124 @@ pub(in crate::ui) fn selected(
     moves(ui, target, actions);
     if target.motion.path != TargetPath::Still {
         motion(ui, session, target, step, actions);
+    }
+}
+
+fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    let slider = Slider {
+        name: "Target influence",
+        label: "Influence",
+        tooltip: "Blend from the FK pose (0) to the target (1)",
+        value: target.influence,
+        range: (0.0, 1.0),
+        default: 1.0,
+        step: 0.1,
+        ..Slider::default()
+    };
+    slider.show(ui, session, actions, |influence| {
+        EditAction::SetTarget(Target { influence, ..target })
+    });
+}
+
+fn solved_as(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    let is_limb = matches!(target.kind, TargetKind::Limb(_));
+    let limb = Limb::ending_at(session.skeleton(), target.joint);
+    widgets::pair(ui, "Moves", |ui| {
+        let choices = [
+            (false, "Whole body", "Solve from the root, together with the other targets"),
+            (true, "Limb", "Solve the two bones above the tip in closed form"),
+        ];
+        let shown = if is_limb { "Limb" } else { "Whole body" };
+        let combo = ComboBox::from_id_salt("target kind").selected_text(shown);
+        let response = combo.show_ui(ui, |ui| {
+            for (as_limb, name, tooltip) in choices {
+                let choice = egui::Button::selectable(as_limb == is_limb, name);
+                let reason = limb.err().filter(|_| as_limb);
+                let response = ui.add_enabled(reason.is_none(), choice).on_hover_text(tooltip);
+                let response = match reason {
+                    Some(reason) => response.on_disabled_hover_text(format!("No limb: {reason}")),
+                    None => response,
+                };
+                if response.clicked() && as_limb != is_limb {
+                    let settings = LimbSettings::default();
+                    let kind =
+                        if as_limb { TargetKind::Limb(settings) } else { TargetKind::WholeBody };
+                    actions.push(EditAction::SetTarget(Target { kind, ..target }));
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Target kind"));
+        response.on_hover_text("Choose the joints that the target moves");
+    });
+}
+
+fn limb(
+    ui: &mut Ui,
+    session: &Session,
+    target: Target,
+    settings: LimbSettings,
+    actions: &mut Actions,
+) {
+    let set =
+        |settings| EditAction::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
+    let tip = session.skeleton_pose().tip(target.joint);
+    let references = [
+        (ElbowReference::Fk, "FK", "Keep the side that the joint angles give"),
+        (ElbowReference::Limb, "Limb", "Measure from up"),
+        (ElbowReference::Pole(tip), "Pole", "Measure from the direction to a point"),
+        (
+            ElbowReference::Stereographic(Stereographic::default()),
+            "Stereographic",
+            "Measure from a stereographic map",
+        ),
+    ];
+    let is_same = |reference: &ElbowReference| {
+        core::mem::discriminant(reference) == core::mem::discriminant(&settings.reference)
+    };
+    widgets::pair(ui, "Elbow from", |ui| {
+        let now = references.iter().find(|(reference, ..)| is_same(reference));
+        let combo = ComboBox::from_id_salt("elbow").selected_text(now.map_or("", |now| now.1));
+        let response = combo.show_ui(ui, |ui| {
+            for (reference, name, tooltip) in references {
+                let choice = ui.selectable_label(is_same(&reference), name).on_hover_text(tooltip);
+                if choice.clicked() && !is_same(&reference) {
+                    actions.push(set(LimbSettings { reference, ..settings }));
+                }
+            }
+        });
+        let response = response.response;
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Elbow reference"));
+        response.on_hover_text("Choose the direction of the elbow or knee at twist 0");
+    });
+    let twist = Slider {
+        name: "Limb twist",
+        label: "Twist",
+        tooltip: "Turn the elbow or knee about the line to the target",
+        value: settings.twist.to_degrees(),
+        range: (-180.0, 180.0),
+        default: 0.0,
+        unit: "°",
+        step: 1.0,
+        ..Slider::default()
+    };
+    twist.show(ui, session, actions, |degrees| {
+        set(LimbSettings { twist: degrees.to_radians(), ..settings })
+    });
+    if let ElbowReference::Pole(pole) = settings.reference {
+        let sliders = PointSliders {
+            name: "Limb pole",
+            labels: ["Pole x", "Pole y", "Pole z"],
+            value: pole,
+            default: tip,
+            range: 1.5 * session.skeleton_rig().reach(),
+            step: session.shown().grid_cell() * 0.1,
+            tooltip: "Move the pole in world space",
+            disabled: None,
+        };
+        sliders.show(ui, session, actions, |pole| {
+            set(LimbSettings { reference: ElbowReference::Pole(pole), ..settings })
+        });
     }
 }
 
