@@ -4,7 +4,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
-use ik_arm::session::{ArmJoint, EditAction, Grip, PoseMode, TransactionAction};
+use ik_arm::session::{ArmJoint, Drag, EditAction, Grip, PoseMode, TransactionAction};
 
 use crate::bench::{Bench, bits};
 
@@ -48,7 +48,7 @@ fn the_root_can_be_dragged_before_it_is_selected() {
     let at = bench.on_screen(before);
     let to = at + vec2(35.0, -20.0);
     bench.drag(LEFT, at, to);
-    assert_eq!(bench.session().drag().map(|drag| drag.grip()).map(is_root), Some(true));
+    assert_eq!(bench.session().drag().map(Drag::grip).map(is_root), Some(true));
     assert!(bench.says("Root freely"));
     bench.release(LEFT);
     assert!(bench.on_screen(root(&bench)).distance(to) < 0.5);
@@ -178,7 +178,7 @@ fn there_is_no_ring_in_fk_nor_around_a_straight_arm() {
         let elbow = bench.on_screen(elbow_in_world(&bench));
         bench.move_to(elbow);
         bench.press(LEFT);
-        assert_ne!(bench.session().drag().map(|drag| drag.grip()), Some(Grip::Twist));
+        assert_ne!(bench.session().drag().map(Drag::grip), Some(Grip::Twist));
         bench.release(LEFT);
         assert_eq!(bench.session().arm().twist, before.twist);
     }

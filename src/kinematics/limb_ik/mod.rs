@@ -30,7 +30,7 @@
 //! # What breaks
 //!
 //! - Limits of the upper joint, and of a lower joint that is no hinge, are applied last. The limb
-//!   may then miss the target; [`LimbReport::limited_by`] names the joint.
+//!   may then miss the target; [`LimbReach::Limited`] names the joint.
 //! - Every reference but [`ElbowReference::Fk`] flips the elbow in the direction where it is
 //!   singular, as for [twist references](super::twist); [`ElbowReference::Fk`] only for a target
 //!   opposite to the tip of the FK pose.

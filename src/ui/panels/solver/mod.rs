@@ -114,7 +114,8 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
     widgets::pair(ui, "Root", |ui| {
-        for root in Root::ALL {
+        // A pair is laid out from the right.
+        for root in Root::ALL.into_iter().rev() {
             let (name, tooltip) = match root {
                 Root::Locked => ("Locked", "Keep the roots' angles and positions"),
                 Root::Turns => ("Turns", "Let the solver turn the roots in place"),
