@@ -59,12 +59,14 @@ impl Session {
         if limit.is_some_and(|limit| limit.min == limit.max) {
             return None;
         }
-        let world = skeleton.transform_to_base(joint);
+        // The ring is at the joint as posed by the targets, and turns the joint's own angle.
+        let (pose, parent) = (self.skeleton_pose(), skeleton[joint].parent);
+        let above = parent.map_or(skeleton.transform(), |parent| pose.full(parent)).matrix3;
         let local = skeleton[joint].rotation_axis(axis);
         // A mirrored transform reverses every rotation.
-        let sign = world.matrix3.determinant().signum();
-        let axis = (Vec3::from(world.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
-        Some(GripRing { centre: world.translation.into(), axis })
+        let sign = above.determinant().signum();
+        let axis = (Vec3::from(above * Vec3A::from(local)) * sign).try_normalize()?;
+        Some(GripRing { centre: pose.base(joint), axis })
     }
 
     /// Step of snapping in world units: a tenth of a cell of the grid.
