@@ -25,20 +25,6 @@ fn pick(bench: &mut Bench, list: &str, item: &str) {
     bench.click(Role::Button, item);
 }
 
-/// Scrolls the panel of a widget until that is in sight.
-fn reveal(bench: &mut Bench, role: Role, name: &str) {
-    for _ in 0..40 {
-        let rect = bench.rect(role, name);
-        if rect.bottom() < bench.viewport().bottom() - 8.0 {
-            return;
-        }
-        bench.move_to(egui::pos2(rect.center().x, bench.viewport().center().y));
-        bench.wheel(-3.0);
-        bench.settle();
-    }
-    panic!("{name} cannot be scrolled to");
-}
-
 fn pole_place(bench: &Bench) -> Pos2 {
     let arm = bench.session().arm();
     bench.on_screen(arm.root + arm.pole)
@@ -221,7 +207,7 @@ fn the_four_twist_references_are_compared() {
     for (name, layer) in
         [("Ghosts", Overlay::TwistReferences), ("Singularity globe", Overlay::SingularityGlobe)]
     {
-        reveal(&mut bench, Role::CheckBox, name);
+        bench.reveal(Role::CheckBox, name);
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
     }
@@ -233,7 +219,7 @@ fn the_four_twist_references_are_compared() {
         bench.apply([EditAction::SetHand(hand * 300.0)]);
     }
     assert!(bench.says("+90.0°"), "an octant's solid angle");
-    reveal(&mut bench, Role::Button, "Reset");
+    bench.reveal(Role::Button, "Reset");
     bench.click(Role::Button, "Reset");
     assert!(!bench.says("+90.0°"));
 }

@@ -294,6 +294,20 @@ impl Bench {
         }]);
     }
 
+    /// Scrolls the panel of a widget until the widget is in sight.
+    pub fn reveal(&mut self, role: Role, name: &str) {
+        for _ in 0..40 {
+            let rect = self.rect(role, name);
+            if rect.bottom() < self.viewport().bottom() - 8.0 {
+                return;
+            }
+            self.move_to(egui::pos2(rect.center().x, self.viewport().center().y));
+            self.wheel(-3.0);
+            self.settle();
+        }
+        panic!("{name} cannot be scrolled to");
+    }
+
     pub fn click_at(&mut self, at: Pos2) {
         self.move_to(at);
         self.press(PointerButton::Primary);

@@ -313,6 +313,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
 fn a_moving_target_moves_during_playback_and_the_solver_follows() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
+    bench.reveal(Role::ComboBox, "Motion");
     bench.click_at(bench.rect(Role::ComboBox, "Motion").center());
     bench.wait(0.1);
     let at = bench.rect(Role::Button, "Circle").center();
