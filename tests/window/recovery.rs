@@ -26,6 +26,8 @@ pub fn change(program: &Program, places: &Places) {
     let before = program.at_rest();
     program.drag(places.thumb, places.rail_end);
     program.wait_until("the thumb moves", |now| changed(&before, now, places.thumb, 6.0) > 40);
+    // The drag has more movements than the first.
+    program.at_rest();
 }
 
 #[test]
