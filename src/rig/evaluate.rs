@@ -52,9 +52,7 @@ impl SkeletonRig {
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
-        let mut outcomes = vec![TargetOutcome::Off; self.targets.len()];
-        self.solve_whole_body(&mut solved, time, &mut outcomes);
-        self.solve_limbs(&mut solved, time, &mut outcomes);
+        let outcomes = self.solve_targets(&mut solved, time);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.at(time);
             let error = solved
@@ -64,6 +62,22 @@ impl SkeletonRig {
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
         EvaluatedSkeleton { fk, solved, targets }
+    }
+
+    /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without the
+    /// reports.
+    pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
+        let mut skeleton = self.fk_at(time);
+        self.solve_targets(&mut skeleton, time);
+        skeleton
+    }
+
+    /// Poses `solved`, the FK pose, by the targets; returns the outcome for each.
+    fn solve_targets(&self, solved: &mut Shared<Skeleton>, time: f64) -> Vec<TargetOutcome> {
+        let mut outcomes = vec![TargetOutcome::Off; self.targets.len()];
+        self.solve_whole_body(solved, time, &mut outcomes);
+        self.solve_limbs(solved, time, &mut outcomes);
+        outcomes
     }
 
     fn solve_whole_body(

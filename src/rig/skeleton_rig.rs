@@ -58,11 +58,6 @@ impl SkeletonRig {
         enabled.map(target_at).collect()
     }
 
-    /// The skeleton at a time in seconds, posed by its targets.
-    pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
-        self.evaluate(time).solved
-    }
-
     /// The FK pose at a time in seconds: on the followed path if there is one, else by the
     /// skeleton's own angles.
     pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
