@@ -198,9 +198,7 @@ impl SoftReach {
         let limits = SoftLimits::new(self, bones);
         let d = f64::from(cursor_distance);
         let (distance, slope) = limits.soften(d);
-        let longest = f64::from(self.max_stretch);
-        let stretch =
-            if d > limits.outer_join() { (d / distance).clamp(1.0, longest) } else { 1.0 };
+        let (longest, stretch) = (f64::from(self.max_stretch), limits.stretch(d, distance));
         // While stretch brings the hand to the cursor, the hand follows it; at maximum stretch it
         // lags as without stretch.
         let slope = if 1.0 < stretch && stretch < longest { 1.0 } else { slope * stretch };
@@ -209,6 +207,14 @@ impl SoftReach {
             stretch: stretch as f32,
             slope: slope as f32,
         }
+    }
+
+    /// Distance of the hand before the limbs are lengthened, and the factor by which they are, for a
+    /// cursor at `distance` and an unstretched hand that can be from `least` to `most` away.
+    pub(crate) fn between(self, least: f64, most: f64, distance: f64) -> (f64, f64) {
+        let limits = SoftLimits::between(self, least, most);
+        let (softened, _) = limits.soften(distance);
+        (softened, limits.stretch(distance, softened))
     }
 }
 
@@ -220,14 +226,25 @@ struct SoftLimits {
     most: f64,
     /// Width w of the soft zones; 0 for hard limits.
     width: f64,
+    max_stretch: f64,
 }
 
 impl SoftLimits {
     fn new(soft_reach: SoftReach, bones: TwoBone) -> Self {
         let (upper, lower) = (f64::from(bones.upper()), f64::from(bones.lower()));
         let least = bones.distance_at(f64::from(soft_reach.min_elbow_angle));
-        let most = upper + lower;
-        Self { least, most, width: 0.5 * f64::from(soft_reach.softness) * (most - least) }
+        Self::between(soft_reach, least, upper + lower)
+    }
+
+    fn between(soft_reach: SoftReach, least: f64, most: f64) -> Self {
+        let width = 0.5 * f64::from(soft_reach.softness) * (most - least);
+        Self { least, most, width, max_stretch: f64::from(soft_reach.max_stretch) }
+    }
+
+    /// σ, the factor by which the limbs are lengthened for a cursor at distance d and a softened
+    /// distance d'.
+    fn stretch(self, d: f64, softened: f64) -> f64 {
+        if d > self.outer_join() { (d / softened).clamp(1.0, self.max_stretch) } else { 1.0 }
     }
 
     /// d_a, the cursor's distance above which the outer soft zone begins.
@@ -242,7 +259,7 @@ impl SoftLimits {
 
     /// The hand's distance d' without stretch for a cursor at distance d, and the slope dd'/dd.
     fn soften(self, d: f64) -> (f64, f64) {
-        let Self { least, most, width } = self;
+        let Self { least, most, width, .. } = self;
         if width == 0.0 {
             let is_between = least <= d && d <= most;
             return (d.clamp(least, most), f64::from(u8::from(is_between)));
@@ -262,7 +279,7 @@ impl SoftLimits {
     /// [`Self::soften`].
     fn harden(self, softened: f64) -> f64 {
         const ZONES: f64 = 17.0;
-        let Self { least, most, width } = self;
+        let Self { least, most, width, .. } = self;
         if width == 0.0 {
             softened.clamp(least, most)
         } else if softened > self.outer_join() {

@@ -8,7 +8,7 @@ use crate::kinematics::saturate::saturate;
 use crate::kinematics::skeleton::{AnglesWithin, Joint, JointId, Limit, Skeleton};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::Stereographic;
-use crate::kinematics::two_bone::TwoBone;
+use crate::kinematics::two_bone::opposite_side;
 
 /// A target for the tip of a limb's lower bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,25 +201,13 @@ impl FkLimb {
         Aim::of_limb(self.bend.upper, tip, self.bend.bending(angle, self.angle))
     }
 
-    /// Distance of the tip and stretch of the bones for a target at `distance`, in skeleton space.
+    /// Distance of the tip before the bones are lengthened, and the factor by which they are, for a
+    /// target at `distance` in skeleton space.
     fn distance_for(&self, distance: f64, soft_reach: SoftReach) -> (f64, f64) {
         let (least, most) = self.bend.reach();
         let (upper, lower) = (self.bend.upper.length(), self.bend.lower.length());
-        let cos = f64::from(soft_reach.min_elbow_angle()).cos();
-        let open = (upper * upper + lower * lower - 2.0 * upper * lower * cos).max(0.0).sqrt();
-        let least =
-            if soft_reach.min_elbow_angle() > 0.0 { least.max(open).min(most) } else { least };
-        let is_plain = soft_reach.softness() == 0.0 && soft_reach.max_stretch() == 1.0;
-        // Soft limits depend on the bones only by the least and the greatest distance.
-        let bones = TwoBone::new(((most + least) / 2.0) as f32, ((most - least) / 2.0) as f32);
-        let soft = SoftReach::new(soft_reach.softness(), soft_reach.max_stretch(), 0.0);
-        match (bones, soft) {
-            (Ok(bones), Ok(soft)) if !is_plain => {
-                let hand = soft.hand_distance(bones, saturate(distance));
-                (f64::from(hand.distance), f64::from(hand.stretch))
-            }
-            _ => (distance.clamp(least, most), 1.0),
-        }
+        let open = opposite_side(upper, lower, f64::from(soft_reach.min_elbow_angle()));
+        soft_reach.between(least.max(open).min(most), most, distance)
     }
 }
 
@@ -290,7 +278,7 @@ impl SolvedLimb {
         let pointer = to_target.try_normalize().unwrap_or_else(|| fk.aim().pointer);
         let (distance, stretch) = fk.distance_for(wanted, target.soft_reach);
 
-        let lower = fk.lower_angles(&skeleton[limb.lower], distance / stretch);
+        let lower = fk.lower_angles(&skeleton[limb.lower], distance);
         let lower_rotation = fk.mount.rotation * skeleton[limb.lower].rotation_f64(lower.angles);
         let tip = fk.mount.origin + lower_rotation * skeleton[limb.lower].axis.as_dvec3();
 
@@ -306,6 +294,7 @@ impl SolvedLimb {
             skeleton[hand].angles_within(turned).angles
         });
 
+        let distance = distance * stretch;
         let is_reached = (distance - wanted).abs() <= 1e-5 * distance.max(wanted);
         let reach = if upper.is_limited {
             LimbReach::Limited(limb.upper)

@@ -101,13 +101,17 @@ impl TwoBone {
     /// Distance of the hand from the shoulder if the elbow's inner angle is `elbow_angle` (φ,
     /// radians, from 0 to π).
     pub(in crate::kinematics) fn distance_at(self, elbow_angle: f64) -> f64 {
-        let (upper, lower) = (f64::from(self.upper), f64::from(self.lower));
-        let (least, most) = ((upper - lower).abs(), upper + lower);
-        // (d₁ − d₂)² + 2 d₁ d₂ (1 − cos φ), which does not cancel.
-        let half = (0.5 * elbow_angle).sin();
-        let open = (least * least + 4.0 * upper * lower * half * half).sqrt();
-        least.max(open).min(most)
+        opposite_side(f64::from(self.upper), f64::from(self.lower), elbow_angle)
     }
+}
+
+/// Length of the side of a triangle opposite to the angle (radians, from 0 to π) between two sides.
+pub(in crate::kinematics) fn opposite_side(one: f64, other: f64, angle: f64) -> f64 {
+    let (least, most) = ((one - other).abs(), one + other);
+    // (a − b)² + 2 a b (1 − cos φ), which does not cancel.
+    let half = (0.5 * angle).sin();
+    let side = (least * least + 4.0 * one * other * half * half).sqrt();
+    least.max(side).min(most)
 }
 
 impl fmt::Display for Bone {

@@ -55,6 +55,7 @@ mod pose;
 mod reach;
 mod solve;
 
+pub(in crate::kinematics) use bones::opposite_side;
 pub use bones::{Bone, LengthError, TwoBone};
 pub(super) use closed_form::{ClosedForm, ScaledBones};
 pub use pointer::Pointer;
