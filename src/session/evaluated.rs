@@ -4,14 +4,17 @@ use super::cached::Cached;
 use super::pops::{CursorMove, Pops};
 use super::transport::TransportPath;
 use crate::document::{Arm, Document, SkeletonRig};
+use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Report};
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::EvaluatedSkeleton;
 
 /// Poses at the playhead and values derived from them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Evaluated {
     pose: TwoBonePose,
+    skeleton: Shared<EvaluatedSkeleton>,
     skeleton_pose: SkeletonPose,
     transport_path: TransportPath,
     pops: Pops,
@@ -23,9 +26,11 @@ pub(super) struct Evaluated {
 impl Evaluated {
     pub fn new(document: &Document) -> Self {
         let pose = document.arm.pose();
+        let skeleton = Shared::from(document.skeleton_rig.evaluate(0.0));
         Self {
             pose,
-            skeleton_pose: document.skeleton_rig.skeleton_at(0.0).pose(),
+            skeleton_pose: skeleton.solved.pose(),
+            skeleton,
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
             trail: Cached::default(),
@@ -35,6 +40,10 @@ impl Evaluated {
 
     pub fn pose(&self) -> &TwoBonePose {
         &self.pose
+    }
+
+    pub fn skeleton(&self) -> &Shared<EvaluatedSkeleton> {
+        &self.skeleton
     }
 
     pub fn skeleton_pose(&self) -> &SkeletonPose {
@@ -69,7 +78,8 @@ impl Evaluated {
         self.pose = shown.arm.pose();
         self.transport_path.advance(&shown.arm);
         self.pops.record(&shown.arm, self.pose, cause, time);
-        shown.skeleton_rig.write_pose(time, &mut self.skeleton_pose);
+        self.skeleton = Shared::from(shown.skeleton_rig.evaluate(time));
+        self.skeleton.solved.write_pose(&mut self.skeleton_pose);
         self.unsolved_report.clear();
     }
 

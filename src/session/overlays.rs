@@ -3,16 +3,19 @@ use glam::Vec3;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
 use crate::document::Document;
+use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
-use crate::rig::Crowd;
+use crate::rig::{Crowd, EvaluatedSkeleton};
 
 /// State that a picture shows in addition to the document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlays {
     /// Time of the playhead, in seconds.
     pub time: f64,
+    /// The skeleton evaluated at that time; `None` to evaluate it for the picture.
+    pub evaluated: Option<Shared<EvaluatedSkeleton>>,
     /// Selected joints; the last of them is the active joint.
     pub selection: Vec<JointId>,
     /// The joint under the mouse.
@@ -46,19 +49,24 @@ impl Overlays {
         let shown = document.evaluate(time);
         let has_trail = has_trail(document, &shown);
         let mut overlays = Self {
-            time,
             trail: if has_trail { sample_trail(document, None) } else { Vec::new() },
             ..Self::default()
         };
-        write_onion_skins(document, &shown, time, &mut overlays.onion_skins);
+        overlays.evaluate(&shown, time);
         overlays
     }
 
     /// The overlays at another time in seconds, at which `document` is evaluated already.
     #[must_use]
     pub fn at(mut self, document: &Document, time: f64) -> Self {
-        self.time = time;
-        write_onion_skins(document, document, time, &mut self.onion_skins);
+        self.evaluate(document, time);
         self
+    }
+
+    /// Sets the time, the skeleton and the onion skins; `document` is evaluated at that time.
+    fn evaluate(&mut self, document: &Document, time: f64) {
+        self.time = time;
+        self.evaluated = Some(Shared::from(document.skeleton_rig.evaluate(time)));
+        write_onion_skins(document, document, time, &mut self.onion_skins);
     }
 }

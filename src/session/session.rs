@@ -11,8 +11,10 @@ use super::transport::TransportPath;
 use super::view::View;
 use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
 use crate::io;
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::EvaluatedSkeleton;
 
 /// Ratio of width to height of the viewport that cameras are framed for; the margin of a framed
 /// view allows for other ratios.
@@ -94,6 +96,11 @@ impl Session {
     /// The pose of the arm at the playhead.
     pub fn pose(&self) -> &TwoBonePose {
         self.evaluated.pose()
+    }
+
+    /// The skeleton at the playhead, posed by FK and by its targets, with a report for each target.
+    pub fn evaluated_skeleton(&self) -> &Shared<EvaluatedSkeleton> {
+        self.evaluated.skeleton()
     }
 
     /// The pose of the skeleton at the playhead, in world space.

@@ -19,6 +19,7 @@ impl Session {
     /// except for onion skins, which copy a document with keys.
     pub fn write_overlays(&self, overlays: &mut Overlays) {
         overlays.time = self.time();
+        overlays.evaluated = Some(self.evaluated_skeleton().clone());
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());

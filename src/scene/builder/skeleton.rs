@@ -48,7 +48,11 @@ pub(super) fn add(
 ) {
     let Scratch { pose, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
-    rig.write_pose(overlays.time, pose);
+    let evaluated = match &overlays.evaluated {
+        Some(evaluated) => evaluated.clone(),
+        None => Shared::from(rig.evaluate(overlays.time)),
+    };
+    evaluated.solved.write_pose(pose);
     read_tree(skeleton.joints(), depths, are_leaves);
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();

@@ -33,7 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
     let shown = match session.skeleton_rig().follow_path {
-        Some(_) => session.skeleton_rig().skeleton_at(session.time())[index].rotation,
+        Some(_) => session.evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,
     };
     for (axis, label) in AXES.into_iter().enumerate() {
