@@ -7,8 +7,10 @@ use ik_arm::document::{
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
+use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
     EditAction, PlaybackAction, PoseMode, SelectAction, Session, TransactionAction,
 };
@@ -97,6 +99,14 @@ examples! {
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
     RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
     SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
+    SetTargetSpace: [EditAction::SetTargetSpace {
+        joint: JointId::new(AIMED),
+        space: TargetSpace::Joint(JointId::new(INNER)),
+    }];
+    SetPoleSpace: [EditAction::SetPoleSpace {
+        joint: JointId::new(AIMED),
+        space: TargetSpace::Joint(JointId::new(INNER)),
+    }];
     SetSolver: [EditAction::SetSolver(
         SolverOptions::new(Method::Fabrik).with_damping(0.3),
     )];
@@ -119,6 +129,9 @@ examples! {
 /// The arm with the Human behind it, changed so that every edit has something to do.
 fn session() -> Session {
     let mut session = Session::default();
+    let target = Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0);
+    let with_pole =
+        LimbSettings { reference: ElbowReference::Pole(Vec3::X), ..LimbSettings::default() };
     for edit in [
         // Both cameras are saved, and not undone.
         EditAction::ShowRig(RigKind::Skeleton),
@@ -126,7 +139,7 @@ fn session() -> Session {
         EditAction::SetTwist(1.0),
         EditAction::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)),
         EditAction::ShowOverlay(Overlay::Axes, true),
-        EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0)),
+        EditAction::SetTarget(Target { kind: TargetKind::Limb(with_pole), ..target }),
         EditAction::StepSolver,
         EditAction::Key(vec![KEYED]),
     ] {

@@ -97,6 +97,7 @@ fn random_rig(random: &mut Random) -> SkeletonRig {
             soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
                 .expect("in range"),
             orientation: random.coin().then(|| random.angles()),
+            ..LimbSettings::default()
         };
         let kind = if random.coin() { TargetKind::Limb(settings) } else { TargetKind::WholeBody };
         let influence = random.one_of(&[0.0, 0.3, 1.0]);

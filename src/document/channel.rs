@@ -43,8 +43,16 @@ pub enum Channel {
     /// Vector from the base of a joint's parent to the joint's base, in the parent's space; from
     /// the skeleton's origin for a root.
     Offset(JointId),
-    /// Position of a joint's target at time 0, in the world.
+    /// Position of a joint's target at time 0, in the target's space.
     Target(JointId),
+    /// Influence of a joint's target, from 0 (FK pose) to 1 (solved pose).
+    TargetInfluence(JointId),
+    /// Euler angles in radians, unwrapped, of the hand in the space of a limb's target.
+    TargetOrientation(JointId),
+    /// Angle in radians, unwrapped, by which the elbow of a limb's target is turned.
+    TargetTwist(JointId),
+    /// The pole of a limb's target, in the pole's space.
+    TargetPole(JointId),
     /// Whether a joint's target is enabled.
     Enabled(JointId),
     /// Whether an overlay is shown.
@@ -110,11 +118,15 @@ impl Channel {
             | Self::Pole
             | Self::Translation
             | Self::Offset(_)
-            | Self::Target(_) => Quantity::Point,
+            | Self::Target(_)
+            | Self::TargetPole(_) => Quantity::Point,
             Self::Upper | Self::Lower | Self::Stretch => Quantity::Length,
-            Self::Influence => Quantity::Fraction,
-            Self::Twist | Self::Bend => Quantity::Angle,
-            Self::Shoulder | Self::HandOrientation | Self::Rotation(_) => Quantity::Angles,
+            Self::Influence | Self::TargetInfluence(_) => Quantity::Fraction,
+            Self::Twist | Self::Bend | Self::TargetTwist(_) => Quantity::Angle,
+            Self::Shoulder
+            | Self::HandOrientation
+            | Self::Rotation(_)
+            | Self::TargetOrientation(_) => Quantity::Angles,
             Self::Enabled(_) | Self::Overlay(_) => Quantity::Switch,
         }
     }
@@ -156,26 +168,52 @@ impl Channel {
             | Self::Rotation(_)
             | Self::Offset(_)
             | Self::Target(_)
+            | Self::TargetInfluence(_)
+            | Self::TargetOrientation(_)
+            | Self::TargetTwist(_)
+            | Self::TargetPole(_)
             | Self::Enabled(_) => Some(RigKind::Skeleton),
             Self::Overlay(_) => None,
         }
     }
 
-    /// Whether the channel poses a rig directly. Channels of targets do not: they act through a
-    /// solver.
-    pub fn poses(self, rig: RigKind) -> bool {
-        self.rig() == Some(rig) && !matches!(self, Self::Target(_) | Self::Enabled(_))
-    }
-
     /// The joint that the channel belongs to; `None` if it belongs to no joint.
     pub fn joint(self) -> Option<JointId> {
         match self {
-            Self::Rotation(joint)
-            | Self::Offset(joint)
-            | Self::Target(joint)
+            Self::Rotation(joint) | Self::Offset(joint) => Some(joint),
+            other => other.target(),
+        }
+    }
+
+    /// The joint whose target the channel belongs to; `None` if it belongs to no target.
+    pub fn target(self) -> Option<JointId> {
+        match self {
+            Self::Target(joint)
+            | Self::TargetInfluence(joint)
+            | Self::TargetOrientation(joint)
+            | Self::TargetTwist(joint)
+            | Self::TargetPole(joint)
             | Self::Enabled(joint) => Some(joint),
             _ => None,
         }
+    }
+
+    /// The channels of a joint and of its target.
+    pub fn of_joint(joint: JointId) -> impl Iterator<Item = Self> {
+        let own = [Self::Rotation(joint), Self::Offset(joint)];
+        own.into_iter().chain(Self::of_target(joint))
+    }
+
+    /// The channels of the target of a joint.
+    pub fn of_target(joint: JointId) -> [Self; 6] {
+        [
+            Self::Target(joint),
+            Self::TargetInfluence(joint),
+            Self::TargetOrientation(joint),
+            Self::TargetTwist(joint),
+            Self::TargetPole(joint),
+            Self::Enabled(joint),
+        ]
     }
 
     /// The same channel after its joint was renumbered; `None` if its joint was removed.
@@ -185,6 +223,10 @@ impl Channel {
             Self::Rotation(joint) => Self::Rotation(remap.get(joint)?),
             Self::Offset(joint) => Self::Offset(remap.get(joint)?),
             Self::Target(joint) => Self::Target(remap.get(joint)?),
+            Self::TargetInfluence(joint) => Self::TargetInfluence(remap.get(joint)?),
+            Self::TargetOrientation(joint) => Self::TargetOrientation(remap.get(joint)?),
+            Self::TargetTwist(joint) => Self::TargetTwist(remap.get(joint)?),
+            Self::TargetPole(joint) => Self::TargetPole(remap.get(joint)?),
             Self::Enabled(joint) => Self::Enabled(remap.get(joint)?),
             other => other,
         })

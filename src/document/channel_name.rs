@@ -37,6 +37,10 @@ impl Channel {
             Self::Rotation(_) => "rotation",
             Self::Offset(_) => "offset",
             Self::Target(_) => "target",
+            Self::TargetInfluence(_) => "target_influence",
+            Self::TargetOrientation(_) => "target_orientation",
+            Self::TargetTwist(_) => "target_twist",
+            Self::TargetPole(_) => "target_pole",
             Self::Enabled(_) => "enabled",
             Self::Overlay(_) => "overlay",
         }
@@ -49,11 +53,6 @@ impl Channel {
         let of_joint = joint.into_iter().flat_map(Self::of_joint);
         let mut channels = of_rigs.chain(of_joint).chain(overlay.map(Self::Overlay));
         channels.find(|channel| channel.name() == name)
-    }
-
-    /// The channels of a joint.
-    fn of_joint(joint: JointId) -> [Self; 4] {
-        [Self::Rotation(joint), Self::Offset(joint), Self::Target(joint), Self::Enabled(joint)]
     }
 }
 

@@ -4,13 +4,15 @@ use super::channel::Channel;
 use super::cursor::Cursor;
 use super::document::Document;
 use super::rig_kind::RigKind;
+use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
-use crate::rig::SkeletonRig;
+use crate::rig::{LimbSettings, SkeletonRig, Target};
 
 /// Access to the values of channels in a document.
 impl Channel {
     /// Channels that affect the pose of the shown rig. For a skeleton: its translation, the offsets
-    /// of its roots, the rotations of its joints and its targets.
+    /// of its roots, the rotations of its joints and its targets; a target's influence only below 1, and
+    /// a twist of 0 not at all.
     pub fn of_rig(document: &Document) -> Vec<Self> {
         if document.rig == RigKind::Arm {
             let shapes = |channel: &Self| channel.shapes(&document.arm);
@@ -22,7 +24,14 @@ impl Channel {
         let mut channels = vec![Self::Translation];
         channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
         channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
-        channels.extend(targets.iter().map(|target| Self::Target(target.joint)));
+        let of_targets = targets.iter().flat_map(|target| Self::of_target(target.joint));
+        let poses = |channel: &Self| match (channel, channel.value(document)) {
+            (_, None) | (Self::Enabled(_), _) => false,
+            (Self::TargetInfluence(_), Some(influence)) => influence.x < 1.0,
+            (Self::TargetTwist(_), Some(twist)) => twist.x != 0.0,
+            (_, Some(_)) => true,
+        };
+        channels.extend(of_targets.filter(poses));
         channels
     }
 
@@ -57,6 +66,10 @@ impl Channel {
             Self::Rotation(joint) => rig.skeleton.joint(joint)?.rotation,
             Self::Offset(joint) => rig.skeleton.joint(joint)?.offset,
             Self::Target(joint) => target(joint)?.home,
+            Self::TargetInfluence(joint) => number(target(joint)?.influence),
+            Self::TargetOrientation(joint) => target(joint)?.limb()?.orientation?,
+            Self::TargetTwist(joint) => number(target(joint)?.limb()?.twist),
+            Self::TargetPole(joint) => target(joint)?.limb()?.pole()?.1,
             Self::Enabled(joint) => switch(target(joint)?.enabled),
             Self::Overlay(overlay) => switch(display.shows(overlay)),
         })
@@ -70,7 +83,6 @@ impl Channel {
         if value.is_nan() {
             return;
         }
-        let on = value.x >= 0.5;
         match self {
             Self::Hand => {
                 if let Cursor::Root(cursor) = &mut arm.cursor {
@@ -95,17 +107,36 @@ impl Channel {
             Self::Translation => translate(rig, value),
             Self::Rotation(joint) => rotate(rig, joint, value),
             Self::Offset(joint) => offset(rig, joint, value),
-            Self::Target(joint) => {
-                if let Some(target) = rig.target(joint) {
-                    rig.targets[target].home = value;
+            Self::Target(joint)
+            | Self::TargetInfluence(joint)
+            | Self::TargetOrientation(joint)
+            | Self::TargetTwist(joint)
+            | Self::TargetPole(joint)
+            | Self::Enabled(joint) => {
+                if let Some(index) = rig.target(joint) {
+                    self.set_of_target(&mut rig.targets[index], value);
                 }
             }
-            Self::Enabled(joint) => {
-                if let Some(target) = rig.target(joint) {
-                    rig.targets[target].enabled = on;
-                }
+            Self::Overlay(overlay) => *display = display.with(overlay, value.x >= 0.5),
+        }
+    }
+}
+
+/// Access to the values of a target's channels.
+impl Channel {
+    fn set_of_target(self, target: &mut Target, value: Vec3) {
+        match (self, target.limb_mut()) {
+            (Self::Target(_), _) => target.home = value,
+            (Self::TargetInfluence(_), _) => target.influence = value.x.clamp(0.0, 1.0),
+            (Self::Enabled(_), _) => target.enabled = value.x >= 0.5,
+            (Self::TargetTwist(_), Some(limb)) => limb.twist = value.x,
+            (Self::TargetOrientation(_), Some(LimbSettings { orientation: Some(to), .. })) => {
+                *to = value;
             }
-            Self::Overlay(overlay) => *display = display.with(overlay, on),
+            (Self::TargetPole(_), Some(limb)) if limb.pole().is_some() => {
+                limb.reference = ElbowReference::Pole(value);
+            }
+            _ => {}
         }
     }
 }

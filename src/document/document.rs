@@ -75,13 +75,17 @@ impl Document {
         }
     }
 
-    /// Deletes joints with all their descendants, their targets and their keys.
+    /// Deletes joints with all their descendants, their targets and their keys. Targets on them move to
+    /// the world.
     ///
     /// # Errors
     ///
     /// [`SkeletonError::NoJoint`]; the document is then unchanged.
     pub fn delete(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
-        let remap = self.skeleton_mut().remove(joints)?;
+        let mut skeleton = self.skeleton_rig.skeleton.clone();
+        let remap = skeleton.make_mut().remove(joints)?;
+        self.release_targets(&remap);
+        self.skeleton_rig.skeleton = skeleton;
         self.remap_joints(&remap);
         Ok(remap)
     }

@@ -5,6 +5,7 @@ use super::channel::Channel;
 use super::document::Document;
 use super::rig_kind::RigKind;
 use crate::kinematics::angle;
+use crate::rig::Target;
 
 /// Keys applied to the document.
 impl Document {
@@ -45,8 +46,29 @@ impl Document {
 
     /// Whether the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
-        let follows = self.rig == RigKind::Skeleton && self.skeleton_rig.follow_path.is_some();
-        follows || self.keys.tracks().any(|(channel, _)| channel.poses(self.rig))
+        let moves = self.rig == RigKind::Skeleton
+            && (self.skeleton_rig.follow_path.is_some()
+                || self.skeleton_rig.targets.iter().any(|it| it.is_moving() && self.can_pose(it)));
+        moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
+    }
+
+    /// Whether keys of the channel pose the shown rig.
+    fn poses(&self, channel: Channel) -> bool {
+        let target = channel.target().and_then(|joint| self.skeleton_rig.target(joint));
+        let can_pose = target.is_none_or(|index| self.can_pose(&self.skeleton_rig.targets[index]));
+        channel.rig() == Some(self.rig) && can_pose
+    }
+
+    /// Whether a target poses the skeleton at some time.
+    fn can_pose(&self, target: &Target) -> bool {
+        let track = |channel| self.keys.track(channel);
+        let is_ever = |channel, value: f32| {
+            let keyed = track(channel).map(|keys| keys.knots().iter().any(|it| it.value.x > 0.0));
+            keyed.unwrap_or(value > 0.0)
+        };
+        let Target { joint, influence, enabled, .. } = *target;
+        is_ever(Channel::TargetInfluence(joint), influence)
+            && is_ever(Channel::Enabled(joint), f32::from(u8::from(enabled)))
     }
 
     /// Adds a key with the present value of a channel at a time in seconds. A twist is first

@@ -25,6 +25,7 @@ mod keys;
 mod projection;
 mod rekey;
 mod rig_kind;
+mod target_space;
 mod timeline;
 
 pub use crate::kinematics::twist::TwistReferenceKind;

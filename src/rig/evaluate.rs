@@ -1,7 +1,9 @@
 use glam::Vec3;
 
+use super::limb_settings::LimbSettings;
 use super::skeleton_rig::SkeletonRig;
-use super::target::{LimbSettings, Target, TargetKind};
+use super::target::{Target, TargetKind};
+use super::target_order::LimbOrder;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, TipTarget};
 use crate::kinematics::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
@@ -23,6 +25,8 @@ pub struct EvaluatedSkeleton {
 pub struct TargetReport {
     /// Position of the target, in the world.
     pub position: Vec3,
+    /// Position of the limb's pole, in the world; `None` for another elbow reference.
+    pub pole: Option<Vec3>,
     /// Distance from the tip to the target in the evaluated pose, in the world.
     pub error: f32,
     /// What the solver reports.
@@ -48,17 +52,19 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, as a function of the rig and the time alone.
     ///
     /// The whole-body targets are solved together, from the FK pose; the limb targets then one after
-    /// the other, in the order of their joints.
+    /// the other, in the order of their joints, but each after those that move the joints that it is
+    /// on.
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
         let outcomes = self.solve_targets(&mut solved, time);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
-            let position = target.at(time);
+            let position = target.in_world(&solved, time);
             let error = solved
                 .joint(target.joint)
                 .map_or(0.0, |_| solved.tip(target.joint).distance(position).min(f32::MAX));
-            TargetReport { position, error, outcome }
+            let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
+            TargetReport { position, pole, error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
         EvaluatedSkeleton { fk, solved, targets }
@@ -92,7 +98,7 @@ impl SkeletonRig {
         if active.is_empty() {
             return;
         }
-        let tips: Vec<TipTarget> = active.iter().map(|target| target.tip_target(time)).collect();
+        let tips: Vec<TipTarget> = active.iter().map(|it| it.tip_target(solved, time)).collect();
         let outcome = match ChainSolver::new(solved, &tips, &self.solver) {
             Ok(mut solver) => {
                 let report = solver.run();
@@ -116,19 +122,17 @@ impl SkeletonRig {
         time: f64,
         outcomes: &mut [TargetOutcome],
     ) {
-        let mut limbs: Vec<(usize, LimbSettings)> = (self.targets.iter().enumerate())
-            .filter(|(_, target)| target.is_posing())
-            .filter_map(|(index, target)| match target.kind {
-                TargetKind::Limb(settings) => Some((index, settings)),
-                TargetKind::WholeBody => None,
-            })
-            .collect();
-        limbs.sort_by_key(|(index, _)| self.targets[*index].joint);
-        for (index, settings) in limbs {
+        let is_limb = |index: &usize| {
+            let target = &self.targets[*index];
+            target.is_posing() && target.limb().is_some()
+        };
+        let limbs = (0..self.targets.len()).filter(is_limb).collect();
+        for index in LimbOrder::new(self, limbs).indices {
             let target = &self.targets[index];
+            let Some(settings) = target.limb() else { continue };
             outcomes[index] = match Limb::ending_at(solved, target.joint) {
                 Ok(limb) => {
-                    let limb_target = target.limb_target(settings, time);
+                    let limb_target = target.limb_target(settings, solved, time);
                     let report = limb_ik::solve(solved.make_mut(), limb, &limb_target);
                     report.map_or(TargetOutcome::Refused(SolveError::Singular), TargetOutcome::Limb)
                 }
@@ -139,17 +143,18 @@ impl SkeletonRig {
 }
 
 impl Target {
-    fn tip_target(&self, time: f64) -> TipTarget {
-        TipTarget { joint: self.joint, point: self.at(time), weight: self.weight }
+    /// The target at a time in seconds, for a solver of chains.
+    pub(super) fn tip_target(&self, pose: &Skeleton, time: f64) -> TipTarget {
+        TipTarget { joint: self.joint, point: self.in_world(pose, time), weight: self.weight }
     }
 
-    fn limb_target(&self, settings: LimbSettings, time: f64) -> LimbTarget {
+    fn limb_target(&self, settings: &LimbSettings, pose: &Skeleton, time: f64) -> LimbTarget {
         LimbTarget {
-            point: self.at(time),
-            reference: settings.reference,
+            point: self.in_world(pose, time),
+            reference: settings.reference_in_world(pose),
             twist: settings.twist,
             soft_reach: settings.soft_reach,
-            hand: settings.hand(),
+            hand: settings.hand_in_world(pose, self.space),
             influence: self.influence,
         }
     }

@@ -1,7 +1,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::follow_path::FollowPath;
-use super::target::{Target, TargetPath};
+use super::target::Target;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
@@ -47,15 +47,12 @@ impl SkeletonRig {
         self.targets.iter().position(|target| target.joint == joint)
     }
 
-    /// The enabled targets at a time in seconds, for a solver.
+    /// The enabled targets at a time in seconds, for a solver; those on joints are where the FK pose
+    /// has them.
     pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
+        let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|target| target.enabled);
-        let target_at = |target: &Target| TipTarget {
-            joint: target.joint,
-            point: target.at(time),
-            weight: target.weight,
-        };
-        enabled.map(target_at).collect()
+        enabled.map(|target| target.tip_target(&fk, time)).collect()
     }
 
     /// The FK pose at a time in seconds: on the followed path if there is one, else by the
@@ -80,7 +77,7 @@ impl SkeletonRig {
 
     /// Whether an enabled target or the skeleton moves over time without keys.
     pub fn is_moving(&self) -> bool {
-        let moves = |target: &Target| target.enabled && target.motion.path != TargetPath::Still;
+        let moves = |target: &Target| target.enabled && target.is_moving();
         self.follow_path.is_some() || self.targets.iter().any(moves)
     }
 
@@ -91,9 +88,7 @@ impl SkeletonRig {
 
     /// Renumbers the joints of the targets; drops the targets of removed joints.
     pub fn remap(&mut self, remap: &JointRemap) {
-        self.targets.retain_mut(|target| {
-            remap.get(target.joint).map(|joint| target.joint = joint).is_some()
-        });
+        self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
     }
 }
 
@@ -149,7 +144,11 @@ impl SkeletonRig {
         pose: &SkeletonPose,
         time: f64,
     ) -> (Vec3, f32) {
-        let targets = self.targets.iter().map(|target| target.at(time));
+        let place = |target: &Target| match target.space.joint() {
+            Some(joint) => pose.full(joint).transform_point3(target.at(time)),
+            None => target.at(time),
+        };
+        let targets = self.targets.iter().map(place);
         let path = self.follow_path.iter().flat_map(|path| path.corners(&self.skeleton));
         let (centre, radius) =
             bounding_sphere(pose.points().chain(targets).chain(path)).unwrap_or_default();

@@ -91,6 +91,12 @@ impl Session {
             EditAction::AddTarget(joint) => self.add_target(joint),
             EditAction::RemoveTarget(joint) => self.remove_target(joint),
             EditAction::SetTarget(target) => self.set_target(target),
+            EditAction::SetTargetSpace { joint, space } => {
+                self.convert_target(|document, time| document.set_target_space(joint, space, time));
+            }
+            EditAction::SetPoleSpace { joint, space } => {
+                self.convert_target(|document, time| document.set_pole_space(joint, space, time));
+            }
             EditAction::SetSolver(solver) => self.set_solver(solver),
             EditAction::SetIterationsPerFrame(iterations) => {
                 self.edit_skeleton(|rig| {

@@ -82,20 +82,25 @@ impl Session {
     }
 
     /// Changes a copy of the shown document and commits it. After an error, reports it and returns
-    /// `None`.
+    /// `None`. An edit after which a target could not be evaluated is an error.
     pub(super) fn edit_document<T, E: Display>(
         &mut self,
         change: impl FnOnce(&mut Document) -> Result<T, E>,
     ) -> Option<T> {
         let mut after = self.shown().clone();
-        match change(&mut after) {
+        let change = change(&mut after).map_err(|error| error.to_string());
+        let change = change.and_then(|value| {
+            let checked = after.skeleton_rig.check_target_spaces();
+            checked.map(|()| value).map_err(|error| error.to_string())
+        });
+        match change {
             Ok(value) => {
                 self.shell.clear_message();
                 self.commit(after);
                 Some(value)
             }
             Err(error) => {
-                self.fail(error.to_string());
+                self.fail(error);
                 None
             }
         }

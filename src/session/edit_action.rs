@@ -8,6 +8,7 @@ use crate::document::{
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{JointId, Limit};
 use crate::kinematics::soft_reach::SoftReach;
+use crate::rig::TargetSpace;
 
 /// A change of the document. Outside a transaction, each change is one undo step with its own
 /// label.
@@ -129,6 +130,20 @@ pub enum EditAction {
     RemoveTarget(JointId),
     /// Replaces the target of the joint [`Target::joint`].
     SetTarget(Target),
+    /// Moves a joint's target to another space; it stays where it is in the world.
+    SetTargetSpace {
+        /// Joint of the target.
+        joint: JointId,
+        /// The space.
+        space: TargetSpace,
+    },
+    /// Moves the pole of a joint's target to another space; it stays where it is in the world.
+    SetPoleSpace {
+        /// Joint of the target.
+        joint: JointId,
+        /// The space.
+        space: TargetSpace,
+    },
     /// Sets the solver and its options.
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.

@@ -12,9 +12,9 @@ use super::view::View;
 use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
 use crate::io;
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::EvaluatedSkeleton;
+use crate::rig::{EvaluatedSkeleton, TargetReport};
 
 /// Ratio of width to height of the viewport that cameras are framed for; the margin of a framed
 /// view allows for other ratios.
@@ -101,6 +101,11 @@ impl Session {
     /// The skeleton at the playhead, posed by FK and by its targets, with a report for each target.
     pub fn evaluated_skeleton(&self) -> &Shared<EvaluatedSkeleton> {
         self.evaluated.skeleton()
+    }
+
+    /// The report of a joint's target at the playhead; `None` if the joint has none.
+    pub fn target_report(&self, joint: JointId) -> Option<&TargetReport> {
+        self.evaluated_skeleton().targets.get(self.skeleton_rig().target(joint)?)
     }
 
     /// The pose of the skeleton at the playhead, in world space.

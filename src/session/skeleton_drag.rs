@@ -20,8 +20,7 @@ impl Session {
         ray: Ray,
         forward: Vec3,
     ) {
-        if let Some(target) = self.skeleton_rig().target(joint) {
-            let at = self.skeleton_rig().targets[target].at(self.time());
+        if let Some(at) = self.target_report(joint).map(|report| report.position) {
             self.grab_point(Grip::Target(joint, handle), handle, at, ray, forward);
         }
     }
@@ -84,9 +83,8 @@ impl Session {
 
     fn drag_target(&mut self, joint: JointId, to: Vec3) {
         let Some(index) = self.skeleton_rig().target(joint) else { return };
-        let mut target = self.skeleton_rig().targets[index];
-        target.home = to - target.motion.offset(self.time());
-        self.set_target(target);
+        let target = self.skeleton_rig().targets[index];
+        self.set_target(target.placed(&self.evaluated_skeleton().solved, self.time(), to));
         if self.preferences.follow
             && !self.is_running()
             && self.skeleton_rig().follow_path.is_none()

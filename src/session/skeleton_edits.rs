@@ -155,6 +155,15 @@ impl Session {
         });
     }
 
+    /// Converts a target and its keys, for the pose at the playhead.
+    pub(super) fn convert_target(&mut self, convert: impl FnOnce(&mut Document, f64)) {
+        let time = self.time();
+        self.edit_document(|document| {
+            convert(document, time);
+            Ok::<_, SkeletonError>(())
+        });
+    }
+
     /// Replaces the target of a joint.
     pub(super) fn set_target(&mut self, target: Target) {
         let (motion, weight) = (target.motion, target.weight);
@@ -214,8 +223,7 @@ impl Session {
     pub(super) fn remove_target(&mut self, joint: JointId) {
         self.edit_document(|document| {
             document.skeleton_rig.targets.retain(|target| target.joint != joint);
-            document.keys.clear(Channel::Target(joint));
-            document.keys.clear(Channel::Enabled(joint));
+            Channel::of_target(joint).into_iter().for_each(|it| document.keys.clear(it));
             Ok::<_, SkeletonError>(())
         });
     }

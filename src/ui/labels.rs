@@ -28,6 +28,10 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Rotation(joint) => of_joint(joint, "rotation"),
         Channel::Offset(joint) => of_joint(joint, "offset"),
         Channel::Target(joint) => of_joint(joint, "target"),
+        Channel::TargetInfluence(joint) => of_joint(joint, "target influence"),
+        Channel::TargetOrientation(joint) => of_joint(joint, "target orientation"),
+        Channel::TargetTwist(joint) => of_joint(joint, "target twist"),
+        Channel::TargetPole(joint) => of_joint(joint, "target pole"),
         Channel::Enabled(joint) => of_joint(joint, "target enabled"),
         Channel::Overlay(shown) => {
             format!("{} shown", overlay(session.rig(), shown).0)

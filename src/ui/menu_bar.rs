@@ -119,13 +119,8 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         RigKind::Skeleton => {
             one(ui, Channel::Translation, actions);
             for joint in session.selection() {
-                let of_joint = [
-                    Channel::Rotation(*joint),
-                    Channel::Offset(*joint),
-                    Channel::Target(*joint),
-                    Channel::Enabled(*joint),
-                ];
-                let there = of_joint.into_iter().filter(|it| it.value(session.shown()).is_some());
+                let there =
+                    Channel::of_joint(*joint).filter(|it| it.value(session.shown()).is_some());
                 there.for_each(|channel| one(ui, channel, actions));
             }
         }

@@ -14,7 +14,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
-use ik_arm::rig::{LimbSettings, TargetKind};
+use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 
 use super::Random;
 
@@ -33,9 +33,20 @@ pub fn document(random: &mut Random) -> Document {
             let (home, weight) = (random.finite_vector(), random.positive());
             let enabled = random.coin();
             let (kind, influence) = (target_kind(random), random.within(0.0..1.0));
-            rig.targets.push(Target { joint, home, kind, influence, weight, enabled, motion });
+            let space = TargetSpace::World;
+            rig.targets.push(Target {
+                joint,
+                home,
+                space,
+                kind,
+                influence,
+                weight,
+                enabled,
+                motion,
+            });
         }
     }
+    put_on_joints(random, &mut rig);
     rig.solver.method = random.one_of(&Method::ALL);
     rig.solver.iterations = random.coin().then(|| 1 + random.below(1 << 31) as u32);
     rig.solver.tolerance = random.coin().then(|| random.positive());
@@ -91,6 +102,7 @@ fn target_kind(random: &mut Random) -> TargetKind {
         twist: random.finite(),
         soft_reach: soft_reach.expect("in range"),
         orientation: random.coin().then(|| random.finite_vector()),
+        pole_space: TargetSpace::World,
     })
 }
 
@@ -130,13 +142,29 @@ fn arm(random: &mut Random) -> Arm {
     }
 }
 
+/// Puts some targets and poles on joints, where they can be evaluated.
+fn put_on_joints(random: &mut Random, rig: &mut SkeletonRig) {
+    let joints: Vec<JointId> = rig.skeleton.ids().collect();
+    for index in 0..rig.targets.len() {
+        let before = rig.targets[index];
+        let space = TargetSpace::Joint(random.one_of(&joints));
+        match rig.targets[index].limb_mut().filter(|_| random.coin()) {
+            Some(limb) if limb.pole().is_some() => limb.pole_space = space,
+            _ => rig.targets[index].space = space,
+        }
+        if rig.check_target_spaces().is_err() {
+            rig.targets[index] = before;
+        }
+    }
+}
+
 fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let overlays = Overlay::all().map(Channel::Overlay);
     let joints = (0..rig.skeleton.joints().len()).flat_map(|joint| {
         [Channel::Rotation(JointId::new(joint)), Channel::Offset(JointId::new(joint))]
     });
     let targets = rig.targets.iter();
-    let targets = targets.flat_map(|it| [Channel::Target(it.joint), Channel::Enabled(it.joint)]);
+    let targets = targets.flat_map(|it| Channel::of_target(it.joint));
     let all = Channel::ARM.into_iter().chain(overlays).chain([Channel::Translation]);
     let mut keys = Keys::default();
     for channel in all.chain(joints).chain(targets) {

@@ -67,7 +67,7 @@ impl ChannelFields {
             return Err(FieldError::new(at.clone(), reason));
         }
         let channel = Channel::named(&self.channel, joint, self.overlay).ok_or_else(unknown)?;
-        if let Channel::Target(joint) | Channel::Enabled(joint) = channel
+        if let Some(joint) = channel.target()
             && document.skeleton_rig.target(joint).is_none()
         {
             let reason = format!("must be a joint with a target, got {joint}");

@@ -16,12 +16,15 @@ use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::Stereographic;
-use crate::rig::{LimbSettings, TargetKind};
+use crate::rig::{LimbSettings, TargetKind, TargetSpace};
 
 #[derive(Serialize, Deserialize)]
 pub struct TargetFields {
     joint: Whole,
     home: JsonPoint,
+    /// The joint that the target is on; without it, the target is in the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    on_joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     limb: Option<JsonObject<LimbFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +39,8 @@ struct LimbFields {
     reference: Option<ElbowReferenceName>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pole: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pole_on_joint: Option<Whole>,
     twist: Option<JsonNumber>,
     soft_reach: Option<JsonObject<SoftReachFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -95,7 +100,8 @@ pub fn add_targets(
         }
         rig.targets.push(target);
     }
-    Ok(())
+    let at = JsonPath::root().key("targets");
+    rig.check_target_spaces().map_err(|error| FieldError::new(at, error.to_string()))
 }
 
 impl TargetFields {
@@ -109,6 +115,7 @@ impl TargetFields {
         Self {
             joint: Whole(u32::try_from(target.joint.index()).unwrap_or(u32::MAX)),
             home: JsonPoint(target.home),
+            on_joint: on_joint(target.space),
             limb: match &target.kind {
                 TargetKind::WholeBody => None,
                 TargetKind::Limb(settings) => Some(JsonObject(LimbFields::new(settings))),
@@ -128,11 +135,14 @@ impl TargetFields {
             None => default.motion,
         };
         let kind = match &self.limb {
-            Some(JsonObject(fields)) => TargetKind::Limb(fields.settings(&at.clone().key("limb"))?),
+            Some(JsonObject(fields)) => {
+                TargetKind::Limb(fields.settings(&at.clone().key("limb"), joints)?)
+            }
             None => TargetKind::WholeBody,
         };
         let influence = number(self.influence, default.influence);
         Ok(Target {
+            space: space(at.clone().key("on_joint"), self.on_joint, joints)?,
             kind,
             influence: fraction(at.clone().key("influence"), influence)?,
             weight: above_0(at.clone().key("weight"), number(self.weight, default.weight))?,
@@ -154,13 +164,14 @@ impl LimbFields {
         Self {
             reference: Some(reference),
             pole,
+            pole_on_joint: pole.and(on_joint(settings.pole_space)),
             twist: Some(JsonNumber(settings.twist)),
             soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
             orientation: settings.orientation.map(JsonPoint),
         }
     }
 
-    fn settings(&self, at: &JsonPath) -> Result<LimbSettings, FieldError> {
+    fn settings(&self, at: &JsonPath, joints: usize) -> Result<LimbSettings, FieldError> {
         let reference = match (self.reference.unwrap_or_default(), self.pole) {
             (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
             (ElbowReferenceName::Limb, _) => ElbowReference::Limb,
@@ -181,8 +192,18 @@ impl LimbFields {
             twist: number(self.twist, 0.0),
             soft_reach,
             orientation: self.orientation.map(|JsonPoint(angles)| angles),
+            pole_space: space(at.clone().key("pole_on_joint"), self.pole_on_joint, joints)?,
         })
     }
+}
+
+fn on_joint(space: TargetSpace) -> Option<Whole> {
+    space.joint().and_then(|joint| u32::try_from(joint.index()).ok()).map(Whole)
+}
+
+fn space(at: JsonPath, on_joint: Option<Whole>, joints: usize) -> Result<TargetSpace, FieldError> {
+    let Some(index) = on_joint else { return Ok(TargetSpace::World) };
+    Ok(TargetSpace::Joint(JointId::new(joint(at, index, joints)?)))
 }
 
 impl TargetMotionFields {

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::scratch::Scratch;
 use super::shadow::above_ground;
-use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target, TargetPath};
+use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
@@ -70,8 +70,11 @@ pub(super) fn add(
         DrawnSkeleton { pose: &ghost.pose, ..drawn }.add_ghost(scene, colour);
     }
     if display.shows(Overlay::Cursor) {
-        for target in &rig.targets {
-            drawn.add_target(scene, target, overlays);
+        for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
+            drawn.add_target(scene, target, report.position);
+            if target.enabled && target.is_moving() {
+                add_trail(scene, target, &evaluated.solved, overlays.time);
+            }
         }
     }
     if let Some(follow_path) = &rig.follow_path
@@ -186,10 +189,9 @@ impl DrawnSkeleton<'_> {
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
     }
 
-    /// Adds a target as a ball with its trail. If the tip does not reach the target, adds a line
+    /// Adds a target as a ball. If the tip does not reach the target, adds a line
     /// between the two, labelled with their distance.
-    fn add_target(&self, scene: &mut Scene, target: &Target, overlays: &Overlays) {
-        let at = target.at(overlays.time);
+    fn add_target(&self, scene: &mut Scene, target: &Target, at: Vec3) {
         let tip = self.pose.tip(target.joint);
         let radius = TARGET_RADIUS * self.reach;
         let (guide, accent) = (scene.palette.guide, scene.palette.accent);
@@ -198,7 +200,6 @@ impl DrawnSkeleton<'_> {
         if !target.enabled {
             return;
         }
-        add_trail(scene, target, overlays.time);
         let gap = tip.distance(at);
         if gap > 1.5 * radius {
             scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
@@ -228,14 +229,14 @@ fn residual_decimals(reach: f32) -> usize {
     (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize
 }
 
-/// Adds the recent path of a moving target, fading out with age.
-fn add_trail(scene: &mut Scene, target: &Target, time: f64) {
-    if target.motion.path == TargetPath::Still {
-        return;
-    }
+/// Adds the recent path of a moving target in its present space, fading out with age.
+fn add_trail(scene: &mut Scene, target: &Target, pose: &Skeleton, time: f64) {
+    let to_world = target.space.to_world(pose);
     let (seconds, steps) = TRAIL;
     let seconds = seconds.min(f64::from(target.motion.period));
-    let at = |step: usize| target.at(time - seconds * step as f64 / steps as f64);
+    let at = |step: usize| {
+        to_world.transform_point3(target.at(time - seconds * step as f64 / steps as f64))
+    };
     let colour = scene.palette.accent;
     for step in 0..steps {
         let colour = colour.with_opacity(0.9 * (1.0 - step as f32 / steps as f32));

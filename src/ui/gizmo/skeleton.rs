@@ -6,7 +6,9 @@ use glam::Vec3;
 use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
+use crate::document::Target;
 use crate::kinematics::skeleton::JointId;
+use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
@@ -162,17 +164,18 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
-    let mark = |target: &crate::document::Target| {
-        let at = screen.place(target.at(session.time()))?;
+    let reports = &session.evaluated_skeleton().targets;
+    let mark = |(target, report): (&Target, &TargetReport)| {
+        let at = screen.place(report.position)?;
         Some(TargetMark { joint: target.joint, at, enabled: target.enabled })
     };
-    session.skeleton_rig().targets.iter().filter_map(mark).collect()
+    session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
 }
 
 fn handles(screen: &ScreenProjection, session: &Session) -> Option<(JointId, TranslateHandles)> {
     let joint = session.selected()?;
-    let target = session.skeleton_rig().targets[session.skeleton_rig().target(joint)?];
-    Some((joint, TranslateHandles::new(screen, target.at(session.time()), None)?))
+    let report = session.target_report(joint)?;
+    Some((joint, TranslateHandles::new(screen, report.position, None)?))
 }
 
 /// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.

@@ -2,7 +2,9 @@
 
 use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
+use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 
 use super::Values;
 
@@ -93,7 +95,27 @@ impl Values<'_> {
             TargetMotion { path, radius: self.number(0.3 * size), period: self.above_0(6.0) };
         let home = self.small_point();
         let (weight, enabled) = (self.above_0(2.0), self.chance(0.9));
-        Target { weight, enabled, motion, ..Target::new(joint, home, 1.0) }
+        let influence = self.one_of(&[0.0, 0.4, 1.0, 1.5]);
+        let kind = if self.chance(0.5) { TargetKind::WholeBody } else { self.limb() };
+        let space = self.space();
+        let target = Target::new(joint, home, 1.0);
+        Target { weight, enabled, motion, influence, kind, space, ..target }
+    }
+
+    fn limb(&mut self) -> TargetKind {
+        let pole = self.small_point();
+        let reference =
+            self.one_of(&[ElbowReference::Fk, ElbowReference::Limb, ElbowReference::Pole(pole)]);
+        let orientation = self.chance(0.5).then(|| self.small_point());
+        let (twist, pole_space) = (self.number(4.0), self.space());
+        let settings =
+            LimbSettings { reference, twist, orientation, pole_space, ..Default::default() };
+        TargetKind::Limb(settings)
+    }
+
+    /// The world, or the space of any joint; often one in which the target cannot be.
+    pub fn space(&mut self) -> TargetSpace {
+        if self.chance(0.6) { TargetSpace::World } else { TargetSpace::Joint(self.joint()) }
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {

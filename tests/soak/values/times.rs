@@ -41,8 +41,10 @@ impl Values<'_> {
         match self.random.below(20) {
             0 => Channel::Rotation(joint),
             1 => Channel::Offset(joint),
-            2 | 3 => Channel::Target(self.aimed()),
-            4 => Channel::Enabled(self.aimed()),
+            2..=4 => {
+                let of_target = Channel::of_target(self.aimed());
+                self.one_of(&of_target)
+            }
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
             _ => self.one_of(&Channel::ARM),

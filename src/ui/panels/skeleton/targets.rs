@@ -46,7 +46,7 @@ pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions)
 }
 
 fn residual(session: &Session, target: &Target) -> f32 {
-    session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
+    session.target_report(target.joint).map_or(0.0, |report| report.error)
 }
 
 /// Shows the settings of the selected joint's target.

@@ -1,0 +1,72 @@
+use glam::Vec3;
+
+use super::channel::Channel;
+use super::document::Document;
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
+use crate::rig::{Target, TargetSpace};
+
+/// Conversions of a target, or of the pole of a limb, to another space, for its present values and all
+/// its keys.
+impl Document {
+    /// Moves the target of a joint to another space. The target stays where it is, and the hand keeps
+    /// its orientation, at `time`, at which this document is evaluated, and at each of their keys.
+    pub fn set_target_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
+        let channels = [Channel::Target(joint), Channel::TargetOrientation(joint)];
+        self.convert_target(joint, channels, time, |target, pose, time, near| {
+            target.in_space(space, pose, time, near)
+        });
+    }
+
+    /// Moves the pole of the limb of a joint's target to another space. The pole stays where it is at
+    /// `time`, at which this document is evaluated, and at each of its keys.
+    pub fn set_pole_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
+        self.convert_target(joint, [Channel::TargetPole(joint)], time, |target, pose, _, _| {
+            target.with_pole_in_space(space, pose)
+        });
+    }
+
+    /// Replaces a target by `converted` of it, and the keys of `channels` by their values in the
+    /// converted targets. The last argument of `converted` is the value near which angles should be:
+    /// that of the key before.
+    fn convert_target<const N: usize>(
+        &mut self,
+        joint: JointId,
+        channels: [Channel; N],
+        time: f64,
+        converted: impl Fn(Target, &Skeleton, f64, Option<Vec3>) -> Target,
+    ) {
+        let Some(index) = self.skeleton_rig.target(joint) else { return };
+        let before = self.clone();
+        let convert = |document: &Self, time: f64, near: Option<Vec3>| {
+            let pose = document.skeleton_rig.skeleton_at(time);
+            converted(document.skeleton_rig.targets[index], &pose, time, near)
+        };
+        for channel in channels {
+            let mut last = None;
+            for knot in before.keys.track(channel).map_or(&[][..], |track| track.knots()) {
+                let mut document = before.evaluate(knot.time);
+                document.skeleton_rig.targets[index] = convert(&document, knot.time, last);
+                if let Some(value) = channel.value(&document) {
+                    last = Some(value);
+                    self.keys.insert(channel, knot.time, value);
+                }
+            }
+        }
+        self.skeleton_rig.targets[index] = convert(&before, time, None);
+    }
+
+    /// Moves the targets and poles that are on joints which `remap` removes to the world, where they
+    /// are at time 0.
+    pub(super) fn release_targets(&mut self, remap: &JointRemap) {
+        let is_removed =
+            |space: TargetSpace| space.joint().is_some_and(|it| remap.get(it).is_none());
+        for target in self.skeleton_rig.targets.clone() {
+            if is_removed(target.space) {
+                self.set_target_space(target.joint, TargetSpace::World, 0.0);
+            }
+            if target.limb().is_some_and(|limb| is_removed(limb.pole_space)) {
+                self.set_pole_space(target.joint, TargetSpace::World, 0.0);
+            }
+        }
+    }
+}
