@@ -99,6 +99,8 @@ examples! {
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
     RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
     SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
+    MatchTargetToFk: [EditAction::MatchTargetToFk(JointId::new(AIMED))];
+    MatchFkToPose: [EditAction::MatchFkToPose(JointId::new(AIMED))];
     SetTargetSpace: [EditAction::SetTargetSpace {
         joint: JointId::new(AIMED),
         space: TargetSpace::Joint(JointId::new(INNER)),
@@ -139,7 +141,11 @@ fn session() -> Session {
         EditAction::SetTwist(1.0),
         EditAction::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)),
         EditAction::ShowOverlay(Overlay::Axes, true),
-        EditAction::SetTarget(Target { kind: TargetKind::Limb(with_pole), ..target }),
+        EditAction::SetTarget(Target {
+            kind: TargetKind::Limb(with_pole),
+            influence: 1.0,
+            ..target
+        }),
         EditAction::StepSolver,
         EditAction::Key(vec![KEYED]),
     ] {

@@ -28,11 +28,10 @@ impl TargetSpace {
         joint.map_or(Affine3A::IDENTITY, |joint| pose.full_transform(joint))
     }
 
-    /// Rotation from this space to the world, for a pose of the skeleton: that of
-    /// [`TargetSpace::to_world`] without its scale.
+    /// Rotation from this space to the world, for a pose of the skeleton.
     pub fn rotation(self, pose: &Skeleton) -> Quat {
-        let (_, rotation, _) = self.to_world(pose).to_scale_rotation_translation();
-        if rotation.is_finite() { rotation.normalize() } else { Quat::IDENTITY }
+        let joint = self.joint().filter(|joint| pose.joint(*joint).is_some());
+        joint.map_or(Quat::IDENTITY, |joint| pose.rotation_in_world(joint).as_quat())
     }
 
     /// Point in this space that is at `point`, in the world. Where the space is singular (a scale of

@@ -91,6 +91,12 @@ impl Session {
             EditAction::AddTarget(joint) => self.add_target(joint),
             EditAction::RemoveTarget(joint) => self.remove_target(joint),
             EditAction::SetTarget(target) => self.set_target(target),
+            EditAction::MatchTargetToFk(joint) => {
+                self.match_target(joint, SkeletonRig::match_target_to_fk);
+            }
+            EditAction::MatchFkToPose(joint) => {
+                self.match_target(joint, SkeletonRig::match_fk_to_pose);
+            }
             EditAction::SetTargetSpace { joint, space } => {
                 self.convert_target(|document, time| document.set_target_space(joint, space, time));
             }

@@ -144,6 +144,11 @@ pub enum EditAction {
         /// The space.
         space: TargetSpace,
     },
+    /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation and the
+    /// elbow's side.
+    MatchTargetToFk(JointId),
+    /// Writes the shown pose to the FK angles of the joints that the target of a joint moves.
+    MatchFkToPose(JointId),
     /// Sets the solver and its options.
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.

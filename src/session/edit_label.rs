@@ -51,6 +51,8 @@ impl EditAction {
             Self::AddTarget(_) => "Add target",
             Self::RemoveTarget(_) => "Remove target",
             Self::SetTarget(_) => "Change target",
+            Self::MatchTargetToFk(_) => "Move target to FK",
+            Self::MatchFkToPose(_) => "Write pose to FK",
             Self::SetTargetSpace { .. } => "Change target space",
             Self::SetPoleSpace { .. } => "Change pole space",
             Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",

@@ -155,6 +155,20 @@ impl Session {
         });
     }
 
+    /// Matches the FK pose and a target, at the playhead.
+    pub(super) fn match_target(
+        &mut self,
+        joint: JointId,
+        matched: fn(&mut SkeletonRig, usize, f64),
+    ) {
+        let Some(index) = self.skeleton_rig().target(joint) else { return };
+        let time = self.time();
+        self.edit_skeleton(|rig| {
+            matched(rig, index, time);
+            Ok(())
+        });
+    }
+
     /// Converts a target and its keys, for the pose at the playhead.
     pub(super) fn convert_target(&mut self, convert: impl FnOnce(&mut Document, f64)) {
         let time = self.time();

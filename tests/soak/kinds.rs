@@ -119,6 +119,8 @@ kinds! {
         AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
         RemoveTarget: Solve 2, |v| EditAction::RemoveTarget(v.aimed());
         SetTarget: Solve 6, |v| EditAction::SetTarget(v.target());
+        MatchTargetToFk: Solve 2, |v| EditAction::MatchTargetToFk(v.aimed());
+        MatchFkToPose: Solve 2, |v| EditAction::MatchFkToPose(v.aimed());
         SetTargetSpace: Solve 2, |v| EditAction::SetTargetSpace { joint: v.aimed(), space: v.space() };
         SetPoleSpace: Solve 1, |v| EditAction::SetPoleSpace { joint: v.aimed(), space: v.space() };
         SetSolver: Solve 3, |v| EditAction::SetSolver(v.options());

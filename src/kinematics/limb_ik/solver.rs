@@ -91,7 +91,7 @@ pub enum LimbReach {
 /// such joints.
 pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option<LimbReport> {
     let fk = FkLimb::new(skeleton, limb)?;
-    let local = LocalTarget::new(skeleton, target)?;
+    let local = LocalTarget::new(skeleton, target, &fk)?;
     let solved = SolvedLimb::new(skeleton, limb, &fk, &local);
     if target.influence > 0.0 {
         solved.write(skeleton, limb, target.influence);
@@ -106,7 +106,7 @@ pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> O
     let fk = FkLimb::new(skeleton, limb)?;
     let aim = fk.aim();
     let target = LimbTarget { reference, ..LimbTarget::new(Vec3::ZERO) };
-    let local = LocalTarget::new(skeleton, &target)?;
+    let local = LocalTarget::new(skeleton, &target, &fk)?;
     Some(aim.twist_from(local.aim(&fk, aim.pointer)) as f32)
 }
 
@@ -121,14 +121,19 @@ struct LocalTarget<'a> {
 }
 
 impl<'a> LocalTarget<'a> {
-    fn new(skeleton: &Skeleton, target: &'a LimbTarget) -> Option<Self> {
+    fn new(skeleton: &Skeleton, target: &'a LimbTarget, fk: &FkLimb) -> Option<Self> {
         let transform = skeleton.transform().as_daffine3();
         let to_skeleton = transform.inverse();
+        let in_world = |point: DVec3| transform.transform_point3(point);
         let pole = match target.reference {
             ElbowReference::Pole(pole) => to_skeleton.transform_point3(pole.as_dvec3()),
             _ => DVec3::ZERO,
         };
-        let point = to_skeleton.transform_point3(target.point.as_dvec3());
+        let is_fk_tip = is_rounded([fk.tip(), fk.base].map(in_world), target.point);
+        let point = match is_fk_tip {
+            true => fk.tip(),
+            false => to_skeleton.transform_point3(target.point.as_dvec3()),
+        };
         let (_, turned, _) = transform.to_scale_rotation_translation();
         let hand = target.hand.map(|hand| (turned.inverse() * hand.as_dquat()).normalize());
         let is_valid = point.is_finite() && pole.is_finite();
@@ -155,6 +160,13 @@ impl<'a> LocalTarget<'a> {
             None => carried,
         }
     }
+}
+
+/// Whether a target is the tip of a limb, computed in f32. Rounding of a target would turn the elbow of
+/// a straight limb by its square root.
+fn is_rounded([tip, base]: [DVec3; 2], target: Vec3) -> bool {
+    const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+    tip.distance(target.as_dvec3()) <= ROUNDING * tip.abs().max(base.abs()).max_element()
 }
 
 /// A limb in the pose that the skeleton's angles give it.
@@ -189,6 +201,11 @@ impl FkLimb {
         let (bend, angle, free_angle) = bend_of(lower, mount);
         let base = above.point(upper.offset);
         Some(Self { above, base, upper_rotation, mount, bend, angle, free_angle })
+    }
+
+    /// Position of the tip in the FK pose, in skeleton space.
+    fn tip(&self) -> DVec3 {
+        self.base + self.upper_rotation * self.bend.tip(self.angle)
     }
 
     /// The Pointer and elbow of the FK pose, in skeleton space.

@@ -1,4 +1,4 @@
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DMat3, DQuat, Vec3};
 
 use super::{Joint, JointId, Skeleton, SkeletonPose};
 
@@ -43,6 +43,21 @@ impl Skeleton {
     /// If there is no such joint.
     pub fn tip(&self, joint: JointId) -> Vec3 {
         self.full_transform(joint).transform_point3(self[joint].axis)
+    }
+
+    /// Rotation of the joint's own space in the world: that of the skeleton's transform, without its
+    /// scale, times those of the joints down to this one.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn rotation_in_world(&self, joint: JointId) -> DQuat {
+        let (_, rotation, _) = self.transform.as_daffine3().to_scale_rotation_translation();
+        let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
+        let joints: Vec<_> = self.ancestors(joint).collect();
+        let below = joints.into_iter().rev().map(|it| self[it].rotation_f64(self[it].rotation));
+        let below = below.fold(DMat3::IDENTITY, |above, local| above * local);
+        (rotation * DQuat::from_mat3(&below)).normalize()
     }
 
     /// Transforms of all joints in the world.

@@ -1,0 +1,47 @@
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetKind};
+use crate::kinematics::chain_ik::Root;
+use crate::kinematics::limb_ik::Limb;
+use crate::kinematics::skeleton::{JointId, Skeleton};
+
+/// The joints that a target turns.
+pub(super) struct MovedJoints {
+    pub turned: Vec<JointId>,
+    /// The upper joint of a limb.
+    upper: Option<JointId>,
+}
+
+impl MovedJoints {
+    pub fn new(rig: &SkeletonRig, target: &Target) -> Self {
+        let skeleton = &*rig.skeleton;
+        let is_free = rig.solver.root == Root::Free;
+        let can_turn = |joint: &JointId| {
+            let joint = &skeleton[*joint];
+            !joint.locked || (is_free && joint.parent.is_none())
+        };
+        match target.kind {
+            TargetKind::WholeBody => Self {
+                turned: skeleton.ancestors(target.joint).filter(can_turn).collect(),
+                upper: None,
+            },
+            TargetKind::Limb(_) => match Limb::ending_at(skeleton, target.joint) {
+                Ok(limb) => Self { turned: limb.joints().collect(), upper: Some(limb.upper) },
+                Err(_) => Self { turned: Vec::new(), upper: None },
+            },
+        }
+    }
+
+    /// Whether the target moves `joint`: turns it or a joint above it.
+    pub fn moves(&self, skeleton: &Skeleton, joint: JointId) -> bool {
+        skeleton.ancestors(joint).any(|above| self.turned.contains(&above))
+    }
+
+    /// Whether `target`, which moves these joints, must be solved after a target that moves the joints
+    /// of `other`: because it is on one of them, or because its limb is attached to one.
+    pub fn depends_on(&self, rig: &SkeletonRig, target: &Target, other: &Self) -> bool {
+        let skeleton = &*rig.skeleton;
+        let base = self.upper.and_then(|upper| skeleton[upper].parent);
+        let spaces = target.spaces().filter_map(|space| space.joint());
+        spaces.chain(base).any(|joint| other.moves(skeleton, joint))
+    }
+}
