@@ -427,10 +427,19 @@ fn degenerate_limbs_and_targets_give_finite_poses() {
 #[test]
 fn limbs_are_found_by_their_ends() {
     let mut random = Random(26);
-    let (skeleton, limb) = leg(&mut random);
+    let (mut skeleton, limb) = leg(&mut random);
     assert_eq!(limb.upper, HIP);
-    assert_eq!(limb.hand, skeleton.find("foot"));
-    assert_eq!(Limb::for_end(&skeleton, limb.hand.expect("a foot")), Some(limb));
+    let foot = skeleton.find("foot").expect("a foot");
+    assert_eq!(limb.hand, Some(foot));
+    assert_eq!(Limb::for_end(&skeleton, foot), None, "a chain that is no limb of a body");
+    let spine = skeleton.add(Joint::new("spine", Some(PELVIS), Vec3::Y)).expect("a joint");
+    assert_eq!(Limb::for_end(&skeleton, foot), Some(limb));
+    assert_eq!(Limb::for_end(&skeleton, spine), None);
+    let mut chain = Skeleton::with_root("root");
+    let upper = chain.add(Joint::new("upper", Some(JointId::new(0)), Vec3::X)).expect("a joint");
+    let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(upper), Vec3::X) };
+    let lower = chain.add(lower).expect("a joint");
+    assert_eq!(Limb::for_end(&chain, lower), Some(Limb { upper, lower, hand: None }));
     let no_limb = |joint| Limb::ending_at(&skeleton, joint).expect_err("no limb").to_string();
     assert_eq!(no_limb(JointId::new(0)), "it has no bone");
     assert_eq!(no_limb(PELVIS), "no joint above it can turn it");

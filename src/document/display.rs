@@ -48,6 +48,8 @@ pub enum Overlay {
     TwistReferences,
     /// The hand of the arm, and stripes along its forearm.
     Hand,
+    /// The skeleton's FK pose, beside the pose that the targets give it.
+    FkPose,
 }
 
 impl Overlay {
@@ -70,6 +72,7 @@ impl Overlay {
             Self::SingularityGlobe => "singularity_globe",
             Self::TwistReferences => "twist_references",
             Self::Hand => "hand",
+            Self::FkPose => "fk_pose",
         }
     }
 
@@ -81,7 +84,7 @@ impl Overlay {
     /// All overlays, in the order in which panels list them.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_arm = Self::GUIDES.into_iter().chain(Self::ARM);
-        of_arm.chain(Self::MOTION).chain(Self::SURROUNDINGS)
+        of_arm.chain(Self::SKELETON).chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
     /// Guides of the arm: Cursor, Pointer and limits.
@@ -89,6 +92,9 @@ impl Overlay {
 
     /// Overlays of the arm besides [`Self::GUIDES`].
     pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];
+
+    /// Overlays of the skeleton alone.
+    pub const SKELETON: [Self; 1] = [Self::FkPose];
 
     /// Overlays that show motion over time.
     pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];

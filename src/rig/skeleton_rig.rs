@@ -1,9 +1,12 @@
 use glam::{Vec3, Vec3A};
 
 use super::follow_path::FollowPath;
-use super::target::Target;
+use super::limb_settings::LimbSettings;
+use super::moved_joints::MovedJoints;
+use super::target::{Target, TargetKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
+use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 
 /// The skeleton with its targets and the options of its solver.
@@ -17,8 +20,7 @@ pub struct SkeletonRig {
     pub solver: SolverOptions,
     /// Number of solver iterations per displayed frame during a solver run.
     pub iterations_per_frame: u32,
-    /// Path that the chain of the first root follows over time; with a path, the targets are not
-    /// solved for.
+    /// Path that the chain of the first root follows over time, instead of its own angles.
     pub follow_path: Option<FollowPath>,
 }
 
@@ -45,6 +47,57 @@ impl SkeletonRig {
     /// Index of a joint's target in [`Self::targets`]; `None` if the joint has none.
     pub fn target(&self, joint: JointId) -> Option<usize> {
         self.targets.iter().position(|target| target.joint == joint)
+    }
+
+    /// For each joint the greatest influence of the targets that turn it; 0 for a joint that has its FK
+    /// angles.
+    pub fn influences(&self) -> Vec<f32> {
+        let mut influences = vec![0.0_f32; self.skeleton.joints().len()];
+        for target in self.targets.iter().filter(|target| target.is_posing()) {
+            for joint in MovedJoints::new(self, target).turned {
+                let influence = &mut influences[joint.index()];
+                *influence = influence.max(target.influence);
+            }
+        }
+        influences
+    }
+
+    /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the
+    /// joint has its FK angles.
+    pub fn target_that_turns(&self, joint: JointId) -> Option<&Target> {
+        let turns = |target: &&Target| {
+            target.is_posing() && MovedJoints::new(self, target).turned.contains(&joint)
+        };
+        let posing = self.targets.iter().filter(turns);
+        posing.max_by(|one, other| one.influence.total_cmp(&other.influence))
+    }
+
+    /// The joint that a target is named after: the hand of its limb, or the joint whose tip it brings to
+    /// the target.
+    pub fn end_of(&self, target: &Target) -> JointId {
+        let limb = target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
+        limb.and_then(|limb| limb.hand).unwrap_or(target.joint)
+    }
+
+    /// Index in [`Self::targets`] of the target that a joint is posed by as an end: the joint's own, or
+    /// that of the limb whose hand it is.
+    pub fn target_of_end(&self, joint: JointId) -> Option<usize> {
+        let ends_at = |target: &Target| self.end_of(target) == joint;
+        self.target(joint).or_else(|| self.targets.iter().position(ends_at))
+    }
+
+    /// A target with full influence at the tip of a joint in a pose: for a hand or
+    /// foot, or the bone above it, of the limb of two bones that ends there; otherwise for the whole
+    /// body. `None` if the joint is missing or has a target.
+    pub fn new_target(&self, joint: JointId, pose: &Skeleton) -> Option<Target> {
+        self.skeleton.joint(joint)?;
+        let limb = Limb::for_end(&self.skeleton, joint);
+        let (joint, kind) = match limb {
+            Some(limb) => (limb.lower, TargetKind::Limb(LimbSettings::default())),
+            None => (joint, TargetKind::WholeBody),
+        };
+        let target = Target::new(joint, pose.tip(joint), self.default_path_radius());
+        self.target(joint).is_none().then_some(Target { kind, influence: 1.0, ..target })
     }
 
     /// The enabled targets at a time in seconds, for a solver; those on joints are where the FK pose

@@ -82,6 +82,11 @@ impl Target {
         self.enabled && self.influence > 0.0
     }
 
+    /// Whether the target poses the skeleton between its FK pose and the solved one.
+    pub fn is_blended(&self) -> bool {
+        self.is_posing() && self.influence < 1.0
+    }
+
     /// Whether the target moves over time without keys.
     pub fn is_moving(&self) -> bool {
         self.motion.path != TargetPath::Still

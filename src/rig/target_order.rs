@@ -43,6 +43,18 @@ pub enum TargetSpaceError {
     },
 }
 
+impl TargetSpaceError {
+    /// The reason without the names of the joints.
+    pub fn reason(&self) -> &'static str {
+        match self {
+            Self::NoJoint { .. } => "There is no such joint",
+            Self::Own { .. } => "The target moves this joint",
+            Self::WholeBody { .. } => "Another target moves this joint",
+            Self::Cycle { .. } => "A limb's target on this joint depends on this one",
+        }
+    }
+}
+
 impl SkeletonRig {
     /// Checks that each target can be evaluated after the joints that it is on.
     ///

@@ -213,6 +213,7 @@ impl Session {
         match grip {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
             Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
+            Grip::LimbPole(joint, handle) => self.grab_limb_pole(joint, handle, ray, forward),
             Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
             Grip::Pole(handle) => self.grab_pole(handle, ray, forward),

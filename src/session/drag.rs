@@ -20,6 +20,8 @@ pub enum Grip {
     Bend,
     /// The target of a joint.
     Target(JointId, PointHandle),
+    /// The pole of a limb's target, by the target's joint.
+    LimbPole(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
     /// The ring of a joint's angle about x, y or z (0, 1, 2).
@@ -34,6 +36,7 @@ impl Grip {
             | Self::Pole(handle)
             | Self::Root(handle)
             | Self::Target(_, handle)
+            | Self::LimbPole(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
             Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
             Self::Bend | Self::Twist => true,

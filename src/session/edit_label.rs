@@ -83,6 +83,7 @@ impl Grip {
             Self::Shoulder(_) => "Turn shoulder",
             Self::Bend => "Bend elbow",
             Self::Target(..) => "Move target",
+            Self::LimbPole(..) => "Move pole",
             Self::Tip(..) => "Pose joints",
             Self::Ring(..) => "Turn joint",
         }
@@ -104,6 +105,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Shadow => "Toggle shadow",
         Overlay::Trail => "Toggle motion trail",
         Overlay::OnionSkins => "Toggle onion skins",
+        Overlay::FkPose => "Toggle FK pose",
         Overlay::SingularityGlobe => "Toggle singularity globe",
         Overlay::TwistReferences => "Toggle references",
         Overlay::Hand => "Toggle hand",

@@ -56,6 +56,7 @@ mod solver_action;
 mod solver_run;
 mod solver_status;
 mod solvers;
+mod tip_drag;
 mod trail;
 mod transaction;
 mod transaction_action;

@@ -140,17 +140,12 @@ impl Session {
         });
     }
 
-    /// Adds a target at the tip of a joint that has none.
+    /// Adds a target for a joint that has none.
     pub(super) fn add_target(&mut self, joint: JointId) {
-        if joint.index() >= self.skeleton_pose().len()
-            || self.skeleton_rig().target(joint).is_some()
-        {
-            return;
-        }
-        let home = self.skeleton_pose().tip(joint);
-        let radius = self.skeleton_rig().default_path_radius();
+        let pose = &self.evaluated_skeleton().solved;
+        let Some(target) = self.skeleton_rig().new_target(joint, pose) else { return };
         self.edit_skeleton(|rig| {
-            rig.targets.push(Target::new(joint, home, radius));
+            rig.targets.push(target);
             Ok(())
         });
     }

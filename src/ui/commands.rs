@@ -64,8 +64,9 @@ pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
 /// selected.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
     let joint = session.selected()?;
-    Some(match session.skeleton_rig().target(joint) {
-        Some(_) => EditAction::RemoveTarget(joint),
+    let rig = session.skeleton_rig();
+    Some(match rig.target_of_end(joint) {
+        Some(target) => EditAction::RemoveTarget(rig.targets[target].joint),
         None => EditAction::AddTarget(joint),
     })
 }

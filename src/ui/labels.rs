@@ -68,6 +68,9 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         }
         (_, Overlay::InnerLimit) => ("Inner limit", "Show the sphere that the hand cannot enter"),
         (_, Overlay::OuterLimit) => ("Outer limit", "Show the sphere that the hand cannot leave"),
+        (_, Overlay::FkPose) => {
+            ("FK pose", "Show the pose of the joint angles alone; shown anyway while blended")
+        }
         (_, Overlay::Hand) => ("Hand", "Show the hand, and stripes for the forearm roll"),
         (_, Overlay::SingularityGlobe) => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")

@@ -11,7 +11,7 @@ use ik_arm::io::{Example, Group};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, PathDialog, SelectAction, ShellAction,
-    SolverAction, ViewAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -310,7 +310,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
 }
 
 #[test]
-fn a_moving_target_moves_during_playback_and_the_solver_follows() {
+fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
     bench.reveal(Role::ComboBox, "Motion");
@@ -322,19 +322,16 @@ fn a_moving_target_moves_during_playback_and_the_solver_follows() {
     let target = bench.session().skeleton_rig().targets[0];
     assert_eq!(target.motion.path, TargetPath::Circle);
     assert!(bench.session().is_playing(), "it goes at once");
-    bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(1.0);
     let time = bench.session().time();
     assert!(time > 0.8, "{time} s");
     let at = bench.session().skeleton_rig().targets[0].at(time);
     assert!(at.distance(target.home) > 0.1 * target.motion.radius);
     let tip = bench.session().skeleton_pose().tip(JointId::new(3));
-    assert!(tip.distance(at) < 0.2, "{tip} follows {at}");
-    assert!(bench.session().is_running(), "it goes on as long as the target does");
+    assert!(tip.distance(at) < 1e-3, "{tip} follows {at}");
     bench.key(Key::Space);
     bench.wait(1.0);
     assert!(!bench.session().is_playing());
-    bench.apply([SolverAction::Run(false)]);
     bench.settle();
 }
 

@@ -7,8 +7,8 @@ use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{
-    Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, SolverAction,
-    TransactionAction, ViewAction,
+    Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, bits};
@@ -256,23 +256,6 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
         assert!(tip(&bench, "c").distance(target) < 0.01, "the tip follows");
     }
     bench.release(LEFT);
-}
-
-#[test]
-fn a_target_that_is_not_followed_leaves_the_skeleton_until_the_solver_runs() {
-    let mut bench = bench();
-    let c = joint(&bench, "c");
-    bench.apply([Action::from(EditAction::AddTarget(c)), SolverAction::SetFollow(false).into()]);
-    let before = bench.session().skeleton().clone();
-    let start = tip_place(&bench, "c");
-    bench.drag_and_drop(LEFT, start, start + vec2(-60.0, 50.0));
-    assert_eq!(bench.session().skeleton(), &before);
-    bench.apply([SolverAction::Run(true)]);
-    bench.wait(2.0);
-    assert!(!bench.session().is_running(), "it stops at the target");
-    let report = bench.session().solver_run().expect("it ran").report();
-    assert!(report.converged() && report.iterations > 0, "{report:?}");
-    bench.settle();
 }
 
 #[test]

@@ -55,25 +55,27 @@ impl Limb {
         Err(NoLimb::NoUpperJoint)
     }
 
-    /// The limb that a target for the tip of `joint` or for its base would pose: the one that ends at
-    /// the base of `joint`, a hand or foot, or else the one that ends at its tip. `None` unless
-    /// the joint ends an unbranched chain of two to four bones: a longer chain is better posed
-    /// as a whole.
+    /// The limb that `joint`, the last of an unbranched chain, ends, for a target of that joint.
+    ///
+    /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body, `joint`
+    /// is the hand or foot, and the limb ends at its base. Any other chain is better posed as a
+    /// whole: `None`.
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
-        const LONGEST: usize = 4;
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
         let is_end = skeleton.children(joint).next().is_none();
-        let above = skeleton.ancestors(joint).skip(1).take_while(is_single);
-        let bones = 1 + above.filter(has_bone).count();
-        if !is_end || bones > LONGEST {
-            return None;
+        let above = || skeleton.ancestors(joint).skip(1);
+        let is_on_body = above().any(|joint| !is_single(&joint));
+        let bones =
+            usize::from(has_bone(&joint)) + above().take_while(is_single).filter(has_bone).count();
+        let parent = skeleton[joint].parent?;
+        match bones {
+            _ if !is_end => None,
+            2 => Self::ending_at(skeleton, joint).ok(),
+            3 | 4 if is_on_body => Self::ending_at(skeleton, parent).ok(),
+            _ => None,
         }
-        let as_hand =
-            skeleton[joint].parent.and_then(|parent| Self::ending_at(skeleton, parent).ok());
-        as_hand
-            .filter(|limb| limb.hand == Some(joint))
-            .or_else(|| Self::ending_at(skeleton, joint).ok())
+        .filter(|limb| limb.lower == joint || limb.hand == Some(joint))
     }
 
     /// The joints that a solve turns.

@@ -9,6 +9,7 @@ mod references;
 mod scratch;
 mod shadow;
 mod skeleton;
+mod targets;
 
 use super::{Palette, Planes, Scene};
 use crate::document::{Document, Overlay, RigKind, Theme};

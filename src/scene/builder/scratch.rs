@@ -4,6 +4,7 @@ use crate::kinematics::skeleton::{JointId, SkeletonPose};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     pub pose: SkeletonPose,
+    pub fk_pose: SkeletonPose,
     /// Distance of each joint from its root along offsets, in skeleton space.
     pub distances: Vec<f32>,
     /// Number of bones above each joint, not counting bones of zero length.

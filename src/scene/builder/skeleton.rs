@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::scratch::Scratch;
 use super::shadow::above_ground;
+use super::targets;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
@@ -23,10 +24,8 @@ const TAPER: f32 = 0.6;
 const SLENDER: f32 = 4.0;
 /// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
 const GHOST: f32 = 0.45;
-/// Radius of a target's ball, as a fraction of the skeleton's reach.
-const TARGET_RADIUS: f32 = 0.014;
-/// Duration in seconds and number of segments of a target's trail.
-const TRAIL: (f64, usize) = (1.2, 48);
+/// Contrast of the FK pose with the background, from 0 to 1.
+const FK_CONTRAST: f32 = 0.35;
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
@@ -46,7 +45,7 @@ pub(super) fn add(
     display: Display,
     scratch: &mut Scratch,
 ) {
-    let Scratch { pose, distances, depths, are_leaves, labelled } = scratch;
+    let Scratch { pose, fk_pose, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
     let evaluated = match &overlays.evaluated {
         Some(evaluated) => evaluated.clone(),
@@ -65,15 +64,19 @@ pub(super) fn add(
             drawn.add_shadow(scene, joint);
         }
     }
+    if display.shows(Overlay::FkPose) || rig.targets.iter().any(Target::is_blended) {
+        evaluated.fk.write_pose(fk_pose);
+        drawn.add_fk_pose(scene, fk_pose);
+    }
     for ghost in &overlays.ghosts {
         let colour = scene.palette.method(ghost.method);
         DrawnSkeleton { pose: &ghost.pose, ..drawn }.add_ghost(scene, colour);
     }
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
-            drawn.add_target(scene, target, report.position);
+            drawn.add_target(scene, target, report);
             if target.enabled && target.is_moving() {
-                add_trail(scene, target, &evaluated.solved, overlays.time);
+                targets::add_trail(scene, target, &evaluated.solved, overlays.time);
             }
         }
     }
@@ -105,13 +108,13 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
 
 /// A posed skeleton with the sizes that its drawing depends on.
 #[derive(Clone, Copy)]
-struct DrawnSkeleton<'a> {
-    joints: &'a [Shared<Joint>],
-    pose: &'a SkeletonPose,
+pub(super) struct DrawnSkeleton<'a> {
+    pub joints: &'a [Shared<Joint>],
+    pub pose: &'a SkeletonPose,
     depths: &'a [usize],
     are_leaves: &'a [bool],
     /// Reach in world units.
-    reach: f32,
+    pub reach: f32,
     /// World units per unit of the skeleton.
     scale: f32,
 }
@@ -183,30 +186,29 @@ impl DrawnSkeleton<'_> {
         }
     }
 
+    /// Adds the bones that `fk`, the FK pose, has elsewhere.
+    fn add_fk_pose(&self, scene: &mut Scene, fk: &SkeletonPose) {
+        // Fraction of the reach.
+        const APART: f32 = 1e-3;
+        let colour = scene.palette.sky_top.mixed(scene.palette.joint, FK_CONTRAST);
+        for joint in fk.ids() {
+            let (base, tip) = (fk.base(joint), fk.tip(joint));
+            let apart =
+                base.distance(self.pose.base(joint)).max(tip.distance(self.pose.tip(joint)));
+            if apart > APART * self.reach {
+                let radius = self.radius(joint) * GHOST;
+                if base != tip {
+                    scene.add_solid(base, tip, radius, radius, colour);
+                }
+                scene.balls.push(Ball { centre: tip, radius, colour });
+            }
+        }
+    }
+
     fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
         let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
         let limb = Shadow { base, base_radius: radius, tip, tip_radius: self.tip_radius(joint) };
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
-    }
-
-    /// Adds a target as a ball. If the tip does not reach the target, adds a line
-    /// between the two, labelled with their distance.
-    fn add_target(&self, scene: &mut Scene, target: &Target, at: Vec3) {
-        let tip = self.pose.tip(target.joint);
-        let radius = TARGET_RADIUS * self.reach;
-        let (guide, accent) = (scene.palette.guide, scene.palette.accent);
-        let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
-        scene.guide_balls.push(Ball { centre: at, radius, colour });
-        if !target.enabled {
-            return;
-        }
-        let gap = tip.distance(at);
-        if gap > 1.5 * radius {
-            scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
-            let label = Label::new(at, radius, LabelSide::Above, accent);
-            let decimals = residual_decimals(self.reach);
-            scene.add_label(label, format_args!("{gap:.decimals$}"));
-        }
     }
 
     /// Adds the names of the selected joints and of the joint under the mouse.
@@ -221,26 +223,6 @@ impl DrawnSkeleton<'_> {
                 Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);
             scene.add_label(label, format_args!("{}", self.joints[joint.index()].name));
         }
-    }
-}
-
-/// Number of decimals of a labelled distance, for a skeleton of this reach.
-fn residual_decimals(reach: f32) -> usize {
-    (2.0 - reach.log10().floor()).clamp(0.0, 6.0) as usize
-}
-
-/// Adds the recent path of a moving target in its present space, fading out with age.
-fn add_trail(scene: &mut Scene, target: &Target, pose: &Skeleton, time: f64) {
-    let to_world = target.space.to_world(pose);
-    let (seconds, steps) = TRAIL;
-    let seconds = seconds.min(f64::from(target.motion.period));
-    let at = |step: usize| {
-        to_world.transform_point3(target.at(time - seconds * step as f64 / steps as f64))
-    };
-    let colour = scene.palette.accent;
-    for step in 0..steps {
-        let colour = colour.with_opacity(0.9 * (1.0 - step as f32 / steps as f32));
-        scene.lines.push(Line { from: at(step), to: at(step + 1), colour, dashed: false });
     }
 }
 

@@ -28,8 +28,8 @@ const BONE_HIT: f32 = 8.0;
 pub(in crate::ui) struct SkeletonGizmo {
     bones: Vec<ScreenBone>,
     targets: Vec<TargetMark>,
-    /// Translation handles of the selected joint's target.
-    handles: Option<(JointId, TranslateHandles)>,
+    /// Translation handles of the selected joint's target and its pole.
+    handles: Vec<TargetHandles>,
     rings: Vec<RotateRing>,
 }
 
@@ -40,6 +40,13 @@ struct ScreenBone {
     depth: f32,
     can_be_posed: bool,
     is_selected: bool,
+}
+
+/// Translation handles of a point, with the grip of each.
+struct TargetHandles {
+    joint: JointId,
+    grip: fn(JointId, PointHandle) -> Grip,
+    handles: TranslateHandles,
 }
 
 struct TargetMark {
@@ -61,9 +68,7 @@ impl SkeletonGizmo {
     /// The handle at a screen position; `None` if there is no handle. The handles of the selected
     /// joint's target come first, then targets, then tips, then rings.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
-        let of_handles = self.handles.as_ref().and_then(|(joint, handles)| {
-            handles.at(mouse).map(|handle| Grip::Target(*joint, handle))
-        });
+        let of_handles = self.handles.iter().find_map(|of| of.at(mouse));
         of_handles
             .or_else(|| self.target_at(mouse))
             .or_else(|| RotateRing::at(&self.rings, mouse).filter(|_| self.tip_at(mouse).is_none()))
@@ -131,16 +136,25 @@ impl SkeletonGizmo {
                 painter.circle_stroke(bone.tip, TIP, Stroke::new(2.0, bright(strong)));
             }
         }
-        if let Some((joint, handles)) = &self.handles {
-            let of_target = |grip: Option<Grip>| match grip {
-                Some(Grip::Target(of, handle)) if of == *joint => Some(handle),
-                _ => None,
-            };
-            let others_dragged = dragged.is_some() && of_target(dragged).is_none();
-            if !others_dragged {
-                handles.paint(painter, ui, of_target(pointed), of_target(dragged));
+        for of in &self.handles {
+            let own = |grip: Option<Grip>| grip.and_then(|grip| of.handle(grip));
+            if dragged.is_none() || own(dragged).is_some() {
+                of.handles.paint(painter, ui, own(pointed), own(dragged));
             }
         }
+    }
+}
+
+impl TargetHandles {
+    /// The grip at a screen position; `None` if there is none.
+    fn at(&self, mouse: Pos2) -> Option<Grip> {
+        self.handles.at(mouse).map(|handle| (self.grip)(self.joint, handle))
+    }
+
+    /// The handle of a grip; `None` if it belongs to another point.
+    fn handle(&self, grip: Grip) -> Option<PointHandle> {
+        let (Grip::Target(_, handle) | Grip::LimbPole(_, handle)) = grip else { return None };
+        ((self.grip)(self.joint, handle) == grip).then_some(handle)
     }
 }
 
@@ -172,10 +186,18 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
     session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
 }
 
-fn handles(screen: &ScreenProjection, session: &Session) -> Option<(JointId, TranslateHandles)> {
-    let joint = session.selected()?;
-    let report = session.target_report(joint)?;
-    Some((joint, TranslateHandles::new(screen, report.position, None)?))
+fn handles(screen: &ScreenProjection, session: &Session) -> Vec<TargetHandles> {
+    let rig = session.skeleton_rig();
+    let target = session.selected().and_then(|joint| rig.target_of_end(joint));
+    let Some(joint) = target.map(|index| rig.targets[index].joint) else { return Vec::new() };
+    let Some(report) = session.target_report(joint) else { return Vec::new() };
+    let points: [(fn(JointId, PointHandle) -> Grip, Option<Vec3>); 2] =
+        [(Grip::Target, Some(report.position)), (Grip::LimbPole, report.pole)];
+    let handles = |(grip, point): (fn(JointId, PointHandle) -> Grip, Option<Vec3>)| {
+        let handles = TranslateHandles::new(screen, point?, None)?;
+        Some(TargetHandles { joint, grip, handles })
+    };
+    points.into_iter().filter_map(handles).collect()
 }
 
 /// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.

@@ -6,11 +6,13 @@ mod error_label;
 mod field;
 pub(in crate::ui) mod format;
 mod icon_button;
+mod key_button;
 mod number;
 pub(in crate::ui) mod plot;
 mod point;
 mod section;
 mod slider;
+mod soft_reach_sliders;
 pub(in crate::ui) mod symbol;
 
 pub(in crate::ui) use angle_slider::{angle_slider, euler_sliders};
@@ -22,3 +24,4 @@ pub(in crate::ui) use number::DragNumber;
 pub(in crate::ui) use point::{AXES, PointSliders};
 pub(in crate::ui) use section::{folded_section, named_section, pair, section, section_with};
 pub(in crate::ui) use slider::Slider;
+pub(in crate::ui) use soft_reach_sliders::soft_reach_sliders;

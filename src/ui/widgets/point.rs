@@ -4,6 +4,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use super::slider::Slider;
+use crate::document::Channel;
 use crate::session::{Action, Actions, Session};
 use crate::ui::style;
 
@@ -23,6 +24,8 @@ pub(in crate::ui) struct PointSliders<'a> {
     pub tooltip: &'a str,
     /// Reason shown while the sliders are disabled; `None` enables the sliders.
     pub disabled: Option<&'a str>,
+    /// Channel that a diamond at the end of each row keys; `None` for no diamonds.
+    pub channel: Option<Channel>,
 }
 
 impl PointSliders<'_> {
@@ -46,6 +49,7 @@ impl PointSliders<'_> {
                 unit: "",
                 step: self.step,
                 disabled: self.disabled,
+                channel: self.channel,
             };
             slider.show(ui, session, actions, |coordinate| {
                 let mut moved = self.value;

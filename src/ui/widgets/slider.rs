@@ -6,8 +6,10 @@ use egui::{
 };
 
 use super::format;
+use super::key_button::KeyButton;
 use super::number::DragNumber;
 use super::symbol;
+use crate::document::Channel;
 use crate::session::{Action, Actions, Session, TransactionAction};
 use crate::ui::keyboard::focus;
 use crate::ui::style;
@@ -33,6 +35,8 @@ pub(in crate::ui) struct Slider<'a> {
     pub step: f32,
     /// Reason shown while the slider is disabled; `None` enables the slider.
     pub disabled: Option<&'a str>,
+    /// Channel that a diamond at the end of the row keys; `None` for no diamond.
+    pub channel: Option<Channel>,
 }
 
 const LABEL_WIDTH: f32 = 60.0;
@@ -84,6 +88,10 @@ impl Slider<'_> {
                 if rail.double_clicked() {
                     actions.push(set(self.default));
                 }
+                if let Some(channel) = self.channel {
+                    let button = KeyButton { channel, others: Vec::new() };
+                    button.show(ui, session, self.name, actions);
+                }
             });
         });
         if let Some(why) = self.disabled {
@@ -105,7 +113,9 @@ impl Slider<'_> {
     }
 
     fn rail(&self, ui: &mut Ui) -> Response {
-        let width = ui.available_width() - VALUE_WIDTH - ui.spacing().item_spacing.x;
+        let spacing = ui.spacing().item_spacing.x;
+        let diamond = self.channel.map_or(0.0, |_| KeyButton::WIDTH + spacing);
+        let width = ui.available_width() - VALUE_WIDTH - spacing - diamond;
         let size = vec2(width.max(40.0), HEIGHT);
         let (rect, mut response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::slider(true, f64::from(self.value), self.name));

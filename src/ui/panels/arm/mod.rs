@@ -54,6 +54,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: session.arm_unit(),
         tooltip: "Move the Cursor, the hand's target, relative to the Root",
         disabled,
+        channel: None,
     };
     match arm.cursor {
         Cursor::Root(_) => hand.show(ui, session, actions, EditAction::SetHand),
@@ -90,6 +91,7 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: session.arm_unit(),
         tooltip: "Move the Root, the shoulder, in world space",
         disabled: None,
+        channel: None,
     };
     root.show(ui, session, actions, EditAction::SetRoot);
 }

@@ -65,6 +65,7 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: session.arm_unit(),
         tooltip: "Move the Pole, the point that the elbow turns towards",
         disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
+        channel: None,
     };
     pole.show(ui, session, actions, EditAction::SetPole);
 }

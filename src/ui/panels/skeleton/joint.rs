@@ -5,6 +5,8 @@ use core::f32::consts::PI;
 use egui::{ComboBox, Ui};
 use glam::Vec3;
 
+use super::targets;
+use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
@@ -36,6 +38,12 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         Some(_) => session.evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,
     };
+    if let Some(target) = session.skeleton_rig().target_that_turns(index)
+        && let Some((_, end)) = targets::end(session.skeleton_rig(), target)
+    {
+        let how = if target.influence < 1.0 { "Blended with" } else { "Posed by" };
+        ui.weak(format!("{how} the target of {end}; below are the FK angles."));
+    }
     for (axis, label) in AXES.into_iter().enumerate() {
         let limit = joint.limits[axis];
         let is_stiff = limit.is_some_and(|limit| limit.min == limit.max);
@@ -54,6 +62,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
             unit: "°",
             step: 1.0,
             disabled: follows_path.or(is_stiff.then_some(STIFF)),
+            channel: Some(Channel::Rotation(index)),
         };
         slider.show(ui, session, actions, |degrees| {
             let mut rotation = joint.rotation;

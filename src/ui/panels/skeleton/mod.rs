@@ -1,5 +1,6 @@
 //! The joints, targets and path of the skeleton.
 
+mod choice;
 mod follow_path;
 mod joint;
 mod outliner;
@@ -9,6 +10,7 @@ use crate::ui::widgets::{self, AXES, PointSliders};
 use egui::Ui;
 use glam::Vec3;
 
+use crate::document::Channel;
 use crate::session::{Actions, EditAction, Session};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -19,9 +21,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     {
         let title = format!("Joint: {}", joint.name);
         widgets::named_section(ui, "joint", &title, |ui| joint::ui(ui, session, selected, actions));
-        if let Some(target) = rig.target(selected) {
-            let title = format!("Target of {}", joint.name);
-            let target = rig.targets[target];
+        if let Some(target) = rig.target_of_end(selected).map(|index| rig.targets[index])
+            && let Some((_, end)) = targets::end(rig, &target)
+        {
+            let title = format!("Target of {end}");
             widgets::named_section(ui, "target", &title, |ui| {
                 targets::selected(ui, session, target, actions);
             });
@@ -43,6 +46,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the skeleton in world space; targets stay",
         disabled: None,
+        channel: Some(Channel::Translation),
     };
     place.show(ui, session, actions, EditAction::SetTranslation);
 }

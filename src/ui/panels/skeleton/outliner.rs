@@ -29,6 +29,10 @@ struct OutlinerFocus(bool);
 struct OutlinerRow {
     joint: JointId,
     depth: usize,
+    /// Influence of the targets that turn the joint.
+    influence: f32,
+    /// Whether the target that ends here is enabled; `None` without a target.
+    target: Option<bool>,
 }
 
 fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -68,14 +72,20 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
     for (joint, it) in skeleton.iter().rev() {
         match it.parent {
             Some(parent) => children[parent.index()].push(joint),
-            None => open.push(OutlinerRow { joint, depth: 0 }),
+            None => open.push((joint, 0)),
         }
     }
+    let rig = session.skeleton_rig();
+    let influences = rig.influences();
+    let mut targets = vec![None; children.len()];
+    for target in &rig.targets {
+        targets[rig.end_of(target).index()] = Some(target.enabled);
+    }
     let mut rows = Vec::with_capacity(children.len());
-    while let Some(row) = open.pop() {
-        let depth = row.depth + 1;
-        open.extend(children[row.joint.index()].iter().map(|&joint| OutlinerRow { joint, depth }));
-        rows.push(row);
+    while let Some((joint, depth)) = open.pop() {
+        open.extend(children[joint.index()].iter().map(|&child| (child, depth + 1)));
+        let (influence, target) = (influences[joint.index()], targets[joint.index()]);
+        rows.push(OutlinerRow { joint, depth, influence, target });
     }
     rows
 }
@@ -90,7 +100,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         let white = egui::Color32::WHITE;
         fonts.layout_no_wrap(joint.name.clone(), font.clone(), white).size().x
     });
-    let marks = if rig.target(row.joint).is_some() { 44.0 } else { 24.0 };
+    let marks = if row.target.is_some() { 44.0 } else { 24.0 };
     let size = vec2(ui.available_width().max(indent + width + marks), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| {
@@ -117,12 +127,14 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     }
     let at = pos2(rect.left() + indent + 8.0, rect.center().y);
     let palette = style::palette(ui);
-    let dot = if joint.locked { palette.joint } else { palette.upper };
+    let dot = match joint.locked {
+        true => palette.joint,
+        false => palette.upper.mixed(palette.accent, row.influence),
+    };
     painter.circle_filled(at, 3.0, style::colour(dot));
     let text = if selected { visuals.strong_text_color() } else { visuals.text_color() };
     painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
-    if let Some(target) = rig.target(row.joint) {
-        let enabled = rig.targets[target].enabled;
+    if let Some(enabled) = row.target {
         let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
         let centre = pos2(rect.left() + indent + width + 30.0, rect.center().y);
         painter.circle_stroke(centre, 4.5, (1.5, colour));
@@ -133,7 +145,10 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     if joint.locked {
         said.push("locked".to_owned());
     }
-    if rig.target(row.joint).is_some() {
+    if row.influence > 0.0 {
+        said.push("posed by a target".to_owned());
+    }
+    if row.target.is_some() {
         said.push("has a target".to_owned());
     }
     response.on_hover_text(said.join(", "))
@@ -229,7 +244,8 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selected();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    let has_target = selected.is_some_and(|joint| session.skeleton_rig().target(joint).is_some());
+    let has_target =
+        selected.is_some_and(|joint| session.skeleton_rig().target_of_end(joint).is_some());
     let (name, tooltip) = match has_target {
         true => ("Remove target", "Remove the target of the selected joint (T)"),
         false => ("Add target", "Add a target for the selected joint's tip (T)"),

@@ -1,0 +1,119 @@
+use glam::Vec3;
+
+use super::session::Session;
+use crate::document::{SkeletonRig, Target};
+use crate::kinematics::angle;
+use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
+use crate::kinematics::limb_ik::Limb;
+use crate::kinematics::skeleton::{JointId, Skeleton};
+
+/// Maximum number of iterations per frame of a drag.
+const ITERATIONS: u32 = 64;
+
+/// Drags of the tips of bones. All start from the state at the press; targets stay in force.
+impl Session {
+    /// Moves the tip of `joint` by `moved` since the press, to `to`, both in the world:
+    ///
+    /// - a root without a bone moves;
+    /// - a tip with a target moves the target;
+    /// - an elbow that a limb's target poses turns the limb's twist;
+    /// - any other tip is solved for by the FK angles of the joints that no target poses alone.
+    pub(super) fn drag_tip(&mut self, joint: JointId, to: Vec3, moved: Vec3) {
+        if !self.is_editing() {
+            return;
+        }
+        let before = self.editing.shown_before().skeleton_rig.clone();
+        let Some(dragged) = before.skeleton.joint(joint) else { return };
+        if dragged.parent.is_none() && dragged.axis == Vec3::ZERO {
+            let (transform, offset) = (before.skeleton.transform(), dragged.offset);
+            let moved = transform.inverse().transform_vector3(moved);
+            return self.change_joint(joint, |joint| joint.offset = offset + moved);
+        }
+        let target = before.target_that_turns(joint).filter(|it| it.influence >= 1.0).copied();
+        match target {
+            Some(target) if target.joint == joint => {
+                let pose = before.skeleton_at(self.time());
+                self.set_target(target.placed(&pose, self.time(), to));
+            }
+            Some(target) if is_elbow(&before.skeleton, &target, joint) => {
+                self.drag_elbow(&before, target, moved);
+            }
+            _ => self.drag_fk(before, joint, moved),
+        }
+    }
+
+    /// Turns a limb about the line from its base to its tip, as far as the elbow moves around it.
+    fn drag_elbow(&mut self, before: &SkeletonRig, mut target: Target, moved: Vec3) {
+        let pose = before.skeleton_at(self.time());
+        let Ok(limb) = Limb::ending_at(&pose, target.joint) else { return };
+        let to_skeleton = pose.transform().inverse();
+        let [base, elbow, tip, to] = [
+            pose.base(limb.upper),
+            pose.base(limb.lower),
+            pose.tip(limb.lower),
+            pose.base(limb.lower) + moved,
+        ]
+        .map(|point| to_skeleton.transform_point3(point));
+        let Some(axis) = (tip - base).try_normalize() else { return };
+        let [from, to] = [elbow, to].map(|elbow| (elbow - base).reject_from_normalized(axis));
+        let turned = axis.dot(from.cross(to)).atan2(from.dot(to));
+        if let Some(limb) = target.limb_mut().filter(|_| turned.is_finite()) {
+            limb.twist = angle::nearest(limb.twist + turned, limb.twist);
+            self.set_target(target);
+        }
+    }
+
+    /// Solves for the tip of `joint` and writes the angles of the joints that no target poses alone.
+    fn drag_fk(&mut self, before: SkeletonRig, joint: JointId, moved: Vec3) {
+        let start = fk_start(&before, self.time());
+        let chain = before.skeleton.ancestors(joint);
+        let is_free = |joint: JointId| !start[joint].locked;
+        if !chain.into_iter().any(is_free) {
+            return self.say("A target poses this bone; drag the target instead");
+        }
+        let target = TipTarget { joint, point: start.tip(joint) + moved, weight: 1.0 };
+        let method = match before.solver.method {
+            Method::TwoBone => Method::Fabrik,
+            method => method,
+        };
+        let options = SolverOptions { method, iterations: Some(ITERATIONS), ..before.solver };
+        self.edit_document(|document| {
+            let mut solved = start.clone();
+            chain_ik::solve(&mut solved, &[target], &options)?;
+            let mut skeleton = Skeleton::clone(&before.skeleton);
+            for joint in start.ids() {
+                let after = &solved[joint];
+                if *after != start[joint] {
+                    skeleton.write_local(joint, |joint| {
+                        (joint.rotation, joint.offset) = (after.rotation, after.offset);
+                    });
+                }
+            }
+            *document.skeleton_mut() = skeleton;
+            Ok::<_, SolveError>(())
+        });
+    }
+}
+
+/// The pose from which a drag solves for FK angles: that of FK and of the targets with full influence,
+/// with the joints that such a target turns locked.
+fn fk_start(rig: &SkeletonRig, time: f64) -> Skeleton {
+    let mut full = rig.clone();
+    full.targets.retain(|target| target.influence >= 1.0);
+    let mut pose = Skeleton::clone(&full.skeleton_at(time));
+    for (joint, influence) in rig.skeleton.ids().zip(full.influences()) {
+        if influence > 0.0 {
+            pose.write_local(joint, |joint| joint.locked = true);
+        }
+    }
+    pose
+}
+
+/// Whether the tip of `joint` is the elbow of a target's limb.
+fn is_elbow(skeleton: &Skeleton, target: &Target, joint: JointId) -> bool {
+    target.limb().is_some()
+        && Limb::ending_at(skeleton, target.joint).is_ok_and(|limb| limb.upper == joint)
+        && skeleton[target.joint].parent == Some(joint)
+        && skeleton[target.joint].offset.distance(skeleton[joint].axis)
+            <= 1e-4 * skeleton[joint].axis.length()
+}

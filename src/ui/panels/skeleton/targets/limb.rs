@@ -1,0 +1,169 @@
+//! Settings of a limb's target: elbow, hand and soft limits.
+
+use core::mem::discriminant;
+
+use egui::Ui;
+use glam::Vec3;
+
+use super::super::choice::Choice;
+use super::space;
+use crate::document::{Channel, Target};
+use crate::kinematics::limb_ik::{ElbowReference, Limb};
+use crate::kinematics::twist::Stereographic;
+use crate::rig::{LimbSettings, TargetKind};
+use crate::session::{Actions, EditAction, Session};
+use crate::ui::widgets::{self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders};
+
+const NO_HAND: &str = "There is no hand or foot: no single joint is at the tip";
+
+pub(super) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    target: Target,
+    settings: LimbSettings,
+    actions: &mut Actions,
+) {
+    let set =
+        |settings| EditAction::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
+    reference(ui, session, &target, settings, actions, &set);
+    let twist = Slider {
+        label: "Twist",
+        channel: Some(Channel::TargetTwist(target.joint)),
+        ..angle_slider(
+            "Limb twist",
+            "Turn the elbow or knee about the line to the target",
+            settings.twist,
+        )
+    };
+    twist.show(ui, session, actions, |degrees| {
+        set(LimbSettings { twist: degrees.to_radians(), ..settings })
+    });
+    pole(ui, session, &target, settings, actions, &set);
+    hand(ui, session, &target, settings, actions, &set);
+    widgets::folded_section(ui, "Soft limits of the limb", |ui| {
+        soft_reach_sliders(ui, session, "Limb ", settings.soft_reach, actions, |soft_reach| {
+            set(LimbSettings { soft_reach, ..settings })
+        });
+    });
+}
+
+fn reference(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    settings: LimbSettings,
+    actions: &mut Actions,
+    set: &impl Fn(LimbSettings) -> EditAction,
+) {
+    let pole = ElbowReference::Pole(new_pole(session, target, settings));
+    let map = ElbowReference::Stereographic(Stereographic::default());
+    let references = [
+        (ElbowReference::Fk, "FK", "Keep the side that the joint angles give"),
+        (ElbowReference::Limb, "Up", "Measure from up"),
+        (pole, "Pole", "Measure from the direction to a point"),
+        (map, "Stereographic", "Measure from a stereographic map"),
+    ];
+    let is_now =
+        |reference: &ElbowReference| discriminant(reference) == discriminant(&settings.reference);
+    let shown = references.iter().find(|(reference, ..)| is_now(reference)).map_or("", |it| it.1);
+    let choice = Choice {
+        label: "Elbow from",
+        name: "Elbow reference",
+        tooltip: "Choose the direction of the elbow or knee at twist 0",
+        shown,
+    };
+    choice.show(ui, |list| {
+        for (reference, name, tooltip) in references {
+            if list.item(is_now(&reference), name, tooltip, None) {
+                actions.push(set(LimbSettings { reference, ..settings }));
+            }
+        }
+    });
+}
+
+/// A pole in front of the elbow as it is posed, in the pole's space.
+fn new_pole(session: &Session, target: &Target, settings: LimbSettings) -> Vec3 {
+    let pose = &session.evaluated_skeleton().solved;
+    let Ok(limb) = Limb::ending_at(pose, target.joint) else { return target.home };
+    let (base, elbow, tip) = (pose.base(limb.upper), pose.base(limb.lower), pose.tip(limb.lower));
+    let line = (tip - base).normalize_or_zero();
+    let out = (elbow - base).reject_from(line).normalize_or(line.any_orthonormal_vector());
+    let pole = elbow + out * base.distance(elbow);
+    settings.pole_space.point_from_world(pose, pole)
+}
+
+fn pole(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    settings: LimbSettings,
+    actions: &mut Actions,
+    set: &impl Fn(LimbSettings) -> EditAction,
+) {
+    let Some((now, pole)) = settings.pole() else { return };
+    let sliders = PointSliders {
+        name: "Limb pole",
+        labels: ["Pole x", "Pole y", "Pole z"],
+        value: pole,
+        default: new_pole(session, target, settings),
+        range: 1.5 * session.skeleton_rig().reach(),
+        step: session.shown().grid_cell() * 0.1,
+        tooltip: "Move the pole",
+        disabled: None,
+        channel: Some(Channel::TargetPole(target.joint)),
+    };
+    sliders.show(ui, session, actions, |pole| {
+        set(LimbSettings { reference: ElbowReference::Pole(pole), ..settings })
+    });
+    space::of_pole(ui, session, target, now, actions);
+}
+
+/// Shows whether the hand or foot follows the lower bone or keeps its orientation, and its angles.
+fn hand(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    settings: LimbSettings,
+    actions: &mut Actions,
+    set: &impl Fn(LimbSettings) -> EditAction,
+) {
+    let pose = &session.evaluated_skeleton().solved;
+    let hand = Limb::ending_at(pose, target.joint).ok().and_then(|limb| limb.hand);
+    let row = ui.add_enabled_ui(hand.is_some(), |ui| {
+        ui.horizontal(|ui| {
+            let now = settings.orientation;
+            let tooltip = "Turn the hand or foot with the bone above it";
+            if ui.radio(now.is_none(), "Follow").on_hover_text(tooltip).clicked() {
+                actions.push(set(LimbSettings { orientation: None, ..settings }));
+            }
+            let tooltip = "Keep the orientation of the hand or foot in the target's space";
+            if ui.radio(now.is_some(), "Keep orientation").on_hover_text(tooltip).clicked()
+                && now.is_none()
+                && let Some(hand) = hand
+            {
+                let rotation = pose.rotation_in_world(hand).as_quat();
+                let angles = target.space.angles_from_world(pose, rotation, Vec3::ZERO);
+                actions.push(set(LimbSettings { orientation: Some(angles), ..settings }));
+            }
+        });
+    });
+    if hand.is_none() {
+        row.response.on_disabled_hover_text(NO_HAND);
+    }
+    let Some(angles) = settings.orientation else { return };
+    for (axis, label) in AXES.into_iter().enumerate() {
+        let name = format!("Target rotation {label}");
+        let tooltip = "Rotate the hand or foot in the target's space";
+        let slider = Slider {
+            label: ["Rotate x", "Rotate y", "Rotate z"][axis],
+            disabled: hand.is_none().then_some(NO_HAND),
+            channel: Some(Channel::TargetOrientation(target.joint)),
+            ..angle_slider(&name, tooltip, angles[axis])
+        };
+        slider.show(ui, session, actions, |degrees| {
+            let mut turned = angles;
+            turned[axis] = degrees.to_radians();
+            set(LimbSettings { orientation: Some(turned), ..settings })
+        });
+    }
+}

@@ -1,0 +1,162 @@
+//! The list of targets with their distances, and the target of the selected joint.
+
+mod kind;
+mod limb;
+mod motion;
+mod space;
+mod status;
+
+use egui::{RichText, Ui};
+
+use crate::document::{Channel, SkeletonRig, Target, TargetPath};
+use crate::rig::{TargetKind, TargetReport};
+use crate::session::{Actions, EditAction, SelectAction, Session};
+use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
+
+const FOLLOWS_PATH: &str = "Switch off Follow path to write joint angles";
+const NO_INFLUENCE: &str = "Enable the target and give it influence first";
+
+/// Shows the list of targets.
+pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    if rig.targets.is_empty() {
+        ui.weak("No targets. Select a joint and press T.");
+    }
+    for (target, report) in rig.targets.iter().zip(&session.evaluated_skeleton().targets) {
+        row(ui, session, target, report, actions);
+    }
+}
+
+fn row(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    report: &TargetReport,
+    actions: &mut Actions,
+) {
+    let Some((end, end_name)) = end(session.skeleton_rig(), target) else { return };
+    widgets::pair(ui, "", |ui| {
+        ui.label(RichText::new(format::short(report.error)).monospace())
+            .on_hover_text("Distance from tip to target");
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            let mut enabled = target.enabled;
+            let name = format!("Target of {end_name}");
+            let check = ui.checkbox(&mut enabled, "").on_hover_text("Enable this target");
+            ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
+            if check.changed() {
+                actions.push(EditAction::SetTarget(Target { enabled, ..*target }));
+            }
+            let selected = session.selected();
+            let is_selected = selected == Some(end) || selected == Some(target.joint);
+            let label = egui::Button::selectable(is_selected, end_name).truncate();
+            if ui.add(label).on_hover_text("Select the joint of this target").clicked() {
+                actions.push(SelectAction::Joints(vec![end]));
+            }
+        });
+    });
+}
+
+/// The joint that a target is named after, and its name: the hand of a limb, or the target's joint.
+pub(super) fn end<'a>(
+    rig: &'a SkeletonRig,
+    target: &Target,
+) -> Option<(crate::kinematics::skeleton::JointId, &'a str)> {
+    let joint = rig.end_of(target);
+    Some((joint, rig.skeleton.joint(joint)?.name.as_str()))
+}
+
+/// Shows the settings of a target.
+pub(in crate::ui) fn selected(
+    ui: &mut Ui,
+    session: &Session,
+    target: Target,
+    actions: &mut Actions,
+) {
+    let step = session.shown().grid_cell() * 0.1;
+    status::ui(ui, session, &target);
+    influence(ui, session, target, actions);
+    kind::ui(ui, session, target, actions);
+    place(ui, session, target, step, actions);
+    space::of_target(ui, session, &target, actions);
+    match target.kind {
+        TargetKind::Limb(settings) => limb::ui(ui, session, target, settings, actions),
+        TargetKind::WholeBody => weight(ui, session, target, actions),
+    }
+    motion::path(ui, target, actions);
+    if target.motion.path != TargetPath::Still {
+        motion::ui(ui, session, target, step, actions);
+    }
+    matches(ui, session, &target, actions);
+}
+
+fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    let slider = Slider {
+        name: "Target influence",
+        label: "Influence",
+        tooltip: "Blend from the FK pose (0) to the target (1)",
+        value: target.influence,
+        range: (0.0, 1.0),
+        default: 1.0,
+        step: 0.1,
+        channel: Some(Channel::TargetInfluence(target.joint)),
+        ..Slider::default()
+    };
+    slider.show(ui, session, actions, |influence| {
+        EditAction::SetTarget(Target { influence, ..target })
+    });
+}
+
+fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
+    let pose = &session.evaluated_skeleton().solved;
+    let tip = pose.tip(target.joint);
+    let place = PointSliders {
+        name: "Target",
+        labels: AXES,
+        value: target.home,
+        default: target.placed(pose, session.time(), tip).home,
+        range: 1.5 * session.skeleton_rig().reach(),
+        step,
+        tooltip: match target.space.joint() {
+            None => "Move the target in world space",
+            Some(_) => "Move the target in the space of the joint that it is on",
+        },
+        disabled: None,
+        channel: Some(Channel::Target(target.joint)),
+    };
+    place.show(ui, session, actions, |home| EditAction::SetTarget(Target { home, ..target }));
+}
+
+fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    widgets::pair(ui, "Weight", |ui| {
+        let tooltip = "Weigh this target against the other whole-body targets";
+        let field = NumberField {
+            name: "Weight",
+            value: target.weight,
+            unit: "",
+            step: 0.1,
+            digits: 2,
+            tooltip,
+        };
+        field.show(ui, session, actions, |weight| {
+            EditAction::SetTarget(Target { weight, ..target })
+        });
+    });
+}
+
+/// Shows the buttons that match the target and the FK pose.
+fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+    ui.horizontal(|ui| {
+        let tooltip = "Move the target to where the joint angles alone put the tip";
+        if widgets::button(ui, "Target to FK", tooltip, None) {
+            actions.push(EditAction::MatchTargetToFk(target.joint));
+        }
+        let tooltip = "Write the shown pose to the joint angles; nothing moves";
+        let disabled = match session.skeleton_rig().follow_path {
+            Some(_) => Some(FOLLOWS_PATH),
+            None => (!target.is_posing()).then_some(NO_INFLUENCE),
+        };
+        if widgets::button(ui, "FK to pose", tooltip, disabled) {
+            actions.push(EditAction::MatchFkToPose(target.joint));
+        }
+    });
+}

@@ -1,0 +1,56 @@
+//! Whether a target is reached and, if not, why.
+
+use egui::{RichText, Ui};
+
+use crate::document::Target;
+use crate::kinematics::chain_ik::Status;
+use crate::kinematics::limb_ik::LimbReach;
+use crate::rig::{TargetOutcome, TargetReport};
+use crate::session::Session;
+use crate::ui::style;
+use crate::ui::widgets::format;
+
+pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target) {
+    let Some(report) = session.target_report(target.joint) else { return };
+    let text = text(session, target, report);
+    let is_reached = match &report.outcome {
+        TargetOutcome::Off => true,
+        TargetOutcome::WholeBody(report) => report.converged(),
+        TargetOutcome::Limb(limb) => limb.reach == LimbReach::Reached,
+        TargetOutcome::Refused(_) | TargetOutcome::NoLimb(_) => false,
+    };
+    let colour = if is_reached { ui.visuals().weak_text_color() } else { style::accent(ui) };
+    ui.label(RichText::new(text).color(colour));
+}
+
+fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
+    let gap = format::short(report.error);
+    let is_blended = target.influence < 1.0;
+    match &report.outcome {
+        TargetOutcome::Off if !target.enabled => "Disabled: the joint angles alone pose it".into(),
+        TargetOutcome::Off => "Influence 0: the joint angles alone pose it".into(),
+        TargetOutcome::WholeBody(_) | TargetOutcome::Limb(_) if is_blended => {
+            format!("Blended with the FK pose, {gap} from the target")
+        }
+        TargetOutcome::WholeBody(report) => match report.status {
+            Status::Converged => format!("Reached after {} iterations", report.iterations),
+            Status::Iterating | Status::Stalled | Status::OutOfIterations => {
+                format!("Not reached: {gap} away, {}", report.status)
+            }
+        },
+        TargetOutcome::Limb(limb) => match limb.reach {
+            LimbReach::Reached if limb.stretch > 1.0 => {
+                format!("Reached, stretched to {:.0} %", 100.0 * limb.stretch)
+            }
+            LimbReach::Reached => "Reached".into(),
+            LimbReach::TooFar => format!("Too far away by {gap}"),
+            LimbReach::TooClose => format!("Too close by {gap}"),
+            LimbReach::Limited(joint) => {
+                let name = session.skeleton().joint(joint).map_or("", |joint| &joint.name);
+                format!("Not reached: {gap} away, at the limits of {name}")
+            }
+        },
+        TargetOutcome::Refused(error) => format!("Not solved: {error}"),
+        TargetOutcome::NoLimb(error) => format!("No limb: {error}"),
+    }
+}
