@@ -14,8 +14,10 @@
 //!
 //! If any link has limits, every link rotates as a whole on the outward pass, and limited links
 //! angle by angle within their limits. The inward pass ignores limits and may set destinations that
-//! the limits forbid, so that the points would oscillate. An iteration that does not lower the cost
-//! is therefore replaced by a sweep of cyclic coordinate descent.
+//! the limits forbid, so that the points oscillate or creep along a limit. Therefore passes that do
+//! not halve the cost are followed by a sweep of cyclic coordinate descent, and passes that do not
+//! lower it are undone before the sweep. The straight leg of the example figure reaches 1000 of 1000
+//! targets in this way; with a sweep only where the cost is not lowered, it reaches 992.
 //!
 //! A chain whose only target is out of reach is laid out straight towards the target.
 //!
@@ -75,8 +77,7 @@ pub(super) struct Fabrik {
     limited: bool,
     /// The configuration before the iteration; used if any link has limits.
     before: Configuration,
-    /// The sweep that replaces an iteration that did not lower the cost; used if any link has
-    /// limits.
+    /// The sweep after passes that did not lower the cost enough; used if any link has limits.
     ccd: Ccd,
     /// Goal of each point.
     destinations: Vec<Vec3A>,
@@ -133,12 +134,18 @@ impl Fabrik {
         if !self.limited {
             return self.reach(problem, config);
         }
+        // Fraction of the cost that passes may leave without a sweep.
+        const ENOUGH: f64 = 0.5;
         self.before.copy_from(config);
         self.reach(problem, config);
-        if config.cost(problem) >= self.before.cost(problem) {
-            config.copy_from(&self.before);
-            self.ccd.iterate(problem, config);
+        let left = config.cost(problem) / self.before.cost(problem);
+        if left <= ENOUGH {
+            return;
         }
+        if left >= 1.0 {
+            config.copy_from(&self.before);
+        }
+        self.ccd.iterate(problem, config);
     }
 
     /// Makes the inward and the outward pass.
