@@ -65,6 +65,15 @@ impl Keys {
         }
     }
 
+    /// Replaces all keys of a channel by those of a track.
+    pub(crate) fn set_track(&mut self, channel: Channel, track: Spline<Vec3>) {
+        if track.is_empty() {
+            self.clear(channel);
+        } else {
+            self.tracks.make_mut().insert(channel, Shared::from(track));
+        }
+    }
+
     /// Removes a key and returns its value; `None` if the channel has no key at that time.
     pub fn remove(&mut self, channel: Channel, time: f64) -> Option<Vec3> {
         let value = self.track(channel)?.get(time)?;
@@ -83,12 +92,8 @@ impl Keys {
             let Some(track) = self.track(channel) else { continue };
             let goes = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
             let left = track.knots().iter().filter(|knot| !goes(knot.time));
-            let left: Spline<Vec3> = left.copied().collect();
-            if left.is_empty() {
-                self.clear(channel);
-            } else {
-                self.tracks.make_mut().insert(channel, Shared::from(left));
-            }
+            let left = left.copied().collect();
+            self.set_track(channel, left);
         }
     }
 

@@ -10,6 +10,7 @@
 
 mod arm;
 mod arm_solve;
+mod bake;
 mod camera;
 mod channel;
 mod channel_name;
@@ -31,6 +32,7 @@ mod timeline;
 pub use crate::kinematics::twist::TwistReferenceKind;
 pub use crate::rig::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath};
 pub use arm::Arm;
+pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};
 pub use channel::{Channel, Quantity};
 pub use channel_name::UnknownChannel;

@@ -2,7 +2,7 @@ use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
 use super::{
     JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
-    nearest_angles,
+    equivalent_triples, nearest_angles,
 };
 
 /// A ball joint and its bone.
@@ -85,6 +85,14 @@ impl Joint {
     pub fn angles_of(&self, rotation: Mat3A) -> Vec3 {
         let frame = Mat3A::from(self.frame);
         nearest_angles(frame.transpose() * rotation * frame, self.rotation)
+    }
+
+    /// Of all angles equivalent to `angles` and within the limits, those nearest to `near`. Without
+    /// any, `angles`.
+    pub(crate) fn equivalent_angles(&self, angles: Vec3, near: Vec3) -> Vec3 {
+        let triples = equivalent_triples(angles, near).into_iter();
+        let mut within = triples.filter(|triple| self.clamped(*triple) == *triple);
+        within.next().unwrap_or(angles)
     }
 
     /// The Euler angles `rotation` clamped to the limits.

@@ -54,9 +54,15 @@ pub(crate) fn angle_triples(rotation: Mat3A, near: Vec3) -> [Vec3; 2] {
     // From R_z⁻¹ · R, where sine and cosine of x are never both small.
     let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
 
+    equivalent_triples(Vec3::new(x, y, z), near)
+}
+
+/// Both Euler triples of the rotation of `angles`, as [`angle_triples`] gives them.
+pub(crate) fn equivalent_triples(angles: Vec3, near: Vec3) -> [Vec3; 2] {
+    let Vec3 { x, y, z } = angles;
     let unwrapped =
         |angles: Vec3| Vec3::from_array(array::from_fn(|i| angle::nearest(angles[i], near[i])));
-    let one = unwrapped(Vec3::new(x, y, z));
+    let one = unwrapped(angles);
     let other = unwrapped(Vec3::new(x + PI, PI - y, z + PI));
     let is_nearer = one.distance_squared(near) <= other.distance_squared(near);
     if is_nearer { [one, other] } else { [other, one] }

@@ -80,7 +80,9 @@ impl Skeleton {
     }
 
     /// The indices of all joints, parents before children.
-    pub fn ids(&self) -> impl DoubleEndedIterator<Item = JointId> + ExactSizeIterator + use<> {
+    pub fn ids(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = JointId> + ExactSizeIterator + Clone + use<> {
         (0..self.joints.len()).map(JointId::new)
     }
 
