@@ -1,3 +1,5 @@
+use glam::Vec3;
+
 use super::baked::Baked;
 use super::error::BakeError;
 use super::motion::Motion;
@@ -93,10 +95,10 @@ fn baked(document: &Document, frames: &BakedFrames, motion: &Motion, tracks: &[T
         baked.keys.set_track(track.channel, track.spline.clone());
     }
     for target in motion.posed_targets() {
-        let channel = Channel::Enabled(target);
+        let channel = Channel::TargetInfluence(target);
         let mut track = frames.surroundings(document, channel);
         for frame in [0, frames.count() - 1] {
-            track.insert(frames.time(frame), glam::Vec3::ZERO);
+            track.insert(frames.time(frame), Vec3::ZERO);
         }
         baked.keys.set_track(channel, track);
     }

@@ -11,8 +11,8 @@ pub struct Baked {
     pub keys_at_frames: usize,
     /// Number of keys that are left.
     pub keys: usize,
-    /// Largest distance of a base or tip from its evaluated position at a frame, in the world;
-    /// without the tips of shortened bones.
+    /// Largest distance of a base or tip from its evaluated position at a frame, in the world. Tips
+    /// of shortened bones are compared at their own length.
     pub error: f32,
     /// Bones that targets stretch. They keep their own length in the baked document.
     pub shortened: Vec<ShortenedBone>,

@@ -74,8 +74,7 @@ impl<'a> Reduction<'a> {
             for track in 0..self.tracks.len() {
                 // Each round removes less than the one before, and the number of rounds is unknown.
                 let done = round as f32 + track as f32 / self.tracks.len() as f32;
-                go_on(1.0 - (-done).exp2())?;
-                self.reduce(track, most);
+                self.reduce(track, most, || go_on(1.0 - (-done).exp2()))?;
             }
             if self.keys() == before {
                 break;
@@ -97,17 +96,25 @@ impl<'a> Reduction<'a> {
     }
 
     /// Removes keys of one track while all bases and tips are within `most`, in the world. At least
-    /// one key is left.
-    fn reduce(&mut self, track: usize, most: f32) {
+    /// one key is left. `go_on` is called for each key.
+    fn reduce(
+        &mut self,
+        track: usize,
+        most: f32,
+        mut go_on: impl FnMut() -> Result<(), BakeError>,
+    ) -> Result<(), BakeError> {
         self.trial.start(self.motion, self.tracks[track].joint);
-        let mut left = std::mem::take(&mut self.tracks[track].frames);
-        let mut count = left.len();
-        left.retain(|frame| {
-            let is_removed = count > 1 && self.try_remove(track, *frame, most);
-            count -= usize::from(is_removed);
-            !is_removed
-        });
+        let before = std::mem::take(&mut self.tracks[track].frames);
+        let mut left = Vec::with_capacity(before.len());
+        for (index, frame) in before.iter().enumerate() {
+            go_on()?;
+            let is_last = left.is_empty() && index + 1 == before.len();
+            if is_last || !self.try_remove(track, *frame, most) {
+                left.push(*frame);
+            }
+        }
         self.tracks[track].frames = left;
+        Ok(())
     }
 
     /// Removes the key at a frame if all bases and tips stay within `most`, in the world. Returns
