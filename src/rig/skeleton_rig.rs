@@ -52,14 +52,21 @@ impl SkeletonRig {
     /// For each joint the greatest influence of the targets that turn it; 0 for a joint that has its FK
     /// angles.
     pub fn influences(&self) -> Vec<f32> {
-        let mut influences = vec![0.0_f32; self.skeleton.joints().len()];
+        let mut influences = Vec::new();
+        self.write_influences(&mut influences);
+        influences
+    }
+
+    /// Writes [`SkeletonRig::influences`] into a list, reusing its memory.
+    pub(crate) fn write_influences(&self, influences: &mut Vec<f32>) {
+        influences.clear();
+        influences.resize(self.skeleton.joints().len(), 0.0);
         for target in self.targets.iter().filter(|target| target.is_posing()) {
             for joint in MovedJoints::new(self, target).turned {
                 let influence = &mut influences[joint.index()];
                 *influence = influence.max(target.influence);
             }
         }
-        influences
     }
 
     /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the

@@ -45,7 +45,7 @@ pub(super) fn add(
     display: Display,
     scratch: &mut Scratch,
 ) {
-    let Scratch { pose, fk_pose, distances, depths, are_leaves, labelled } = scratch;
+    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
     let evaluated = match &overlays.evaluated {
         Some(evaluated) => evaluated.clone(),
@@ -64,9 +64,13 @@ pub(super) fn add(
             drawn.add_shadow(scene, joint);
         }
     }
-    if display.shows(Overlay::FkPose) || rig.targets.iter().any(Target::is_blended) {
+    let all = display.shows(Overlay::FkPose);
+    if all || rig.targets.iter().any(Target::is_blended) {
         evaluated.fk.write_pose(fk_pose);
-        drawn.add_fk_pose(scene, fk_pose);
+        rig.write_influences(influences);
+        let is_blended = |influence: f32| influence > 0.0 && influence < 1.0;
+        let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
+        drawn.add_fk_pose(scene, fk_pose, is_shown);
     }
     for ghost in &overlays.ghosts {
         let colour = scene.palette.method(ghost.method);
@@ -186,12 +190,17 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    /// Adds the bones that `fk`, the FK pose, has elsewhere.
-    fn add_fk_pose(&self, scene: &mut Scene, fk: &SkeletonPose) {
+    /// Adds the bones that `fk`, the FK pose, has elsewhere, for the joints that are to be shown.
+    fn add_fk_pose(
+        &self,
+        scene: &mut Scene,
+        fk: &SkeletonPose,
+        is_shown: impl Fn(JointId) -> bool,
+    ) {
         // Fraction of the reach.
         const APART: f32 = 1e-3;
         let colour = scene.palette.sky_top.mixed(scene.palette.joint, FK_CONTRAST);
-        for joint in fk.ids() {
+        for joint in fk.ids().filter(|joint| is_shown(*joint)) {
             let (base, tip) = (fk.base(joint), fk.tip(joint));
             let apart =
                 base.distance(self.pose.base(joint)).max(tip.distance(self.pose.tip(joint)));

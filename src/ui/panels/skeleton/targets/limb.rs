@@ -133,7 +133,7 @@ fn hand(
         ui.horizontal(|ui| {
             let now = settings.orientation;
             let tooltip = "Turn the hand or foot with the bone above it";
-            if ui.radio(now.is_none(), "Follow").on_hover_text(tooltip).clicked() {
+            if ui.radio(now.is_none(), "Follow bone").on_hover_text(tooltip).clicked() {
                 actions.push(set(LimbSettings { orientation: None, ..settings }));
             }
             let tooltip = "Keep the orientation of the hand or foot in the target's space";

@@ -15,6 +15,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target) {
     let text = text(session, target, report);
     let is_reached = match &report.outcome {
         TargetOutcome::Off => true,
+        _ if target.influence < 1.0 => true,
         TargetOutcome::WholeBody(report) => report.converged(),
         TargetOutcome::Limb(limb) => limb.reach == LimbReach::Reached,
         TargetOutcome::Refused(_) | TargetOutcome::NoLimb(_) => false,
