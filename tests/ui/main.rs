@@ -25,6 +25,7 @@ mod skeleton_panel;
 mod skeleton_view;
 mod sliders;
 mod statistics;
+mod targets;
 mod timeline;
 mod timeline_keys;
 mod timeline_looks;

@@ -1,6 +1,8 @@
+use core::f32::consts::FRAC_PI_2;
+
 use thiserror::Error;
 
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 /// Two bones of a skeleton that a target poses together, such as an arm or a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +61,7 @@ impl Limb {
     ///
     /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body, `joint`
     /// is the hand or foot, and the limb ends at its base. Any other chain is better posed as a
-    /// whole: `None`.
+    /// whole, and so is one whose lower joint cannot bend through a right angle, such as a neck: `None`.
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
@@ -76,6 +78,7 @@ impl Limb {
             _ => None,
         }
         .filter(|limb| limb.lower == joint || limb.hand == Some(joint))
+        .filter(|limb| can_bend(&skeleton[limb.lower]))
     }
 
     /// The joints that a solve turns.
@@ -91,6 +94,12 @@ fn hand(skeleton: &Skeleton, joint: JointId) -> Option<JointId> {
         |child: &JointId| skeleton[*child].offset.distance(axis) <= 1e-5 * axis.length();
     let mut children = skeleton.children(joint).filter(is_at_tip);
     children.next().filter(|_| children.next().is_none())
+}
+
+/// Whether limits let a joint turn through a right angle about one of its axes.
+fn can_bend(joint: &Joint) -> bool {
+    let range = |limit: &Option<Limit>| limit.map_or(f32::INFINITY, |it| it.max - it.min);
+    !joint.locked && joint.limits.iter().any(|limit| range(limit) >= FRAC_PI_2)
 }
 
 fn has_length(bone: glam::Vec3) -> bool {

@@ -1,0 +1,291 @@
+//! Targets that pose a figure: with the mouse, from the panel, and over time.
+
+use egui::PointerButton::Primary as LEFT;
+use egui::accesskit::Role;
+use egui::{Key, vec2};
+use glam::Vec3;
+use ik_arm::document::{Channel, Target};
+use ik_arm::io::Example;
+use ik_arm::kinematics::limb_ik::ElbowReference;
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::session::{
+    Action, EditAction, FileAction, PlaybackAction, SelectAction, TransactionAction,
+};
+
+use crate::bench::Bench;
+
+/// The Human without targets.
+fn figure() -> Bench {
+    let mut bench =
+        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    let targets = bench.session().skeleton_rig().targets.clone();
+    bench.apply(targets.into_iter().map(|target| EditAction::RemoveTarget(target.joint)));
+    bench
+}
+
+/// The Human with targets that were added to its hands and feet by T.
+fn with_targets() -> Bench {
+    let mut bench = figure();
+    for name in ["left_hand", "right_hand", "left_foot", "right_foot"] {
+        select(&mut bench, name);
+        bench.key(Key::T);
+        bench.settle();
+    }
+    bench
+}
+
+fn joint(bench: &Bench, name: &str) -> JointId {
+    bench.session().skeleton().find(name).expect("a joint")
+}
+
+fn select(bench: &mut Bench, name: &str) {
+    let joint = joint(bench, name);
+    bench.apply([SelectAction::Joints(vec![joint])]);
+}
+
+fn tip(bench: &Bench, name: &str) -> Vec3 {
+    bench.session().skeleton_pose().tip(joint(bench, name))
+}
+
+fn tips(bench: &Bench) -> Vec<Vec3> {
+    let pose = bench.session().skeleton_pose();
+    pose.ids().map(|joint| pose.tip(joint)).collect()
+}
+
+fn farthest(before: &[Vec3], after: &[Vec3]) -> f32 {
+    before.iter().zip(after).map(|(before, after)| before.distance(*after)).fold(0.0, f32::max)
+}
+
+fn target<'a>(bench: &'a Bench, name: &str) -> &'a Target {
+    let rig = bench.session().skeleton_rig();
+    &rig.targets[rig.target(joint(bench, name)).expect("a target")]
+}
+
+fn choose(bench: &mut Bench, list: &str, item: &str) {
+    bench.reveal(Role::ComboBox, list);
+    bench.click(Role::ComboBox, list);
+    bench.click(Role::Button, item);
+}
+
+fn enter(bench: &mut Bench, slider: &str, number: &str) {
+    bench.reveal(Role::SpinButton, &format!("{slider} value"));
+    bench.enter(slider, number);
+}
+
+fn is_disabled(bench: &Bench, role: Role, name: &str) -> bool {
+    use egui_kittest::kittest::NodeT as _;
+    bench.node(role, name).accesskit_node().is_disabled()
+}
+
+#[test]
+fn a_target_added_to_a_hand_or_foot_poses_its_limb_and_moves_nothing() {
+    let mut bench = figure();
+    let before = tips(&bench);
+    for (end, lower) in [
+        ("left_hand", "left_forearm"),
+        ("right_hand", "right_forearm"),
+        ("left_foot", "left_shin"),
+        ("right_foot", "right_shin"),
+    ] {
+        select(&mut bench, end);
+        bench.key(Key::T);
+        bench.settle();
+        let added = target(&bench, lower);
+        assert!(added.limb().is_some() && added.influence == 1.0, "{added:?}");
+        assert!(bench.shows(Role::CheckBox, &format!("Target of {end}")));
+        assert!(bench.says("Reached"));
+    }
+    assert!(farthest(&before, &tips(&bench)) <= 2e-6);
+    select(&mut bench, "head");
+    bench.key(Key::T);
+    bench.settle();
+    assert_eq!(target(&bench, "head").kind, TargetKind::WholeBody);
+    assert!(farthest(&before, &tips(&bench)) <= 2e-6);
+    select(&mut bench, "left_hand");
+    bench.key(Key::T);
+    bench.settle();
+    assert_eq!(bench.session().skeleton_rig().targets.len(), 4, "T on a hand removes its target");
+}
+
+#[test]
+fn hands_and_feet_stay_while_the_pelvis_is_dragged_in_one_undo_step() {
+    let mut bench = with_targets();
+    let lowers = ["left_forearm", "right_forearm", "left_shin", "right_shin"];
+    let before = lowers.map(|name| tip(&bench, name));
+    let (pelvis, all) = (tip(&bench, "pelvis"), tips(&bench));
+    let reach = bench.session().skeleton_rig().reach();
+    bench.apply([SelectAction::Joints(Vec::new())]);
+    let start = bench.on_screen(pelvis);
+    bench.move_to(start);
+    bench.press(LEFT);
+    for step in 1..=10 {
+        bench.move_to(start + vec2(1.0, 3.0) * step as f32);
+        for (name, before) in lowers.into_iter().zip(before) {
+            let moved = tip(&bench, name).distance(before);
+            assert!(moved <= 1e-5 * reach, "{name} moves by {moved} in step {step}");
+        }
+    }
+    bench.release(LEFT);
+    assert!(tip(&bench, "pelvis").distance(pelvis) > 0.02);
+    bench.apply([TransactionAction::Undo]);
+    assert_eq!(tips(&bench), all);
+}
+
+#[test]
+fn influence_blends_from_the_joint_angles_to_the_target() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    let fk = tip(&bench, "left_forearm");
+    enter(&mut bench, "Target y", "1.4");
+    let solved = tip(&bench, "left_forearm");
+    assert!(solved.distance(fk) > 0.1);
+    enter(&mut bench, "Target influence", "0");
+    assert_eq!(tip(&bench, "left_forearm"), fk);
+    assert!(bench.says("Influence 0: the joint angles alone pose it"));
+    bench.reveal(Role::Button, "FK to pose");
+    assert!(is_disabled(&bench, Role::Button, "FK to pose"));
+    enter(&mut bench, "Target influence", "0.5");
+    let between = tip(&bench, "left_forearm");
+    assert!(between.distance(fk) > 0.02 && between.distance(solved) > 0.02);
+    enter(&mut bench, "Target influence", "1");
+    assert!(tip(&bench, "left_forearm").distance(solved) <= 1e-6);
+}
+
+#[test]
+fn diamonds_key_what_a_target_has_and_the_limb_follows_over_time() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_foot");
+    let shin = joint(&bench, "left_shin");
+    let start = tip(&bench, "left_shin");
+    bench.reveal(Role::Button, "Key Target y");
+    bench.click(Role::Button, "Key Target y");
+    bench.apply([PlaybackAction::SetTime(1.0)]);
+    enter(&mut bench, "Target y", "0.4");
+    bench.click(Role::Button, "Key Target y");
+    let keys = |bench: &Bench, channel| {
+        bench.session().document().keys.track(channel).map_or(0, |track| track.knots().len())
+    };
+    assert_eq!(keys(&bench, Channel::Target(shin)), 2);
+    assert!((tip(&bench, "left_shin").y - 0.4).abs() < 1e-4);
+    bench.apply([PlaybackAction::SetTime(0.0)]);
+    assert!(tip(&bench, "left_shin").distance(start) < 1e-5);
+    bench.apply([PlaybackAction::SetTime(0.5)]);
+    let middle = tip(&bench, "left_shin").y;
+    assert!(middle > start.y + 0.05 && middle < 0.35, "{middle}");
+
+    bench.reveal(Role::Button, "Key Target influence");
+    bench.click(Role::Button, "Key Target influence");
+    assert_eq!(keys(&bench, Channel::TargetInfluence(shin)), 1);
+    bench.click(Role::Button, "Key Target influence");
+    assert_eq!(keys(&bench, Channel::TargetInfluence(shin)), 0, "a second press deletes the key");
+}
+
+#[test]
+fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    let before = tips(&bench);
+    choose(&mut bench, "Target space", "chest");
+    let chest = joint(&bench, "chest");
+    assert_eq!(target(&bench, "left_forearm").space, TargetSpace::Joint(chest));
+    assert!(farthest(&before, &tips(&bench)) <= 1e-5);
+    let on_chest = |bench: &Bench| {
+        let pose = &bench.session().evaluated_skeleton().solved;
+        pose.full_transform(chest).inverse().transform_point3(tip(bench, "left_forearm"))
+    };
+    let place = on_chest(&bench);
+    let spine = joint(&bench, "spine");
+    bench.apply([EditAction::SetRotation { joint: spine, rotation: Vec3::new(0.3, 0.2, 0.0) }]);
+    let moved = tip(&bench, "left_forearm").distance(before[7]);
+    assert!(moved > 0.02, "it moves with the chest by {moved}");
+    assert!(on_chest(&bench).distance(place) <= 1e-5);
+
+    bench.reveal(Role::ComboBox, "Target space");
+    bench.click(Role::ComboBox, "Target space");
+    assert!(is_disabled(&bench, Role::Button, "left_forearm"), "the target moves it");
+}
+
+#[test]
+fn dragging_an_elbow_turns_it_about_the_line_to_the_target() {
+    let mut bench = with_targets();
+    bench.apply([SelectAction::Joints(Vec::new())]);
+    let (elbow, hand) = (tip(&bench, "right_upper_arm"), tip(&bench, "right_forearm"));
+    let start = bench.on_screen(elbow);
+    bench.drag_and_drop(LEFT, start, start + vec2(0.0, -25.0));
+    let twist = target(&bench, "right_forearm").limb().expect("a limb").twist;
+    assert!(twist.abs() > 0.1, "{twist}");
+    assert!(tip(&bench, "right_forearm").distance(hand) <= 1e-5, "the hand stays");
+    assert!(tip(&bench, "right_upper_arm").distance(elbow) > 0.01);
+}
+
+#[test]
+fn dragging_the_tip_of_a_limb_moves_its_target() {
+    let mut bench = with_targets();
+    bench.apply([SelectAction::Joints(Vec::new())]);
+    let wrist = tip(&bench, "left_forearm");
+    let start = bench.on_screen(wrist);
+    let end = start + vec2(20.0, -15.0);
+    bench.drag_and_drop(LEFT, start, end);
+    assert!(bench.on_screen(tip(&bench, "left_forearm")).distance(end) < 1.0);
+    assert!(target(&bench, "left_forearm").home.distance(wrist) > 0.02);
+}
+
+#[test]
+fn the_pole_of_a_limb_is_dragged_and_the_elbow_points_at_it() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    let before = tips(&bench);
+    choose(&mut bench, "Elbow reference", "Pole");
+    let forearm = joint(&bench, "left_forearm");
+    let pole = bench.session().target_report(forearm).and_then(|report| report.pole);
+    let pole = pole.expect("a pole");
+    assert!(farthest(&before, &tips(&bench)) <= 2e-2, "the new pole is in front of the elbow");
+    let start = bench.on_screen(pole);
+    bench.drag_and_drop(LEFT, start, start + vec2(-60.0, 20.0));
+    let limb = *target(&bench, "left_forearm").limb().expect("a limb");
+    let ElbowReference::Pole(moved) = limb.reference else { panic!("{limb:?}") };
+    assert!(moved.distance(pole) > 0.05);
+    assert!(farthest(&before, &tips(&bench)) > 1e-3, "the elbow turns");
+}
+
+#[test]
+fn matches_move_nothing() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    let before = tips(&bench);
+    enter(&mut bench, "Target y", "1.3");
+    enter(&mut bench, "Limb twist", "40");
+    assert!(farthest(&before, &tips(&bench)) > 0.1);
+    let before = tips(&bench);
+    bench.reveal(Role::Button, "FK to pose");
+    bench.click(Role::Button, "FK to pose");
+    assert!(farthest(&before, &tips(&bench)) <= 2e-6);
+    enter(&mut bench, "Target influence", "0");
+    assert!(farthest(&before, &tips(&bench)) <= 2e-6, "FK has the pose");
+    enter(&mut bench, "Target y", "0.9");
+    bench.reveal(Role::Button, "Target to FK");
+    bench.click(Role::Button, "Target to FK");
+    enter(&mut bench, "Target influence", "1");
+    assert!(farthest(&before, &tips(&bench)) <= 2e-6, "the target is at the FK tip");
+}
+
+#[test]
+fn a_hand_keeps_its_orientation_while_the_arm_moves() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    bench.reveal(Role::RadioButton, "Keep orientation");
+    bench.click(Role::RadioButton, "Keep orientation");
+    let hand = joint(&bench, "left_hand");
+    let turned =
+        |bench: &Bench| bench.session().evaluated_skeleton().solved.rotation_in_world(hand);
+    let before = turned(&bench);
+    let place = tip(&bench, "left_forearm") + Vec3::new(0.02, 0.06, 0.05);
+    let moved = Target { home: place, ..*target(&bench, "left_forearm") };
+    bench.apply([Action::from(EditAction::SetTarget(moved))]);
+    assert!(tip(&bench, "left_forearm").distance(place) <= 1e-5);
+    assert!(turned(&bench).angle_between(before) <= 1e-4);
+    let kind = TargetKind::Limb(LimbSettings::default());
+    bench.apply([Action::from(EditAction::SetTarget(Target { kind, ..moved }))]);
+    assert!(turned(&bench).angle_between(before) > 0.05, "without, it follows the forearm");
+}
