@@ -12,7 +12,7 @@ use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
-    EditAction, PlaybackAction, PoseMode, SelectAction, Session, TransactionAction,
+    EditAction, PlaybackAction, PoseMode, SelectAction, Session, SolverAction, TransactionAction,
 };
 
 /// Joints of the Human: one with a target, one without, and a leaf.
@@ -113,8 +113,7 @@ examples! {
         SolverOptions::new(Method::Fabrik).with_damping(0.3),
     )];
     SetIterationsPerFrame: [EditAction::SetIterationsPerFrame(17)];
-    StepSolver: [EditAction::StepSolver];
-    ResetSolver: [EditAction::ResetSolver];
+    ApplyPose: [EditAction::ApplyPose];
     Key: [
         EditAction::Key(vec![Channel::Hand]),
         EditAction::Key(vec![Channel::Twist]),
@@ -129,7 +128,7 @@ examples! {
 }
 
 /// The arm with the Human behind it, changed so that every edit has something to do.
-fn session() -> Session {
+fn session_for(edit: &EditAction) -> Session {
     let mut session = Session::default();
     let target = Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0);
     let with_pole =
@@ -146,7 +145,6 @@ fn session() -> Session {
             influence: 1.0,
             ..target
         }),
-        EditAction::StepSolver,
         EditAction::Key(vec![KEYED]),
     ] {
         session.apply(edit);
@@ -154,6 +152,10 @@ fn session() -> Session {
     session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
     session.apply(SelectAction::CopyKeys);
     session.apply(PlaybackAction::SetTime(1.0));
+    if *edit == EditAction::ApplyPose {
+        session.apply(EditAction::ShowRig(RigKind::Skeleton));
+        session.apply(SolverAction::Step);
+    }
     session
 }
 
@@ -161,7 +163,7 @@ fn session() -> Session {
 fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes() {
     let bytes = |session: &Session| to_json(session.document()).expect("saved");
     for edit in examples() {
-        let mut session = session();
+        let mut session = session_for(&edit);
         let (before, label) = (bytes(&session), edit.label());
         session.apply(edit.clone());
         let after = bytes(&session);
@@ -180,7 +182,7 @@ fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes()
 fn every_edit_in_a_transaction_is_cancelled_to_the_same_bytes() {
     let bytes = |session: &Session| to_json(session.document()).expect("saved");
     for edit in examples() {
-        let mut session = session();
+        let mut session = session_for(&edit);
         let (before, last) = (bytes(&session), session.undo_label());
         session.apply(TransactionAction::Begin);
         session.apply(edit.clone());

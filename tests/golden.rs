@@ -204,7 +204,7 @@ fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
     let bind = document.skeleton().bind_pose();
-    let ghosts = vec![SolverGhost { method: Method::Ccd, pose: bind }];
+    let ghosts = vec![SolverGhost { method: Method::Ccd, pose: bind, ..SolverGhost::default() }];
     let drawn =
         draw(&Scene::new(&document, &Overlays { ghosts, ..Overlays::default() }, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");

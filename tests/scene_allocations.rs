@@ -107,7 +107,8 @@ fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
     bench.assert_takes_nothing(&[
         Action::from(PlaybackAction::SetTime(0.1)),
         PlaybackAction::SetTime(0.6).into(),
-        EditAction::StepSolver.into(),
+        SolverAction::Step.into(),
+        SolverAction::Show(0).into(),
         SelectAction::Hover(Some(JointId::new(2))).into(),
         SelectAction::Hover(None).into(),
         SelectAction::Joints(vec![JointId::new(joints - 1), JointId::new(4)]).into(),
@@ -120,7 +121,7 @@ fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
 fn a_solver_comparison_allocates_nothing() {
     let opened = Example::find("human").expect("an example").open().expect("it opens");
     let mut bench = Bench::new(opened.document);
-    bench.session.apply(SolverAction::Compare(true));
+    bench.session.apply(SolverAction::Compare);
     bench.frame(PlaybackAction::Advance(0.0).into());
     for frame in 1..8 {
         let (taken, has_changed) =

@@ -113,9 +113,11 @@ fn posing() -> impl Strategy<Value = Action> {
             radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0
         })))),
         1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
-        1 => Just(Action::from(EditAction::StepSolver)),
-        1 => Just(Action::from(EditAction::ResetSolver)),
-        1 => any::<bool>().prop_map(SolverAction::Compare).prop_map(Action::from),
+        2 => Just(Action::from(SolverAction::Step)),
+        1 => Just(Action::from(SolverAction::Reset)),
+        1 => Just(Action::from(SolverAction::Compare)),
+        1 => (0..20_u32).prop_map(SolverAction::Show).prop_map(Action::from),
+        1 => Just(Action::from(EditAction::ApplyPose)),
         1 => any::<bool>().prop_map(PlaybackAction::Play).prop_map(Action::from),
         2 => (0.0..60.0).prop_map(PlaybackAction::Advance).prop_map(Action::from),
         1 => Just(Action::from(EditAction::ResetPose)),
@@ -299,7 +301,7 @@ proptest! {
         for action in before {
             session.apply(action);
         }
-        for action in [Action::from(TransactionAction::Cancel), Action::from(SolverAction::Compare(false)), Action::from(PlaybackAction::Play(false))] {
+        for action in [Action::from(TransactionAction::Cancel), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
         let (document, shown) = (session.document().clone(), session.shown().clone());
@@ -328,7 +330,7 @@ proptest! {
         for action in actions {
             session.apply(action);
         }
-        for action in [Action::from(TransactionAction::Commit), Action::from(SolverAction::Run(false)), Action::from(PlaybackAction::Play(false))] {
+        for action in [Action::from(TransactionAction::Commit), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
         while session.redo_label().is_some() {
@@ -566,8 +568,8 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
     }
     let heavy = targets[0];
     let gap = |session: &mut Session| {
-        (0..400).for_each(|_| drop(session.apply(EditAction::StepSolver)));
-        session.skeleton_pose().tip(heavy.joint).distance(apart[0])
+        (0..400).for_each(|_| drop(session.apply(SolverAction::Step)));
+        session.solver_run().expect("it steps").skeleton().tip(heavy.joint).distance(apart[0])
     };
     let before = gap(&mut session);
     session.apply(EditAction::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));

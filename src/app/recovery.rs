@@ -137,11 +137,11 @@ impl Recovery {
         self.finish_writing();
         let revision = session.revision();
         // An open transaction changes the document but not its revision.
-        let is_changing = session.is_changing();
+        let is_editing = session.is_editing();
         if self.newest_revision != Some(revision) {
             self.set_newest(session);
         }
-        if self.written_revision == Some(revision) && !is_changing {
+        if self.written_revision == Some(revision) && !is_editing {
             self.since = None;
             return None;
         }
@@ -149,7 +149,7 @@ impl Recovery {
         if Instant::now() < due || self.writing.is_some() {
             return Some(due.max(Instant::now() + Duration::from_millis(100)));
         }
-        if is_changing {
+        if is_editing {
             self.set_newest(session);
         }
         self.since = None;

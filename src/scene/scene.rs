@@ -108,6 +108,20 @@ impl Scene {
         self.solids.push(Solid { transform, shape, colour, stripes: None });
     }
 
+    /// Adds a cone from base to tip, both in the world, that also shows faintly through the surfaces
+    /// that hide it.
+    pub(super) fn add_guide_solid(
+        &mut self,
+        base: Vec3,
+        tip: Vec3,
+        base_radius: f32,
+        tip_radius: f32,
+        colour: Colour,
+    ) {
+        let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
+        self.guide_solids.push(Solid { transform, shape, colour, stripes: None });
+    }
+
     /// Removes all shapes and labels with a position or size that is not finite.
     pub(super) fn remove_non_finite(&mut self) {
         for solids in [&mut self.solids, &mut self.guide_solids] {

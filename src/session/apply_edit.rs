@@ -10,12 +10,10 @@ impl Session {
         if self.editing.label_transaction(label) {
             return self.edit(action);
         }
-        self.end_run();
         let before = self.editing.state(self.time());
         self.edit(action);
         if !self.is_editing() {
             self.editing.remember(label, before, self.time());
-            self.begin_run();
         }
     }
 
@@ -111,8 +109,7 @@ impl Session {
                     Ok(())
                 });
             }
-            EditAction::StepSolver => self.step_solver(),
-            EditAction::ResetSolver => self.reset_solver(),
+            EditAction::ApplyPose => self.apply_pose(),
 
             EditAction::Key(channels) => self.key(&channels),
             EditAction::DeleteKeys(keys) => self.delete_keys(&keys),

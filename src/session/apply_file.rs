@@ -41,7 +41,7 @@ impl Session {
     /// Whether the action opens a file, and the document has changed since the user chose the file.
     pub(super) fn is_late(&self, action: &FileAction) -> bool {
         let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
-        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_changing())
+        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_editing())
     }
 
     /// Whether the unsaved document of an earlier run was opened or declined.
@@ -79,8 +79,6 @@ impl Session {
     pub(super) fn finish_save(&mut self, path: PathBuf) -> Option<Effect> {
         self.say(format!("Saved {}", path.display()));
         self.commit_edit();
-        self.end_run();
-        self.begin_run();
         self.editing.mark_saved();
         self.files.remember(path.clone());
         self.files.set_file(path);

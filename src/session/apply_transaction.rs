@@ -16,11 +16,6 @@ impl Session {
         self.editing.is_open()
     }
 
-    /// Whether a transaction or a solver run is open.
-    pub fn is_changing(&self) -> bool {
-        self.editing.is_open() || self.editing.has_run()
-    }
-
     /// Whether the document differs from the saved one in more than cameras, shown rig and
     /// overlays.
     pub fn is_unsaved(&self) -> bool {
@@ -109,9 +104,6 @@ impl Session {
     /// Replaces the shown document and updates all that depends on it.
     pub(super) fn commit(&mut self, after: Document) {
         let Some(change) = self.editing.write(after, &self.playback) else { return };
-        if change.is_rebuilt {
-            self.solvers.forget_run();
-        }
         if change.has_overridden {
             self.say("Unkeyed change: press K or it is lost when the time changes");
         }
@@ -126,7 +118,6 @@ impl Session {
     fn restore(&mut self, state: &Snapshot) {
         if self.editing.restore(state, self.time()) {
             self.selection.forget_joints();
-            self.solvers.forget_run();
         }
         self.refresh();
         self.forget_trail();
@@ -134,54 +125,25 @@ impl Session {
 
     pub(super) fn begin_edit(&mut self, drag: Option<Drag>) {
         if !self.is_editing() {
-            self.end_run();
             self.editing.begin(drag, self.time());
         }
     }
 
     pub(super) fn commit_edit(&mut self) {
-        if self.editing.commit(self.time()) {
-            self.begin_run();
-        }
+        self.editing.commit(self.time());
     }
 
     fn cancel_edit(&mut self) {
         if let Some(before) = self.editing.take_transaction() {
             self.restore(&before);
-            self.begin_run();
             self.say("Cancelled");
         }
     }
 
-    /// Stops the solver and restores the pose from before the run.
-    pub(super) fn cancel_run(&mut self) {
-        self.solvers.forget();
-        if let Some(before) = self.editing.take_run() {
-            self.restore(&before);
-        }
-        self.say("Cancelled");
-    }
-
-    /// Opens the undo step of a running solver. The step lasts until the solver stops or something
-    /// else is edited.
-    pub(super) fn begin_run(&mut self) {
-        if self.is_running() {
-            self.editing.begin_run(self.time());
-        }
-    }
-
-    /// Makes one undo step of the solver run so far.
-    pub(super) fn end_run(&mut self) {
-        self.editing.end_run(self.time());
-    }
-
-    /// Undoes a step; if a transaction or a solver run is open, cancels it instead.
+    /// Undoes a step; if a transaction is open, cancels it instead.
     fn undo(&mut self) {
         if self.is_editing() {
             return self.cancel_edit();
-        }
-        if self.editing.has_run() {
-            return self.cancel_run();
         }
         match self.editing.undo(self.time()) {
             Some((label, state)) => {
@@ -194,7 +156,6 @@ impl Session {
 
     fn redo(&mut self) {
         self.commit_edit();
-        self.stop_run();
         match self.editing.redo(self.time()) {
             Some((label, state)) => {
                 self.restore(&state);

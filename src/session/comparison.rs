@@ -1,13 +1,12 @@
-use std::time::{Duration, Instant};
+use super::solver_inputs::SolverInputs;
+use super::solver_run::SolverRun;
+use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 
-use super::residual_history::ResidualHistory;
-use crate::document::SkeletonRig;
-use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SolverOptions};
-use crate::kinematics::skeleton::Skeleton;
-
-/// A comparison of all solvers, run side by side from the same pose to the same targets.
+/// A comparison of all solvers, run side by side from the FK pose to the same targets. Like a single
+/// [`SolverRun`], it does not change the document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
+    inputs: SolverInputs,
     solvers: Vec<ComparedSolver>,
 }
 
@@ -16,34 +15,35 @@ pub struct Comparison {
 pub struct ComparedSolver {
     /// The solver.
     pub method: Method,
-    /// The skeleton after the latest iteration.
-    pub skeleton: Skeleton,
-    /// Residual error before the first and after every iteration.
-    pub history: ResidualHistory,
-    /// Total duration of all iterations.
-    pub elapsed: Duration,
-    solver: Result<ChainSolver, SolveError>,
+    /// The solver's run, or the error if it cannot solve for the targets.
+    pub run: Result<SolverRun, SolveError>,
 }
 
 impl Comparison {
-    pub(super) fn new(rig: &SkeletonRig, time: f64) -> Self {
-        let targets = rig.targets_at(time);
-        let solvers = Method::ALL.into_iter().map(|method| {
-            let options = SolverOptions { method, iterations: None, ..rig.solver };
-            let solver = ChainSolver::new(&rig.skeleton, &targets, &options);
-            let mut history = ResidualHistory::default();
-            if let Ok(solver) = &solver {
-                history.push(solver.report().error);
-            }
-            ComparedSolver {
-                method,
-                skeleton: Skeleton::clone(&rig.skeleton),
-                history,
-                elapsed: Duration::ZERO,
-                solver,
-            }
-        });
-        Self { solvers: solvers.collect() }
+    pub(super) fn new(inputs: SolverInputs) -> Self {
+        let solver = |method| {
+            let run = SolverRun::new(with_method(&inputs, method));
+            ComparedSolver { method, run }
+        };
+        Self { solvers: Method::ALL.into_iter().map(solver).collect(), inputs }
+    }
+
+    /// The same comparison with other inputs: the solvers make as many iterations and show the same
+    /// one.
+    pub(super) fn anew(&self, inputs: SolverInputs) -> Self {
+        let anew = |solver: &ComparedSolver| {
+            let inputs = with_method(&inputs, solver.method);
+            let run = match &solver.run {
+                Ok(run) => run.anew(inputs),
+                Err(_) => SolverRun::new(inputs),
+            };
+            ComparedSolver { method: solver.method, run }
+        };
+        Self { solvers: self.solvers.iter().map(anew).collect(), inputs }
+    }
+
+    pub(super) fn inputs(&self) -> &SolverInputs {
+        &self.inputs
     }
 
     /// The solvers, in the order of [`Method::ALL`].
@@ -51,61 +51,41 @@ impl Comparison {
         &self.solvers
     }
 
-    /// Whether any solver makes further iterations.
-    pub fn is_running(&self) -> bool {
-        self.solvers.iter().any(ComparedSolver::is_running)
+    /// The runs of all solvers that can solve for the targets.
+    pub fn runs(&self) -> impl Iterator<Item = &SolverRun> + Clone {
+        self.solvers.iter().filter_map(|solver| solver.run.as_ref().ok())
     }
 
-    /// Whether `skeleton` has the hierarchy with which the comparison began, in any pose.
-    pub(super) fn is_of(&self, skeleton: &Skeleton) -> bool {
-        let is_like = |solver: &ComparedSolver| {
-            let parents = |skeleton: &Skeleton| -> Vec<_> {
-                skeleton.joints().iter().map(|joint| joint.parent).collect()
-            };
-            parents(&solver.skeleton) == parents(skeleton)
-        };
-        self.solvers.first().is_none_or(is_like)
+    fn runs_mut(&mut self) -> impl Iterator<Item = &mut SolverRun> {
+        self.solvers.iter_mut().filter_map(|solver| solver.run.as_mut().ok())
+    }
+
+    /// Whether any solver makes further iterations.
+    pub fn is_running(&self) -> bool {
+        self.runs().any(|run| !run.is_over())
+    }
+
+    /// Shows the same iteration of all solvers, of a solver with fewer its latest; for `None`, each
+    /// iterate as it is made.
+    pub(super) fn hold(&mut self, held: Option<u32>) {
+        self.runs_mut().for_each(|run| run.hold(held));
     }
 
     /// Makes one frame's iterations with every solver: at first one iteration, later an eighth of
     /// the number made before.
     pub(super) fn advance(&mut self) {
-        self.solvers.iter_mut().for_each(ComparedSolver::advance);
+        const PACE: u32 = 8;
+        for run in self.runs_mut() {
+            run.advance((run.report().iterations / PACE).max(1));
+            if run.is_over() {
+                run.finish();
+            }
+        }
     }
 }
 
-impl ComparedSolver {
-    /// A frame makes one iteration for every `PACE` iterations made before, and at least one.
-    const PACE: u32 = 8;
-
-    /// Progress after the latest iteration.
-    ///
-    /// # Errors
-    ///
-    /// If the solver cannot solve for these targets.
-    pub fn report(&self) -> Result<Report, &SolveError> {
-        self.solver.as_ref().map(ChainSolver::report)
-    }
-
-    /// Whether the solver makes further iterations.
-    pub fn is_running(&self) -> bool {
-        self.solver.as_ref().is_ok_and(|solver| !solver.is_over())
-    }
-
-    fn advance(&mut self) {
-        let done = self.report().map_or(0, |report| report.iterations);
-        let started = Instant::now();
-        for _ in 0..(done / Self::PACE).max(1) {
-            if !self.is_running() {
-                break;
-            }
-            if let Ok(solver) = &mut self.solver {
-                self.history.push(solver.step().error);
-            }
-        }
-        self.elapsed += started.elapsed();
-        if let Ok(solver) = &self.solver {
-            solver.write(&mut self.skeleton);
-        }
-    }
+/// The inputs with another method and its own maximum number of iterations.
+fn with_method(inputs: &SolverInputs, method: Method) -> SolverInputs {
+    let options = SolverOptions { method, iterations: None, ..inputs.options };
+    SolverInputs { options, ..inputs.clone() }
 }

@@ -153,10 +153,9 @@ pub enum EditAction {
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.
     SetIterationsPerFrame(u32),
-    /// Makes one solver iteration.
-    StepSolver,
-    /// Resets the skeleton to the pose before the first iteration of the solver run.
-    ResetSolver,
+    /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the
+    /// run.
+    ApplyPose,
 
     /// Keys channels at the playhead with their shown values.
     Key(Vec<Channel>),

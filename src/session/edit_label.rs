@@ -3,9 +3,6 @@ use super::edit_action::EditAction;
 use super::pose_mode::PoseMode;
 use crate::document::{Channel, Overlay, RigKind};
 
-/// Label of the undo step of a solver run.
-pub(super) const SOLVE: &str = "Solve";
-
 /// Label of a transaction without edits.
 pub(super) const CHANGE: &str = "Change";
 
@@ -56,8 +53,7 @@ impl EditAction {
             Self::SetTargetSpace { .. } => "Change target space",
             Self::SetPoleSpace { .. } => "Change pole space",
             Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",
-            Self::StepSolver => "Step solver",
-            Self::ResetSolver => "Reset solver",
+            Self::ApplyPose => "Apply pose",
             Self::Key(channels) => match channels[..] {
                 [Channel::Hand] => "Key hand",
                 [Channel::Twist] => "Key Socket twist",

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::drag::Drag;
-use super::edit_label::{CHANGE, SOLVE};
+use super::edit_label::CHANGE;
 use super::history::History;
 use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
@@ -18,8 +18,6 @@ pub(super) struct Editing {
     /// Unkeyed edits, discarded when the time changes.
     overrides: Overrides,
     transaction: Option<Transaction>,
-    /// The state before the open solver run; `None` if no run is open.
-    before_run: Option<Snapshot>,
     history: History,
     /// Revision of the document: documents with the same revision differ at most in their cameras.
     revision: u64,
@@ -33,8 +31,6 @@ pub(super) struct Editing {
 /// Consequences of a change of the document.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WriteOutcome {
-    /// Whether joints were removed, renumbered or attached to other parents.
-    pub is_rebuilt: bool,
     /// Whether the change made unkeyed edits of keyed channels.
     pub has_overridden: bool,
 }
@@ -46,7 +42,6 @@ impl Editing {
             document,
             overrides: Overrides::default(),
             transaction: None,
-            before_run: None,
             history: History::default(),
             revision: 0,
             newest_revision: 0,
@@ -88,11 +83,6 @@ impl Editing {
         self.transaction.is_some()
     }
 
-    /// Whether a solver run is open.
-    pub fn has_run(&self) -> bool {
-        self.before_run.is_some()
-    }
-
     /// The revision before the open transaction; `None` if none is open.
     pub fn revision_before(&self) -> Option<u64> {
         Some(self.transaction.as_ref()?.before.revision)
@@ -118,10 +108,9 @@ impl Editing {
     }
 
     pub fn undo_label(&self) -> Option<&'static str> {
-        match (&self.transaction, &self.before_run) {
-            (Some(transaction), _) => Some(transaction.label.unwrap_or(CHANGE)),
-            (None, Some(_)) => Some(SOLVE),
-            (None, None) => self.history.undo_label(),
+        match &self.transaction {
+            Some(transaction) => Some(transaction.label.unwrap_or(CHANGE)),
+            None => self.history.undo_label(),
         }
     }
 
@@ -132,8 +121,7 @@ impl Editing {
     /// Whether the document differs from the saved one in more than cameras, shown rig and
     /// overlays.
     pub fn is_unsaved(&self) -> bool {
-        let transaction = self.transaction.as_ref().map(|transaction| &transaction.before);
-        let before = transaction.or(self.before_run.as_ref());
+        let before = self.transaction.as_ref().map(|transaction| &transaction.before);
         self.content != self.saved_content
             || before.is_some_and(|before| before.differs_in_content_from(&self.document))
     }
@@ -192,7 +180,7 @@ impl Editing {
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
-        Some(WriteOutcome { is_rebuilt, has_overridden })
+        Some(WriteOutcome { has_overridden })
     }
 
     /// Adapts the open transaction to a change of the document. The drag ends if joints were added,
@@ -348,35 +336,16 @@ impl Editing {
         self.transaction = Some(Transaction { before, shown, label: None, drag });
     }
 
-    /// Closes the transaction with an undo step; returns whether one was open.
-    pub fn commit(&mut self, time: f64) -> bool {
-        let Some(transaction) = self.transaction.take() else { return false };
-        self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
-        true
+    /// Closes the transaction, if one is open, with an undo step.
+    pub fn commit(&mut self, time: f64) {
+        if let Some(transaction) = self.transaction.take() {
+            self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
+        }
     }
 
     /// Closes the transaction and returns the state before it; `None` if none is open.
     pub fn take_transaction(&mut self) -> Option<Snapshot> {
         Some(self.transaction.take()?.before)
-    }
-
-    /// Opens a solver run, unless a run or a transaction is open.
-    pub fn begin_run(&mut self, time: f64) {
-        if self.before_run.is_none() && self.transaction.is_none() {
-            self.before_run = Some(self.state(time));
-        }
-    }
-
-    /// Closes the solver run with an undo step.
-    pub fn end_run(&mut self, time: f64) {
-        if let Some(before) = self.before_run.take() {
-            self.remember(SOLVE, before, time);
-        }
-    }
-
-    /// Closes the solver run and returns the state before it; `None` if none is open.
-    pub fn take_run(&mut self) -> Option<Snapshot> {
-        self.before_run.take()
     }
 
     /// Undoes a step; returns its label and the state before it, or `None` if there is nothing to

@@ -3,9 +3,8 @@ use glam::Vec3;
 use super::cached::Cached;
 use super::pops::{CursorMove, Pops};
 use super::transport::TransportPath;
-use crate::document::{Arm, Document, SkeletonRig};
+use crate::document::{Arm, Document};
 use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::{ChainSolver, Report};
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::EvaluatedSkeleton;
@@ -19,8 +18,6 @@ pub(super) struct Evaluated {
     transport_path: TransportPath,
     pops: Pops,
     trail: Cached<Vec<Vec3>>,
-    /// Report of a solver for the pose at the playhead, before its first iteration.
-    unsolved_report: Cached<Option<Report>>,
 }
 
 impl Evaluated {
@@ -34,7 +31,6 @@ impl Evaluated {
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
             trail: Cached::default(),
-            unsolved_report: Cached::default(),
         }
     }
 
@@ -62,16 +58,6 @@ impl Evaluated {
         self.trail.get(sample)
     }
 
-    /// Report with the residual of the evaluated pose, before any iteration; `None` if the solver
-    /// cannot solve for the targets of `rig`.
-    pub fn unsolved_report(&self, rig: &SkeletonRig, time: f64) -> Option<Report> {
-        let compute = || {
-            let targets = rig.targets_at(time);
-            Some(ChainSolver::new(&rig.skeleton, &targets, &rig.solver).ok()?.report())
-        };
-        *self.unsolved_report.get(compute)
-    }
-
     /// Updates the poses, and the values derived from them, to a document that was evaluated at
     /// `time`, in seconds.
     pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
@@ -80,7 +66,6 @@ impl Evaluated {
         self.pops.record(&shown.arm, self.pose, cause, time);
         self.skeleton = Shared::from(shown.skeleton_rig.evaluate(time));
         self.skeleton.solved.write_pose(&mut self.skeleton_pose);
-        self.unsolved_report.clear();
     }
 
     pub fn reset_transport(&mut self, arm: &Arm) {

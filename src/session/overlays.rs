@@ -4,7 +4,7 @@ use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
 use crate::document::Document;
 use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::Method;
+use crate::kinematics::chain_ik::{Method, TipTarget};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::rig::{Crowd, EvaluatedSkeleton};
@@ -20,7 +20,7 @@ pub struct Overlays {
     pub selection: Vec<JointId>,
     /// The joint under the mouse.
     pub hovered: Option<JointId>,
-    /// Poses that the solvers of a comparison have reached.
+    /// Shown iterates of the solver run or of the comparison.
     pub ghosts: Vec<SolverGhost>,
     /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.
     pub transported: Option<TransportedFrame>,
@@ -33,11 +33,15 @@ pub struct Overlays {
     pub crowd: Option<Crowd>,
 }
 
-/// The pose that a solver has reached in a comparison.
-#[derive(Clone, Debug, PartialEq)]
+/// The shown iterate of a solver.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolverGhost {
     /// The solver.
     pub method: Method,
+    /// Number of iterations made to the iterate.
+    pub iteration: u32,
+    /// The targets that are solved for.
+    pub targets: Vec<TipTarget>,
     /// The pose, in world space.
     pub pose: SkeletonPose,
 }

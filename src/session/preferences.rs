@@ -16,8 +16,6 @@ pub struct Preferences {
     pub timeline: bool,
     /// Whether the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
-    /// Whether the skeleton is solved while a target is dragged.
-    pub follow: bool,
 }
 
 /// Mouse buttons that move the camera, as in other programs.
@@ -43,7 +41,6 @@ impl Default for Preferences {
             explain: true,
             timeline: true,
             curves: false,
-            follow: true,
         }
     }
 }

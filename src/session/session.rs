@@ -146,7 +146,7 @@ impl Session {
         };
         self.evaluated.update(self.editing.shown(), self.playback.time(), cause);
         self.selection.retain_joints(self.evaluated.skeleton_pose().len());
-        self.solvers.keep_comparison_of(self.editing.shown().skeleton());
+        self.update_solvers();
         self.selection.retain_keys(self.editing.document());
     }
 

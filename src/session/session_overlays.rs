@@ -1,9 +1,9 @@
 use glam::Vec3;
 
-use super::comparison::Comparison;
 use super::onion_skins::write_onion_skins;
 use super::overlays::{Overlays, SolverGhost};
 use super::session::Session;
+use super::solver_run::SolverRun;
 use super::trail::{has_trail, sample_trail};
 
 /// Overlays of the viewport.
@@ -27,7 +27,7 @@ impl Session {
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());
-        write_ghosts(self.comparison(), &mut overlays.ghosts);
+        write_ghosts(self.solvers.runs(), &mut overlays.ghosts);
         write_onion_skins(self.document(), self.shown(), self.time(), &mut overlays.onion_skins);
     }
 
@@ -42,18 +42,17 @@ impl Session {
     }
 }
 
-fn write_ghosts(comparison: Option<&Comparison>, ghosts: &mut Vec<SolverGhost>) {
-    let solvers = comparison.into_iter().flat_map(Comparison::solvers);
+fn write_ghosts<'a>(runs: impl Iterator<Item = &'a SolverRun>, ghosts: &mut Vec<SolverGhost>) {
     let mut count = 0;
-    for solver in solvers.filter(|solver| solver.report().is_ok()) {
-        let method = solver.method;
-        match ghosts.get_mut(count) {
-            Some(ghost) => {
-                ghost.method = method;
-                solver.skeleton.write_pose(&mut ghost.pose);
-            }
-            None => ghosts.push(SolverGhost { method, pose: solver.skeleton.pose() }),
+    for run in runs {
+        if count == ghosts.len() {
+            ghosts.push(SolverGhost::default());
         }
+        let ghost = &mut ghosts[count];
+        (ghost.method, ghost.iteration) = (run.method(), run.shown().iteration);
+        ghost.targets.clear();
+        ghost.targets.extend_from_slice(run.targets());
+        run.skeleton().write_pose(&mut ghost.pose);
         count += 1;
     }
     ghosts.truncate(count);

@@ -237,13 +237,8 @@ impl Session {
         });
     }
 
-    /// Shows the arm or the skeleton. Showing the arm pauses the solver run and ends the
-    /// comparison.
+    /// Shows the arm or the skeleton.
     pub(super) fn show_rig(&mut self, rig: RigKind) {
-        if rig == RigKind::Arm {
-            self.solvers.end_comparison();
-            self.stop_run();
-        }
         self.view.drop();
         self.end_glide();
         let mut after = self.shown().clone();

@@ -1,12 +1,15 @@
-/// Runs solvers. All changes of a run are one undo step.
+/// Runs and compares solvers on copies of the FK pose; the document does not change.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolverAction {
     /// Starts or pauses the solver.
     Run(bool),
-    /// Stops the solver and restores the pose from before the run.
-    Cancel,
-    /// Starts or ends a comparison of all solvers from the present pose.
-    Compare(bool),
-    /// Sets whether the skeleton is solved while a target is dragged.
-    SetFollow(bool),
+    /// Makes one iteration and pauses.
+    Step,
+    /// Starts a comparison of all solvers.
+    Compare,
+    /// Ends the run or the comparison.
+    Reset,
+    /// Shows the latest kept iterate of at most this number of iterations: 0 is the FK pose. From the
+    /// number of the latest on, each iterate is shown as it is made.
+    Show(u32),
 }

@@ -1,44 +1,67 @@
-use std::mem;
+use std::time::{Duration, Instant};
 
-use super::residual_history::ResidualHistory;
-use crate::document::SkeletonRig;
-use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget};
+use super::iterates::{Iterate, Iterates};
+use super::solver_inputs::SolverInputs;
+use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
-/// A solver run on the document's skeleton, which makes some iterations in every frame.
+/// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of them
+/// is shown. The document does not change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
-    /// The skeleton before the first iteration.
-    start: Shared<Skeleton>,
+    inputs: SolverInputs,
     solver: ChainSolver,
-    options: SolverOptions,
-    targets: Vec<TipTarget>,
-    /// The skeleton after the latest iteration.
-    written: Shared<Skeleton>,
-    /// Number of iterations before the solver's latest restart, which follows a moved target or an
-    /// edited joint.
-    before: u32,
-    history: ResidualHistory,
-    pub(super) running: bool,
+    /// Number of iterations to make, unless the solver ends before; `None` for as many as until the
+    /// solver ends.
+    wanted: Option<u32>,
+    iterates: Iterates,
+    /// Number of the iteration to show; `None` for the latest.
+    held: Option<u32>,
+    /// The skeleton in the shown iterate.
+    skeleton: Skeleton,
+    running: bool,
+    elapsed: Duration,
 }
 
 impl SolverRun {
-    pub(super) fn new(rig: &SkeletonRig, time: f64) -> Result<Self, SolveError> {
-        let targets = rig.targets_at(time);
-        let solver = ChainSolver::new(&rig.skeleton, &targets, &rig.solver)?;
-        let mut history = ResidualHistory::default();
-        history.push(solver.report().error);
+    /// Maximum number of iterations that are made anew when the inputs change.
+    const MOST_ANEW: u32 = 1000;
+
+    pub(super) fn new(inputs: SolverInputs) -> Result<Self, SolveError> {
+        let solver = ChainSolver::new(&inputs.fk, &inputs.targets, &inputs.options)?;
+        let skeleton = Skeleton::clone(&inputs.fk);
         Ok(Self {
-            start: rig.skeleton.clone(),
-            written: rig.skeleton.clone(),
+            inputs,
+            wanted: Some(0),
+            iterates: Iterates::new(Iterate::new(solver.report(), &skeleton)),
             solver,
-            options: rig.solver,
-            targets,
-            before: 0,
-            history,
+            held: None,
+            skeleton,
             running: false,
+            elapsed: Duration::ZERO,
         })
+    }
+
+    /// The same run with other inputs: it makes as many iterations and shows the same one.
+    pub(super) fn anew(&self, inputs: SolverInputs) -> Result<Self, SolveError> {
+        let mut anew = Self::new(inputs)?;
+        (anew.wanted, anew.held, anew.running) = (self.wanted, self.held, self.running);
+        anew.make_wanted(Self::MOST_ANEW);
+        Ok(anew)
+    }
+
+    pub(super) fn inputs(&self) -> &SolverInputs {
+        &self.inputs
+    }
+
+    /// The method of the solver.
+    pub fn method(&self) -> Method {
+        self.inputs.options.method
+    }
+
+    /// The targets that are solved for.
+    pub fn targets(&self) -> &[TipTarget] {
+        &self.inputs.targets
     }
 
     /// Whether the run is not paused.
@@ -46,83 +69,79 @@ impl SolverRun {
         self.running
     }
 
-    /// Status and residual after the latest iteration, with the number of all iterations of the
-    /// run.
-    pub fn report(&self) -> Report {
-        let report = self.solver.report();
-        Report { iterations: self.before + report.iterations, ..report }
-    }
-
-    /// Residual before the first and after every iteration.
-    pub fn history(&self) -> &ResidualHistory {
-        &self.history
-    }
-
-    /// The skeleton before the first iteration.
-    pub fn start(&self) -> &Skeleton {
-        &self.start
-    }
-
-    /// Makes at most `iterations` iterations, fewer if the solver is done, and writes the pose into
-    /// `rig`. `time` is the playhead in seconds.
-    pub(super) fn advance(
-        &mut self,
-        rig: &mut SkeletonRig,
-        time: f64,
-        iterations: u32,
-    ) -> Result<(), SolveError> {
-        self.follow(rig, time)?;
-        for _ in 0..iterations {
-            if self.solver.is_over() {
-                break;
-            }
-            let report = self.solver.step();
-            self.history.push(report.error);
-        }
-        self.solver.write(rig.skeleton_mut());
-        self.written = rig.skeleton.clone();
-        Ok(())
-    }
-
     /// Whether the solver makes no further iterations.
-    pub(super) fn is_done(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         self.solver.is_over()
     }
 
-    /// Whether the pose of `rig` is the result of the run's latest iteration, and its targets at
-    /// `time` and the solver options have not changed since.
-    pub(super) fn made(&self, rig: &SkeletonRig, time: f64) -> bool {
-        rig.skeleton == self.written
-            && rig.solver == self.options
-            && rig.targets_at(time) == self.targets
+    /// Status and residual after the latest iteration.
+    pub fn report(&self) -> Report {
+        self.solver.report()
     }
 
-    /// Adopts changes of `rig` since the latest iteration: moves the targets, or restarts the
-    /// solver if anything else has changed.
-    fn follow(&mut self, rig: &SkeletonRig, time: f64) -> Result<(), SolveError> {
-        let targets = rig.targets_at(time);
-        let is_same = rig.solver == self.options && rig.skeleton == self.written;
-        if !is_same || !only_points_differ(&targets, &self.targets) {
-            let before = self.report().iterations;
-            let restarted = Self::new(rig, time)?;
-            let old = mem::replace(self, restarted);
-            self.start = old.start;
-            self.history = old.history;
-            self.before = before;
-            self.running = old.running;
-        } else if targets != self.targets {
-            self.before = self.report().iterations;
-            self.solver.retarget(&targets)?;
-            self.targets = targets;
+    /// Total duration of all iterations.
+    pub fn elapsed(&self) -> Duration {
+        self.elapsed
+    }
+
+    /// The kept iterates.
+    pub fn iterates(&self) -> &Iterates {
+        &self.iterates
+    }
+
+    /// The shown iterate.
+    pub fn shown(&self) -> &Iterate {
+        self.iterates.at(self.held.unwrap_or(u32::MAX))
+    }
+
+    /// The skeleton in the shown iterate.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Shows the latest kept iterate of at most `held` iterations; for `None`, each iterate as it is
+    /// made.
+    pub(super) fn hold(&mut self, held: Option<u32>) {
+        self.held = held;
+        self.shown().clone().write(&mut self.skeleton);
+    }
+
+    /// Starts or pauses the run.
+    pub(super) fn set_running(&mut self, running: bool) {
+        self.running = running;
+    }
+
+    /// Pauses a run that is over. From now on, other inputs are solved until the solver ends.
+    pub(super) fn finish(&mut self) {
+        self.running = false;
+        self.wanted = None;
+    }
+
+    /// Makes `iterations` further iterations, fewer if the solver ends.
+    pub(super) fn advance(&mut self, iterations: u32) {
+        if !self.is_over() {
+            self.wanted = Some(self.report().iterations.saturating_add(iterations));
+            self.make_wanted(iterations);
         }
-        Ok(())
     }
-}
 
-/// Whether the targets differ in nothing but their points, so that the solver can be retargeted.
-fn only_points_differ(targets: &[TipTarget], others: &[TipTarget]) -> bool {
-    let same = |(target, other): (&TipTarget, &TipTarget)| {
-        target.joint == other.joint && target.weight.to_bits() == other.weight.to_bits()
-    };
-    targets.len() == others.len() && targets.iter().zip(others).all(same)
+    /// Makes the wanted iterations that are left, at most `most` of them.
+    fn make_wanted(&mut self, most: u32) {
+        let end =
+            self.report().iterations.saturating_add(most).min(self.wanted.unwrap_or(u32::MAX));
+        while !self.solver.is_over() && self.report().iterations < end {
+            self.make_one();
+        }
+        self.hold(self.held);
+    }
+
+    /// Makes one iteration and keeps it, with the angles nearest to those of the FK pose.
+    fn make_one(&mut self) {
+        let started = Instant::now();
+        let report = self.solver.step();
+        self.elapsed += started.elapsed();
+        self.iterates.at(0).write(&mut self.skeleton);
+        self.solver.write(&mut self.skeleton);
+        self.iterates.push(Iterate::new(report, &self.skeleton));
+    }
 }

@@ -1,28 +1,36 @@
 use core::fmt;
 
 use super::session::Session;
-use crate::kinematics::chain_ik::{Report, Status};
+use super::solver_run::SolverRun;
+use crate::kinematics::chain_ik::Status;
+use crate::rig::TargetReport;
 
-/// State and residual of the shown pose.
+/// State and residual of the pose that is looked at: the shown iterate of the solver run, or without
+/// a run the evaluated pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverStatus {
-    /// State of the pose in relation to its targets.
+    /// State of the run or of the evaluated pose.
     pub state: SolverState,
-    /// Residual of the shown pose, with the number of iterations of the run that made it; 0 if no
-    /// run did.
-    pub report: Report,
+    /// Largest distance from a tip to its enabled target, in world units.
+    pub error: f32,
+    /// Number of the shown iteration of the run; `None` without a run.
+    pub iteration: Option<u32>,
 }
 
-/// State of the shown pose in relation to its targets.
+/// State of a solver run, or of the evaluated pose in relation to its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
-    /// No solver run made the pose, or the pose was edited since.
-    NotSolved,
+    /// All tips of the evaluated pose are within the tolerance of their targets.
+    Reached,
+    /// A tip of the evaluated pose is farther from its target.
+    NotReached,
     /// The solver runs.
     Running,
     /// The run is paused.
     Paused,
-    /// The run has ended, or all tips are within the tolerance without a run.
+    /// The shown iterate is not the latest of the run.
+    Earlier,
+    /// The run has ended.
     Ended(Status),
 }
 
@@ -30,34 +38,49 @@ pub enum SolverState {
 impl fmt::Display for SolverState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotSolved => f.pad("not solved yet"),
+            Self::Reached => f.pad("reached"),
+            Self::NotReached => f.pad("not reached"),
             Self::Running => f.pad("running"),
             Self::Paused => f.pad("paused"),
+            Self::Earlier => f.pad("not converged yet"),
             Self::Ended(status) => status.fmt(f),
         }
     }
 }
 
+impl SolverStatus {
+    fn of_run(run: &SolverRun) -> Self {
+        let report = run.report();
+        let state = match report.status {
+            _ if run.is_running() => SolverState::Running,
+            _ if run.shown().iteration < report.iterations => SolverState::Earlier,
+            Status::Iterating => SolverState::Paused,
+            status => SolverState::Ended(status),
+        };
+        Self { state, error: run.shown().error, iteration: Some(run.shown().iteration) }
+    }
+}
+
 impl Session {
-    /// State and residual of the shown pose; `None` without an enabled target, for a skeleton that
-    /// follows a path, or if the solver cannot solve for the targets.
-    pub fn solver_status(&self) -> Option<SolverStatus> {
+    /// Distance in world units within which a tip counts as at its target.
+    pub fn solver_tolerance(&self) -> f32 {
         let rig = self.skeleton_rig();
-        if rig.follow_path.is_some() || rig.targets_at(self.time()).is_empty() {
-            return None;
+        rig.solver.tolerance.unwrap_or_else(|| 1e-4 * rig.reach())
+    }
+
+    /// State and residual of the shown iterate of the solver run, or of the evaluated pose; `None`
+    /// without an enabled target.
+    pub fn solver_status(&self) -> Option<SolverStatus> {
+        if let Some(run) = self.solver_run() {
+            return Some(SolverStatus::of_run(run));
         }
-        let run = self.solver_run().filter(|run| run.made(rig, self.time()));
-        let report = match run {
-            Some(run) => run.report(),
-            None => self.evaluated.unsolved_report(rig, self.time())?,
+        let targets = self.skeleton_rig().targets.iter().zip(&self.evaluated_skeleton().targets);
+        let enabled = targets.filter(|(target, _)| target.enabled).map(|(_, report)| report);
+        let error = enabled.map(|TargetReport { error, .. }| *error).reduce(f32::max)?;
+        let state = match error <= self.solver_tolerance() {
+            true => SolverState::Reached,
+            false => SolverState::NotReached,
         };
-        let state = match run {
-            _ if self.is_running() => SolverState::Running,
-            _ if report.converged() => SolverState::Ended(report.status),
-            Some(_) if report.status != Status::Iterating => SolverState::Ended(report.status),
-            Some(_) if report.iterations > 0 => SolverState::Paused,
-            _ => SolverState::NotSolved,
-        };
-        Some(SolverStatus { state, report })
+        Some(SolverStatus { state, error, iteration: None })
     }
 }

@@ -13,7 +13,7 @@ pub enum TransactionAction {
     Commit,
     /// Discards all edits since the transaction was opened.
     Cancel,
-    /// Undoes the latest step; if a transaction or a solver run is open, cancels it instead.
+    /// Undoes the latest step; if a transaction is open, cancels it instead.
     Undo,
     /// Redoes the step that was undone most recently.
     Redo,

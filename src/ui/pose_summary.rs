@@ -4,7 +4,7 @@ use crate::document::{Arm, RigKind};
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
-use crate::session::{Session, SolverStatus};
+use crate::session::{Session, ShownIteration};
 use crate::ui::labels;
 use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
@@ -77,21 +77,28 @@ fn describe_skeleton(session: &Session) -> String {
         _ => format!("{count} {one}s"),
     };
     let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
-    if let Some(SolverStatus { state, report }) = session.solver_status() {
-        line.push(match report.iterations {
-            0 => state.to_string(),
-            made => format!(
-                "{}: {state} after {}",
-                labels::method(report.method),
-                count(made as usize, "iteration")
-            ),
-        });
-    }
+    line.extend(describe_solver(session));
     match session.selected().and_then(|joint| joints.get(joint.index())) {
         Some(joint) => line.insert(0, joint.name.clone()),
         None => line.push("click a joint to select it, drag its tip to pose".to_owned()),
     }
     line.join(" · ")
+}
+
+/// The shown iterate of a solver run, the iteration of a race, or whether the evaluated pose reaches
+/// its targets; `None` without an enabled target.
+fn describe_solver(session: &Session) -> Option<String> {
+    let Some(ShownIteration { number, latest, .. }) = session.shown_iteration() else {
+        return Some(session.solver_status()?.state.to_string());
+    };
+    let iteration = format!("iteration {number} of {latest}");
+    Some(match session.solver_run() {
+        Some(run) => {
+            let state = session.solver_status()?.state;
+            format!("{}: {iteration}, {state}", labels::method(run.method()))
+        }
+        None => format!("Race of all solvers: {iteration}"),
+    })
 }
 
 fn describe_pose(session: &Session) -> String {

@@ -125,8 +125,7 @@ kinds! {
         SetPoleSpace: Solve 1, |v| EditAction::SetPoleSpace { joint: v.aimed(), space: v.space() };
         SetSolver: Solve 3, |v| EditAction::SetSolver(v.options());
         SetIterationsPerFrame: Solve 1, |v| EditAction::SetIterationsPerFrame(v.iterations_per_frame());
-        StepSolver: Solve 4, |_| EditAction::StepSolver;
-        ResetSolver: Solve 1, |_| EditAction::ResetSolver;
+        ApplyPose: Solve 3, |_| EditAction::ApplyPose;
         Key: Keys 6, |v| EditAction::Key(v.channels());
         DeleteKeys: Keys 2, |v| EditAction::DeleteKeys(v.keys());
         ClearChannels: Keys 1, |v| EditAction::ClearChannels(v.channels());
@@ -182,10 +181,11 @@ kinds! {
         Advance: Time 14, |v| PlaybackAction::Advance(v.seconds());
     }
     Solver(SolverAction) {
-        SetFollow: Look 1, |v| SolverAction::SetFollow(v.coin());
         Run: Solve 5, |v| SolverAction::Run(v.chance(0.8));
-        Cancel: Solve 1, |_| SolverAction::Cancel;
-        Compare: Solve 1, |v| SolverAction::Compare(v.coin());
+        Step: Solve 4, |_| SolverAction::Step;
+        Compare: Solve 1, |_| SolverAction::Compare;
+        Reset: Solve 1, |_| SolverAction::Reset;
+        Show: Solve 4, |v| SolverAction::Show(v.random.below(30) as u32);
     }
     File(FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());

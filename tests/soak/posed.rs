@@ -4,7 +4,7 @@ use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
-use ik_arm::session::{Drag, Grip, PointDrag, Session, TurnDrag};
+use ik_arm::session::{Drag, Grip, PointDrag, Session, SolverRun, TurnDrag};
 
 use crate::{Broken, hold};
 
@@ -132,11 +132,18 @@ fn places(session: &Session) -> Result<(), Broken> {
     if let Some(Grip::Ring(_, axis) | Grip::Shoulder(axis)) = session.drag().map(Drag::grip) {
         hold!(axis < 3, "a ring is about x, y or z");
     }
-    if let Some(solver_run) = session.solver_run() {
-        let errors =
-            solver_run.history().points().all(|(_, error)| error.is_finite() && error >= 0.0);
-        hold!(errors && solver_run.report().error.is_finite(), "a solver knows how far it is off");
-    }
+    session.solver_runs().try_for_each(solver_run)
+}
+
+fn solver_run(run: &SolverRun) -> Result<(), Broken> {
+    let errors = run.iterates().iter().all(|it| it.error.is_finite() && it.error >= 0.0);
+    hold!(errors && run.report().error.is_finite(), "a solver knows how far it is off");
+    let latest = run.iterates().latest().iteration;
+    hold!(latest == run.report().iterations, "the latest iterate is kept");
+    hold!(run.shown().iteration <= latest, "the shown iterate is one of them");
+    let is_posed = run.skeleton().joints().iter().zip(run.shown().joints());
+    let mut is_posed = is_posed.map(|(joint, local)| (joint.rotation, joint.offset) == local);
+    hold!(is_posed.all(|is_posed| is_posed), "the ghost has the angles of the shown iterate");
     Ok(())
 }
 

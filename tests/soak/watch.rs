@@ -6,9 +6,7 @@ use std::hash::{Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ik_arm::document::Document;
-use ik_arm::session::{
-    Action, Dialog, EditAction, FileAction, PlaybackAction, Session, TransactionAction,
-};
+use ik_arm::session::{Action, Dialog, EditAction, FileAction, Session, TransactionAction};
 
 use crate::kinds::{KINDS, Sort, kind};
 use crate::past::is_same;
@@ -46,8 +44,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Number of actions whose steps the history always keeps: one action adds at most two, its own and a
-    /// solver's.
+    /// Number of actions whose steps the history always keeps.
     const WHOLE: usize = 450;
 
     pub fn new(document: Document) -> Self {
@@ -119,7 +116,7 @@ impl Watch {
         let is_replaced = can_replace
             && is_fresh
             && session.revision() != before.revision
-            && !session.is_changing();
+            && !session.is_editing();
         if let Action::File(FileAction::Saved(_)) = action {
             self.saved = Some(before.document.clone());
         }
@@ -141,15 +138,10 @@ impl Watch {
     ) -> Result<(), Broken> {
         let document = self.session.document();
         let is_left = is_same(document, &before.document);
-        let solves =
-            matches!(action, Action::Playback(PlaybackAction::Advance(_))) && before.is_running;
-        if matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time) && !solves {
-            hold!(is_left, "it leaves the document alone");
-        }
-        if matches!(
-            action,
-            Action::Playback(PlaybackAction::Advance(_)) | Action::Edit(EditAction::StepSolver)
-        ) {
+        let is_view = matches!(action, Action::Solver(_))
+            || matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time);
+        hold!(!is_view || is_left, "it leaves the document alone");
+        if *action == Action::Edit(EditAction::ApplyPose) {
             let [was, is] = [&before.document, document].map(ik_arm::document::Document::skeleton);
             posed::locked(was, is)?;
         }
@@ -186,7 +178,7 @@ impl Watch {
 
     /// Checks that equal revisions have equal documents.
     fn check_revision(&mut self) -> Result<(), Broken> {
-        if self.session.is_changing() {
+        if self.session.is_editing() {
             return Ok(());
         }
         let mut hasher = DefaultHasher::new();
@@ -201,7 +193,7 @@ impl Watch {
     fn check_step(&self, action: &Action, before: &Before) -> Result<(), Broken> {
         let Some(was) = before.session.as_deref() else { return Ok(()) };
         let session = &self.session;
-        let is_whole = !was.is_changing() && !session.is_changing();
+        let is_whole = !was.is_editing() && !session.is_editing();
         if !is_whole || is_same(session.document(), was.document()) {
             return Ok(());
         }
@@ -262,7 +254,6 @@ struct Before {
     dialog: Option<Dialog>,
     revision: u64,
     time: f64,
-    is_running: bool,
 }
 
 impl Before {
@@ -273,7 +264,6 @@ impl Before {
             dialog: session.dialog().cloned(),
             revision: session.revision(),
             time: session.time(),
-            is_running: session.is_running(),
         }
     }
 }

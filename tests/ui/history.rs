@@ -89,33 +89,40 @@ fn undo_during_a_drag_cancels_the_drag() {
 }
 
 #[test]
-fn a_running_solver_is_one_step() {
+fn a_solver_run_is_no_step_and_applying_its_pose_is_one() {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
     let first = bench.session().document().clone();
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(2.0);
     assert!(!bench.session().is_running());
+    assert_eq!(bench.session().document(), &first);
+    assert_eq!(bench.session().undo_label(), None);
+    bench.apply([EditAction::ApplyPose]);
     assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_label(), Some("Solve"));
+    assert_eq!(bench.session().undo_label(), Some("Apply pose"));
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
     assert_eq!(bench.session().undo_label(), None);
 }
 
 #[test]
-fn undo_stops_a_running_solver_and_undoes_its_run() {
+fn undo_leaves_a_running_solver_running() {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
-    let method = Method::TransposeFixed;
-    bench.apply([EditAction::SetSolver(SolverOptions::new(method))]);
-    let first = bench.session().document().clone();
+    let joint = JointId::new(2);
+    let before = bench.session().skeleton()[joint].rotation;
+    bench.apply([
+        EditAction::SetSolver(SolverOptions::new(Method::TransposeFixed)),
+        EditAction::SetRotation { joint, rotation: before + Vec3::Z * 0.2 },
+    ]);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(0.05);
     assert!(bench.session().is_running());
     bench.key_with(CTRL, Key::Z);
-    assert!(!bench.session().is_running());
-    assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
+    assert_eq!(bench.session().skeleton()[joint].rotation, before);
+    assert!(bench.session().is_running(), "it runs from the restored pose");
+    bench.apply([SolverAction::Reset]);
 }
 
 #[test]

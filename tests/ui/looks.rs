@@ -6,7 +6,9 @@ use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
-use ik_arm::session::{Action, EditAction, FileAction, Navigation, SelectAction, ShellAction};
+use ik_arm::session::{
+    Action, EditAction, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
+};
 
 use crate::bench::{Bench, SMALL};
 use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
@@ -139,7 +141,7 @@ fn the_panels_look_as_they_did() {
     let skeleton = [
         Action::from(FileAction::OpenExample(human)),
         SelectAction::Joints(vec![JointId::new(8)]).into(),
-        EditAction::StepSolver.into(),
+        SolverAction::Step.into(),
     ];
     for theme in THEMES {
         let rigs = [

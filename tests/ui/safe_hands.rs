@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Camera, Overlay, RigKind, Theme};
+use ik_arm::document::{Camera, Overlay, RigKind, Target, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
     Action, Dialog, DragInput, EditAction, Effect, ExportJob, FileAction, Grip, PathDialog,
@@ -256,7 +256,7 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
 }
 
 #[test]
-fn the_solver_panel_and_the_status_line_describe_the_shown_pose() {
+fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_pose() {
     let example = Example::find("ten-joints").expect("there");
     let mut bench = Bench::after([FileAction::OpenExample(example)]);
     let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
@@ -265,29 +265,33 @@ fn the_solver_panel_and_the_status_line_describe_the_shown_pose() {
         let target = session.skeleton_rig().targets[0];
         session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
     };
-    assert_eq!(status(&bench).state, SolverState::NotSolved);
+    assert_eq!(status(&bench).state, SolverState::NotReached);
+    assert!(bench.shows(Role::Label, "not reached") && bench.shows(Role::Label, "evaluated pose"));
+    assert!((status(&bench).error - tip_to_target(&bench)).abs() < 1e-5);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
     assert_eq!(status(&bench).state, SolverState::Ended(Status::Converged));
-    assert!(bench.says("converged after"), "the status line says so");
+    let latest = bench.session().shown_iteration().expect("a run").latest;
+    assert!(bench.says(&format!("iteration {latest} of {latest}, converged")));
 
     bench.apply([EditAction::SetRotation { joint: JointId::new(2), rotation: Vec3::splat(0.7) }]);
-    assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody turned a joint");
-    assert!(bench.shows(Role::Label, "not solved yet"));
-    assert!(!bench.says("converged after"));
-    assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
-
-    bench.apply([TransactionAction::Undo]);
     assert_eq!(
         status(&bench).state,
         SolverState::Ended(Status::Converged),
-        "it is the solved pose again"
+        "it is solved from the turned joint"
     );
-    let mut target = bench.session().skeleton_rig().targets[0];
-    target.home += Vec3::splat(0.5);
-    bench.apply([EditAction::SetTarget(target)]);
-    assert_eq!(status(&bench).state, SolverState::NotSolved, "somebody moved the target");
-    assert!((status(&bench).report.error - tip_to_target(&bench)).abs() < 1e-5);
+    bench.apply([SolverAction::Show(1)]);
+    assert_eq!(status(&bench).state, SolverState::Earlier);
+    assert!(bench.says("iteration 1 of") && bench.says("not converged yet"));
+    assert!(!bench.says(", converged"));
+
+    bench.apply([SolverAction::Reset]);
+    assert_eq!(status(&bench).state, SolverState::NotReached, "nothing was applied");
+    assert!((status(&bench).error - tip_to_target(&bench)).abs() < 1e-5);
+    let target = bench.session().skeleton_rig().targets[0];
+    bench.apply([EditAction::SetTarget(Target { influence: 1.0, ..target })]);
+    assert_eq!(status(&bench).state, SolverState::Reached, "the evaluated pose is at the target");
+    assert!(bench.shows(Role::Label, "reached"));
 }
 
 #[test]

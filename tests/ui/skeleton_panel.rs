@@ -10,8 +10,8 @@ use ik_arm::document::{RigKind, TargetPath};
 use ik_arm::io::{Example, Group};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, PathDialog, SelectAction, ShellAction,
-    ViewAction,
+    Action, Dialog, EditAction, Effect, FileAction, Iterate, PathDialog, SelectAction, ShellAction,
+    SolverAction, ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -222,46 +222,127 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         let report = solver_run.report();
         assert!(report.converged(), "{name}: {report:?}");
         assert!(bench.says("converged"));
+        assert_eq!(solver_run.iterates().iter().len(), report.iterations as usize + 1);
+        assert_eq!(solver_run.shown().error, report.error);
+        bench.click(Role::Button, "Apply pose");
         let (rig, pose) = (bench.session().skeleton_rig(), bench.session().skeleton_pose());
         for target in &rig.targets {
             assert!(pose.tip(target.joint).distance(target.home) < 1e-3);
         }
-        let points: Vec<_> = solver_run.history().points().collect();
-        assert_eq!(points.len(), report.iterations as usize + 1);
-        assert_eq!(points.last().map(|point| point.1), Some(report.error));
     }
 }
 
 #[test]
-fn a_step_is_one_iteration_and_reset_restores_the_pose() {
+fn a_step_is_one_iteration_of_a_ghost_and_reset_removes_it() {
     let mut bench = example("two-targets");
-    let before = bench.session().skeleton().clone();
+    let before = bench.session().document().clone();
+    let ghosts = |bench: &Bench| bench.session().overlays().ghosts;
+    let mut poses = Vec::new();
     for iterations in 1..=3 {
         bench.click(Role::Button, "Step");
-        let report = bench.session().solver_run().expect("it stepped").report();
-        assert_eq!(report.iterations, iterations);
+        let run = bench.session().solver_run().expect("it stepped");
+        assert_eq!(run.report().iterations, iterations);
+        poses.extend(ghosts(&bench).into_iter().map(|ghost| ghost.pose));
     }
-    assert_ne!(bench.session().skeleton(), &before);
+    assert!(poses.len() == 3 && poses[0] != poses[1] && poses[1] != poses[2]);
+    assert_eq!(bench.session().document(), &before);
     bench.click(Role::Button, "Reset");
-    assert_eq!(bench.session().skeleton(), &before);
-    assert!(bench.session().solver_run().is_none());
+    assert!(ghosts(&bench).is_empty() && bench.session().solver_run().is_none());
+    assert!(!is_enabled(&bench, Role::Button, "Reset"));
 }
 
 #[test]
-fn escape_cancels_a_running_solver() {
+fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
+    let mut bench = example("two-targets");
+    assert!(!is_enabled(&bench, Role::Slider, "Iteration"), "there is no run yet");
+    (0..5).for_each(|_| bench.click(Role::Button, "Step"));
+    let run = bench.session().solver_run().expect("it stepped").clone();
+    let iterates: Vec<Iterate> = run.iterates().iter().cloned().collect();
+    bench.reveal(Role::Slider, "Iteration");
+    bench.focus(Role::Slider, "Iteration");
+    for number in (0..5_usize).rev() {
+        bench.key(Key::ArrowLeft);
+        bench.settle();
+        let session = bench.session();
+        assert_eq!(session.solver_run().expect("a run").shown(), &iterates[number]);
+        let ghost = &session.overlays().ghosts[0];
+        assert_eq!(ghost.iteration as usize, number);
+        assert_eq!(ghost.pose, session.solver_run().expect("a run").skeleton().pose());
+        assert!(bench.says(&format!("at iteration {number} of 5")), "the plot's cursor");
+        assert!(bench.shows(Role::Label, &format!("iteration {number} of 5")));
+    }
+    assert_eq!(bench.session().overlays().ghosts[0].pose, bench.session().skeleton().pose());
+}
+
+#[test]
+fn comma_and_full_stop_go_through_the_iterations() {
+    let mut bench = example("two-targets");
+    let shown = |bench: &Bench| bench.session().shown_iteration().map(|shown| shown.number);
+    bench.key(Key::Comma);
+    assert_eq!(shown(&bench), None);
+    (0..3).for_each(|_| bench.key(Key::S));
+    for (key, expected) in [
+        (Key::Period, 3),
+        (Key::Comma, 2),
+        (Key::Comma, 1),
+        (Key::Comma, 0),
+        (Key::Comma, 0),
+        (Key::Period, 1),
+        (Key::S, 4),
+        (Key::Comma, 3),
+    ] {
+        bench.key(key);
+        assert_eq!(shown(&bench), Some(expected), "{key:?}");
+    }
+    bench.key(Key::F1);
+    bench.wait(0.5);
+    assert!(bench.shows(Role::Label, "Previous, next iteration"));
+}
+
+#[test]
+fn apply_pose_writes_the_shown_iterate_as_one_step() {
+    let mut bench = example("two-targets");
+    let before = bench.session().document().clone();
+    let is_disabled_because = |bench: &mut Bench, reason: &str| {
+        bench.reveal(Role::Button, "Apply pose");
+        assert!(!is_enabled(bench, Role::Button, "Apply pose"));
+        bench.move_to(bench.rect(Role::Button, "Apply pose").center());
+        bench.wait(1.0);
+        assert!(bench.says(reason), "{reason}");
+    };
+    is_disabled_because(&mut bench, "Run or step the solver first");
+    (0..4).for_each(|_| bench.click(Role::Button, "Step"));
+    bench.apply([SolverAction::Show(0)]);
+    is_disabled_because(&mut bench, "Iteration 0 is the FK pose already");
+    bench.apply([SolverAction::Show(2)]);
+    let posed = bench.session().solver_run().expect("a run").skeleton().clone();
+    bench.click(Role::Button, "Apply pose");
+    assert_eq!(bench.session().skeleton(), &posed);
+    assert_eq!(bench.session().undo_label(), Some("Apply pose"));
+    assert!(bench.session().solver_run().is_none());
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    assert_eq!(bench.session().document(), &before);
+    bench.apply([SolverAction::Compare]);
+    is_disabled_because(&mut bench, "End the race");
+}
+
+#[test]
+fn escape_ends_a_solver_run_and_a_race() {
     let mut bench = example("ten-joints");
     bench.apply([EditAction::SetSolver({
         let solver = bench.session().skeleton_rig().solver;
         solver.with_method(Method::TransposeFixed)
     })]);
-    let before = bench.session().skeleton().clone();
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(0.2);
     assert!(bench.session().is_running());
-    assert_ne!(bench.session().skeleton(), &before);
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().skeleton(), &before);
+    assert!(bench.session().solver_run().is_none());
+    bench.apply_moving([SolverAction::Compare]);
+    bench.key(Key::Escape);
+    bench.settle();
+    assert!(bench.session().comparison().is_none());
 }
 
 #[test]
@@ -284,8 +365,9 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     assert!(!comparison.is_running(), "it ends");
     assert_eq!(comparison.solvers().len(), Method::ALL.len());
     for solver in comparison.solvers() {
-        let report = solver.report().expect("all can run here");
-        assert!(report.iterations > 0 && solver.elapsed.as_nanos() > 0);
+        let run = solver.run.as_ref().expect("all can run here");
+        let report = run.report();
+        assert!(report.iterations > 0 && run.elapsed().as_nanos() > 0);
         let converges = !matches!(solver.method, Method::TwoBone | Method::TransposeFixed);
         assert!(report.converged() || !converges, "{:?}: {report:?}", solver.method);
     }
@@ -305,7 +387,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
     bench.wait(1.0);
     let comparison = bench.session().comparison().expect("it goes on");
     let two_bone = comparison.solvers().iter().find(|solver| solver.method == Method::TwoBone);
-    let error = two_bone.expect("it is there").report().expect_err("its parent is locked");
+    let error = two_bone.expect("it is there").run.as_ref().expect_err("its parent is locked");
     assert!(error.to_string().contains("locked"), "{error}");
 }
 
@@ -455,6 +537,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     bench.wait(4.0);
     let report = bench.session().solver_run().expect("it ran").report();
     assert!(report.converged(), "{report:?}");
+    bench.click(Role::Button, "Apply pose");
     assert!(bench.session().skeleton().joints()[0].offset.x > 15.0);
 }
 

@@ -9,6 +9,7 @@ mod references;
 mod scratch;
 mod shadow;
 mod skeleton;
+mod solver_ghosts;
 mod targets;
 
 use super::{Palette, Planes, Scene};

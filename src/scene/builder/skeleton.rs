@@ -23,7 +23,7 @@ const TAPER: f32 = 0.6;
 /// taper, so that a chain of many forms one smooth body.
 const SLENDER: f32 = 4.0;
 /// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
-const GHOST: f32 = 0.45;
+pub(super) const GHOST: f32 = 0.45;
 /// Contrast of the FK pose with the background, from 0 to 1.
 const FK_CONTRAST: f32 = 0.35;
 
@@ -72,15 +72,15 @@ pub(super) fn add(
         let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
         drawn.add_fk_pose(scene, fk_pose, is_shown);
     }
-    for ghost in &overlays.ghosts {
-        let colour = scene.palette.method(ghost.method);
-        DrawnSkeleton { pose: &ghost.pose, ..drawn }.add_ghost(scene, colour);
-    }
+    drawn.add_solver_ghosts(scene, &overlays.ghosts, display);
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
             drawn.add_target(scene, target, report);
             if target.enabled && target.is_moving() {
                 targets::add_trail(scene, target, &evaluated.solved, overlays.time);
+            }
+            if target.enabled && overlays.ghosts.is_empty() {
+                drawn.add_gap(scene, target.joint, report.position, scene.palette.accent);
             }
         }
     }
@@ -123,9 +123,17 @@ pub(super) struct DrawnSkeleton<'a> {
     scale: f32,
 }
 
-impl DrawnSkeleton<'_> {
+impl<'a> DrawnSkeleton<'a> {
+    /// The skeleton in another pose.
+    pub fn posed<'b>(&self, pose: &'b SkeletonPose) -> DrawnSkeleton<'b>
+    where
+        'a: 'b,
+    {
+        DrawnSkeleton { pose, ..*self }
+    }
+
     /// Radius of a bone at its base as drawn, in world units.
-    fn radius(&self, joint: JointId) -> f32 {
+    pub fn radius(&self, joint: JointId) -> f32 {
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let (of_length, of_reach) = MAX_RADIUS;
         let limit = match length {
@@ -176,17 +184,6 @@ impl DrawnSkeleton<'_> {
         if self.are_leaves[joint.index()] && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
-        }
-    }
-
-    fn add_ghost(&self, scene: &mut Scene, colour: Colour) {
-        for joint in self.pose.ids() {
-            let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
-            let radius = self.radius(joint) * GHOST;
-            if base != tip {
-                scene.add_solid(base, tip, radius, radius, colour);
-            }
-            scene.balls.push(Ball { centre: tip, radius, colour });
         }
     }
 

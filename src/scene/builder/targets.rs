@@ -4,7 +4,7 @@ use super::skeleton::DrawnSkeleton;
 use crate::document::{Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetReport;
-use crate::scene::{Ball, Label, LabelSide, Line, Scene};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
 
 /// Radius of a target's ball, as a fraction of the skeleton's reach.
 const TARGET_RADIUS: f32 = 0.014;
@@ -14,12 +14,11 @@ const POINTER_OPACITY: f32 = 0.45;
 const TRAIL: (f64, usize) = (1.2, 48);
 
 impl DrawnSkeleton<'_> {
-    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the pole. If
-    /// the tip does not reach the target, adds a line between the two, labelled with their distance.
+    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the pole.
     pub fn add_target(&self, scene: &mut Scene, target: &Target, report: &TargetReport) {
         let at = report.position;
         let radius = TARGET_RADIUS * self.reach;
-        let (guide, accent) = (scene.palette.guide, scene.palette.accent);
+        let guide = scene.palette.guide;
         let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
         scene.guide_balls.push(Ball { centre: at, radius, colour });
         if !target.enabled {
@@ -30,11 +29,17 @@ impl DrawnSkeleton<'_> {
             scene.lines.push(Line { from: self.pose.base(upper), to: at, colour, dashed: false });
             self.add_pole(scene, target, report, radius);
         }
-        if report.error > 1.5 * radius {
-            let tip = self.pose.tip(target.joint);
-            scene.lines.push(Line { from: tip, to: at, colour: accent, dashed: true });
-            let label = Label::new(at, radius, LabelSide::Above, accent);
-            let (gap, decimals) = (report.error, residual_decimals(self.reach));
+    }
+
+    /// Adds a line from a joint's tip to its target, labelled with their distance, unless the tip
+    /// reaches the target.
+    pub fn add_gap(&self, scene: &mut Scene, joint: JointId, at: Vec3, colour: Colour) {
+        let (tip, radius) = (self.pose.tip(joint), TARGET_RADIUS * self.reach);
+        let gap = tip.distance(at);
+        if gap > 1.5 * radius {
+            scene.lines.push(Line { from: tip, to: at, colour, dashed: true });
+            let label = Label::new(at, radius, LabelSide::Above, colour);
+            let decimals = residual_decimals(self.reach);
             scene.add_label(label, format_args!("{gap:.decimals$}"));
         }
     }

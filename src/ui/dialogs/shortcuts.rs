@@ -36,6 +36,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
                 ("Add a child joint, at the mouse", "A, Ctrl+click"),
                 ("Add or remove a target, rename, delete", "T, F2, Delete"),
                 ("Run or pause the solver, one iteration", "R, S"),
+                ("Previous, next iteration", ", ."),
+                ("End the solver run or the race", "Esc"),
                 ("Select all, none", "Ctrl+A, Esc"),
             ],
         ),
@@ -85,7 +87,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 24.0;
-            for column in [&[5, 1, 2, 4][..], &[0, 3, 6]] {
+            for column in [&[0, 2, 4, 5][..], &[1, 3, 6]] {
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.x = 8.0;
                     column.iter().for_each(|group| group_of_keys(ui, groups[*group]));

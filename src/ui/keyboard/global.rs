@@ -66,10 +66,8 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
             actions.push(ShellAction::CloseDialog);
         } else if focus::was_typing(ui) || egui::Popup::is_any_open(ui.ctx()) {
             // egui leaves the text field or closes the popup.
-        } else if session.is_running() {
-            actions.push(SolverAction::Cancel);
-        } else if session.comparison().is_some() {
-            actions.push(SolverAction::Compare(false));
+        } else if session.shown_iteration().is_some() {
+            actions.push(SolverAction::Reset);
         } else if !session.selection().is_empty() {
             actions.push(SelectAction::Joints(Vec::new()));
         } else if !session.selected_keys().is_empty() {

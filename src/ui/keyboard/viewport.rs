@@ -48,7 +48,12 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(SolverAction::Run(!session.is_running()));
     }
     if pressed(Key::S) {
-        actions.push(EditAction::StepSolver);
+        actions.push(SolverAction::Step);
+    }
+    if let Some(shown) = session.shown_iteration() {
+        let previous = shown.previous.filter(|_| pressed(Key::Comma));
+        let next = shown.next.filter(|_| pressed(Key::Period));
+        actions.extend(previous.or(next).map(SolverAction::Show));
     }
 }
 

@@ -12,15 +12,15 @@ use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.comparison() else {
-        let tooltip = "Run every solver from this pose, each as a coloured ghost";
+        let tooltip = "Run every solver from the FK pose, each as a coloured ghost";
         if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
-            actions.push(SolverAction::Compare(true));
+            actions.push(SolverAction::Compare);
         }
         return;
     };
-    let tooltip = "Remove the ghosts; the pose stays";
+    let tooltip = "Remove the ghosts (Esc)";
     if widgets::button(ui, "End race", tooltip, None) {
-        actions.push(SolverAction::Compare(false));
+        actions.push(SolverAction::Reset);
     }
     Grid::new("race").num_columns(4).min_col_width(20.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
         ui.weak("Solver");
@@ -43,7 +43,7 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         let said = format!("{}: {}", short_name(solver.method), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         // The square of a solver is filled only if the solver has converged.
-        if solver.report().is_ok_and(|report| report.converged()) {
+        if solver.run.as_ref().is_ok_and(|run| run.report().converged()) {
             ui.painter().rect_filled(rect, 2.0, colour);
         } else {
             ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside);
@@ -52,9 +52,10 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         let label = ui.label(short_name(solver.method));
         label.on_hover_text(format!("{}. {}", labels::method(solver.method), status(solver)));
     });
-    let texts = match solver.report() {
-        Ok(report) => {
-            [report.iterations.to_string(), format::short(report.error), duration(solver.elapsed)]
+    let texts = match &solver.run {
+        Ok(run) => {
+            let shown = run.shown();
+            [shown.iteration.to_string(), format::short(shown.error), duration(run.elapsed())]
         }
         Err(_) => ["–", "–", "–"].map(str::to_owned),
     };
@@ -68,10 +69,13 @@ fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Re
 }
 
 fn status(solver: &ComparedSolver) -> String {
-    match solver.report() {
+    match &solver.run {
         Err(error) => error.to_string(),
-        Ok(Report { status: Status::Iterating, .. }) => "running".to_owned(),
-        Ok(report) => report.status.to_string(),
+        Ok(run) if run.report().status == Status::Iterating => "running".to_owned(),
+        Ok(run) => {
+            let Report { status, iterations, .. } = run.report();
+            format!("{status} after {iterations} iterations")
+        }
     }
 }
 

@@ -3,10 +3,10 @@
 use core::ops::RangeInclusive;
 
 use egui::{Rangef, Stroke, Ui, Vec2b};
-use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints};
+use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints, Points, VLine};
 
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Comparison, ResidualHistory, Session};
+use crate::session::{Iterate, Session, ShownIteration, SolverRun};
 use crate::ui::style;
 use crate::ui::widgets::{format, plot};
 
@@ -15,23 +15,18 @@ const HEIGHT: f32 = 132.0;
 const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
-    let rig = session.skeleton_rig();
-    let least = f64::from(LEAST * rig.reach());
-    let tolerance = f64::from(rig.solver.tolerance.unwrap_or(1e-4 * rig.reach()));
-    let curves = curves(session, least);
-    let all = || curves.iter().flat_map(|(_, points)| points);
-    let first = all().map(|point| point[0]).fold(f64::INFINITY, f64::min);
-    let last = all().map(|point| point[0]).fold(1.0, f64::max);
+    let least = f64::from(LEAST * session.skeleton_rig().reach());
+    let tolerance = f64::from(session.solver_tolerance());
+    let curves: Vec<Curve> = session.solver_runs().map(|run| Curve::new(run, least)).collect();
+    let all = || curves.iter().flat_map(|curve| &curve.points);
+    let last = all().map(|point| point[0]).fold(10.0, f64::max);
     let low = all().map(|point| point[1]).fold(tolerance.log10(), f64::min);
     let high = all().map(|point| point[1]).fold(tolerance.log10() + 1.0, f64::max);
-    let first = if first.is_finite() { first } else { 0.0 };
-    let bounds = PlotBounds::from_min_max(
-        [first, low - 0.3],
-        [last.max(first + 10.0) + 0.04 * (last - first).max(10.0), high + 0.3],
-    );
+    let bounds = PlotBounds::from_min_max([0.0, low - 0.3], [1.04 * last, high + 0.3]);
+    let shown = session.shown_iteration();
 
     let palette = style::palette(ui);
-    let weak = ui.visuals().weak_text_color();
+    let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
     let response = plot::still("convergence", HEIGHT)
         .custom_x_axes(vec![
             AxisHints::new_x().formatter(iteration).label_spacing(Rangef::new(20.0, 28.0)),
@@ -55,42 +50,56 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
                     .stroke(Stroke::new(1.0, weak))
                     .style(egui_plot::LineStyle::dashed_dense()),
             );
-            for (method, points) in &curves {
-                let colour = style::colour(palette.method(*method));
-                let line = Line::new(method.name(), PlotPoints::from(points.clone()));
+            if let Some(ShownIteration { number, .. }) = shown {
+                let cursor = VLine::new("shown iteration", f64::from(number));
+                plot.vline(cursor.stroke(Stroke::new(1.5, strong)));
+            }
+            for Curve { method, points, shown } in curves {
+                let colour = style::colour(palette.method(method));
+                let line = Line::new(method.name(), PlotPoints::from(points));
                 plot.line(line.color(colour).width(2.0));
+                plot.points(Points::new(method.name(), shown).color(colour).radius(3.5));
             }
         })
         .response;
-    let said = match session.solver_run().map(crate::session::SolverRun::report) {
-        Some(report) => format!(
-            "Convergence: error {} after {} iterations",
-            format::short(report.error),
-            report.iterations
-        ),
-        None => "Convergence: no solver run yet".to_owned(),
-    };
+    let said = describe(session);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &said));
-    response.on_hover_text("Error over iterations, dashed: tolerance");
+    response.on_hover_text("Error over iterations, dashed: tolerance, line: shown iteration");
 }
 
-/// One curve for each running or finished solver of the comparison or, without a comparison, for
-/// the solver run. A point is the iteration and the log₁₀ of the error, or of `least` if the error
-/// is smaller.
-fn curves(session: &Session, least: f64) -> Vec<(Method, Vec<[f64; 2]>)> {
-    let points = |history: &ResidualHistory| {
-        let point = |(iteration, error): (usize, f32)| {
-            [iteration as f64, f64::from(error).max(least).log10()]
-        };
-        history.points().map(point).collect::<Vec<_>>()
+fn describe(session: &Session) -> String {
+    let Some(ShownIteration { number, latest, .. }) = session.shown_iteration() else {
+        return "Convergence: no solver run yet".to_owned();
     };
-    if let Some(comparison) = session.comparison() {
-        let solvers =
-            Comparison::solvers(comparison).iter().filter(|solver| solver.report().is_ok());
-        return solvers.map(|solver| (solver.method, points(&solver.history))).collect();
+    match session.solver_run() {
+        Some(run) => {
+            let error = format::short(run.shown().error);
+            format!("Convergence: error {error} at iteration {number} of {latest}")
+        }
+        None => format!("Convergence: iteration {number} of {latest} of the race"),
     }
-    let solver_run = session.solver_run();
-    solver_run.map(|it| (it.report().method, points(it.history()))).into_iter().collect()
+}
+
+/// The errors of a solver run. A point is the iteration and the log₁₀ of the error.
+struct Curve {
+    method: Method,
+    points: Vec<[f64; 2]>,
+    /// The point of the shown iterate.
+    shown: [f64; 2],
+}
+
+impl Curve {
+    /// Errors below `least` count as `least`.
+    fn new(run: &SolverRun, least: f64) -> Self {
+        let point = |iterate: &Iterate| {
+            [f64::from(iterate.iteration), f64::from(iterate.error).max(least).log10()]
+        };
+        Self {
+            method: run.method(),
+            points: run.iterates().iter().map(point).collect(),
+            shown: point(run.shown()),
+        }
+    }
 }
 
 /// The largest number that is at most `step` and is 1, 2 or 5 times a power of ten; 1 if `step` is

@@ -3,11 +3,12 @@
 mod can_solve;
 mod comparison;
 mod convergence;
+mod iteration;
 
 use egui::{Align, Button, ComboBox, Layout, RichText, ScrollArea, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
-use crate::session::{Actions, EditAction, Session, SolverAction};
+use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
 use crate::ui::labels;
 use crate::ui::widgets::{self, NumberField, format};
 use can_solve::why_not;
@@ -24,7 +25,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 report(ui, session);
             }
         });
-        widgets::section(ui, "Convergence", |ui| convergence::ui(ui, session));
+        widgets::section(ui, "Convergence", |ui| {
+            convergence::ui(ui, session);
+            iteration::ui(ui, session, actions);
+        });
         widgets::section(ui, "Race", |ui| comparison::ui(ui, session, actions));
     });
 }
@@ -105,11 +109,6 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
     }
     roots(ui, options, actions);
-    let mut follow = session.preferences().follow;
-    let tooltip = "Solve fully while a target is dragged";
-    if ui.checkbox(&mut follow, "Solve during drags").on_hover_text(tooltip).changed() {
-        actions.push(SolverAction::SetFollow(follow));
-    }
 }
 
 fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
@@ -133,7 +132,7 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     widgets::pair(ui, "Tolerance", |ui| {
-        let auto = 1e-4 * session.skeleton_rig().reach();
+        let auto = session.solver_tolerance();
         if let Some(tolerance) = options.tolerance {
             let tooltip = "Set the distance at which a tip has converged";
             let step = 0.05 * tolerance;
@@ -165,12 +164,12 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         if wide(run, name, "Iterate until converged (R)", disabled) {
             actions.push(SolverAction::Run(!running));
         }
-        if wide(step, "Step", "Run one iteration (S)", disabled) {
-            actions.push(EditAction::StepSolver);
+        if wide(step, "Step", "Make one iteration (S)", disabled) {
+            actions.push(SolverAction::Step);
         }
         let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
-        if wide(reset, "Reset", "Restore the pose before the solver run", nothing) {
-            actions.push(EditAction::ResetSolver);
+        if wide(reset, "Reset", "End the run and remove its ghost (Esc)", nothing) {
+            actions.push(SolverAction::Reset);
         }
     });
 }
@@ -180,18 +179,23 @@ fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool 
     ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
-/// Shows the solver's report on the shown pose, at constant height so that nothing below moves.
+/// Shows the report on the shown iterate or the evaluated pose, at constant height so that nothing
+/// below moves.
 fn report(ui: &mut Ui, session: &Session) {
     let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
-    widgets::pair(ui, "Iterations", |ui| {
-        let made = status.map(|status| status.report.iterations);
-        value(ui, made.filter(|made| *made > 0).map_or_else(none, |made| made.to_string()))
-            .on_hover_text("Iterations of the last solver run")
+    widgets::pair(ui, "Shown", |ui| {
+        let shown = match session.shown_iteration() {
+            Some(ShownIteration { number, latest, .. }) => {
+                format!("iteration {number} of {latest}")
+            }
+            None => "evaluated pose".to_owned(),
+        };
+        ui.label(shown).on_hover_text("The pose that error and status describe")
     });
     widgets::pair(ui, "Error", |ui| {
-        value(ui, status.map_or_else(none, |status| format::short(status.report.error)))
+        value(ui, status.map_or_else(none, |status| format::short(status.error)))
             .on_hover_text("Largest distance from a tip to its target")
     });
     widgets::pair(ui, "Status", |ui| {
