@@ -1,11 +1,13 @@
 //! The command line: one module per subcommand.
 
 mod argument;
+mod bake;
 mod examples;
 mod export;
 mod gui;
 mod open;
 mod pose;
+mod progress_bar;
 mod quiet;
 mod render;
 mod report;
@@ -15,6 +17,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use bake::BakeArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
 use gui::GuiArgs;
@@ -42,6 +45,8 @@ enum Command {
     Render(RenderArgs),
     /// Export a file's motion or pictures: .glb, .bvh, .csv, .png, .apng
     Export(ExportArgs),
+    /// Replace a skeleton's targets by keys: a document in, a document out
+    Bake(BakeArgs),
     /// List the built-in example scenes, or print one
     Examples(ExamplesArgs),
     /// Open the window (also without a command)
@@ -62,6 +67,7 @@ pub fn run() -> ExitCode {
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Bake(args)) => bake::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&GuiArgs::default()),

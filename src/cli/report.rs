@@ -3,6 +3,11 @@ use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 
+/// Exit code that shells expect of a program ended by Ctrl+C.
+pub const INTERRUPTED: u8 = 130;
+/// Exit code of clap's usage errors.
+pub const USAGE: u8 = 2;
+
 /// Prints an error and returns the exit code of a failure.
 pub fn fail(error: &dyn Error) -> ExitCode {
     say(error);

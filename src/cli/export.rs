@@ -1,7 +1,5 @@
 //! `ik-arm export`: a file's motion or pictures, for other programs.
 
-mod progress_bar;
-
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -11,11 +9,11 @@ use thiserror::Error;
 
 use super::argument::{SizeArgument, ThemeName, TimeArgument};
 use super::open;
-use super::report::{fail, say};
+use super::progress_bar::run_with_bar;
+use super::report::{INTERRUPTED, USAGE, fail, say};
 use crate::document::{Document, Timeline};
 use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{BvhUnit, OpenError, Progress};
-use progress_bar::run_with_bar;
 
 #[derive(clap::Args)]
 #[command(after_help = r#"The extension of OUT selects the format:
@@ -79,11 +77,6 @@ enum ExportCommandError {
     #[error(transparent)]
     Export(#[from] ExportError),
 }
-
-/// Exit code that shells expect of a program ended by Ctrl+C.
-const INTERRUPTED: u8 = 130;
-/// Exit code of clap's usage errors.
-const USAGE: u8 = 2;
 
 pub fn run(args: &ExportArgs) -> ExitCode {
     match args.export() {

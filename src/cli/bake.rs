@@ -1,0 +1,120 @@
+//! `ik-arm bake`: a document whose skeleton moves by keys instead of targets.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use super::argument::NumberArgument;
+use super::open;
+use super::progress_bar::run_with_bar;
+use super::report::{INTERRUPTED, USAGE, fail, say};
+use crate::document::{Bake, BakeError, Baked, Document, Timeline};
+use crate::io::{OpenError, Progress, SaveError, save};
+
+#[derive(clap::Args)]
+#[command(
+    after_help = r#"Evaluates every frame of the file's timeline and keys the rotations of joints, and the
+offsets that solvers move. Then removes keys while every base and tip stays within the tolerance at
+every frame. The targets stay in the document, with their influence keyed to 0; a followed path is
+removed. The numbers of keys, and bones whose stretch keys cannot hold, are listed on stderr. Ctrl+C
+cancels: no file is written, and the exit code is 130."#
+)]
+pub struct BakeArgs {
+    /// File to bake, an ik-arm document (.json); - reads standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Document to write (.json)
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Frames per second [default: the timeline's]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::MAX_FRAME_RATE))
+    )]
+    fps: Option<u32>,
+    /// Largest distance from the evaluated motion at a frame, as a fraction of the skeleton's reach,
+    /// 0.00001 to 1 [default: 0.001]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    tolerance: Option<NumberArgument>,
+}
+
+/// Reasons why no file is written.
+#[derive(Debug, Error)]
+enum BakeCommandError {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error("bake writes a document, so OUT must end in .json, got {0}")]
+    Extension(String),
+    #[error("cannot handle Ctrl+C: {0}")]
+    Signal(#[from] ctrlc::Error),
+    #[error("{file}: {error}")]
+    Bake { file: String, error: BakeError },
+    #[error(transparent)]
+    Save(#[from] SaveError),
+}
+
+pub fn run(args: &BakeArgs) -> ExitCode {
+    match args.bake() {
+        Ok(lines) => {
+            lines.iter().for_each(|line| say(line));
+            ExitCode::SUCCESS
+        }
+        Err(BakeCommandError::Bake { error: error @ BakeError::Cancelled, .. }) => {
+            say(&format_args!("{error}; {} is not written", args.output.display()));
+            ExitCode::from(INTERRUPTED)
+        }
+        Err(error @ BakeCommandError::Extension(_)) => {
+            say(&error);
+            ExitCode::from(USAGE)
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+impl BakeArgs {
+    /// Bakes the file; returns the lines of the report.
+    fn bake(&self) -> Result<Vec<String>, BakeCommandError> {
+        if !self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+        {
+            return Err(BakeCommandError::Extension(self.output.display().to_string()));
+        }
+        let document = open::open(&self.file, None)?.document;
+        let settings = self.settings(&document);
+        let progress = Arc::new(Progress::default());
+        let interrupted = Arc::clone(&progress);
+        ctrlc::set_handler(move || interrupted.cancel())?;
+        let baked = run_with_bar(&progress, || {
+            settings.run(&document, |done, total| progress.step(done, total).is_ok())
+        });
+        let baked = baked
+            .map_err(|error| BakeCommandError::Bake { file: open::name(&self.file), error })?;
+        save(&baked.document, &self.output)?;
+        Ok(report(&settings, &baked))
+    }
+
+    fn settings(&self, document: &Document) -> Bake {
+        let whole = Bake::of_timeline(document);
+        let frame_rate = self.fps.unwrap_or(whole.frames.frame_rate);
+        Bake {
+            frames: Timeline { frame_rate, ..whole.frames },
+            tolerance: self.tolerance.map_or(whole.tolerance, |tolerance| tolerance.0),
+        }
+    }
+}
+
+fn report(settings: &Bake, baked: &Baked) -> Vec<String> {
+    let Baked { document, keys_at_frames, keys, error, shortened } = baked;
+    let frames = settings.frames.frames();
+    let mut lines = vec![format!(
+        "{frames} frames baked: {keys} of {keys_at_frames} keys left, at most {error} from the \
+         evaluated motion"
+    )];
+    lines.extend(shortened.iter().map(|bone| {
+        let name = &document.skeleton()[bone.joint].name;
+        format!("the stretch of the bone of {name:?}, up to {}, has no keys", bone.error)
+    }));
+    lines
+}
