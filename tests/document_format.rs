@@ -8,7 +8,7 @@ use std::fs;
 use common::damage::{message, mutations};
 use common::{Random, documents};
 use glam::Vec3;
-use ik_arm::document::{Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
+use ik_arm::document::{Arm, Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
 use ik_arm::io::{self, Example, Group, Opened};
 use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{Joint, JointId};
@@ -44,7 +44,7 @@ fn every_document_is_read_again_bit_for_bit() {
 #[test]
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
-    document.arm.cursor = Cursor::Root(Vec3::new(-0.0, 1.0, 0.0));
+    document.arm.cursor = Cursor::unpinned(Vec3::new(-0.0, 1.0, 0.0));
     document
         .skeleton_mut()
         .change(JointId::new(0), |root| root.rotation.y = -0.0)
@@ -557,6 +557,46 @@ fn the_snake_lies_in_an_s() {
     let left = turns.iter().filter(|turn| **turn > 1e-4).count();
     let right = turns.iter().filter(|turn| **turn < -1e-4).count();
     assert!(left >= 5 && right >= 5, "{turns:?}");
+}
+
+// The arm
+
+#[test]
+fn a_pin_is_in_use_unless_the_file_says_that_the_hand_is_not_pinned() {
+    let (cursor, pin) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
+    let default = Arm::default().cursor.in_root;
+    for (fields, expected) in [
+        ("", (default, default, false)),
+        (r#""cursor":[1,2,3]"#, (cursor, default, false)),
+        (r#""pin":[4,5,6]"#, (default, pin, true)),
+        (r#""cursor":[1,2,3],"pin":[4,5,6]"#, (cursor, pin, true)),
+        (r#""cursor":[1,2,3],"pin":[4,5,6],"pinned":false"#, (cursor, pin, false)),
+        (r#""cursor":[1,2,3],"pinned":true"#, (cursor, default, true)),
+    ] {
+        let arm = open(&with(&format!(r#""arm":{{"root":[7,8,9],{fields}}}"#).replace(",}", "}")));
+        let (in_root, in_world, is_pinned) = expected;
+        assert_eq!(arm.document.arm.cursor, Cursor { in_root, in_world, is_pinned }, "{fields}");
+        assert_eq!(arm.warnings, []);
+    }
+}
+
+#[test]
+fn a_file_has_the_points_and_the_switch_of_the_pin_only_where_they_are_needed() {
+    let point = Vec3::new(4.0, 5.0, 6.0);
+    let default = Arm::default().cursor;
+    for (cursor, expected) in [
+        (Cursor::unpinned(default.in_root), ["cursor"].as_slice()),
+        (Cursor { is_pinned: true, in_world: point, ..default }, &["pin"]),
+        (Cursor { is_pinned: true, ..Cursor::unpinned(point) }, &["cursor", "pin"]),
+        (Cursor::unpinned(point), &["cursor", "pin", "pinned"]),
+    ] {
+        let arm = Arm { cursor, ..Arm::default() };
+        let json = io::to_json(&Document { arm, ..Document::default() }).expect("written");
+        let file: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let fields = ["cursor", "pin", "pinned"].into_iter();
+        let found: Vec<_> = fields.filter(|field| file["arm"].get(field).is_some()).collect();
+        assert_eq!(found, expected);
+    }
 }
 
 // Keys

@@ -29,7 +29,10 @@ fn check(name: &str, document: &Document, theme: Theme) {
 }
 
 fn posed(cursor: Vec3) -> Document {
-    Document { arm: Arm { cursor: Cursor::Root(cursor), ..Arm::default() }, ..Document::default() }
+    Document {
+        arm: Arm { cursor: Cursor::unpinned(cursor), ..Arm::default() },
+        ..Document::default()
+    }
 }
 
 fn showing(mut document: Document, layers: &[Overlay]) -> Document {

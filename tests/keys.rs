@@ -1,10 +1,14 @@
 //! Documents evaluated at a time.
 #![cfg(feature = "document")]
 
+mod common;
+
+use common::Random;
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::spline::Spline;
 
 fn number(value: f32) -> Vec3 {
     Vec3::new(value, 0.0, 0.0)
@@ -146,4 +150,80 @@ fn the_frame_count_includes_both_ends() {
     assert_eq!(timeline.snapped(1.47), 35.0 / 24.0);
     let third = Timeline { start: 0.1, end: 0.1 + 1.0 / 3.0, frame_rate: 30 };
     assert_eq!(third.frames(), 11);
+}
+
+/// A switch and points with keys at random times, some of them at the same times.
+fn pinned_at_random(random: &mut Random) -> Keys {
+    let mut keys = Keys::default();
+    let time = |random: &mut Random| f64::from(random.within(0.0..8.0).round()) / 2.0;
+    for _ in 0..1 + random.below(5) {
+        keys.insert(Channel::Pinned, time(random), number(random.below(2) as f32));
+    }
+    for channel in [Channel::Hand, Channel::Pin] {
+        for _ in 0..1 + random.below(6) {
+            keys.insert(channel, time(random), random.vector(100.0));
+        }
+    }
+    keys
+}
+
+/// Times before, at, between and after all keys.
+fn samples() -> impl Iterator<Item = f64> {
+    (-4..40).map(|step| f64::from(step) * 0.125)
+}
+
+/// The spline through the knots of a track for which `is_own` holds.
+fn part(track: &Spline<Vec3>, is_own: impl Fn(f64) -> bool) -> Spline<Vec3> {
+    track.knots().iter().filter(|knot| is_own(knot.time)).copied().collect()
+}
+
+#[test]
+fn a_plant_has_a_spline_through_its_own_keys() {
+    let mut random = Random(0x91a);
+    for _ in 0..2_000 {
+        let keys = pinned_at_random(&mut random);
+        let (track, is_on) = (keys.track(Channel::Pin), |at| keys.value(Channel::Pinned, at));
+        let track = track.expect("keyed");
+        for time in samples() {
+            // The switch does not change from the time to the key.
+            let is_own = |key: f64| {
+                let is_between = |at: &f64| (key.min(time)..key.max(time)).contains(at);
+                samples().filter(is_between).chain([time]).all(|at| is_on(at) == is_on(time))
+            };
+            let expected = part(track, is_own).at(time).or_else(|| track.step(time));
+            assert_eq!(keys.value(Channel::Pin, time), expected, "at {time} of {keys:?}");
+        }
+    }
+}
+
+#[test]
+fn a_key_of_the_hand_in_a_plant_ends_its_spline() {
+    let mut random = Random(0x4a4d);
+    for _ in 0..2_000 {
+        let keys = pinned_at_random(&mut random);
+        let track = keys.track(Channel::Hand).expect("keyed");
+        let is_on = |at| keys.value(Channel::Pinned, at) == Some(Vec3::X);
+        let times = || track.knots().iter().map(|knot| knot.time);
+        let planted: Vec<f64> = times().filter(|at| is_on(*at) || is_on(*at - 0.125)).collect();
+        for time in samples() {
+            let is_own = |key: f64| match key <= time {
+                true => !planted.iter().any(|end| key < *end && *end <= time),
+                false => !planted.iter().any(|end| time < *end && *end < key),
+            };
+            let expected = part(track, is_own).at(time);
+            assert_eq!(keys.value(Channel::Hand, time), expected, "at {time} of {keys:?}");
+        }
+    }
+}
+
+#[test]
+fn without_keys_of_the_switch_hand_and_pin_follow_all_their_keys() {
+    let mut random = Random(0x5711);
+    for _ in 0..200 {
+        let mut keys = pinned_at_random(&mut random);
+        keys.clear(Channel::Pinned);
+        for (channel, track) in keys.tracks() {
+            assert!(samples().all(|time| keys.value(channel, time) == track.at(time)));
+        }
+    }
 }

@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (480, 300);
 
 /// An arm with all its guides, and `more` balls and lines around it.
 fn scene(hand: Vec3, more: usize) -> Scene {
-    let arm = Arm { cursor: Cursor::Root(hand), ..Arm::default() };
+    let arm = Arm { cursor: Cursor::unpinned(hand), ..Arm::default() };
     let display: Display = Overlay::all().collect();
     let document = Document { arm, display, ..Document::default() };
     let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);

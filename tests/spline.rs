@@ -92,6 +92,17 @@ proptest! {
     }
 
     #[test]
+    fn among_some_knots_it_is_the_spline_through_them_alone(
+        knots in knots(), from in 0..12_usize, count in 0..12_usize, part in -0.1..1.1_f64
+    ) {
+        let some: Vec<_> = knots.iter().copied().skip(from).take(count).collect();
+        let (first, last) = (knots[0].0, knots[knots.len() - 1].0);
+        let time = first + (last - first) * part;
+        let (start, end) = some.first().zip(some.last()).map_or((9e9, -9e9), |(a, b)| (a.0, b.0));
+        prop_assert_eq!(spline(&knots).at_among(start..=end, time), spline(&some).at(time));
+    }
+
+    #[test]
     fn vectors_are_three_numbers(knots in knots(), time in -5.0..30.0_f64) {
         let points: Spline<Vec3> = knots
             .iter()

@@ -47,7 +47,7 @@ impl Arm {
     pub fn new(upper: f32, lower: f32) -> Result<Self, LengthError> {
         let cursor = Vec3::new(250.0, 120.0, 60.0);
         Ok(Self {
-            cursor: Cursor::Root(cursor),
+            cursor: Cursor::unpinned(cursor),
             twist: 0.0,
             root: Vec3::ZERO,
             bones: TwoBone::new(upper, lower)?,
@@ -66,36 +66,28 @@ impl Arm {
 
     /// The Cursor in Root space.
     pub fn cursor_in_root(&self) -> Vec3 {
-        self.cursor.in_root(self.root)
+        self.cursor.position_in_root(self.root)
     }
 
     /// The Cursor in the world.
     pub fn cursor_in_world(&self) -> Vec3 {
-        self.cursor.in_world(self.root)
+        self.cursor.position_in_world(self.root)
     }
 
     /// Moves the Cursor to a point in Root space. A pinned Cursor stays pinned.
     pub fn set_cursor(&mut self, cursor: Vec3) {
-        let cursor = Cursor::Root(cursor);
-        self.cursor = match self.is_pinned() {
-            true => Cursor::World(cursor.in_world(self.root)),
-            false => cursor,
-        };
+        self.cursor.move_in_root(self.root, cursor);
     }
 
     /// Whether the Cursor is pinned to the world.
     pub fn is_pinned(&self) -> bool {
-        matches!(self.cursor, Cursor::World(_))
+        self.cursor.is_pinned
     }
 
     /// Pins the Cursor to the world or unpins it. The Cursor does not move.
     #[must_use]
     pub fn with_pinned(self, pinned: bool) -> Self {
-        let cursor = match pinned {
-            true => Cursor::World(self.cursor_in_world()),
-            false => Cursor::Root(self.cursor_in_root()),
-        };
-        if pinned == self.is_pinned() { self } else { Self { cursor, ..self } }
+        Self { cursor: self.cursor.with_pinned(pinned, self.root), ..self }
     }
 
     /// Limits of the hand's distance from the shoulder, at the present influence and FK stretch.

@@ -11,7 +11,7 @@ use crate::kinematics::twist::TwistReferenceKind;
 /// x, with y and z 0, and a switch is 0 or 1 in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
-    /// The Cursor in Root space, while it is not pinned.
+    /// The Cursor in Root space while it is not pinned.
     Hand,
     /// Socket twist in radians, unwrapped; with Transport it is measured from the stereographic
     /// direction.
@@ -22,8 +22,10 @@ pub enum Channel {
     Upper,
     /// Length of the lower limb.
     Lower,
-    /// The Cursor in the world, while it is pinned.
+    /// The Cursor in the world while it is pinned.
     Pin,
+    /// Whether the Cursor is pinned to the world.
+    Pinned,
     /// The pole: the point in Root space towards which the elbow turns.
     Pole,
     /// Influence of IK, from 0 (FK alone) to 1 (IK alone).
@@ -88,8 +90,9 @@ impl Quantity {
 
 impl Channel {
     /// All channels of the arm.
-    pub const ARM: [Self; 12] = [
+    pub const ARM: [Self; 13] = [
         Self::Hand,
+        Self::Pinned,
         Self::Pin,
         Self::Twist,
         Self::Pole,
@@ -104,7 +107,7 @@ impl Channel {
     ];
 
     /// The channels that pose the arm by IK.
-    pub const IK: [Self; 3] = [Self::Hand, Self::Pin, Self::Twist];
+    pub const IK: [Self; 4] = [Self::Hand, Self::Pinned, Self::Pin, Self::Twist];
 
     /// The channels that pose the arm by FK, and the influence of IK.
     pub const FK: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
@@ -127,7 +130,7 @@ impl Channel {
             | Self::HandOrientation
             | Self::Rotation(_)
             | Self::TargetOrientation(_) => Quantity::Angles,
-            Self::Enabled(_) | Self::Overlay(_) => Quantity::Switch,
+            Self::Pinned | Self::Enabled(_) | Self::Overlay(_) => Quantity::Switch,
         }
     }
 
@@ -136,11 +139,22 @@ impl Channel {
         self.quantity() == Quantity::Switch
     }
 
+    /// The channel of the point that the Cursor of `arm` has: in the world if it is pinned, else in
+    /// Root space.
+    pub fn of_cursor(arm: &Arm) -> Self {
+        if arm.is_pinned() { Self::Pin } else { Self::Hand }
+    }
+
+    /// Whether the channel is the point that the Cursor of `arm` does not have at present.
+    pub fn is_idle(self, arm: &Arm) -> bool {
+        matches!(self, Self::Hand | Self::Pin) && self != Self::of_cursor(arm)
+    }
+
     /// Whether the channel affects the pose of `arm` with its present settings.
     pub fn shapes(self, arm: &Arm) -> bool {
         match self {
-            Self::Hand => !arm.is_pinned(),
-            Self::Pin => arm.is_pinned(),
+            Self::Hand | Self::Pin => self == Self::of_cursor(arm),
+            Self::Pinned => arm.is_pinned(),
             Self::Pole => arm.twist_reference == TwistReferenceKind::Pole,
             Self::Influence | Self::Shoulder | Self::Bend => arm.influence < 1.0,
             Self::Stretch => arm.influence < 1.0 && arm.is_stretching(),
@@ -158,6 +172,7 @@ impl Channel {
             | Self::Upper
             | Self::Lower
             | Self::Pin
+            | Self::Pinned
             | Self::Pole
             | Self::Influence
             | Self::Shoulder

@@ -27,6 +27,7 @@ impl Channel {
             Self::Upper => "upper",
             Self::Lower => "lower",
             Self::Pin => "pin",
+            Self::Pinned => "pinned",
             Self::Pole => "pole",
             Self::Influence => "influence",
             Self::Shoulder => "shoulder",

@@ -1,7 +1,6 @@
 use glam::Vec3;
 
 use super::channel::Channel;
-use super::cursor::Cursor;
 use super::document::Document;
 use super::rig_kind::RigKind;
 use crate::kinematics::limb_ik::ElbowReference;
@@ -35,23 +34,17 @@ impl Channel {
         channels
     }
 
-    /// The channel's value in a document. `None` for a joint or target that the document does not
-    /// have, for [`Channel::Hand`] while the Cursor is pinned, and for [`Channel::Pin`] while it is
-    /// not.
+    /// The channel's value in a document; `None` for a joint or target that the document does not
+    /// have.
     pub fn value(self, document: &Document) -> Option<Vec3> {
         let Document { arm, skeleton_rig: rig, display, .. } = document;
         let number = |value| Vec3::new(value, 0.0, 0.0);
         let switch = |on: bool| number(f32::from(u8::from(on)));
         let target = |joint| Some(rig.targets[rig.target(joint)?]);
         Some(match self {
-            Self::Hand => match arm.cursor {
-                Cursor::Root(cursor) => cursor,
-                Cursor::World(_) => return None,
-            },
-            Self::Pin => match arm.cursor {
-                Cursor::World(cursor) => cursor,
-                Cursor::Root(_) => return None,
-            },
+            Self::Hand => arm.cursor.in_root,
+            Self::Pin => arm.cursor.in_world,
+            Self::Pinned => switch(arm.cursor.is_pinned),
             Self::Twist => number(arm.keyed_twist()),
             Self::Pole => arm.pole,
             Self::Influence => number(arm.influence),
@@ -84,16 +77,9 @@ impl Channel {
             return;
         }
         match self {
-            Self::Hand => {
-                if let Cursor::Root(cursor) = &mut arm.cursor {
-                    *cursor = value;
-                }
-            }
-            Self::Pin => {
-                if let Cursor::World(cursor) = &mut arm.cursor {
-                    *cursor = value;
-                }
-            }
+            Self::Hand => arm.cursor.in_root = value,
+            Self::Pin => arm.cursor.in_world = value,
+            Self::Pinned => arm.cursor.is_pinned = value.x >= 0.5,
             Self::Twist => arm.set_keyed_twist(value.x),
             Self::Pole => arm.pole = value,
             Self::Influence => arm.influence = value.x.clamp(0.0, 1.0),

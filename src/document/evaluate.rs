@@ -33,7 +33,8 @@ impl Document {
 
     fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
         let keys = self.keys.clone();
-        if [Channel::Hand, Channel::Pin, Channel::Root].into_iter().any(|it| keys.has(it)) {
+        let cursor = [Channel::Hand, Channel::Pin, Channel::Pinned, Channel::Root];
+        if cursor.into_iter().any(|channel| keys.has(channel)) {
             // A pose by keys depends on its time alone, so no frame is transported to it.
             self.arm.end_transport();
         }
@@ -72,8 +73,9 @@ impl Document {
     }
 
     /// Adds a key with the present value of a channel at a time in seconds. A twist is first
-    /// unwrapped to be nearest to the value that its existing keys have at that time. Does nothing
-    /// if the channel has no value.
+    /// unwrapped to be nearest to the value that its existing keys have at that time. The hand is
+    /// first keyed where the last plant before that time begins, so that it arrives there as
+    /// before. Does nothing if the channel has no value.
     pub fn key(&mut self, channel: Channel, time: f64) {
         let Some(mut value) = channel.value(self) else {
             return;
@@ -82,6 +84,9 @@ impl Document {
             && let Some(Vec3 { x: near, .. }) = self.keys.value(channel, time)
         {
             value.x = angle::nearest(value.x, near);
+        }
+        if channel == Channel::Hand {
+            self.key_hand_at_plant(time);
         }
         self.keys.insert(channel, time, value);
     }

@@ -108,11 +108,13 @@ impl Keys {
     /// applied; `None` without keys.
     pub fn value(&self, channel: Channel, time: f64) -> Option<Vec3> {
         let track = self.track(channel)?;
-        match channel.quantity() {
-            Quantity::Switch => track.step(time),
-            Quantity::Length => Some(track.at(time)?.max(Vec3::X * min_length(track))),
-            Quantity::Fraction => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
-            Quantity::Point | Quantity::Angle | Quantity::Angles => track.at(time),
+        match (channel, channel.quantity()) {
+            (Channel::Hand, _) => self.hand(time),
+            (Channel::Pin, _) => self.pin(time),
+            (_, Quantity::Switch) => track.step(time),
+            (_, Quantity::Length) => Some(track.at(time)?.max(Vec3::X * min_length(track))),
+            (_, Quantity::Fraction) => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
+            (_, Quantity::Point | Quantity::Angle | Quantity::Angles) => track.at(time),
         }
     }
 

@@ -23,6 +23,7 @@ mod document;
 mod evaluate;
 mod hand_orientation;
 mod keys;
+mod plant;
 mod projection;
 mod rekey;
 mod rig_kind;

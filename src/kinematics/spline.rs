@@ -21,7 +21,7 @@
 //! E. Catmull, R. Rom, *A Class of Local Interpolating Splines*, 1974; the tangents over uneven
 //! times as in *Animation: Spline Interpolation*, wiki of Scotty3D (CMU 15-462).
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Mul, RangeInclusive, Sub};
 
 /// A value at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,44 +127,63 @@ where
 {
     /// Interpolated value at a time (see the module); `None` without knots.
     pub fn at(&self, time: f64) -> Option<V> {
-        let (first, last) = (self.knots.first()?, self.knots.last()?);
-        if time.is_nan() || time <= first.time {
-            return Some(first.value);
-        }
-        if time >= last.time {
-            return Some(last.value);
-        }
-        let after = self.knots.partition_point(|knot| knot.time <= time);
-        let (from, to) = (self.knots[after - 1], self.knots[after]);
-        if time == from.time {
-            return Some(from.value);
-        }
-        let span = to.time - from.time;
-        let s = (time - from.time) / span;
-        let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
-        let (leaving, arriving) = (self.turn(after - 1, span), self.turn(after, span));
-        Some(from.value * a + leaving * b + to.value * c + arriving * d)
+        interpolated(&self.knots, time)
     }
 
-    /// h·m at a knot: the rate of change m there, times the time span h.
-    fn turn(&self, knot: usize, span: f64) -> V {
-        let here = self.knots[knot];
-        let mirrored = |of: Knot<V>| Knot {
-            time: here.time - (of.time - here.time),
-            value: here.value - (of.value - here.value),
-        };
-        let before = knot.checked_sub(1).map(|before| self.knots[before]);
-        let after = self.knots.get(knot + 1).copied();
-        let (before, after) = match (before, after) {
-            (Some(before), Some(after)) => (before, after),
-            (None, Some(after)) => (mirrored(after), after),
-            (Some(before), None) => (before, mirrored(before)),
-            (None, None) => (here, here),
-        };
-        let wide = after.time - before.time;
-        let part = if wide > 0.0 { span / wide } else { 0.0 };
-        (after.value - before.value) * part as f32
+    /// Value at a time of the spline through only those knots whose times are in a range; `None` if
+    /// there are none.
+    pub fn at_among(&self, times: RangeInclusive<f64>, time: f64) -> Option<V> {
+        let start = self.knots.partition_point(|knot| knot.time < *times.start());
+        let end = self.knots.partition_point(|knot| knot.time <= *times.end());
+        interpolated(self.knots.get(start..end)?, time)
     }
+}
+
+/// Interpolated value of the spline through `knots`; `None` without knots.
+fn interpolated<V>(knots: &[Knot<V>], time: f64) -> Option<V>
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
+{
+    let (first, last) = (knots.first()?, knots.last()?);
+    if time.is_nan() || time <= first.time {
+        return Some(first.value);
+    }
+    if time >= last.time {
+        return Some(last.value);
+    }
+    let after = knots.partition_point(|knot| knot.time <= time);
+    let (from, to) = (knots[after - 1], knots[after]);
+    if time == from.time {
+        return Some(from.value);
+    }
+    let span = to.time - from.time;
+    let s = (time - from.time) / span;
+    let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
+    let (leaving, arriving) = (turn(knots, after - 1, span), turn(knots, after, span));
+    Some(from.value * a + leaving * b + to.value * c + arriving * d)
+}
+
+/// h·m at a knot: the rate of change m there, times the time span h.
+fn turn<V>(knots: &[Knot<V>], knot: usize, span: f64) -> V
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
+{
+    let here = knots[knot];
+    let mirrored = |of: Knot<V>| Knot {
+        time: here.time - (of.time - here.time),
+        value: here.value - (of.value - here.value),
+    };
+    let before = knot.checked_sub(1).map(|before| knots[before]);
+    let after = knots.get(knot + 1).copied();
+    let (before, after) = match (before, after) {
+        (Some(before), Some(after)) => (before, after),
+        (None, Some(after)) => (mirrored(after), after),
+        (Some(before), None) => (before, mirrored(before)),
+        (None, None) => (here, here),
+    };
+    let wide = after.time - before.time;
+    let part = if wide > 0.0 { span / wide } else { 0.0 };
+    (after.value - before.value) * part as f32
 }
 
 /// Weights of p₁, h·m₁, p₂ and h·m₂ at s from 0 to 1.

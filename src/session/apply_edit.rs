@@ -23,7 +23,9 @@ impl Session {
             EditAction::SetRoot(root) => self.set_root(root),
             EditAction::SetTwist(twist) => self.set_twist(twist),
             EditAction::SetPin(pin) => {
-                self.set_point("hand", pin, |arm, pin| arm.cursor = Cursor::World(pin));
+                self.set_point("hand", pin, |arm, pin| {
+                    arm.cursor = Cursor { in_world: pin, is_pinned: true, ..arm.cursor };
+                });
             }
             EditAction::PinHand(pinned) => self.replace_arm(self.arm().with_pinned(pinned)),
             EditAction::SetTwistReference(reference) => self.set_twist_reference(reference),

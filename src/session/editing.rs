@@ -211,26 +211,9 @@ impl Editing {
             let value = channel.value(after);
             value.is_some() && value != channel.value(&self.shown)
         };
-        let channels: Vec<Channel> = if playback.is_auto_key() {
-            // Switches get keys only if they have keys already.
-            let switches =
-                after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-            // A switch between FK and IK keys the channels of both.
-            let switched = changed(&Channel::Influence);
-            let poses_arm = |channel: &Channel| {
-                let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
-                switched && is_posing
-            };
-            // Channels that shape the rig before or after the edit.
-            let all: BTreeSet<Channel> = [&*after, &self.shown]
-                .into_iter()
-                .flat_map(Channel::of_rig)
-                .chain(switches)
-                .filter(|channel| changed(channel) || poses_arm(channel))
-                .collect();
-            all.into_iter().collect()
-        } else {
-            after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
+        let channels: Vec<Channel> = match playback.is_auto_key() {
+            true => self.channels_to_auto_key(after),
+            false => after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect(),
         };
         if !playback.is_auto_key() && is_transported(after) {
             if after.arm.cursor_in_root() != self.shown.arm.cursor_in_root() {
@@ -245,6 +228,7 @@ impl Editing {
         let mut has_overridden = false;
         for channel in channels {
             if playback.is_auto_key() {
+                after.key_before_switch(channel, &self.shown, playback.time());
                 after.key(channel, playback.time());
                 self.overrides.remove(&channel);
             } else if let Some(value) = channel.value(after) {
@@ -253,6 +237,26 @@ impl Editing {
             }
         }
         has_overridden
+    }
+
+    /// Channels that auto-key keys for a change of the shown document to `after`: changed channels
+    /// that shape the rig before or after it, and changed switches that have keys. A switch between
+    /// FK and IK keys the channels of both; a switch of the pin keys the point that comes into use.
+    fn channels_to_auto_key(&self, after: &Document) -> Vec<Channel> {
+        let changed = |channel: &Channel| channel.value(after) != channel.value(&self.shown);
+        let (has_mode, has_pinned) = (changed(&Channel::Influence), changed(&Channel::Pinned));
+        let comes_into_use = |channel: &Channel| {
+            let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
+            has_mode && is_posing || has_pinned && *channel == Channel::of_cursor(&after.arm)
+        };
+        let switches = after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
+        let all: BTreeSet<Channel> = [after, &self.shown]
+            .into_iter()
+            .flat_map(Channel::of_rig)
+            .chain(switches)
+            .filter(|channel| changed(channel) || comes_into_use(channel))
+            .collect();
+        all.into_iter().collect()
     }
 
     /// Restores the document's own values of keyed channels in `after`, since their values at the
@@ -364,9 +368,8 @@ impl Editing {
 /// Whether the twist is transported along a keyed hand and has no keys of its own.
 fn is_transported(document: &Document) -> bool {
     let Document { arm, keys, .. } = document;
-    let posing = if arm.is_pinned() { Channel::Pin } else { Channel::Hand };
     arm.twist_reference == TwistReferenceKind::Transport
-        && keys.has(posing)
+        && keys.has(Channel::of_cursor(arm))
         && !keys.has(Channel::Twist)
 }
 

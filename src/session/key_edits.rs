@@ -52,20 +52,27 @@ impl Session {
     }
 
     /// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
-    /// influence is below 1.
+    /// influence is below 1. The switch of the pin is among them if it is on or has keys.
     fn posing_channels(&self) -> Vec<Channel> {
-        let arm = self.arm();
+        let (arm, keys) = (self.arm(), &self.shown().keys);
         let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
-        let posing = hand.chain(Channel::FK);
-        posing.filter(|channel| channel.shapes(arm)).collect()
+        let poses = |channel: &Channel| {
+            channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
+        };
+        hand.chain(Channel::FK).filter(poses).collect()
     }
 
-    /// Channels that affect the pose of the shown rig, and all channels with keys.
+    /// Channels that affect the pose of the shown rig, and those of [`Self::keyed_channels`].
     pub fn all_channels(&self) -> Vec<Channel> {
-        let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
-        let all: BTreeSet<Channel> =
-            Channel::of_rig(self.shown()).into_iter().chain(keyed).collect();
+        let of_rig = Channel::of_rig(self.shown()).into_iter();
+        let all: BTreeSet<Channel> = of_rig.chain(self.keyed_channels()).collect();
         all.into_iter().collect()
+    }
+
+    /// All channels with keys, except the point of the arm's Cursor that is not in use.
+    pub fn keyed_channels(&self) -> impl Iterator<Item = Channel> {
+        let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
+        keyed.filter(|channel| !channel.is_idle(self.arm()))
     }
 
     /// Keys channels at the playhead with their shown values.

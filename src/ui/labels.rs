@@ -15,6 +15,7 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Hand => "Hand".to_owned(),
         Channel::Twist => "Socket twist".to_owned(),
         Channel::Pin => "Pinned hand".to_owned(),
+        Channel::Pinned => "Pinned to world".to_owned(),
         Channel::Pole => "Pole".to_owned(),
         Channel::Influence => "IK influence".to_owned(),
         Channel::Shoulder => "Shoulder angles".to_owned(),

@@ -114,10 +114,7 @@ fn arm(random: &mut Random) -> Arm {
         random.within(0.0..3.1),
     );
     Arm {
-        cursor: match random.coin() {
-            true => Cursor::Root(random.finite_vector()),
-            false => Cursor::World(random.finite_vector()),
-        },
+        cursor: cursor(random),
         twist: random.finite(),
         root: random.finite_vector(),
         bones: TwoBone::new(random.positive(), random.positive()).expect("lengths"),
@@ -140,6 +137,17 @@ fn arm(random: &mut Random) -> Arm {
             roll: random.finite(),
         },
     }
+}
+
+/// A Cursor of which a file has both points or only the one in use.
+fn cursor(random: &mut Random) -> Cursor {
+    let (default, point) = (Arm::default().cursor, random.finite_vector());
+    let (in_root, in_world) = match random.below(3) {
+        0 => (point, default.in_world),
+        1 => (default.in_root, point),
+        _ => (point, random.finite_vector()),
+    };
+    Cursor { in_root, in_world, is_pinned: random.coin() }
 }
 
 /// Puts some targets and poles on joints, where they can be evaluated.

@@ -247,7 +247,7 @@ fn moves_as_the_default_arm(name: &str, length: f32) {
     for arm in arms {
         assert!(is_at_its_cursor(&arm));
         let cursor = (arm.cursor_in_root().as_dvec3() / scale).as_vec3();
-        let seed = Arm { cursor: Cursor::Root(cursor), ..Arm::default() }.pose();
+        let seed = Arm { cursor: Cursor::unpinned(cursor), ..Arm::default() }.pose();
         let elbow = arm.pose().elbow.as_dvec3() / scale;
         within("the elbow", elbow.distance(seed.elbow.as_dvec3()), 1e-5 * 500.0);
     }

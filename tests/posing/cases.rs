@@ -19,7 +19,7 @@ fn the_root_of_a_leaning_body_keeps_a_pinned_hand_on_the_table() {
         session([EditAction::SetHand(Vec3::new(300.0, 0.0, 100.0)), EditAction::PinHand(true)]);
     session.apply(EditAction::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
     let (arm, pose) = (session.arm(), session.pose());
-    assert_eq!(arm.cursor, Cursor::World(Vec3::new(300.0, 0.0, 100.0)));
+    assert_eq!(arm.cursor, Cursor::pinned(Vec3::new(300.0, 0.0, 100.0)));
     assert!((arm.root + pose.hand).distance(Vec3::new(300.0, 0.0, 100.0)) < 2e-4);
 }
 
@@ -175,7 +175,7 @@ fn a_click_on_the_hand_leaves_the_document_unchanged() {
 #[test]
 fn limits_scale_with_the_arm_in_fk() {
     let bones = TwoBone::new(0.001, 0.002).expect("lengths");
-    let arm = Arm { bones, cursor: Cursor::Root(Vec3::Y * 0.0025), ..Arm::default() };
+    let arm = Arm { bones, cursor: Cursor::unpinned(Vec3::Y * 0.0025), ..Arm::default() };
     let document = Document { arm: arm.with_solve_state().switched_to_fk(), ..Document::default() };
     let pose = document.arm.pose();
     assert!(

@@ -7,6 +7,7 @@ mod common;
 mod always;
 mod cases;
 mod keyed;
+mod plants;
 
 use glam::Vec3;
 use ik_arm::document::TwistReferenceKind;

@@ -270,7 +270,7 @@ fn k_keys_the_channels_of_the_pose_mode() {
     let keyed = |bench: &Bench| -> Vec<Channel> {
         bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
     };
-    assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin]);
+    assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin, Channel::Pinned]);
     bench.apply([
         Action::from(TransactionAction::Undo),
         EditAction::SwitchPoseMode(PoseMode::Angles).into(),

@@ -262,7 +262,7 @@ fn recent_files_are_offered_again() {
 #[test]
 fn changes_kept_by_an_earlier_run_are_offered_as_unsaved() {
     let mut document = Document::default();
-    document.arm.cursor = Cursor::Root(Vec3::Y * 123.0);
+    document.arm.cursor = Cursor::unpinned(Vec3::Y * 123.0);
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);

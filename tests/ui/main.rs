@@ -4,6 +4,7 @@
 
 mod accessibility;
 mod arm_handles;
+mod arm_pin;
 mod arm_posing;
 mod bench;
 mod crowd;

@@ -84,7 +84,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
 fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {
     let mut arm = Arm::default();
     arm.bones = TwoBone::new(args.upper.0, args.lower.0)?;
-    arm.cursor = Cursor::Root(args.hand.map_or(arm.cursor_in_root(), |hand| hand.0));
+    arm.cursor = Cursor::unpinned(args.hand.map_or(arm.cursor_in_root(), |hand| hand.0));
     arm.twist = (args.twist.0 % 360.0).to_radians();
     arm.root = args.root.0;
     Ok(arm)

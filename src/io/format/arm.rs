@@ -19,6 +19,8 @@ pub struct ArmFields {
     cursor: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pin: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pinned: Option<bool>,
     twist: Option<JsonNumber>,
     root: Option<JsonPoint>,
     upper: Option<JsonNumber>,
@@ -67,10 +69,11 @@ struct HandOrientationFields {
 
 impl ArmFields {
     pub fn new(arm: &Arm) -> Self {
-        let (cursor, pin) = match arm.cursor {
-            Cursor::Root(cursor) => (Some(JsonPoint(cursor)), None),
-            Cursor::World(pin) => (None, Some(JsonPoint(pin))),
-        };
+        let Cursor { in_root, in_world, is_pinned } = arm.cursor;
+        let default = Arm::default().cursor;
+        let cursor = (!is_pinned || in_root != default.in_root).then_some(JsonPoint(in_root));
+        let pin = (is_pinned || in_world != default.in_world).then_some(JsonPoint(in_world));
+        let pinned = (is_pinned != pin.is_some()).then_some(is_pinned);
         let Pointer { direction, heading } = arm.ik_state.pointer;
         let facing = FacingFields {
             direction: JsonPoint(direction),
@@ -79,6 +82,7 @@ impl ArmFields {
         Self {
             cursor,
             pin,
+            pinned,
             twist: Some(JsonNumber(arm.twist)),
             root: Some(JsonPoint(arm.root)),
             upper: Some(JsonNumber(arm.bones.upper())),
@@ -94,10 +98,10 @@ impl ArmFields {
 
     pub fn arm(&self, at: &JsonPath) -> Result<Arm, FieldError> {
         let default = Arm::default();
-        let cursor = match (self.pin, self.cursor) {
-            (Some(JsonPoint(pin)), _) => Cursor::World(pin),
-            (None, Some(JsonPoint(cursor))) => Cursor::Root(cursor),
-            (None, None) => default.cursor,
+        let cursor = Cursor {
+            in_root: self.cursor.map_or(default.cursor.in_root, |JsonPoint(cursor)| cursor),
+            in_world: self.pin.map_or(default.cursor.in_world, |JsonPoint(pin)| pin),
+            is_pinned: self.pinned.unwrap_or(self.pin.is_some()),
         };
         let mut arm = Arm {
             cursor,

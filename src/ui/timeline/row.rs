@@ -56,7 +56,7 @@ impl DopeSheetRow {
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel(channel) => vec![channel],
-            Self::All => session.document().keys.tracks().map(|(channel, _)| channel).collect(),
+            Self::All => session.keyed_channels().collect(),
         }
     }
 }

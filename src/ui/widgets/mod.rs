@@ -20,6 +20,7 @@ pub(in crate::ui) use button::button;
 pub(in crate::ui) use error_label::error_label;
 pub(in crate::ui) use field::NumberField;
 pub(in crate::ui) use icon_button::{Icon, IconButton, diamond};
+pub(in crate::ui) use key_button::KeyButton;
 pub(in crate::ui) use number::DragNumber;
 pub(in crate::ui) use point::{AXES, PointSliders};
 pub(in crate::ui) use section::{folded_section, named_section, pair, section, section_with};

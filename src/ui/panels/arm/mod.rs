@@ -9,16 +9,17 @@ mod soft_limits;
 use egui::Ui;
 use glam::Vec3;
 
-use crate::document::{Arm, Cursor};
+use crate::document::{Arm, Channel};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::style;
-use crate::ui::widgets::{self, AXES, PointSliders, Slider};
+use crate::ui::widgets::{self, AXES, KeyButton, PointSliders, Slider};
 use disabled::ANGLES_LEAD;
 
 /// Maximum of the sliders of a world coordinate, in units of [`Session::arm_unit`].
 const ROOT_RANGE: f32 = 500.0;
 /// Range of the length sliders, in units of [`Session::arm_unit`].
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
+const PINNED: &str = "Pinned to world";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     fk_ik::switch(ui, session, actions);
@@ -56,25 +57,27 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         disabled,
         channel: None,
     };
-    match arm.cursor {
-        Cursor::Root(_) => hand.show(ui, session, actions, EditAction::SetHand),
-        Cursor::World(pin) => {
-            let pinned = PointSliders {
-                value: pin,
-                default: arm.root + default,
-                range: arm.reach_limits().outer.max(ROOT_RANGE * session.arm_unit()),
-                tooltip: "Move the Cursor, the hand's target, in world space",
-                ..hand
-            };
-            pinned.show(ui, session, actions, EditAction::SetPin);
-        }
+    if !arm.is_pinned() {
+        return hand.show(ui, session, actions, EditAction::SetHand);
     }
+    let pinned = PointSliders {
+        value: arm.cursor_in_world(),
+        default: arm.root + default,
+        range: arm.reach_limits().outer.max(ROOT_RANGE * session.arm_unit()),
+        tooltip: "Move the Cursor, the hand's target, in world space",
+        ..hand
+    };
+    pinned.show(ui, session, actions, EditAction::SetPin);
 }
 
+/// Shows the switch of the pin and its diamond, which also keys the point that the Cursor has, from
+/// right to left.
 fn pin(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let others = vec![Channel::of_cursor(session.arm())];
+    KeyButton { channel: Channel::Pinned, others }.show(ui, session, PINNED, actions);
     let mut pinned = session.arm().is_pinned();
     let check = ui
-        .checkbox(&mut pinned, "Pinned to world")
+        .checkbox(&mut pinned, PINNED)
         .on_hover_text("Keep the hand in place when the Root moves");
     if check.changed() {
         actions.push(EditAction::PinHand(pinned));
