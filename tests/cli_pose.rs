@@ -1,14 +1,19 @@
 //! `ik-arm pose`, as a person or a script runs it.
 #![cfg(feature = "app")]
 
+mod common;
+
 use std::fs;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
+use common::Random;
 use glam::{Mat4, Vec3};
+use ik_arm::document::Document;
 use ik_arm::io::{self, Example};
 use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::rig::{LimbSettings, Target as RigTarget, TargetKind, TargetPath, TargetSpace};
 use serde::Deserialize;
 
 /// A file in a folder of its own.
@@ -29,6 +34,10 @@ impl Scene {
         Self::new(Example::find(name).expect("there").text)
     }
 
+    fn document(document: &Document) -> Self {
+        Self::new(&io::to_json(document).expect("written"))
+    }
+
     fn run(&self, arguments: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
         command.arg("pose").arg(&self.path).args(arguments).output().expect("the program runs")
@@ -47,6 +56,12 @@ impl Scene {
         let complaint = complaint(&output);
         let start = format!("ik-arm: {}", self.path.display());
         complaint.strip_prefix(&start).expect("the file is named").trim_end().to_owned()
+    }
+}
+
+impl Answer {
+    fn joint(&self, name: &str) -> &Joint {
+        self.joints.iter().find(|joint| joint.name == name).expect("a joint")
     }
 }
 
@@ -84,6 +99,8 @@ struct Joint {
 #[serde(deny_unknown_fields)]
 struct Target {
     joint: usize,
+    kind: String,
+    influence: f32,
     target: Vec3,
     tip: Vec3,
     error: f32,
@@ -117,7 +134,8 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             r#"{"joints":[{"index":0,"name":"bone_0","parent":null,"rotation_deg":[0.0,0.0,0.0],"#,
             r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
             r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
-            r#""targets":[{"joint":0,"target":[0.0,1.0,4.0],"tip":[0.0,1.0,5.0],"error":1.0}],"#,
+            r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,4.0],"#,
+            r#""tip":[0.0,1.0,5.0],"error":1.0}],"#,
             r#""report":null}"#,
             "\n"
         )
@@ -243,6 +261,185 @@ fn the_humans_targets_are_in_reach() {
     }
 }
 
+// FK and targets
+
+/// The figure of the Human example without targets.
+fn human() -> Document {
+    let mut human = Example::find("human").expect("there").open().expect("opens").document;
+    human.skeleton_rig.targets.clear();
+    human.keys = Default::default();
+    human
+}
+
+fn joint(document: &Document, name: &str) -> JointId {
+    let joints = document.skeleton().joints();
+    JointId::new(joints.iter().position(|joint| joint.name == name).expect("a joint"))
+}
+
+fn target(name: &str, Vec3 { x, y, z }: Vec3) -> String {
+    format!("{name}={x},{y},{z}")
+}
+
+/// Euclidean distance between printed points, in f64.
+fn distance(one: Vec3, other: Vec3) -> f64 {
+    one.as_dvec3().distance(other.as_dvec3())
+}
+
+#[test]
+fn a_given_target_brings_a_hand_there_and_leaves_all_other_limbs_alone() {
+    const REACH: f64 = 0.54;
+    let (scene, mut random) = (Scene::document(&human()), Random(6));
+    let before = scene.pose(&[]);
+    let shoulder = before.joint("left_upper_arm").base;
+    for name in ["left_hand", "left_forearm", "8", "7"].into_iter().cycle().take(20) {
+        let point = shoulder + random.direction() * random.within(0.18..0.53);
+        let after = scene.pose(&["--target", &target(name, point)]);
+        assert!(distance(after.joint("left_hand").base, point) < 1e-5 * REACH, "{after:?}");
+        let [posed] = &after.targets[..] else { panic!("one target: {after:?}") };
+        assert_eq!((posed.joint, posed.kind.as_str(), posed.influence), (7, "limb", 1.0));
+        assert_eq!((posed.target, posed.tip), (point, after.joint("left_forearm").tip));
+        assert_eq!(after.report, None);
+        for (before, after) in before.joints.iter().zip(&after.joints) {
+            let bone = |joint: &Joint| distance(joint.base, joint.tip);
+            assert!((bone(before) - bone(after)).abs() < 1e-6, "{after:?}");
+            let is_posed = ["left_upper_arm", "left_forearm", "left_hand"];
+            assert!(is_posed.contains(&after.name.as_str()) || before == after, "{after:?}");
+        }
+    }
+}
+
+#[test]
+fn a_given_target_for_a_joint_within_a_chain_poses_all_joints_up_to_it() {
+    let scene = Scene::document(&human());
+    let point = scene.pose(&[]).joint("neck").tip + Vec3::new(0.08, -0.03, 0.1);
+    let answer = scene.pose(&["--target", &target("neck", point)]);
+    let [posed] = &answer.targets[..] else { panic!("one target: {answer:?}") };
+    assert_eq!((posed.kind.as_str(), posed.influence), ("whole_body", 1.0));
+    assert_eq!(posed.tip, answer.joint("neck").tip);
+    assert!((distance(posed.tip, point) - f64::from(posed.error)).abs() < 1e-6, "{posed:?}");
+    let report = answer.report.expect("it was solved");
+    assert!(report.converged && (report.error - posed.error).abs() < 1e-6, "{report:?} {posed:?}");
+}
+
+#[test]
+fn several_given_targets_are_all_reached() {
+    let scene = Scene::document(&human());
+    let before = scene.pose(&[]);
+    let limbs = [("left_hand", "left_upper_arm", 0.4), ("right_foot", "right_thigh", 0.7)];
+    let points = limbs.map(|(_, top, far)| before.joint(top).base + Vec3::new(0.1, -far, 0.2));
+    let [hand, foot] = [0, 1].map(|index| target(limbs[index].0, points[index]));
+    let after = scene.pose(&["--target", &hand, "--target", &foot]);
+    for ((end, ..), point) in limbs.into_iter().zip(points) {
+        assert!(distance(after.joint(end).base, point) < 1e-5, "{end}");
+    }
+}
+
+#[test]
+fn a_given_target_moves_the_one_that_the_file_has() {
+    let mut document = human();
+    let forearm = joint(&document, "left_forearm");
+    let mut own = RigTarget::new(forearm, Vec3::ONE, 0.2);
+    own.motion.path = TargetPath::Circle;
+    own.kind = TargetKind::Limb(LimbSettings::default());
+    own.enabled = false;
+    let on_head = TargetSpace::Joint(joint(&document, "head"));
+    for (influence, expected, space) in [
+        (0.0, 1.0, TargetSpace::World),
+        (0.25, 0.25, TargetSpace::World),
+        (1.0, 1.0, TargetSpace::World),
+        (1.0, 1.0, on_head),
+    ] {
+        (own.influence, own.space) = (influence, space);
+        document.skeleton_rig.targets = vec![own];
+        let scene = Scene::document(&document);
+        let text = fs::read(&scene.path).expect("read");
+        let point = Vec3::new(0.4, 1.2, 0.3);
+        for name in ["left_hand", "left_forearm"] {
+            let answer = scene.pose(&["--time", "1.3", "--target", &target(name, point)]);
+            let [posed] = &answer.targets[..] else { panic!("one target: {answer:?}") };
+            assert_eq!((posed.joint, posed.influence), (forearm.index(), expected));
+            assert!(distance(posed.target, point) < 1e-6, "{posed:?}");
+            assert_eq!(posed.tip, answer.joint("left_forearm").tip);
+            let (error, is_reached) = (distance(posed.tip, point), expected == 1.0);
+            assert_eq!(error < 1e-5, is_reached, "{error}");
+            assert!((error - f64::from(posed.error)).abs() < 1e-6);
+        }
+        assert_eq!(fs::read(&scene.path).expect("read"), text, "the file is left alone");
+    }
+}
+
+#[test]
+fn the_fk_pose_ignores_targets_and_solvers_start_from_it() {
+    let mut document = human();
+    let bare = Scene::document(&document).pose(&[]);
+    let hand = joint(&document, "right_forearm");
+    document.skeleton_rig.targets =
+        vec![RigTarget { influence: 1.0, ..RigTarget::new(hand, Vec3::new(-0.4, 1.1, 0.4), 0.1) }];
+    let scene = Scene::document(&document);
+    let (fk, posed) = (scene.pose(&["--fk"]), scene.pose(&[]));
+    assert_eq!((&fk.joints, &fk.report), (&bare.joints, &None));
+    assert!(fk.targets[0].error > 0.1 && posed.targets[0].error < 1e-3, "{fk:?} {posed:?}");
+    let error = distance(fk.joint("right_forearm").tip, fk.targets[0].target);
+    assert!((error - f64::from(fk.targets[0].error)).abs() < 1e-6);
+    let unmoved = scene.pose(&["--solver", "ccd", "--iterations", "0"]);
+    assert_eq!(unmoved.joints, fk.joints);
+    assert_eq!(
+        posed.report.expect("it was solved").solver,
+        document.skeleton_rig.solver.method.name()
+    );
+}
+
+#[test]
+fn a_target_for_a_joint_that_is_not_there_is_an_error_that_lists_near_names() {
+    let scene = Scene::document(&human());
+    for (given, expected) in [
+        (
+            "left_hnad",
+            "there is no joint \"left_hnad\"; near names are \"left_hand\", \"left_shin\", \
+             \"left_shoulder\", \"left_thigh\", \"left_forearm\"",
+        ),
+        ("Pelvis", "there is no joint \"Pelvis\"; near names are \"pelvis\""),
+        (
+            "99",
+            "there is no joint \"99\"; the joints are 0 to 18, called \"pelvis\", \"spine\", \
+             \"chest\", \"neck\", \"head\"",
+        ),
+    ] {
+        assert_eq!(
+            scene.refusal(&["--target", &format!("{given}=0,1,0")]),
+            format!(": {expected}")
+        );
+    }
+    let twice = ["--target", "left_hand=0,1,0", "--target", "7=1,1,1"];
+    let expected = ": joint \"left_forearm\" must be given one target, got two";
+    assert_eq!(scene.refusal(&twice), expected);
+}
+
+#[test]
+fn a_name_is_taken_before_an_index() {
+    let mut document = human();
+    document.skeleton_mut().rename(JointId::new(0), "7").expect("renamed");
+    let scene = Scene::document(&document);
+    let index = |given: &str| scene.pose(&["--target", given]).targets[0].joint;
+    assert_eq!((index("7=0,1,0"), index("8=0,1,0")), (0, 7));
+}
+
+#[test]
+fn a_malformed_target_is_an_error_that_shows_a_right_one() {
+    let scene = Scene::document(&human());
+    for given in
+        ["left_hand", "left_hand=", "left_hand=1,2", "left_hand=1,2,x", "left_hand=1,2,inf"]
+    {
+        let output = scene.run(&["--target", given]);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{given}");
+        let expected = format!(
+            "error: invalid value '{given}' for '--target <JOINT=x,y,z>': must be a joint and a \
+             point, like left_hand=0.3,1.2,0.4"
+        );
+        assert!(complaint(&output).starts_with(&expected), "{}", complaint(&output));
+    }
+}
+
 // Failures
 
 #[test]
@@ -312,6 +509,8 @@ fn a_usage_error_exits_with_2_and_prints_no_result() {
         &["--solver", "ccd", "--tolerance", "inf"],
         &["--solver", "ccd", "--tolerance", "nan"],
         &["second"],
+        &["--fk", "--solver", "ccd"],
+        &["--fk", "--target", "head=0,2,0"],
     ] {
         let output = scene.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -361,7 +560,7 @@ fn a_time_moves_path_followers_and_targets() {
 
     let mut document = keyed_chain();
     let target = &mut document.skeleton_rig.targets[0];
-    target.motion.path = ik_arm::document::TargetPath::Circle;
+    target.motion.path = TargetPath::Circle;
     let expected = target.at(1.0);
     let scene = Scene::new(&io::to_json(&document).expect("written"));
     assert_eq!(scene.pose(&["--time", "1"]).targets[0].target, expected);

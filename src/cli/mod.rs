@@ -39,7 +39,7 @@ struct Cli {
 enum Command {
     /// Solve arm poses: one JSON object per line in, one per line out
     Solve(SolveArgs),
-    /// Print the pose of a file's skeleton as JSON, and, with --solver, solve for its targets
+    /// Print the pose of a file's skeleton as JSON: by its targets, by FK or by a solver
     Pose(PoseArgs),
     /// Draw the arm, a file or a crowd to a PNG, without a window
     Render(RenderArgs),

@@ -1,6 +1,9 @@
-//! `ik-arm pose`: the pose of a file's skeleton at a time, solved or not, as one line of JSON.
+//! `ik-arm pose`: the pose of a file's skeleton at a time, as one line of JSON.
 
+mod given_target;
+mod joint_name;
 mod pose_line;
+mod posed;
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -14,19 +17,28 @@ use super::open;
 use super::report::fail;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
-use crate::kinematics::chain_ik::{self, Method, Report, SolveError, SolverOptions};
+use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
+use given_target::{GivenTarget, SetTargetsError};
 use pose_line::PoseLine;
+use posed::Posed;
 
 #[derive(clap::Args)]
-#[command(after_help = r#"The output is one line of JSON, in world space:
+#[command(
+    after_help = r#"The pose is that of the window at this time: FK (joint angles, keys, path), then the targets.
+The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
-   "targets":[{"joint":N,"target":[x,y,z],"tip":[x,y,z],"error":E}, …],
+   "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
+    "error":E}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false}}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
-tip to target. Without --solver nothing is solved and report is null. A solve that does not converge
-is not an error. For documents that show the arm use `ik-arm solve`."#)]
+tip to target in the printed pose. The report is that of --solver, or of the solver of the
+whole-body targets, else null. A solve that does not converge is not an error. For documents that
+show the arm use `ik-arm solve`.
+
+  ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#
+)]
 pub struct PoseArgs {
     /// File to pose: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
     /// standard input
@@ -38,7 +50,15 @@ pub struct PoseArgs {
     /// Time in seconds at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
     time: TimeArgument,
-    /// Solve the targets with this solver
+    /// Print the FK pose, without the targets
+    #[arg(long, conflicts_with_all = ["solver", "targets"])]
+    fk: bool,
+    /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a name
+    /// or an index. A hand or foot at the end of two bones gets a limb target for its base, any other
+    /// joint a whole-body target for its tip; a target of influence 0 gets influence 1
+    #[arg(long = "target", value_name = "JOINT=x,y,z")]
+    targets: Vec<GivenTarget>,
+    /// Solve all enabled targets together from the FK pose with this solver, at full influence
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
     /// Maximum number of iterations [default: the file's, else the solver's own]
@@ -76,6 +96,8 @@ enum PoseCommandError {
     #[error("{0} shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms")]
     Arm(String),
     #[error("{file}: {error}")]
+    Target { file: String, error: SetTargetsError },
+    #[error("{file}: {error}")]
     Solve { file: String, error: SolveError },
     #[error("{file}: the position of joint {name:?} must be within ±3.4028235e38")]
     Overflow { file: String, name: String },
@@ -102,33 +124,33 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;
     let mut rig = document.evaluate(time).skeleton_rig;
-    // Applies Follow path, which moves the whole skeleton.
-    rig.skeleton = rig.skeleton_at(time);
-    let report = match args.solver {
-        Some(method) => Some(solve(&mut rig, args, method, &order, &file)?),
-        None => None,
-    };
-    let line = PoseLine::new(&rig, &order, time, report)
+    given_target::set_targets(&mut rig, &args.targets, time, &order)
+        .map_err(|error| PoseCommandError::Target { file: file.clone(), error })?;
+    let posed = posed(&rig, args, &order, &file)?;
+    let line = PoseLine::new(&rig, &posed, &order, time)
         .map_err(|name| PoseCommandError::Overflow { file, name: name.to_owned() })?;
     let line = serde_json::to_string(&line).map_err(io::Error::from)?;
     Ok(writeln!(io::stdout(), "{line}")?)
 }
 
-fn solve(
-    rig: &mut SkeletonRig,
+/// The pose that the arguments ask for.
+fn posed(
+    rig: &SkeletonRig,
     args: &PoseArgs,
-    method: Method,
     order: &[JointId],
     file: &str,
-) -> Result<Report, PoseCommandError> {
+) -> Result<Posed, PoseCommandError> {
+    let TimeArgument(time) = args.time;
+    let Some(method) = args.solver else {
+        return Ok(if args.fk { Posed::fk(rig, time) } else { Posed::evaluated(rig, time) });
+    };
     let options = SolverOptions {
         method,
         iterations: args.iterations.or(rig.solver.iterations),
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
-    let targets = rig.targets_at(args.time.0);
-    chain_ik::solve(rig.skeleton_mut(), &targets, &options).map_err(|error| {
+    Posed::solved(rig, time, &options).map_err(|error| {
         let file = file.to_owned();
         PoseCommandError::Solve { file, error: with_file_indices(error, order) }
     })

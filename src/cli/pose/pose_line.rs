@@ -1,10 +1,12 @@
 use glam::{Mat4, Vec3};
 use serde::Serialize;
 
+use super::posed::Posed;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
 use crate::kinematics::saturate_vector;
 use crate::kinematics::skeleton::{JointId, is_within_numbers};
+use crate::rig::TargetKind;
 
 /// Output of the command: one line of JSON.
 #[derive(Serialize)]
@@ -28,6 +30,8 @@ struct JointLine<'a> {
 #[derive(Serialize)]
 struct TargetLine {
     joint: JointId,
+    kind: &'static str,
+    influence: f32,
     target: Vec3,
     tip: Vec3,
     error: f32,
@@ -42,25 +46,26 @@ struct ReportLine {
 }
 
 impl<'a> PoseLine<'a> {
-    /// Returns the output for a rig with its targets at `time`, in seconds. `order` has the rig's
-    /// joints in the file's order.
+    /// Returns the output for a pose of a rig at `time`, in seconds. `order` has the rig's joints in
+    /// the file's order.
     ///
     /// # Errors
     ///
     /// Fails with the name of a joint whose position overflows.
     pub fn new(
-        rig: &'a SkeletonRig,
+        rig: &SkeletonRig,
+        posed: &'a Posed,
         order: &[JointId],
         time: f64,
-        report: Option<Report>,
     ) -> Result<Self, &'a str> {
+        let skeleton = &posed.skeleton;
         let mut index_of = vec![JointId::default(); order.len()];
         for (index, joint) in order.iter().enumerate() {
             index_of[joint.index()] = JointId::new(index);
         }
-        let pose = rig.skeleton.pose();
+        let pose = skeleton.pose();
         let joints = order.iter().enumerate().map(|(index, &joint)| {
-            let bone = &rig.skeleton[joint];
+            let bone = &skeleton[joint];
             let (full, tip) = (pose.full(joint), pose.tip(joint));
             if !(is_within_numbers(full.translation.into()) && is_within_numbers(tip)) {
                 return Err(bone.name.as_str());
@@ -76,24 +81,35 @@ impl<'a> PoseLine<'a> {
             })
         });
         let joints = joints.collect::<Result<_, _>>()?;
-        let targets = rig.targets_at(time).into_iter().map(|target| {
-            let tip = pose.tip(target.joint);
-            let error = target.point.as_dvec3().distance(tip.as_dvec3());
+        let enabled = rig.targets.iter().filter(|target| target.enabled);
+        let targets = enabled.map(|target| {
+            let (point, tip) = (target.in_world(skeleton, time), pose.tip(target.joint));
+            let error = point.as_dvec3().distance(tip.as_dvec3());
             TargetLine {
                 joint: index_of[target.joint.index()],
-                target: target.point,
+                kind: match target.kind {
+                    TargetKind::Limb(_) => "limb",
+                    TargetKind::WholeBody => "whole_body",
+                },
+                influence: target.influence,
+                target: point,
                 tip,
                 error: (error as f32).min(f32::MAX),
             }
         });
         let targets = targets.collect();
-        let report = report.map(|report| ReportLine {
+        Ok(Self { joints, targets, report: posed.report.as_ref().map(ReportLine::new) })
+    }
+}
+
+impl ReportLine {
+    fn new(report: &Report) -> Self {
+        Self {
             solver: report.method.name(),
             iterations: report.iterations,
             error: report.error,
             converged: report.converged(),
-        });
-        Ok(Self { joints, targets, report })
+        }
     }
 }
 

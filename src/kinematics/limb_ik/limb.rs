@@ -57,23 +57,25 @@ impl Limb {
         Err(NoLimb::NoUpperJoint)
     }
 
-    /// The limb that `joint`, the last of an unbranched chain, ends, for a target of that joint.
+    /// The limb for a target of `joint`, the last of an unbranched chain or the bone below which a hand
+    /// or foot is the last.
     ///
-    /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body, `joint`
-    /// is the hand or foot, and the limb ends at its base. Any other chain is better posed as a
+    /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body, the
+    /// last is the hand or foot, and the limb ends at its base. Any other chain is better posed as a
     /// whole, and so is one whose lower joint cannot bend through a right angle, such as a neck: `None`.
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
-        let is_end = skeleton.children(joint).next().is_none();
-        let above = || skeleton.ancestors(joint).skip(1);
+        let end = hand(skeleton, joint).unwrap_or(joint);
+        let is_end = skeleton.children(end).next().is_none();
+        let above = || skeleton.ancestors(end).skip(1);
         let is_on_body = above().any(|joint| !is_single(&joint));
         let bones =
-            usize::from(has_bone(&joint)) + above().take_while(is_single).filter(has_bone).count();
-        let parent = skeleton[joint].parent?;
+            usize::from(has_bone(&end)) + above().take_while(is_single).filter(has_bone).count();
+        let parent = skeleton[end].parent?;
         match bones {
             _ if !is_end => None,
-            2 => Self::ending_at(skeleton, joint).ok(),
+            2 => Self::ending_at(skeleton, end).ok(),
             3 | 4 if is_on_body => Self::ending_at(skeleton, parent).ok(),
             _ => None,
         }

@@ -1,0 +1,43 @@
+use crate::document::SkeletonRig;
+use crate::kinematics::Shared;
+use crate::kinematics::chain_ik::{self, Report, SolveError, SolverOptions};
+use crate::kinematics::skeleton::Skeleton;
+use crate::rig::TargetOutcome;
+
+/// A pose of a rig's skeleton, with the report of the solver of several joints together, if any.
+pub struct Posed {
+    pub skeleton: Shared<Skeleton>,
+    pub report: Option<Report>,
+}
+
+impl Posed {
+    /// The FK pose.
+    pub fn fk(rig: &SkeletonRig, time: f64) -> Self {
+        Self { skeleton: rig.fk_at(time), report: None }
+    }
+
+    /// The pose by the rig's targets.
+    pub fn evaluated(rig: &SkeletonRig, time: f64) -> Self {
+        let evaluated = rig.evaluate(time);
+        let report = evaluated.targets.into_iter().find_map(|target| match target.outcome {
+            TargetOutcome::WholeBody(report) => Some(report),
+            _ => None,
+        });
+        Self { skeleton: evaluated.solved, report }
+    }
+
+    /// The FK pose after a solve for all enabled targets.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError`] if the solver refuses a target.
+    pub fn solved(
+        rig: &SkeletonRig,
+        time: f64,
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
+        let mut skeleton = rig.fk_at(time);
+        let report = chain_ik::solve(skeleton.make_mut(), &rig.targets_at(time), options)?;
+        Ok(Self { skeleton, report: Some(report) })
+    }
+}
