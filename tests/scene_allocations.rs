@@ -119,7 +119,7 @@ fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
 
 #[test]
 fn a_solver_comparison_allocates_nothing() {
-    let opened = Example::find("human").expect("an example").open().expect("it opens");
+    let opened = Example::find("two-targets").expect("an example").open().expect("it opens");
     let mut bench = Bench::new(opened.document);
     bench.session.apply(SolverAction::Compare);
     bench.frame(PlaybackAction::Advance(0.0).into());

@@ -579,7 +579,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
 #[test]
 fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
     let before = session.document().clone();
     let target = session.skeleton_rig().targets[0];
     let tip = session.skeleton_pose().tip(target.joint);
@@ -587,9 +587,13 @@ fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles
     session.apply(EditAction::SetTarget(Target { influence: 1.0, ..target }));
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) < 1e-3, "{tip}");
+    assert_eq!(session.skeleton(), before.skeleton());
+    assert_eq!(session.ring(target.joint, 0), None, "its angles pose nothing");
+    session.apply(EditAction::SetTarget(Target { influence: 0.5, ..target }));
     let ring = session.ring(target.joint, 0).expect("a movable angle");
     assert_eq!(ring.centre, session.skeleton_pose().base(target.joint));
     assert_eq!(session.skeleton(), before.skeleton());
+    session.apply(TransactionAction::Undo);
     session.apply(TransactionAction::Undo);
     assert_eq!(session.document(), &before);
 }

@@ -37,7 +37,7 @@ pub fn new_document() -> Document {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 21] = [
         Self {
             group: Group::Tour,
             name: "arm",
@@ -56,8 +56,30 @@ impl Example {
             group: Group::Tour,
             name: "human",
             title: "Human",
-            sentence: "A figure with limited elbows and knees, and targets for hands and feet.",
+            sentence: "A figure whose hands and feet stay at their targets while its pelvis is dragged.",
             text: include_str!("../../assets/human.json"),
+        },
+        Self {
+            group: Group::Tour,
+            name: "walk",
+            title: "Walk",
+            sentence: "A figure that walks: its feet stand at their targets while the pelvis moves \
+                       on, and its arms swing by FK; press Space to play.",
+            text: include_str!("../../assets/walk.json"),
+        },
+        Self {
+            group: Group::Tour,
+            name: "wheel",
+            title: "Two hands on a wheel",
+            sentence: "A figure whose hands hold a wheel that turns: their targets are on the wheel.",
+            text: include_str!("../../assets/wheel.json"),
+        },
+        Self {
+            group: Group::Tour,
+            name: "table",
+            title: "Table",
+            sentence: "An arm whose hand rests on a table while its shoulder moves.",
+            text: include_str!("../../assets/table.json"),
         },
         Self {
             group: Group::Tour,
