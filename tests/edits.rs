@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
@@ -123,8 +123,16 @@ examples! {
     ClearChannels: [EditAction::ClearChannels(vec![KEYED])];
     MoveKeys: [EditAction::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5 }];
     PasteKeys: [EditAction::PasteKeys];
+    Bake: [EditAction::Bake(baked())];
     SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25 })];
     SetMetres: [EditAction::SetMetres(Some(2.0))];
+}
+
+/// A bake of one key.
+fn baked() -> Box<Baked> {
+    let mut document = session().document().clone();
+    document.keys.insert(Channel::Rotation(JointId::new(INNER)), 0.5, Vec3::X * 0.1);
+    Box::new(Baked { document, keys_at_frames: 1, keys: 1, error: 0.0, shortened: Vec::new() })
 }
 
 /// The arm with the Human behind it, changed so that every edit has something to do.

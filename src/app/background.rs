@@ -9,13 +9,13 @@ use winit::event_loop::EventLoopProxy;
 
 use super::user_event::{PathChoice, UserEvent, send};
 use super::viewport_picture::ViewportPicture;
-use crate::document::Document;
+use crate::document::{Bake, Document};
 use crate::export::{self, ExportError, ExportOptions, Format};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
 use crate::session::{
-    Action, Actions, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
+    Action, Actions, BakeJob, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
 };
 
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
@@ -39,6 +39,27 @@ fn draw(picture: &ViewportPicture, path: &Path) -> Result<(), Box<dyn std::error
     let (width, height) = picture.size;
     let image = PictureRenderer::new(&gpu, width, height, picture.scale).draw(&scene)?;
     Ok(render::save(&image, path)?)
+}
+
+/// Starts a bake; its dialog shows the progress.
+pub(super) fn bake(
+    settings: Bake,
+    document: Document,
+    proxy: EventLoopProxy<UserEvent>,
+) -> BakeJob {
+    let job = BakeJob { progress: Arc::new(Progress::default()) };
+    let started = job.clone();
+    thread::spawn(move || {
+        let go_on = |done, total| job.progress.step(done, total).is_ok();
+        let bake = || settings.run(&document, go_on);
+        // Sent even after a panic, because the dialog waits for this event.
+        let result = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(bake)) {
+            Ok(baked) => baked.map(Box::new).map_err(|error| error.to_string()),
+            Err(_) => Err("the program failed (this is a bug)".to_owned()),
+        };
+        send(&proxy, UserEvent::Baked(job, result));
+    });
+    started
 }
 
 /// Starts an export; the window shows its progress.

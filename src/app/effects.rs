@@ -7,7 +7,7 @@ use super::user_event::UserEvent;
 use super::viewport_picture::ViewportPicture;
 use super::window::AppWindow;
 use crate::io;
-use crate::session::{Action, Effect, FileAction, Session};
+use crate::session::{Action, BakeAction, Effect, FileAction, Session};
 
 /// Execution of the effects that a session requests.
 impl AppWindow {
@@ -58,6 +58,10 @@ impl AppWindow {
             Effect::SavePicture(path) => {
                 let picture = self.viewport_picture(session);
                 background::save_picture(picture, PathBuf::from(path), proxy.clone());
+            }
+            Effect::Bake(settings) => {
+                let job = background::bake(settings, session.document().clone(), proxy.clone());
+                session.apply(BakeAction::Started(job));
             }
             Effect::Export(export) => {
                 let document = session.document().clone();

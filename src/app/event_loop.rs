@@ -14,7 +14,7 @@ use super::settings::Settings;
 use super::user_event::UserEvent;
 use super::window::{AppWindow, Repaint};
 use crate::document::Document;
-use crate::session::{Dialog, FileAction, Session, ShellAction};
+use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction};
 
 /// Opens the window, with a document and its file if given, and returns when the window is closed.
 ///
@@ -199,6 +199,9 @@ impl ApplicationHandler<UserEvent> for App {
                     Ok(message) => ShellAction::Report(message),
                     Err(error) => ShellAction::Fail(error),
                 });
+            }
+            UserEvent::Baked(job, result) => {
+                self.session.apply(BakeAction::Ended(job, result));
             }
             UserEvent::Exported(result) => {
                 self.session.apply(FileAction::ExportEnded(result));

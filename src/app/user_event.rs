@@ -2,8 +2,9 @@ use std::path::PathBuf;
 
 use winit::event_loop::EventLoopProxy;
 
+use crate::document::Baked;
 use crate::io::{OpenError, Opened};
-use crate::session::PathDialog;
+use crate::session::{BakeJob, PathDialog};
 
 /// Events that do not come from the window.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ pub enum UserEvent {
     Accesskit(egui_winit::accesskit_winit::Event),
     /// Message or error of a finished background job.
     Report(Result<String, String>),
+    /// Result or error of a finished bake.
+    Baked(BakeJob, Result<Box<Baked>, String>),
     /// Message or error of a finished export.
     Exported(Result<String, String>),
     /// The backup of unsaved changes was written.

@@ -1,3 +1,4 @@
+use super::bake_action::BakeAction;
 use super::edit_action::EditAction;
 use super::file_action::FileAction;
 use super::playback_action::PlaybackAction;
@@ -24,6 +25,8 @@ pub enum Action {
     Playback(PlaybackAction),
     /// Runs and compares solvers.
     Solver(SolverAction),
+    /// Bakes on a thread of their own.
+    Bake(BakeAction),
     /// Opens, saves and exports.
     File(FileAction),
     /// Changes dialogs, messages or preferences.
@@ -47,6 +50,7 @@ from_payload! {
     View(ViewAction),
     Playback(PlaybackAction),
     Solver(SolverAction),
+    Bake(BakeAction),
     File(FileAction),
     Shell(ShellAction),
 }

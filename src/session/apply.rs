@@ -14,6 +14,7 @@ impl Session {
             Action::View(action) => self.apply_view(action),
             Action::Playback(action) => self.apply_playback(action),
             Action::Solver(action) => self.apply_solver(action),
+            Action::Bake(action) => return self.apply_bake(action),
             Action::File(action) => return self.apply_file(action),
             Action::Shell(action) => return self.apply_shell(action),
         }

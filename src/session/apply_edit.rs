@@ -118,6 +118,7 @@ impl Session {
             EditAction::ClearChannels(channels) => self.clear_channels(&channels),
             EditAction::MoveKeys { keys, by } => self.move_keys(&keys, by),
             EditAction::PasteKeys => self.paste_keys(),
+            EditAction::Bake(baked) => self.replace_by_bake(&baked),
             EditAction::SetTimeline(timeline) => self.set_timeline(timeline),
             EditAction::SetMetres(metres) => self.set_metres(metres),
         }

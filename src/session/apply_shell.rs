@@ -44,6 +44,10 @@ impl Session {
         self.shell.set_choosing(false);
         match self.shell.take_dialog() {
             Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(back.into()),
+            Some(Dialog::Bake { job: Some(job), .. }) => {
+                job.progress.cancel();
+                self.say("Bake cancelled");
+            }
             _ => drop(self.files.take_after_save()),
         }
     }

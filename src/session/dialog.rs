@@ -1,8 +1,9 @@
 use std::path::PathBuf;
 
+use super::bake_action::BakeJob;
 use super::file_action::FileAction;
 use super::path_dialog::PathDialog;
-use crate::document::Document;
+use crate::document::{Bake, Document};
 use crate::kinematics::skeleton::JointId;
 
 /// A dialog above the panels. All dialogs except the statistics are modal: they take all keyboard
@@ -53,6 +54,13 @@ pub enum Dialog {
         joint: JointId,
         /// The name as typed so far.
         name: String,
+    },
+    /// Asks for the settings of a bake, then shows its progress.
+    Bake {
+        /// The settings.
+        settings: Bake,
+        /// The running bake; `None` before it starts. Closing the dialog cancels it.
+        job: Option<BakeJob>,
     },
     /// Asks whether the children of deleted joints are kept.
     DeleteJoints {

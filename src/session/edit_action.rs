@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::key::Key;
 use super::pose_mode::PoseMode;
 use crate::document::{
-    Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
 };
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{JointId, Limit};
@@ -172,6 +172,8 @@ pub enum EditAction {
     },
     /// Pastes the copied keys at the playhead.
     PasteKeys,
+    /// Replaces the motion by targets and path by the keys of a bake.
+    Bake(Box<Baked>),
     /// Sets start, end and frame rate of the timeline.
     SetTimeline(Timeline),
     /// Sets the length of a document unit in exports, in metres; `None` for the shown rig's

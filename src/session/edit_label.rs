@@ -62,6 +62,7 @@ impl EditAction {
             Self::DeleteKeys(_) | Self::ClearChannels(_) => "Delete keys",
             Self::MoveKeys { .. } => "Move keys",
             Self::PasteKeys => "Paste keys",
+            Self::Bake(_) => "Bake to keys",
             Self::SetTimeline(_) => "Change timeline",
             Self::SetMetres(_) => "Change unit",
         }

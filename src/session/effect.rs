@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use super::export::Export;
 use super::path_dialog::PathDialog;
+use crate::document::Bake;
 
 /// A request from the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +11,8 @@ pub enum Effect {
     CopyText(String),
     /// Draws the viewport and saves the picture to a path.
     SavePicture(String),
+    /// Starts a bake of the document.
+    Bake(Bake),
     /// Starts an export.
     Export(Export),
     /// Opens the system's file dialog in place of one of the program's.

@@ -213,7 +213,7 @@ impl Session {
         self.edit_keys(|document| document.metres_per_unit = metres);
     }
 
-    fn edit_keys(&mut self, change: impl FnOnce(&mut Document)) {
+    pub(super) fn edit_keys(&mut self, change: impl FnOnce(&mut Document)) {
         let never = |document: &mut _| -> Result<(), core::convert::Infallible> {
             change(document);
             Ok(())

@@ -3,6 +3,7 @@
 
 mod action;
 mod apply;
+mod apply_bake;
 mod apply_edit;
 mod apply_file;
 mod apply_playback;
@@ -14,6 +15,7 @@ mod apply_view;
 mod arm_drag;
 mod arm_edits;
 mod arm_joint;
+mod bake_action;
 mod cached;
 mod comparison;
 mod dialog;
@@ -70,6 +72,7 @@ mod view_drag;
 
 pub use action::{Action, Actions};
 pub use arm_joint::ArmJoint;
+pub use bake_action::{BakeAction, BakeJob};
 pub use comparison::{ComparedSolver, Comparison};
 pub use dialog::Dialog;
 pub use drag::{Drag, Grip};

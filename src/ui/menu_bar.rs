@@ -83,6 +83,7 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     step(ui, "Redo", session.redo_label(), "Ctrl+Shift+Z", TransactionAction::Redo.into(), actions);
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
+    bake(ui, session, actions);
     ui.separator();
     if item(ui, "Copy pose as JSON line", "Ctrl+C") {
         actions.push(ShellAction::CopyPose);
@@ -98,6 +99,24 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             }
         }
     });
+}
+
+/// Shows the item that opens the bake dialog; disabled if there is nothing to bake.
+fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = &session.document().skeleton_rig;
+    let why_not = match session.rig() {
+        RigKind::Arm => Some("Show a skeleton: the arm is not baked"),
+        RigKind::Skeleton if rig.targets.is_empty() && rig.follow_path.is_none() => {
+            Some("Add a target or a path: nothing else poses the skeleton")
+        }
+        RigKind::Skeleton => None,
+    };
+    let tooltip = "Replace targets and path by keys";
+    let item = ui.add_enabled(why_not.is_none(), Button::new("Bake to keys…"));
+    let item = item.on_hover_text(tooltip).on_disabled_hover_text(why_not.unwrap_or_default());
+    if item.clicked() {
+        actions.push(ShellAction::OpenDialog(session.bake_dialog()));
+    }
 }
 
 /// Shows the menu of channels to key; the channels of overlays are in a submenu.

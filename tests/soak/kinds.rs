@@ -3,8 +3,8 @@
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmJoint, EditAction, FileAction, Navigation, PlaybackAction, PoseMode, SelectAction,
-    ShellAction, SolverAction, TransactionAction, ViewAction,
+    Action, ArmJoint, BakeAction, EditAction, FileAction, Navigation, PlaybackAction, PoseMode,
+    SelectAction, ShellAction, SolverAction, TransactionAction, ViewAction,
 };
 
 use crate::values::Values;
@@ -131,6 +131,7 @@ kinds! {
         ClearChannels: Keys 1, |v| EditAction::ClearChannels(v.channels());
         MoveKeys: Keys 4, |v| EditAction::MoveKeys { keys: v.keys(), by: v.shift() };
         PasteKeys: Keys 2, |_| EditAction::PasteKeys;
+        Bake: Keys 1, |v| EditAction::Bake(v.baked());
         SetTimeline: Keys 2, |v| EditAction::SetTimeline(v.timeline());
         SetMetres: Edit 1, |v| EditAction::SetMetres(if v.coin() { None } else { Some(v.above_0(2.0)) });
     }
@@ -186,6 +187,11 @@ kinds! {
         Compare: Solve 1, |_| SolverAction::Compare;
         Reset: Solve 1, |_| SolverAction::Reset;
         Show: Solve 4, |v| SolverAction::Show(v.random.below(30) as u32);
+    }
+    Bake(BakeAction) {
+        Start: Look 1, |v| BakeAction::Start(v.bake());
+        Started: Look 1, |v| BakeAction::Started(v.bake_job());
+        Ended: Keys 1, |v| BakeAction::Ended(v.bake_job(), Ok(v.baked()));
     }
     File(FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());

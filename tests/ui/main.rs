@@ -6,6 +6,7 @@ mod accessibility;
 mod arm_handles;
 mod arm_pin;
 mod arm_posing;
+mod bake;
 mod bench;
 mod crowd;
 mod dialogs;

@@ -1,5 +1,6 @@
 //! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
+mod bake;
 mod export;
 mod first_button;
 mod joints;
@@ -44,6 +45,8 @@ pub(in crate::ui) fn ui(
         Dialog::Path(PathDialog::SaveAs { .. }) => "Save as",
         Dialog::ChooseSkeleton { .. } => "Choose a skeleton",
         Dialog::Rename { .. } => "Rename",
+        Dialog::Bake { job: None, .. } => "Bake to keys",
+        Dialog::Bake { .. } => "Baking to keys",
         Dialog::DeleteJoints { .. } => "Delete joints",
     };
     if !dialog.is_modal() {
@@ -80,6 +83,9 @@ pub(in crate::ui) fn ui(
         Dialog::ChooseSkeleton { path, names } => joints::choose_skeleton(ui, path, names, actions),
         Dialog::Rename { joint, name } => {
             joints::rename(ui, session, *joint, name, is_new, actions);
+        }
+        Dialog::Bake { settings, job } => {
+            bake::ui(ui, session, settings, job.as_ref(), actions);
         }
         Dialog::DeleteJoints { joints } => joints::delete_joints(ui, session, joints, actions),
         Dialog::Statistics => {}

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{Camera, Document, RigKind, SkeletonRig};
+use ik_arm::document::{Bake, Baked, Camera, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{Dialog, Export, ExportJob, FileAction, PathDialog};
+use ik_arm::session::{BakeJob, Dialog, Export, ExportJob, FileAction, PathDialog};
 
 use super::Values;
 use crate::common::skeletons;
@@ -29,6 +29,34 @@ impl Values<'_> {
 
     pub fn job(&mut self) -> ExportJob {
         ExportJob { path: self.path(), progress: Arc::new(Progress::default()) }
+    }
+
+    pub fn bake(&mut self) -> Bake {
+        let frames = Timeline { frame_rate: self.one_of(&[0, 2, 5000]), ..self.timeline() };
+        Bake { frames, tolerance: self.one_of(&[0.0, 1e-3, 0.1, f32::NAN]) }
+    }
+
+    /// The job of the bake dialog, or another one.
+    pub fn bake_job(&mut self) -> BakeJob {
+        match self.session.dialog() {
+            Some(Dialog::Bake { job: Some(job), .. }) => job.clone(),
+            _ => BakeJob { progress: Arc::new(Progress::default()) },
+        }
+    }
+
+    /// A bake of a few frames; one that changes nothing if the document cannot be baked.
+    pub fn baked(&mut self) -> Box<Baked> {
+        let document = self.session.document();
+        let frames = Timeline { start: 0.0, end: 0.2, frame_rate: 10 };
+        let settings = Bake { frames, tolerance: 1e-3 };
+        let baked = settings.run(document, |done, _| done < 100).unwrap_or_else(|_| Baked {
+            document: document.clone(),
+            keys_at_frames: 0,
+            keys: 0,
+            error: 0.0,
+            shortened: Vec::new(),
+        });
+        Box::new(baked)
     }
 
     pub fn example(&mut self) -> Example {
@@ -64,7 +92,7 @@ impl Values<'_> {
     }
 
     pub fn dialog(&mut self) -> Dialog {
-        match self.random.below(13) {
+        match self.random.below(14) {
             0 => Dialog::About,
             1 => Dialog::Shortcuts,
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
@@ -79,6 +107,7 @@ impl Values<'_> {
                 let then = Box::new(FileAction::SaveAs(self.path()));
                 Dialog::Replace { path: self.path(), then, back: self.path_dialog() }
             }
+            12 => Dialog::Bake { settings: self.bake(), job: None },
             _ => Dialog::Rename { joint: self.joint(), name: self.name() },
         }
     }
