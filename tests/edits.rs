@@ -130,7 +130,7 @@ examples! {
 
 /// A bake of one key.
 fn baked() -> Box<Baked> {
-    let mut document = session().document().clone();
+    let mut document = session_for(&EditAction::PasteKeys).document().clone();
     document.keys.insert(Channel::Rotation(JointId::new(INNER)), 0.5, Vec3::X * 0.1);
     Box::new(Baked { document, keys_at_frames: 1, keys: 1, error: 0.0, shortened: Vec::new() })
 }
