@@ -64,6 +64,26 @@ fn a_saved_document_of_version_2_is_saved_as_the_same_text() {
     }
 }
 
+/// The targets of older files posed nothing by themselves: their influence is 0 unless a file says
+/// otherwise.
+#[test]
+fn skeletons_of_older_files_have_the_pose_of_their_joint_angles() {
+    let mut skeletons = 0;
+    for (path, _) in versions() {
+        let document = open(&path).document;
+        for time in [0.0, 0.7, 2.0] {
+            let rig = document.evaluate(time).skeleton_rig;
+            let evaluated = rig.evaluate(time);
+            assert_eq!(evaluated.solved, evaluated.fk, "{}", path.display());
+            if rig.follow_path.is_none() {
+                assert_eq!(evaluated.fk, rig.skeleton, "{}", path.display());
+            }
+            skeletons += rig.targets.len();
+        }
+    }
+    assert!(skeletons > 20, "{skeletons}");
+}
+
 #[test]
 fn a_root_that_older_files_call_fixed_turns() {
     for version in [1, 2] {

@@ -49,9 +49,11 @@ impl Session {
 
     /// A session with a document.
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
+        let mut editing = Editing::new(document);
+        editing.evaluate(Playback::default().time());
         Self {
-            evaluated: Evaluated::new(&document),
-            editing: Editing::new(document),
+            evaluated: Evaluated::new(editing.shown()),
+            editing,
             selection: Selection::default(),
             playback: Playback::default(),
             solvers: Solvers::default(),

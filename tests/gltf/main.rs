@@ -9,5 +9,7 @@ mod documents;
 mod export;
 mod glb;
 mod import;
+#[cfg(feature = "app")]
+mod posed;
 mod round_trip;
 mod text;

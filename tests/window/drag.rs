@@ -37,3 +37,34 @@ fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
     assert_eq!(program.errors(), "", "it has nothing to complain about");
 }
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
+    let (_folder, places, program) = open();
+    let arm = program.at_rest();
+    program.click(places.skeleton_switch);
+    program.wait_until("the Human is shown", |now| changed(&arm, now, places.head, 10.0) > 100);
+    // Away from all bones, so that none is highlighted.
+    program.mouse_to(places.empty);
+    let first = program.at_rest();
+
+    let to = places.pelvis + egui::vec2(8.0, 30.0);
+    program.drag(places.pelvis, to);
+    program.mouse_to(places.empty);
+    program.wait_until("the pelvis and the head move", |now| {
+        changed(&first, now, places.pelvis, 20.0) > 150
+            && changed(&first, now, places.head, 20.0) > 150
+    });
+    let dragged = program.at_rest();
+    for wrist in places.wrists {
+        let moved = changed(&first, &dragged, wrist, 2.0);
+        assert!(moved <= 2, "{moved} pixels of the wrist at {wrist} change");
+    }
+
+    program.key("ctrl+z");
+    program.wait_until("the drag is undone", |now| changed(&first, now, places.head, 20.0) < 20);
+    program.key("ctrl+q");
+    assert_eq!(program.end(), Some(0), "the program ends cleanly");
+    assert_eq!(program.errors(), "", "it has nothing to complain about");
+}

@@ -22,6 +22,10 @@ pub struct Places {
     pub skeleton_switch: egui::Pos2,
     /// The middle of the Human's head, while that is shown.
     pub head: egui::Pos2,
+    /// The pelvis of the Human.
+    pub pelvis: egui::Pos2,
+    /// The wrists of the Human, where the targets of its arms are.
+    pub wrists: [egui::Pos2; 2],
 }
 
 impl Places {
@@ -55,9 +59,13 @@ impl Places {
         let place = |point| place_in(&session, point);
         let mut human = Session::default();
         human.apply(EditAction::ShowRig(RigKind::Skeleton));
-        let head = human.skeleton().find("head").expect("the Human has a head");
         let pose = human.skeleton_pose();
+        let joint = |name: &str| human.skeleton().find(name).expect("the Human has this joint");
+        let head = joint("head");
         let head = place_in(&human, pose.base(head).midpoint(pose.tip(head)));
+        let pelvis = place_in(&human, pose.base(joint("pelvis")));
+        let wrists = ["left_forearm", "right_forearm"]
+            .map(|forearm| place_in(&human, pose.tip(joint(forearm))));
         let track = rail.x_range().shrink(8.5);
         let part =
             (session.arm().cursor_in_root().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
@@ -70,6 +78,8 @@ impl Places {
             empty: viewport.left_top() + egui::vec2(40.0, 40.0),
             skeleton_switch,
             head,
+            pelvis,
+            wrists,
         }
     }
 }
