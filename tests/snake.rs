@@ -6,7 +6,7 @@ use std::cell::Cell;
 use glam::Vec3;
 use ik_arm::document::FollowPath;
 use ik_arm::kinematics::follow;
-use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 const PATH: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
 
@@ -59,6 +59,39 @@ fn the_head_leads_and_bones_keep_their_lengths() {
             assert!((length - before.axis.length()).abs() < 1e-5, "{length} of joint {joint}");
         }
     }
+}
+
+#[test]
+fn joints_after_a_limited_one_start_where_it_ends_and_point_at_the_path() {
+    let mut snake = snake();
+    let lengths: Vec<f32> = snake.joints().iter().map(|joint| joint.axis.length()).collect();
+    for index in (2..24).step_by(5) {
+        let limits = [Some(Limit { min: -0.02, max: 0.02 }); 3];
+        snake.change(JointId::new(index), |joint| joint.limits = limits).expect("limited");
+    }
+    let (mut limited, mut free) = (0, 0);
+    for step in 0..50 {
+        let time = f64::from(step) * 0.17;
+        let pose = PATH.pose(&snake, time);
+        let points = follow::along(
+            |turns| PATH.point(turns) + Vec3::Y * 0.07,
+            PATH.turns_at(time),
+            1.0 / 256.0,
+            lengths.iter().copied(),
+        );
+        for (index, joint) in pose.joints().iter().enumerate() {
+            let (base, tip) = (pose.base(JointId::new(index)), pose.tip(JointId::new(index)));
+            let direction = (tip - base).normalize();
+            let aside = direction.cross((points[index + 1] - base).normalize()).length();
+            if joint.is_limited() && joint.rotation.abs().max_element() > 0.0199 {
+                limited += usize::from(aside > 1e-2);
+            } else {
+                free += 1;
+                assert!(aside < 1e-3, "joint {index} at {time} s: {aside}");
+            }
+        }
+    }
+    assert!(limited > 20 && free > 900, "{limited} limited, {free} free");
 }
 
 #[test]

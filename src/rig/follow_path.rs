@@ -9,7 +9,8 @@ use crate::kinematics::{follow, rotation_between};
 /// so on) follows over time, as a snake does.
 ///
 /// The path is in skeleton space, at the height of the root: a circle around the origin with waves
-/// on it.
+/// on it. A joint whose limits keep it off the path is followed by the next one from where it
+/// ends, back towards the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowPath {
     /// Radius of the circle, in skeleton space.
@@ -83,7 +84,9 @@ impl FollowPath {
                 (offset, rotation) = (joint.offset, joint.rotation);
             }
             above *= joint.rotation_by(rotation);
-            base = tip;
+            // Where limits, or a bone longer than the path, leave the tip off the path.
+            let end = base + Vec3::from(above * Vec3A::from(joint.axis));
+            base = if end.is_finite() { end } else { tip };
             (index, offset, rotation)
         })
     }
