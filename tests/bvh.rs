@@ -130,6 +130,12 @@ fn every_example_skeleton_round_trips() {
             continue;
         }
         let exported = export(&document);
+        if example.name == "table" {
+            // One of its two roots moves, and the other does not.
+            let [note] = &exported.notes[..] else { panic!("one note: {:?}", exported.notes) };
+            assert!(note.starts_with("the offset of \"shoulder\" changes in time"), "{note}");
+            continue;
+        }
         assert_eq!(exported.notes, Vec::<String>::new(), "{}", example.name);
         assert_same(&document, &exported, 100.0 * document.metres_per_unit());
     }

@@ -331,13 +331,13 @@ fn the_hand_rests_flat_on_the_table_while_the_shoulder_moves() {
     let start = &poses[0];
     // The slats' axes are 0.026 below the table's top, as is the hand's above it.
     let top = start.base("table").y + 0.026;
-    assert!((start.base("hand").y - top - 0.026).abs() < 5e-3);
-    assert!((start.tip("hand").y - start.base("hand").y).abs() < 1e-3, "it is flat");
+    assert!((start.base("palm").y - top - 0.026).abs() < 5e-3);
+    assert!((start.tip("palm").y - start.base("palm").y).abs() < 1e-3, "it is flat");
     let mut moved = 0.0_f32;
     for posed in &poses {
         moved = moved.max(posed.base("shoulder").distance(start.base("shoulder")));
-        assert!(posed.base("hand").distance(start.base("hand")) < 1e-5 * REACH);
-        assert!(posed.tip("hand").distance(start.tip("hand")) < 1e-5 * REACH);
+        assert!(posed.base("palm").distance(start.base("palm")) < 1e-5 * REACH);
+        assert!(posed.tip("palm").distance(start.tip("palm")) < 1e-5 * REACH);
         assert!(posed.base("forearm").y > top + 0.034, "the elbow is above the table");
         assert_within_limits(posed);
     }
