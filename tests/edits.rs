@@ -16,7 +16,7 @@ use ik_arm::session::{
 };
 
 /// Joints of the Human: one with a target, one without, and a leaf.
-const AIMED: usize = 8;
+const AIMED: usize = 7;
 const INNER: usize = 3;
 const LEAF: usize = 18;
 /// A channel that no other example changes.
