@@ -7,11 +7,12 @@ mod common;
 use common::{Random, skeletons};
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, FollowPath, RigKind, SkeletonRig, Target, TargetMotion, TargetPath,
+    Channel, Document, FollowPath, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
 };
 use ik_arm::io::{Example, to_json};
-use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status};
+use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status, TipTarget};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
+use ik_arm::scene::Scene;
 use ik_arm::session::{
     Action, EditAction, FileAction, PlaybackAction, Session, ShownIteration, SolverAction,
     SolverRun, SolverState, TransactionAction,
@@ -397,4 +398,33 @@ fn a_comparison_shows_the_same_iteration_of_all_solvers() {
             assert_eq!(ghost.method, run.method());
         }
     }
+}
+
+#[test]
+fn the_labels_in_the_view_tell_the_shown_iteration_and_its_gaps() {
+    let mut session = example("two-targets");
+    step(&mut session, 3);
+    for number in [0, 1, 2] {
+        session.apply(SolverAction::Show(number));
+        let texts = labels(&session);
+        assert!(texts.contains(&format!("Iteration {number}")), "{texts:?}");
+        let run = session.solver_run().expect("it steps");
+        let gap = |it: &TipTarget| run.skeleton().tip(it.joint).distance(it.point);
+        let gaps: Vec<f32> = run.targets().iter().map(gap).collect();
+        let told: Vec<f32> = texts.iter().filter_map(|text| text.parse().ok()).collect();
+        // A gap that the target's ball hides is not told.
+        let is_seen = |gap: &&f32| **gap > 0.022 * session.skeleton_rig().reach();
+        assert_eq!(gaps.iter().filter(is_seen).count(), told.len(), "{gaps:?} {told:?}");
+        for told in told {
+            assert!(gaps.iter().any(|gap| (gap - told).abs() < 0.0051), "{told} is in {gaps:?}");
+        }
+    }
+    session.apply(SolverAction::Compare);
+    let texts = labels(&session);
+    assert!(texts.iter().all(|text| text.parse::<f32>().is_err()), "too many to read: {texts:?}");
+}
+
+fn labels(session: &Session) -> Vec<String> {
+    let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+    scene.labels.iter().map(|label| scene.text(label).to_owned()).collect()
 }

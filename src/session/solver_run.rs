@@ -103,7 +103,7 @@ impl SolverRun {
     /// made.
     pub(super) fn hold(&mut self, held: Option<u32>) {
         self.held = held;
-        self.shown().clone().write(&mut self.skeleton);
+        self.iterates.at(held.unwrap_or(u32::MAX)).write(&mut self.skeleton);
     }
 
     /// Starts or pauses the run.
