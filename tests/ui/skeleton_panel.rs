@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use egui::accesskit::Role;
 use egui::epaint::text::MissingGlyphPolicy;
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, vec2};
 use glam::Vec3;
 use ik_arm::document::{RigKind, TargetPath};
 use ik_arm::io::{Example, Group};
@@ -19,7 +19,10 @@ use ik_arm::kinematics::skeleton::JointId;
 
 /// A root with three joints in a chain, built by pressing buttons.
 fn built() -> Bench {
-    let mut bench = Bench::new();
+    built_in(Bench::new())
+}
+
+fn built_in(mut bench: Bench) -> Bench {
     bench.choose(&["File", "New skeleton"]);
     for _ in 0..3 {
         bench.click(Role::Button, "Add child");
@@ -199,7 +202,8 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         (Method::DampedLeastSquares, "Damped least squares"),
         (Method::Ccd, "Cyclic coordinate descent"),
     ] {
-        let mut bench = built();
+        // High enough to show the whole panel.
+        let mut bench = built_in(Bench::of_size(vec2(1280.0, 1200.0)));
         select(&mut bench, "joint");
         bench.click(Role::Button, "Add child");
         bench.click(Role::Button, "Add child");
