@@ -229,7 +229,7 @@ fn the_iterations_of_a_run_do_not_depend_on_the_times_that_were_shown_before() {
 
 #[test]
 fn a_run_that_has_ended_solves_a_moved_target_to_its_end() {
-    let mut session = example("human");
+    let mut session = example("ten-joints");
     run_to_the_end(&mut session, 0.0);
     let target = session.skeleton_rig().targets[0];
     for home in [target.home + Vec3::Y * 0.2, target.home + Vec3::X * 0.1, target.home] {

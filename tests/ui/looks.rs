@@ -138,10 +138,15 @@ fn the_panels_leave_the_viewport_room_at_960_by_600() {
 fn the_panels_look_as_they_did() {
     let mut results = SnapshotResults::new();
     let human = Example::find("human").expect("an example");
+    let mut target = human.open().expect("it opens").document.skeleton_rig.targets[0];
+    target.home += Vec3::new(0.1, 0.3, 0.1);
     let skeleton = [
         Action::from(FileAction::OpenExample(human)),
         SelectAction::Joints(vec![JointId::new(8)]).into(),
+        EditAction::SetTarget(target).into(),
         SolverAction::Step.into(),
+        SolverAction::Step.into(),
+        SolverAction::Show(1).into(),
     ];
     for theme in THEMES {
         let rigs = [
