@@ -225,7 +225,10 @@ fn an_edit_is_unsaved_whatever_view_changes_come_before_and_after() {
 fn the_reading_of_a_ring_shows_the_angle_after_limits() {
     let mut bench = human();
     let joint = joint_named(&bench, "left_shin");
-    bench.apply([SelectAction::Joints(vec![joint])]);
+    bench.apply([
+        Action::from(EditAction::RemoveTarget(joint)),
+        SelectAction::Joints(vec![joint]).into(),
+    ]);
     let limits = bench.session().skeleton().joints()[joint.index()].limits;
     let free: Vec<_> =
         (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
