@@ -1,4 +1,3 @@
-use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
 use crate::kinematics::chain_ik::Root;
 use crate::kinematics::limb_ik::Limb;
@@ -12,9 +11,9 @@ pub(super) struct MovedJoints {
 }
 
 impl MovedJoints {
-    pub fn new(rig: &SkeletonRig, target: &Target) -> Self {
-        let skeleton = &*rig.skeleton;
-        let is_free = rig.solver.root == Root::Free;
+    /// The joints that `target` turns if it poses a skeleton whose solver has this mode of roots.
+    pub fn new(skeleton: &Skeleton, root: Root, target: &Target) -> Self {
+        let is_free = root == Root::Free;
         let can_turn = |joint: &JointId| {
             let joint = &skeleton[*joint];
             !joint.locked || (is_free && joint.parent.is_none())
@@ -38,8 +37,7 @@ impl MovedJoints {
 
     /// Whether `target`, which moves these joints, must be solved after a target that moves the joints
     /// of `other`: because it is on one of them, or because its limb is attached to one.
-    pub fn depends_on(&self, rig: &SkeletonRig, target: &Target, other: &Self) -> bool {
-        let skeleton = &*rig.skeleton;
+    pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
         let base = self.upper.and_then(|upper| skeleton[upper].parent);
         let spaces = target.spaces().filter_map(|space| space.joint());
         spaces.chain(base).any(|joint| other.moves(skeleton, joint))

@@ -62,7 +62,7 @@ impl SkeletonRig {
         influences.clear();
         influences.resize(self.skeleton.joints().len(), 0.0);
         for target in self.targets.iter().filter(|target| target.is_posing()) {
-            for joint in MovedJoints::new(self, target).turned {
+            for joint in self.moved_by(target).turned {
                 let influence = &mut influences[joint.index()];
                 *influence = influence.max(target.influence);
             }
@@ -72,11 +72,15 @@ impl SkeletonRig {
     /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the
     /// joint has its FK angles.
     pub fn target_that_turns(&self, joint: JointId) -> Option<&Target> {
-        let turns = |target: &&Target| {
-            target.is_posing() && MovedJoints::new(self, target).turned.contains(&joint)
-        };
+        let turns =
+            |target: &&Target| target.is_posing() && self.moved_by(target).turned.contains(&joint);
         let posing = self.targets.iter().filter(turns);
         posing.max_by(|one, other| one.influence.total_cmp(&other.influence))
+    }
+
+    /// The joints that a target turns if it poses the skeleton.
+    pub(super) fn moved_by(&self, target: &Target) -> MovedJoints {
+        MovedJoints::new(&self.skeleton, self.solver.root, target)
     }
 
     /// The joint that a target is named after: the hand of its limb, or the joint whose tip it brings to

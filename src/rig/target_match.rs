@@ -1,7 +1,6 @@
 use glam::{DQuat, Vec3};
 
 use super::limb_settings::LimbSettings;
-use super::moved_joints::MovedJoints;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
 use crate::kinematics::Shared;
@@ -36,7 +35,7 @@ impl SkeletonRig {
         let solved = self.skeleton_at(time);
         let target = self.targets[index];
         let is_whole_body = target.kind == TargetKind::WholeBody;
-        for joint in MovedJoints::new(self, &target).turned {
+        for joint in self.moved_by(&target).turned {
             // A limb changes offsets only by stretch, which FK does not have.
             let offset =
                 if is_whole_body { solved[joint].offset } else { self.skeleton[joint].offset };

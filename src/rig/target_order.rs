@@ -65,7 +65,7 @@ impl SkeletonRig {
         if !self.targets.iter().any(is_on_joint) {
             return Ok(());
         }
-        let moved: Vec<_> = self.targets.iter().map(|it| MovedJoints::new(self, it)).collect();
+        let moved: Vec<_> = self.targets.iter().map(|it| self.moved_by(it)).collect();
         for (target, own) in self.targets.iter().zip(&moved) {
             for joint in target.spaces().filter_map(|space| space.joint()) {
                 let error = if self.skeleton.joint(joint).is_none() {
@@ -107,9 +107,9 @@ impl LimbOrder {
         }
         let mut order = Self { indices: Vec::with_capacity(left.len()), cycle: None };
         let moved: Vec<MovedJoints> =
-            rig.targets.iter().map(|target| MovedJoints::new(rig, target)).collect();
+            rig.targets.iter().map(|target| rig.moved_by(target)).collect();
         let depends = |one: usize, other: usize| {
-            one != other && moved[one].depends_on(rig, &rig.targets[one], &moved[other])
+            one != other && moved[one].depends_on(&rig.skeleton, &rig.targets[one], &moved[other])
         };
         while !left.is_empty() {
             let is_free = |one: &usize| !left.iter().any(|other| depends(*one, *other));

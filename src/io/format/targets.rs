@@ -164,7 +164,7 @@ impl LimbFields {
         Self {
             reference: Some(reference),
             pole,
-            pole_on_joint: pole.and(on_joint(settings.pole_space)),
+            pole_on_joint: on_joint(settings.pole_space),
             twist: Some(JsonNumber(settings.twist)),
             soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
             orientation: settings.orientation.map(JsonPoint),

@@ -2,6 +2,7 @@
 
 mod arm;
 mod axes;
+mod drawn_skeleton;
 mod globe;
 mod hand;
 mod motion;

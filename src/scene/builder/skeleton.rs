@@ -1,31 +1,13 @@
 use glam::Vec3;
 
+use super::drawn_skeleton::DrawnSkeleton;
 use super::scratch::Scratch;
-use super::shadow::above_ground;
 use super::targets;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
-use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::scene::{Line, Scene};
 use crate::session::Overlays;
-
-/// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
-/// reach.
-const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
-/// Minimum of a bone's radius limit by reach, as a fraction of the bone's length, so that the first
-/// bones of a new skeleton are as thick as they will be in the complete one.
-const MIN_LIMIT: f32 = 0.07;
-/// Maximum radius of a joint without a bone, as a fraction of the skeleton's reach.
-const POINT_RADIUS: f32 = 0.02;
-/// Ratio of the tip's radius to the base's radius of a slender bone.
-const TAPER: f32 = 0.6;
-/// Ratio of length to base radius above which a bone is slender and tapers. Shorter bones do not
-/// taper, so that a chain of many forms one smooth body.
-const SLENDER: f32 = 4.0;
-/// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
-pub(super) const GHOST: f32 = 0.45;
-/// Contrast of the FK pose with the background, from 0 to 1.
-const FK_CONTRAST: f32 = 0.35;
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
@@ -106,128 +88,6 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
             let is_bone = joints[parent.index()].axis != Vec3::ZERO;
             depths[joint] = depths[parent.index()] + usize::from(is_bone);
             are_leaves[parent.index()] = false;
-        }
-    }
-}
-
-/// A posed skeleton with the sizes that its drawing depends on.
-#[derive(Clone, Copy)]
-pub(super) struct DrawnSkeleton<'a> {
-    pub joints: &'a [Shared<Joint>],
-    pub pose: &'a SkeletonPose,
-    depths: &'a [usize],
-    are_leaves: &'a [bool],
-    /// Reach in world units.
-    pub reach: f32,
-    /// World units per unit of the skeleton.
-    scale: f32,
-}
-
-impl<'a> DrawnSkeleton<'a> {
-    /// The skeleton in another pose.
-    pub fn posed<'b>(&self, pose: &'b SkeletonPose) -> DrawnSkeleton<'b>
-    where
-        'a: 'b,
-    {
-        DrawnSkeleton { pose, ..*self }
-    }
-
-    /// Radius of a bone at its base as drawn, in world units.
-    pub fn radius(&self, joint: JointId) -> f32 {
-        let length = self.pose.base(joint).distance(self.pose.tip(joint));
-        let (of_length, of_reach) = MAX_RADIUS;
-        let limit = match length {
-            0.0 => POINT_RADIUS * self.reach,
-            length => {
-                let of_reach = (of_reach * self.reach).max(MIN_LIMIT * length);
-                of_reach.min(of_length * length)
-            }
-        };
-        (self.joints[joint.index()].radius * self.scale).clamp(0.25 * limit, limit)
-    }
-
-    fn tip_radius(&self, joint: JointId) -> f32 {
-        let length = self.pose.base(joint).distance(self.pose.tip(joint));
-        let radius = self.radius(joint);
-        if length > SLENDER * radius { radius * TAPER } else { radius }
-    }
-
-    /// Colour of a bone. The limbs' colours alternate from parent to child; locked, hovered and
-    /// selected joints have colours of their own.
-    fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
-        let palette = &scene.palette;
-        let plain = if self.depths[joint.index()].is_multiple_of(2) {
-            palette.upper
-        } else {
-            palette.lower
-        };
-        let colour = match self.joints[joint.index()].locked {
-            true => palette.joint,
-            false => plain,
-        };
-        if overlays.selection.contains(&joint) {
-            palette.accent
-        } else if overlays.hovered == Some(joint) {
-            colour.mixed(palette.guide, 0.3)
-        } else {
-            colour
-        }
-    }
-
-    fn add_bone(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
-        let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
-        if base != tip {
-            scene.add_solid(base, tip, radius, self.tip_radius(joint), colour);
-        }
-        let ball = if base == tip { colour } else { scene.palette.joint };
-        scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
-        if self.are_leaves[joint.index()] && base != tip {
-            let colour = scene.palette.joint;
-            scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
-        }
-    }
-
-    /// Adds the bones that `fk`, the FK pose, has elsewhere, for the joints that are to be shown.
-    fn add_fk_pose(
-        &self,
-        scene: &mut Scene,
-        fk: &SkeletonPose,
-        is_shown: impl Fn(JointId) -> bool,
-    ) {
-        // Fraction of the reach.
-        const APART: f32 = 1e-3;
-        let colour = scene.palette.sky_top.mixed(scene.palette.joint, FK_CONTRAST);
-        for joint in fk.ids().filter(|joint| is_shown(*joint)) {
-            let (base, tip) = (fk.base(joint), fk.tip(joint));
-            let apart =
-                base.distance(self.pose.base(joint)).max(tip.distance(self.pose.tip(joint)));
-            if apart > APART * self.reach {
-                let radius = self.radius(joint) * GHOST;
-                if base != tip {
-                    scene.add_solid(base, tip, radius, radius, colour);
-                }
-                scene.balls.push(Ball { centre: tip, radius, colour });
-            }
-        }
-    }
-
-    fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
-        let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
-        let limb = Shadow { base, base_radius: radius, tip, tip_radius: self.tip_radius(joint) };
-        scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
-    }
-
-    /// Adds the names of the selected joints and of the joint under the mouse.
-    fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
-        labelled.clear();
-        labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
-        labelled.sort_unstable();
-        labelled.dedup();
-        for joint in labelled.iter().copied().filter(|joint| joint.index() < self.joints.len()) {
-            let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
-            let label =
-                Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);
-            scene.add_label(label, format_args!("{}", self.joints[joint.index()].name));
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::skeleton::{DrawnSkeleton, GHOST};
+use super::drawn_skeleton::{DrawnSkeleton, GHOST};
 use crate::document::{Display, Overlay};
 use crate::scene::{Ball, Colour, Label, LabelSide, Scene};
 use crate::session::SolverGhost;

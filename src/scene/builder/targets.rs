@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::skeleton::DrawnSkeleton;
+use super::drawn_skeleton::DrawnSkeleton;
 use crate::document::{Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetReport;
