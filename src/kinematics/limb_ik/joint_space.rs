@@ -20,6 +20,14 @@ impl JointSpace {
         }
     }
 
+    /// The own space of `joint`, for a joint `upper` above it, or the same, whose parent has the space
+    /// `above`.
+    pub fn below(skeleton: &Skeleton, joint: JointId, upper: JointId, above: Self) -> Self {
+        let parent = skeleton[joint].parent.filter(|_| joint != upper);
+        let parent = parent.map_or(above, |parent| Self::below(skeleton, parent, upper, above));
+        parent.of_child(&skeleton[joint])
+    }
+
     /// The own space of a child of this space's joint.
     pub fn of_child(self, child: &Joint) -> Self {
         let base = self.at_base_of(child);

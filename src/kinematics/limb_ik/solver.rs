@@ -96,7 +96,9 @@ pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option
     if target.influence > 0.0 {
         solved.write(skeleton, limb, target.influence);
     }
-    let tip = skeleton.transform().as_daffine3().transform_point3(tip_of(skeleton, limb));
+    let tip = JointSpace::below(skeleton, limb.lower, limb.upper, fk.above);
+    let tip =
+        skeleton.transform().as_daffine3().transform_point3(tip.point(skeleton[limb.lower].axis));
     let error = saturate(tip.distance(target.point.as_dvec3()));
     Some(LimbReport { error, reach: solved.reach, stretch: solved.stretch as f32 })
 }
@@ -304,9 +306,9 @@ impl SolvedLimb {
         let upper =
             skeleton[limb.upper].angles_within(fk.above.rotation.transpose() * upper_rotation);
 
-        let above_hand =
-            fk.above.rotation * skeleton[limb.upper].rotation_f64(upper.angles) * lower_rotation;
         let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
+            let upper_rotation = skeleton[limb.upper].rotation_f64(upper.angles);
+            let above_hand = fk.above.rotation * upper_rotation * lower_rotation;
             let turned = above_hand.transpose() * DMat3::from_quat(turned);
             skeleton[hand].angles_within(turned).angles
         });
@@ -383,9 +385,4 @@ fn lengthen(skeleton: &mut Skeleton, limb: Limb, factor: f32) {
     for joint in [limb.upper, limb.lower] {
         skeleton.write_local(joint, |joint| joint.axis *= factor);
     }
-}
-
-/// Position of the limb's tip in skeleton space.
-fn tip_of(skeleton: &Skeleton, limb: Limb) -> DVec3 {
-    JointSpace::of(skeleton, Some(limb.lower)).point(skeleton[limb.lower].axis)
 }

@@ -1,4 +1,4 @@
-use glam::{DMat3, DQuat, DVec3, Mat3A, Vec3};
+use glam::{DMat3, DQuat, DVec3, EulerRot, Mat3, Mat3A, Vec3};
 
 use super::{Joint, angle_triples};
 
@@ -15,11 +15,12 @@ pub(crate) struct AnglesWithin {
 impl Joint {
     /// The rotation A·R_z·R_y·R_x·Aᵀ for Euler angles in radians, in the space of the joint's base.
     pub(crate) fn rotation_f64(&self, angles: Vec3) -> DMat3 {
-        let angles = angles.as_dvec3();
+        let DVec3 { x, y, z } = angles.as_dvec3();
+        let rotation = DMat3::from_euler(EulerRot::ZYX, z, y, x);
+        if self.frame == Mat3::IDENTITY {
+            return rotation;
+        }
         let frame = self.frame.as_dmat3();
-        let rotation = DMat3::from_rotation_z(angles.z)
-            * DMat3::from_rotation_y(angles.y)
-            * DMat3::from_rotation_x(angles.x);
         frame * rotation * frame.transpose()
     }
 
