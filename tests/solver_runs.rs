@@ -14,8 +14,8 @@ use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Sta
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, EditAction, FileAction, PlaybackAction, Session, ShownIteration, SolverAction,
-    SolverRun, SolverState, TransactionAction,
+    Action, Comparison, EditAction, FileAction, PlaybackAction, Session, ShownIteration,
+    SolverAction, SolverRun, SolverState, TransactionAction,
 };
 
 /// A tree with one to three targets that it can reach, some of which move, and a method that can
@@ -169,7 +169,7 @@ fn a_run_and_a_comparison_always_solve_what_the_session_shows() {
             if let Some(run) = session.solver_run() {
                 assert_is_fresh(&session, run, &options);
             }
-            for solver in session.comparison().into_iter().flat_map(|race| race.solvers()) {
+            for solver in session.comparison().into_iter().flat_map(Comparison::solvers) {
                 let mut options = options.with_method(solver.method);
                 options.iterations = None;
                 if let Ok(run) = &solver.run {

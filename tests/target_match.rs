@@ -5,12 +5,11 @@ mod common;
 use common::Random;
 use common::skeletons::transform;
 use glam::{DQuat, Vec3};
-use ik_arm::document::{SkeletonRig, Target};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::Stereographic;
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::rig::{LimbSettings, SkeletonRig, Target, TargetKind, TargetSpace};
 
 /// A trunk, an arm of two bones with a hand, hinged or not, in a random pose, and a prop.
 struct Figure {

@@ -1,10 +1,11 @@
 //! Targets and poles that are fixed in the space of a joint.
+#![cfg(feature = "document")]
 
 mod common;
 
 use common::Random;
 use common::skeletons::{shake, transform};
-use glam::{DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Target};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
@@ -56,9 +57,7 @@ fn to_world(skeleton: &Skeleton, joint: JointId) -> DAffine3 {
     let Joint { parent, offset, frame, rotation, .. } = &skeleton[joint];
     let above = parent.map_or(
         DAffine3::from_mat3_translation(
-            DMat3::from_cols_array(
-                &Mat3A::from(skeleton.transform().matrix3).to_cols_array().map(f64::from),
-            ),
+            DMat3::from_cols_array(&skeleton.transform().matrix3.to_cols_array().map(f64::from)),
             skeleton.transform().translation.as_dvec3(),
         ),
         |parent| to_world(skeleton, parent),

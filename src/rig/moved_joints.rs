@@ -1,4 +1,5 @@
 use super::target::{Target, TargetKind};
+use super::target_space::TargetSpace;
 use crate::kinematics::chain_ik::Root;
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -39,7 +40,7 @@ impl MovedJoints {
     /// of `other`: because it is on one of them, or because its limb is attached to one.
     pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
         let base = self.upper.and_then(|upper| skeleton[upper].parent);
-        let spaces = target.spaces().filter_map(|space| space.joint());
+        let spaces = target.spaces().filter_map(TargetSpace::joint);
         spaces.chain(base).any(|joint| other.moves(skeleton, joint))
     }
 }

@@ -3,6 +3,7 @@ use thiserror::Error;
 use super::moved_joints::MovedJoints;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
+use super::target_space::TargetSpace;
 use crate::kinematics::skeleton::JointId;
 
 /// A target that is fixed in a space from which it cannot be evaluated.
@@ -67,7 +68,7 @@ impl SkeletonRig {
         }
         let moved: Vec<_> = self.targets.iter().map(|it| self.moved_by(it)).collect();
         for (target, own) in self.targets.iter().zip(&moved) {
-            for joint in target.spaces().filter_map(|space| space.joint()) {
+            for joint in target.spaces().filter_map(TargetSpace::joint) {
                 let error = if self.skeleton.joint(joint).is_none() {
                     Some(TargetSpaceError::NoJoint { target: target.joint, joint })
                 } else if own.moves(&self.skeleton, joint) {

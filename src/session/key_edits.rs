@@ -43,8 +43,12 @@ impl Session {
             }
             RigKind::Skeleton if self.selection.joints().is_empty() => self.all_channels(),
             RigKind::Skeleton => {
-                let is_selected = |channel: &Channel| {
-                    channel.joint().is_some_and(|joint| self.selection.joints().contains(&joint))
+                let rig = self.skeleton_rig();
+                let ends = self.selection.joints().iter().filter_map(|it| rig.target_of_end(*it));
+                let targeted: Vec<_> = ends.map(|index| rig.targets[index].joint).collect();
+                let is_selected = |channel: &Channel| match channel.target() {
+                    Some(joint) => targeted.contains(&joint),
+                    None => channel.joint().is_some_and(|it| self.selection.joints().contains(&it)),
                 };
                 Channel::of_rig(self.shown()).into_iter().filter(is_selected).collect()
             }

@@ -5,10 +5,14 @@ use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
 use crate::session::Session;
 
-/// Name of a channel, such as "Hand" or "left_1 · rotation".
+/// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of the
+/// joint that the target is named after.
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     let of_joint = |joint: JointId, what: &str| {
-        let name = session.skeleton().joint(joint).map_or("–", |joint| &joint.name);
+        let rig = session.skeleton_rig();
+        let target = channel.target().and_then(|joint| rig.target(joint));
+        let end = target.map_or(joint, |index| rig.end_of(&rig.targets[index]));
+        let name = rig.skeleton.joint(end).map_or("–", |joint| &joint.name);
         format!("{name} · {what}")
     };
     match channel {

@@ -141,7 +141,7 @@ fn influence_blends_from_the_joint_angles_to_the_target() {
     let solved = tip(&bench, "left_forearm");
     assert!(solved.distance(fk) > 0.1);
     enter(&mut bench, "Target influence", "0");
-    assert_eq!(tip(&bench, "left_forearm"), fk);
+    assert!(tip(&bench, "left_forearm").distance(fk) <= 1e-6);
     assert!(bench.says("Influence 0: the joint angles alone pose it"));
     bench.reveal(Role::Button, "FK to pose");
     assert!(is_disabled(&bench, Role::Button, "FK to pose"));

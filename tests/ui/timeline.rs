@@ -492,7 +492,8 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     let (turned, reached) = (names(JointId::new(1)), names(JointId::new(8)));
     bench.apply([EditAction::Key(vec![
         Channel::Rotation(JointId::new(1)),
-        Channel::Target(JointId::new(8)),
+        // For the tip of the forearm, which the hand is at.
+        Channel::Target(JointId::new(7)),
         Channel::Hand,
     ])]);
     for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]

@@ -58,7 +58,8 @@ fn k_keys_the_selected_joints() {
     ]);
     bench.key(Key::K);
     let keyed: Vec<_> = bench.session().document().keys.tracks().map(|it| it.0).collect();
-    assert_eq!(keyed, [Channel::Rotation(JointId::new(8)), Channel::Target(JointId::new(8))]);
+    // The target of the hand is for the tip of the forearm, joint 7.
+    assert_eq!(keyed, [Channel::Rotation(JointId::new(8)), Channel::Target(JointId::new(7))]);
 }
 
 #[test]

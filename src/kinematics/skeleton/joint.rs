@@ -2,7 +2,7 @@ use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
 use super::{
     JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
-    equivalent_triples, nearest_angles,
+    nearest_angles,
 };
 
 /// A ball joint and its bone.
@@ -89,8 +89,9 @@ impl Joint {
 
     /// Of all angles equivalent to `angles` and within the limits, those nearest to `near`. Without
     /// any, `angles`.
+    #[cfg(feature = "document")]
     pub(crate) fn equivalent_angles(&self, angles: Vec3, near: Vec3) -> Vec3 {
-        let triples = equivalent_triples(angles, near).into_iter();
+        let triples = super::equivalent_triples(angles, near).into_iter();
         let mut within = triples.filter(|triple| self.clamped(*triple) == *triple);
         within.next().unwrap_or(angles)
     }

@@ -62,6 +62,8 @@ pub use limit::Limit;
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 
-pub(crate) use joint_angles::{JointAngles, angle_triples, equivalent_triples, nearest_angles};
+#[cfg(feature = "document")]
+pub(crate) use joint_angles::equivalent_triples;
+pub(crate) use joint_angles::{JointAngles, angle_triples, nearest_angles};
 pub(crate) use joint_rotation::AnglesWithin;
 pub(crate) use limit::clamp_to_limits;

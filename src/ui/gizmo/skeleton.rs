@@ -42,10 +42,13 @@ struct ScreenBone {
     is_selected: bool,
 }
 
+/// A variant of [`Grip`] for a handle of a joint.
+type GripOfJoint = fn(JointId, PointHandle) -> Grip;
+
 /// Translation handles of a point, with the grip of each.
 struct TargetHandles {
     joint: JointId,
-    grip: fn(JointId, PointHandle) -> Grip,
+    grip: GripOfJoint,
     handles: TranslateHandles,
 }
 
@@ -191,9 +194,9 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<TargetHandles> {
     let target = session.selected().and_then(|joint| rig.target_of_end(joint));
     let Some(joint) = target.map(|index| rig.targets[index].joint) else { return Vec::new() };
     let Some(report) = session.target_report(joint) else { return Vec::new() };
-    let points: [(fn(JointId, PointHandle) -> Grip, Option<Vec3>); 2] =
+    let points: [(GripOfJoint, Option<Vec3>); 2] =
         [(Grip::Target, Some(report.position)), (Grip::LimbPole, report.pole)];
-    let handles = |(grip, point): (fn(JointId, PointHandle) -> Grip, Option<Vec3>)| {
+    let handles = |(grip, point): (GripOfJoint, Option<Vec3>)| {
         let handles = TranslateHandles::new(screen, point?, None)?;
         Some(TargetHandles { joint, grip, handles })
     };
