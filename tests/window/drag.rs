@@ -1,5 +1,19 @@
+use egui::Pos2;
+use image::RgbImage;
+
 use crate::open;
 use crate::screen::changed;
+
+/// Number of bright pixels of the ring around a target.
+fn ring(screen: &RgbImage, at: Pos2) -> usize {
+    let is_near = |x: u32, y: u32| {
+        let distance = Pos2::new(x as f32 + 0.5, y as f32 + 0.5).distance(at);
+        (8.0..=10.0).contains(&distance)
+    };
+    let is_bright = |colour: &image::Rgb<u8>| colour.0.iter().all(|channel| *channel > 180);
+    let pixels = screen.enumerate_pixels();
+    pixels.filter(|(x, y, colour)| is_near(*x, *y) && is_bright(colour)).count()
+}
 
 #[test]
 #[ignore = "needs a display of its own"]
@@ -58,8 +72,13 @@ fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
     });
     let dragged = program.at_rest();
     for wrist in places.wrists {
-        let moved = changed(&first, &dragged, wrist, 2.0);
-        assert!(moved <= 2, "{moved} pixels of the wrist at {wrist} change");
+        let [before, after] = [&first, &dragged].map(|screen| ring(screen, wrist));
+        assert!(before > 20, "{before} pixels of the target's ring at {wrist}");
+        assert!(after * 10 >= before * 9, "{after} of {before} pixels are left at {wrist}");
+    }
+    for toes in places.toes {
+        let moved = changed(&first, &dragged, toes, 4.0);
+        assert!(moved <= 2, "{moved} pixels of the toes at {toes} change");
     }
 
     program.key("ctrl+z");

@@ -26,6 +26,8 @@ pub struct Places {
     pub pelvis: egui::Pos2,
     /// The wrists of the Human, where the targets of its arms are.
     pub wrists: [egui::Pos2; 2],
+    /// The toes of the Human, whose feet keep their orientation.
+    pub toes: [egui::Pos2; 2],
 }
 
 impl Places {
@@ -66,6 +68,7 @@ impl Places {
         let pelvis = place_in(&human, pose.base(joint("pelvis")));
         let wrists = ["left_forearm", "right_forearm"]
             .map(|forearm| place_in(&human, pose.tip(joint(forearm))));
+        let toes = ["left_foot", "right_foot"].map(|foot| place_in(&human, pose.tip(joint(foot))));
         let track = rail.x_range().shrink(8.5);
         let part =
             (session.arm().cursor_in_root().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
@@ -80,6 +83,7 @@ impl Places {
             head,
             pelvis,
             wrists,
+            toes,
         }
     }
 }
