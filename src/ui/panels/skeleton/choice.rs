@@ -33,8 +33,8 @@ impl Choice<'_> {
 }
 
 impl ChoiceList<'_> {
-    /// Shows an item and returns whether the user chose it and it was not the present choice. `disabled`
-    /// is the reason why it cannot be chosen.
+    /// Shows an item and returns whether the user chose it and it was not the present choice. An empty
+    /// `tooltip` shows none. `disabled` is the reason why the item cannot be chosen.
     pub fn item(
         &mut self,
         is_now: bool,
@@ -43,7 +43,8 @@ impl ChoiceList<'_> {
         disabled: Option<&str>,
     ) -> bool {
         let button = Button::selectable(is_now, name);
-        let response = self.0.add_enabled(disabled.is_none(), button).on_hover_text(tooltip);
+        let response = self.0.add_enabled(disabled.is_none(), button);
+        let response = if tooltip.is_empty() { response } else { response.on_hover_text(tooltip) };
         let response = match disabled {
             Some(reason) => response.on_disabled_hover_text(reason),
             None => response,

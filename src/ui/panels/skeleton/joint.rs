@@ -2,9 +2,10 @@
 
 use core::f32::consts::PI;
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 use glam::Vec3;
 
+use super::choice::Choice;
 use super::targets;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit};
@@ -165,21 +166,18 @@ fn parent(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
         Some(joint) => joint.name.clone(),
         None => "none".to_owned(),
     };
-    widgets::pair(ui, "Parent", |ui| {
-        let combo = ComboBox::from_id_salt("parent")
-            .selected_text(name(joint.parent))
-            .width(ui.available_width().min(150.0))
-            .truncate();
-        let response = combo.show_ui(ui, |ui| {
-            let others = skeleton.ids().filter(|j| !skeleton.is_in_subtree(*j, index));
-            for parent in std::iter::once(None).chain(others.map(Some)) {
-                if ui.selectable_label(joint.parent == parent, name(parent)).clicked() {
-                    actions.push(EditAction::ReparentJoint { joint: index, parent });
-                }
+    let choice = Choice {
+        label: "Parent",
+        name: "Parent",
+        tooltip: "Change the parent; the joint stays in place",
+        shown: &name(joint.parent),
+    };
+    choice.show(ui, |list| {
+        let others = skeleton.ids().filter(|j| !skeleton.is_in_subtree(*j, index));
+        for parent in std::iter::once(None).chain(others.map(Some)) {
+            if list.item(joint.parent == parent, &name(parent), "", None) {
+                actions.push(EditAction::ReparentJoint { joint: index, parent });
             }
-        });
-        let response = response.response;
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Parent"));
-        response.on_hover_text("Change the parent; the joint stays in place");
+        }
     });
 }

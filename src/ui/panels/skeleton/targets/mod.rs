@@ -9,6 +9,7 @@ mod status;
 use egui::{RichText, Ui};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetPath};
+use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetKind, TargetReport};
 use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
@@ -57,10 +58,7 @@ fn row(
 }
 
 /// The joint that a target is named after, and its name: the hand of a limb, or the target's joint.
-pub(super) fn end<'a>(
-    rig: &'a SkeletonRig,
-    target: &Target,
-) -> Option<(crate::kinematics::skeleton::JointId, &'a str)> {
+pub(super) fn end<'a>(rig: &'a SkeletonRig, target: &Target) -> Option<(JointId, &'a str)> {
     let joint = rig.end_of(target);
     Some((joint, rig.skeleton.joint(joint)?.name.as_str()))
 }
