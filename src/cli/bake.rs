@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -11,7 +10,7 @@ use super::open;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
 use crate::document::{Bake, BakeError, Baked, Document, Timeline};
-use crate::io::{OpenError, Progress, SaveError, save};
+use crate::io::{OpenError, SaveError, save};
 
 #[derive(clap::Args)]
 #[command(
@@ -83,12 +82,9 @@ impl BakeArgs {
         }
         let document = open::open(&self.file, None)?.document;
         let settings = self.settings(&document);
-        let progress = Arc::new(Progress::default());
-        let interrupted = Arc::clone(&progress);
-        ctrlc::set_handler(move || interrupted.cancel())?;
-        let baked = run_with_bar(&progress, || {
+        let baked = run_with_bar(|progress| {
             settings.run(&document, |done, total| progress.step(done, total).is_ok())
-        });
+        })?;
         let baked = baked
             .map_err(|error| BakeCommandError::Bake { file: open::name(&self.file), error })?;
         save(&baked.document, &self.output)?;

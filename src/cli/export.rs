@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use clap::ValueEnum;
 use thiserror::Error;
@@ -101,10 +100,7 @@ impl ExportArgs {
         // Checks the arguments first, so that no file is read if one of them does not apply.
         self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
         let document = open::open(&self.file, self.skeleton.as_deref())?.document;
-        let progress = Arc::new(Progress::default());
-        let interrupted = Arc::clone(&progress);
-        ctrlc::set_handler(move || interrupted.cancel())?;
-        let notes = run_with_bar(&progress, || self.write(&document, &progress))?;
+        let notes = run_with_bar(|progress| self.write(&document, progress))??;
         Ok(notes)
     }
 

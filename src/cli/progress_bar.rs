@@ -1,3 +1,4 @@
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
@@ -5,14 +6,21 @@ use indicatif::ProgressBar;
 
 use crate::io::Progress;
 
-/// Runs a job on a thread of its own. Shows its progress on standard error if standard error is a
-/// terminal.
-pub fn run_with_bar<T: Send>(progress: &Progress, job: impl FnOnce() -> T + Send) -> T {
+/// Runs a job on a thread of its own; Ctrl+C cancels its progress. Shows the progress on standard error
+/// if standard error is a terminal.
+///
+/// # Errors
+///
+/// If Ctrl+C cannot be handled; the job is then not run.
+pub fn run_with_bar<T: Send>(job: impl FnOnce(&Progress) -> T + Send) -> Result<T, ctrlc::Error> {
     const STEPS: u64 = 1000;
     const UPDATE_INTERVAL: Duration = Duration::from_millis(50);
+    let progress = Arc::new(Progress::default());
+    let interrupted = Arc::clone(&progress);
+    ctrlc::set_handler(move || interrupted.cancel())?;
     let bar = ProgressBar::new(STEPS);
     let done = thread::scope(|scope| {
-        let job = scope.spawn(job);
+        let job = scope.spawn(|| job(&progress));
         while !job.is_finished() {
             bar.set_position((progress.part() * STEPS as f32) as u64);
             thread::park_timeout(UPDATE_INTERVAL);
@@ -20,5 +28,5 @@ pub fn run_with_bar<T: Send>(progress: &Progress, job: impl FnOnce() -> T + Send
         job.join()
     });
     bar.finish_and_clear();
-    done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    Ok(done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
 }
