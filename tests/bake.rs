@@ -9,7 +9,7 @@ use common::skeletons::{forest, transform};
 use glam::Vec3;
 use ik_arm::document::{
     Bake, BakeError, Baked, Channel, Document, FollowPath, RigKind, SkeletonRig, Target,
-    TargetMotion, TargetPath, Timeline,
+    TargetMotion, TargetPath, Timeline, WavyRing,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
@@ -36,12 +36,9 @@ fn random_document(random: &mut Random) -> Document {
             rig.targets.push(target);
         }
     }
-    rig.follow_path = random.chance(0.2).then_some(FollowPath {
-        radius: 1.0,
-        amplitude: 0.2,
-        waves: 5,
-        period: 1.5,
-    });
+    let ring = WavyRing { radius: 1.0, amplitude: 0.2, waves: 5, period: 1.5 };
+    let paths = [FollowPath::Ring(ring), FollowPath::Head].map(Some);
+    rig.follow_path = random.one_of(&[None, None, None, None, None, None, paths[0], paths[1]]);
     let mut document = shown(rig);
     for joint in document.skeleton().ids() {
         for channel in [

@@ -555,7 +555,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 fn a_time_moves_path_followers_and_targets() {
     let snake = Scene::example("snake");
     let document = Example::find("snake").expect("there").open().expect("opens").document;
-    let pose = document.skeleton_rig.skeleton_at(2.5).pose();
+    let pose = document.evaluate(2.5).skeleton_rig.skeleton_at(2.5).pose();
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 
     let mut document = keyed_chain();

@@ -70,11 +70,9 @@ fn a_path_follower_moves_in_the_table() {
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     for (frame, row) in rows.records().enumerate().step_by(60) {
         let row = row.expect("a row");
-        let head = document
-            .skeleton_rig
-            .skeleton_at(document.timeline.time(frame))
-            .pose()
-            .base(JointId::new(0));
+        let time = document.timeline.time(frame);
+        let rig = document.evaluate(time).skeleton_rig;
+        let head = rig.skeleton_at(time).pose().base(JointId::new(0));
         let found = [2, 3, 4].map(|column| row[column].parse::<f32>().expect("a number"));
         assert_eq!(Vec3::from_array(found), head);
     }

@@ -4,6 +4,7 @@
 use glam::Vec3;
 use ik_arm::document::{
     Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+    WavyRing,
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
@@ -89,12 +90,13 @@ examples! {
         EditAction::SetLocked { joint: JointId::new(INNER), locked: true },
         EditAction::SetLocked { joint: JointId::new(AIMED), locked: true },
     ];
-    SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath {
+    SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath::Ring(WavyRing {
         radius: 1.0,
         amplitude: 0.2,
         waves: 3,
         period: 5.0,
-    }))];
+    })))];
+    SetHead: [EditAction::SetHead(Vec3::X)];
     SetTranslation: [EditAction::SetTranslation(Vec3::X)];
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
     RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];

@@ -193,14 +193,14 @@ fn figures_and_an_arm_whose_hands_and_feet_stay() {
 
 #[test]
 fn the_snake_along_its_path() {
-    check("snake", &example("snake"), Theme::Dark);
+    check("snake", &example("snake").evaluate(0.0), Theme::Dark);
 }
 
 #[test]
 fn the_snake_some_seconds_later_is_another_picture() {
     let document = example("snake");
     let later = Overlays { time: 1.5, ..Overlays::default() };
-    let drawn = draw(&Scene::new(&document, &later, Theme::Dark));
+    let drawn = draw(&Scene::new(&document.evaluate(1.5), &later, Theme::Dark));
     assert!(compare(&drawn, &kept("snake")).is_err());
 }
 

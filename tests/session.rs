@@ -8,7 +8,7 @@ use common::strategies::config;
 use glam::Vec3;
 use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
-    SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
+    SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
@@ -58,9 +58,15 @@ fn grips() -> impl Strategy<Value = Grip> {
         (0..3_usize).prop_map(Grip::Shoulder),
         Just(Grip::Bend),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
+        (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Head(joint, handle)),
         (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
         (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
     ]
+}
+
+fn followed_paths() -> impl Strategy<Value = Option<FollowPath>> {
+    let ring = WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 };
+    prop_oneof![Just(None), Just(Some(FollowPath::Head)), Just(Some(FollowPath::Ring(ring)))]
 }
 
 fn building() -> impl Strategy<Value = Action> {
@@ -109,9 +115,8 @@ fn posing() -> impl Strategy<Value = Action> {
                 SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
             ))
         }),
-        1 => any::<bool>().prop_map(|on| Action::from(EditAction::SetFollowPath(on.then_some(FollowPath {
-            radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0
-        })))),
+        2 => followed_paths().prop_map(EditAction::SetFollowPath).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetHead).prop_map(Action::from),
         1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
         2 => Just(Action::from(SolverAction::Step)),
         1 => Just(Action::from(SolverAction::Reset)),

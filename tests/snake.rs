@@ -4,11 +4,11 @@
 use std::cell::Cell;
 
 use glam::Vec3;
-use ik_arm::document::FollowPath;
+use ik_arm::document::{FollowPath, SkeletonRig, WavyRing};
 use ik_arm::kinematics::follow;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
-const PATH: FollowPath = FollowPath { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
+const PATH: WavyRing = WavyRing { radius: 1.2, amplitude: 0.25, waves: 4, period: 9.0 };
 
 /// Bones of uneven lengths along −x, the head first.
 fn snake() -> Skeleton {
@@ -27,6 +27,13 @@ fn snake() -> Skeleton {
     snake
 }
 
+/// A skeleton at a time in seconds, on the ring.
+fn on_ring(skeleton: &Skeleton, time: f64) -> Skeleton {
+    let mut rig = SkeletonRig::new(skeleton.clone());
+    rig.follow_path = Some(FollowPath::Ring(PATH));
+    Skeleton::clone(&rig.skeleton_at(time))
+}
+
 /// Distance of a point from the path, by sampling all of it.
 fn distance_to_path(point: Vec3) -> f32 {
     const STEPS: usize = 40_000;
@@ -38,7 +45,7 @@ fn distance_to_path(point: Vec3) -> f32 {
 #[test]
 fn every_joint_is_on_the_path_of_the_head() {
     for time in [0.0, 1.7, 100.0] {
-        let pose = PATH.pose(&snake(), time).pose();
+        let pose = on_ring(&snake(), time).pose();
         for joint in 0..pose.len() {
             for point in [pose.base(JointId::new(joint)), pose.tip(JointId::new(joint))] {
                 assert!(distance_to_path(point) < 2e-4, "{point} of joint {joint} at {time} s");
@@ -51,7 +58,7 @@ fn every_joint_is_on_the_path_of_the_head() {
 fn the_head_leads_and_bones_keep_their_lengths() {
     let snake = snake();
     for time in [0.0, 0.4, 3.0, 8.99] {
-        let pose = PATH.pose(&snake, time).pose();
+        let pose = on_ring(&snake, time).pose();
         let head = PATH.point(PATH.turns_at(time)) + Vec3::Y * 0.07;
         assert!(pose.base(JointId::new(0)).distance(head) < 1e-6);
         for (joint, before) in snake.joints().iter().enumerate() {
@@ -72,7 +79,7 @@ fn joints_after_a_limited_one_start_where_it_ends_and_point_at_the_path() {
     let (mut limited, mut free) = (0, 0);
     for step in 0..50 {
         let time = f64::from(step) * 0.17;
-        let pose = PATH.pose(&snake, time);
+        let pose = on_ring(&snake, time);
         let points = follow::along(
             |turns| PATH.point(turns) + Vec3::Y * 0.07,
             PATH.turns_at(time),
@@ -110,7 +117,7 @@ fn the_body_trails_behind_the_head_and_never_overtakes_it() {
 
 #[test]
 fn the_motion_is_smooth_and_loops() {
-    let tip_at = |time: f64| PATH.pose(&snake(), time).pose().tip(JointId::new(23));
+    let tip_at = |time: f64| on_ring(&snake(), time).pose().tip(JointId::new(23));
     for step in 0..200 {
         let time = f64::from(step) * 0.05;
         let moved = tip_at(time).distance(tip_at(time + 1e-3));
@@ -127,10 +134,10 @@ fn following_a_path_of_one_point_terminates() {
 
 #[test]
 fn an_empty_skeleton_and_bones_without_length_are_unchanged() {
-    assert_eq!(PATH.pose(&Skeleton::default(), 1.0), Skeleton::default());
+    assert_eq!(on_ring(&Skeleton::default(), 1.0), Skeleton::default());
     let mut point = Skeleton::default();
     point.add(Joint::new("head", None, Vec3::ZERO)).expect("a joint");
-    let posed = PATH.pose(&point, 1.0).pose();
+    let posed = on_ring(&point, 1.0).pose();
     assert_eq!(posed.base(JointId::new(0)), posed.tip(JointId::new(0)));
 }
 

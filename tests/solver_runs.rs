@@ -8,6 +8,7 @@ use common::{Random, skeletons};
 use glam::Vec3;
 use ik_arm::document::{
     Channel, Document, FollowPath, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
+    WavyRing,
 };
 use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status, TipTarget};
@@ -321,7 +322,7 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
 
 #[test]
 fn a_run_ends_when_there_is_nothing_to_solve() {
-    let path = FollowPath { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 };
+    let path = FollowPath::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 });
     let joint = example("ten-joints").skeleton_rig().targets[0].joint;
     for (begin, end) in [
         (SolverAction::Step, EditAction::RemoveTarget(joint)),

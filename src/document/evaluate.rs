@@ -5,13 +5,13 @@ use super::channel::Channel;
 use super::document::Document;
 use super::rig_kind::RigKind;
 use crate::kinematics::angle;
-use crate::rig::Target;
+use crate::rig::{FollowPath, Target};
 
 /// Keys applied to the document.
 impl Document {
-    /// The document at a time in seconds: every keyed channel has its interpolated value. A
-    /// [`FollowPath`](super::FollowPath) is evaluated separately, by
-    /// [`SkeletonRig::skeleton_at`](super::SkeletonRig::skeleton_at).
+    /// The document at a time in seconds: every keyed channel has its interpolated value, and a
+    /// skeleton that follows its head has the head's keys. [`SkeletonRig::evaluate`](super::SkeletonRig::evaluate)
+    /// poses the skeleton.
     #[must_use]
     pub fn evaluate(&self, time: f64) -> Self {
         let mut evaluated = self.clone();
@@ -29,6 +29,11 @@ impl Document {
     /// Sets every keyed channel to its interpolated value at a time in seconds.
     pub(crate) fn apply_keys(&mut self, time: f64) {
         self.apply_keys_of(time, |_| true);
+        let rig = &mut self.skeleton_rig;
+        rig.head_track = match (rig.follow_path, rig.head()) {
+            (Some(FollowPath::Head), Some(head)) => self.keys.shared_track(Channel::Offset(head)),
+            _ => None,
+        };
     }
 
     fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
@@ -48,7 +53,7 @@ impl Document {
     /// Whether the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
         let moves = self.rig == RigKind::Skeleton
-            && (self.skeleton_rig.follow_path.is_some()
+            && (matches!(self.skeleton_rig.follow_path, Some(FollowPath::Ring(_)))
                 || self.skeleton_rig.targets.iter().any(|it| it.is_moving() && self.can_pose(it)));
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }

@@ -33,6 +33,11 @@ impl Keys {
         self.tracks.get(&channel).map(|track| &**track)
     }
 
+    /// [`Keys::track`], shared.
+    pub(super) fn shared_track(&self, channel: Channel) -> Option<Shared<Spline<Vec3>>> {
+        self.tracks.get(&channel).cloned()
+    }
+
     /// Whether a channel is keyed.
     pub fn has(&self, channel: Channel) -> bool {
         self.tracks.contains_key(&channel)

@@ -8,6 +8,7 @@ use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
+use crate::kinematics::spline::Spline;
 
 /// The skeleton with its targets and the options of its solver.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,9 @@ pub struct SkeletonRig {
     pub iterations_per_frame: u32,
     /// Path that the chain of the first root follows over time, instead of its own angles.
     pub follow_path: Option<FollowPath>,
+    /// The keys of the head's offset. Evaluation copies them here for [`FollowPath::Head`]; documents are
+    /// saved without.
+    pub head_track: Option<Shared<Spline<Vec3>>>,
 }
 
 impl SkeletonRig {
@@ -36,6 +40,7 @@ impl SkeletonRig {
             solver: SolverOptions::default(),
             iterations_per_frame: 1,
             follow_path: None,
+            head_track: None,
         }
     }
 
@@ -119,30 +124,19 @@ impl SkeletonRig {
         enabled.map(|target| target.tip_target(&fk, time)).collect()
     }
 
-    /// The FK pose at a time in seconds: on the followed path if there is one, else by the
-    /// skeleton's own angles.
-    pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
-        match &self.follow_path {
-            None => self.skeleton.clone(),
-            Some(follow_path) => Shared::from(follow_path.pose(&self.skeleton, time)),
-        }
-    }
-
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
-        match &self.follow_path {
-            _ if self.targets.iter().any(Target::is_posing) => {
-                self.skeleton_at(time).write_pose(pose);
-            }
-            None => self.skeleton.write_pose(pose),
-            Some(follow_path) => follow_path.write_pose(&self.skeleton, time, pose),
+        if self.targets.iter().any(Target::is_posing) {
+            self.skeleton_at(time).write_pose(pose);
+        } else {
+            self.write_fk(time, pose);
         }
     }
 
     /// Whether an enabled target or the skeleton moves over time without keys.
     pub fn is_moving(&self) -> bool {
         let moves = |target: &Target| target.enabled && target.is_moving();
-        self.follow_path.is_some() || self.targets.iter().any(moves)
+        matches!(self.follow_path, Some(FollowPath::Ring(_))) || self.targets.iter().any(moves)
     }
 
     /// Whether any joint has a bone, that is, an axis of non-zero length.
@@ -213,7 +207,7 @@ impl SkeletonRig {
             None => target.at(time),
         };
         let targets = self.targets.iter().map(place);
-        let path = self.follow_path.iter().flat_map(|path| path.corners(&self.skeleton));
+        let path = self.path_points();
         let (centre, radius) =
             bounding_sphere(pose.points().chain(targets).chain(path)).unwrap_or_default();
         (centre, radius.max(0.25 * reach))

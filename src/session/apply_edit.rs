@@ -87,6 +87,7 @@ impl Session {
             }
             EditAction::SetTranslation(to) => self.set_translation(to),
             EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
+            EditAction::SetHead(to) => self.set_head(to),
 
             EditAction::AddTarget(joint) => self.add_target(joint),
             EditAction::RemoveTarget(joint) => self.remove_target(joint),

@@ -9,6 +9,9 @@ use super::snapshot::Snapshot;
 use super::transaction_action::TransactionAction;
 use crate::document::{Arm, Channel, Document, Ray};
 
+/// Distance of the points through which the head of a skeleton is dragged, in cells of the grid.
+const HEAD_SPACING: f32 = 0.02;
+
 /// Transactions and undo steps.
 impl Session {
     /// Whether a transaction is open.
@@ -175,6 +178,7 @@ impl Session {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
             Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
             Grip::LimbPole(joint, handle) => self.grab_limb_pole(joint, handle, ray, forward),
+            Grip::Head(joint, handle) => self.grab_head(joint, handle, ray, forward),
             Grip::Tip(joint, handle) => self.grab_tip(joint, handle, ray, forward),
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
             Grip::Pole(handle) => self.grab_pole(handle, ray, forward),
@@ -184,6 +188,7 @@ impl Session {
     }
 
     fn drag_by(&mut self, change: impl FnOnce(&mut Drag)) {
+        let spacing = self.shown().grid_cell() * HEAD_SPACING;
         let Some((drag, shown)) = self.editing.drag_mut() else { return };
         change(drag);
         let grip = drag.grip;
@@ -223,6 +228,12 @@ impl Session {
             (Grip::Twist, DragKind::Turn(turn)) => {
                 let twist = turn.angle();
                 self.set_twist(twist);
+            }
+            (Grip::Head(..), DragKind::Point(point)) => {
+                let to = point.point();
+                drag.pass(to, spacing);
+                let passed = drag.passed.clone();
+                self.drag_head(&passed);
             }
             (_, DragKind::Point(point)) => {
                 let to = point.point();

@@ -22,7 +22,7 @@ impl Session {
         let is_at_hand = is_free && aside(hand) < aside(arm.cursor_in_root());
         let start = if is_at_hand { hand } else { arm.cursor_in_root() };
         let drag = PointDrag::new(handle, start, arm.root, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip: Grip::Hand(handle), kind: DragKind::Point(drag) }));
+        self.begin_edit(Some(Drag::new(Grip::Hand(handle), DragKind::Point(drag))));
     }
 
     pub(super) fn grab_pole(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
@@ -30,14 +30,14 @@ impl Session {
         if arm.twist_reference == TwistReferenceKind::Pole {
             let drag = PointDrag::new(handle, arm.pole, arm.root, forward, ray);
             let drag = drag.with_step(self.snap());
-            self.begin_edit(Some(Drag { grip: Grip::Pole(handle), kind: DragKind::Point(drag) }));
+            self.begin_edit(Some(Drag::new(Grip::Pole(handle), DragKind::Point(drag))));
         }
     }
 
     pub(super) fn grab_root(&mut self, handle: PointHandle, ray: Ray, forward: Vec3) {
         let drag = PointDrag::new(handle, self.arm().root, Vec3::ZERO, forward, ray);
         let drag = drag.with_step(self.snap());
-        self.begin_edit(Some(Drag { grip: Grip::Root(handle), kind: DragKind::Point(drag) }));
+        self.begin_edit(Some(Drag::new(Grip::Root(handle), DragKind::Point(drag))));
     }
 
     pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
@@ -49,7 +49,7 @@ impl Session {
         };
         if let Some(ring) = self.arm_ring(grip) {
             let kind = DragKind::Turn(TurnDrag::new(ring, start, ray));
-            self.begin_edit(Some(Drag { grip, kind }));
+            self.begin_edit(Some(Drag::new(grip, kind)));
         }
     }
 

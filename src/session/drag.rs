@@ -1,3 +1,5 @@
+use glam::Vec3;
+
 use super::arm_joint::ArmJoint;
 use super::point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn_drag::TurnDrag;
@@ -22,6 +24,8 @@ pub enum Grip {
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
     LimbPole(JointId, PointHandle),
+    /// The head of a skeleton that follows its head.
+    Head(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
     /// The ring of a joint's angle about x, y or z (0, 1, 2).
@@ -37,6 +41,7 @@ impl Grip {
             | Self::Root(handle)
             | Self::Target(_, handle)
             | Self::LimbPole(_, handle)
+            | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
             Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
             Self::Bend | Self::Twist => true,
@@ -58,6 +63,8 @@ impl Grip {
 pub struct Drag {
     pub(super) grip: Grip,
     pub(super) kind: DragKind,
+    /// Points in the world through which the head of a skeleton was dragged.
+    pub(super) passed: Vec<Vec3>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +74,22 @@ pub(super) enum DragKind {
 }
 
 impl Drag {
+    pub(super) fn new(grip: Grip, kind: DragKind) -> Self {
+        Self { grip, kind, passed: Vec::new() }
+    }
+
+    /// Adds a point to [`Drag::passed`]; it replaces the last one, if that was nearer than `spacing`
+    /// to the one before it. A typed offset leads straight to its point.
+    pub(super) fn pass(&mut self, point: Vec3, spacing: f32) {
+        let is_near = |pair: &[Vec3]| pair[0].distance(pair[1]) < spacing;
+        if !self.typed().is_empty() {
+            self.passed.clear();
+        } else if self.passed.last_chunk::<2>().is_some_and(|pair| is_near(pair)) {
+            self.passed.pop();
+        }
+        self.passed.push(point);
+    }
+
     /// The part of a gizmo that is dragged.
     pub fn grip(&self) -> Grip {
         self.grip

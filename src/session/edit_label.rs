@@ -44,6 +44,7 @@ impl EditAction {
             Self::SetLocked { locked: true, .. } => "Lock joint",
             Self::SetLocked { locked: false, .. } => "Unlock joint",
             Self::SetFollowPath(_) => "Change path",
+            Self::SetHead(_) => "Move head",
             Self::SetTranslation(_) => "Move skeleton",
             Self::AddTarget(_) => "Add target",
             Self::RemoveTarget(_) => "Remove target",
@@ -81,6 +82,7 @@ impl Grip {
             Self::Bend => "Bend elbow",
             Self::Target(..) => "Move target",
             Self::LimbPole(..) => "Move pole",
+            Self::Head(..) => "Move head",
             Self::Tip(..) => "Pose joints",
             Self::Ring(..) => "Turn joint",
         }

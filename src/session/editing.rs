@@ -177,6 +177,7 @@ impl Editing {
             let is_transported = *channel == Channel::Twist && is_transported(&after);
             is_transported || after.keys.has(*channel)
         });
+        after.skeleton_rig.head_track = None;
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);

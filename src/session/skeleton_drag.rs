@@ -4,7 +4,7 @@ use super::drag::{Drag, DragKind, Grip};
 use super::point_drag::{PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{Overlay, Ray};
+use crate::document::{FollowPath, Overlay, Ray};
 use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::EvaluatedSkeleton;
@@ -42,22 +42,36 @@ impl Session {
         ray: Ray,
         forward: Vec3,
     ) {
-        if joint.index() < self.skeleton_pose().len() && self.skeleton_rig().follow_path.is_none() {
+        if joint.index() < self.skeleton_pose().len() && !self.skeleton_rig().is_on_path() {
             let tip = self.skeleton_pose().tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
     }
 
+    pub(super) fn grab_head(
+        &mut self,
+        joint: JointId,
+        handle: PointHandle,
+        ray: Ray,
+        forward: Vec3,
+    ) {
+        let rig = self.skeleton_rig();
+        if rig.follow_path == Some(FollowPath::Head) && rig.head() == Some(joint) {
+            let at = self.skeleton_pose().base(joint);
+            self.grab_point(Grip::Head(joint, handle), handle, at, ray, forward);
+        }
+    }
+
     fn grab_point(&mut self, grip: Grip, handle: PointHandle, at: Vec3, ray: Ray, forward: Vec3) {
         let drag = PointDrag::new(handle, at, Vec3::ZERO, forward, ray).with_step(self.snap());
-        self.begin_edit(Some(Drag { grip, kind: DragKind::Point(drag) }));
+        self.begin_edit(Some(Drag::new(grip, DragKind::Point(drag))));
     }
 
     pub(super) fn grab_ring(&mut self, joint: JointId, axis: usize, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
         let start = self.skeleton()[joint].rotation[axis];
         let drag = TurnDrag::new(ring, start, ray);
-        self.begin_edit(Some(Drag { grip: Grip::Ring(joint, axis), kind: DragKind::Turn(drag) }));
+        self.begin_edit(Some(Drag::new(Grip::Ring(joint, axis), DragKind::Turn(drag))));
     }
 
     /// The ring, in world space, of a joint's FK angle about x, y or z (0, 1, 2). `None` if a limit
@@ -113,6 +127,15 @@ impl Session {
             limb.reference = ElbowReference::Pole(pole);
             self.set_target(target);
         }
+    }
+
+    /// Moves the head from where it was at the press through points in the world.
+    pub(super) fn drag_head(&mut self, passed: &[Vec3]) {
+        let before = self.editing.shown_before().skeleton_rig.clone();
+        let to_skeleton = before.skeleton.transform().inverse();
+        let points: Vec<Vec3> =
+            passed.iter().map(|point| to_skeleton.transform_point3(*point)).collect();
+        self.move_head(before, &points);
     }
 
     pub(super) fn turn_joint(&mut self, joint: JointId, axis: usize, angle: f32) {

@@ -198,11 +198,7 @@ impl Session {
     }
 
     pub(super) fn set_follow_path(&mut self, follow_path: Option<FollowPath>) {
-        let is_valid = |it: &FollowPath| {
-            let lengths = it.radius.is_finite() && it.amplitude.is_finite();
-            lengths && it.period.is_finite() && it.period > 0.0
-        };
-        if follow_path.as_ref().is_none_or(is_valid) {
+        if follow_path.as_ref().is_none_or(FollowPath::is_valid) {
             self.edit_skeleton(|rig| {
                 rig.follow_path = follow_path;
                 Ok(())
@@ -210,6 +206,28 @@ impl Session {
         } else {
             self.fail("The path to follow must have a period above 0 and finite lengths");
         }
+    }
+
+    pub(super) fn set_head(&mut self, to: Vec3) {
+        self.move_head(self.skeleton_rig().clone(), &[to]);
+    }
+
+    /// Moves the head of `before` through points of skeleton space; the chain follows. With auto-key, only
+    /// the head moves: its keys give the path.
+    pub(super) fn move_head(&mut self, mut before: SkeletonRig, points: &[Vec3]) {
+        let (Some(head), Some(last)) = (before.head(), points.last()) else { return };
+        if let Some(wrong) = points.iter().find(|point| !point.is_finite()) {
+            return self.fail(format!("The position of the head must be finite, got {wrong}"));
+        }
+        if self.playback.is_auto_key() {
+            before.skeleton_mut().write_local(head, |head| head.offset = *last);
+        } else {
+            before.pull_head(points);
+        }
+        self.edit_skeleton(|rig| {
+            rig.skeleton = before.skeleton;
+            Ok(())
+        });
     }
 
     pub(super) fn set_solver(&mut self, solver: SolverOptions) {

@@ -64,6 +64,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     let verb = match grip {
         Grip::Tip(..) => "Pose",
         Grip::Target(..) => "Target",
+        Grip::Head(..) => "Head",
         Grip::Pole(_) => "Pole",
         Grip::Root(_) => "Root",
         _ => "Move",

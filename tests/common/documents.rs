@@ -4,7 +4,7 @@ use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
     Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandOrientation, HandSpace, Keys,
     Overlay, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
-    TwistReferenceKind,
+    TwistReferenceKind, WavyRing,
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
@@ -54,12 +54,13 @@ pub fn document(random: &mut Random) -> Document {
     rig.solver.step = random.positive();
     rig.solver.root = random.one_of(&Root::ALL);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
-    rig.follow_path = random.coin().then(|| FollowPath {
+    let ring = FollowPath::Ring(WavyRing {
         radius: random.finite(),
         amplitude: random.finite(),
         waves: random.below(1 << 32) as u32,
         period: random.positive(),
     });
+    rig.follow_path = random.one_of(&[None, None, Some(ring), Some(FollowPath::Head)]);
     let keys = keys(random, &rig);
     let start = f64::from(random.within(-100.0..100.0));
     let timeline = Timeline {

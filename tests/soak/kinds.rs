@@ -115,6 +115,7 @@ kinds! {
         SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.axis(), limit: v.limit() };
         SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
         SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
+        SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
         SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());
         AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
         RemoveTarget: Solve 2, |v| EditAction::RemoveTarget(v.aimed());

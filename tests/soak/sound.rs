@@ -4,9 +4,7 @@ use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
-use ik_arm::document::{
-    Arm, Camera, Document, FollowPath, HandOrientation, Quantity, SkeletonRig, Target,
-};
+use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, SkeletonRig, Target};
 use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
@@ -20,6 +18,7 @@ pub fn document(document: &Document) -> Result<(), Broken> {
         document;
     self::arm(arm)?;
     skeleton(skeleton_rig)?;
+    hold!(skeleton_rig.head_track.is_none(), "the head's keys are in the document once");
     self::camera(camera)?;
     other_rig_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
@@ -89,7 +88,8 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
 }
 
 fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
-    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, follow_path } = rig;
+    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, follow_path, head_track: _ } =
+        rig;
     let joints = skeleton.joints();
     hold!(skeleton.transform().is_finite(), "the skeleton is somewhere");
     let mut names = HashSet::new();
@@ -108,10 +108,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
     let per_frame = 1..=SkeletonRig::MAX_ITERATIONS_PER_FRAME;
     hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
-    if let Some(FollowPath { radius, amplitude, period, .. }) = follow_path {
-        let is_way = radius.is_finite() && amplitude.is_finite() && is_above_0(*period);
-        hold!(is_way, "the snake has a way: {follow_path:?}");
-    }
+    hold!(follow_path.is_none_or(|it| it.is_valid()), "the snake has a way: {follow_path:?}");
     Ok(())
 }
 
@@ -165,7 +162,11 @@ fn keys(document: &Document) -> Result<(), Broken> {
         };
         let values = knots.iter().map(|knot| knot.value);
         hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");
-        hold!(channel.value(document).is_some(), "{channel:?} is of something");
+        // A target without, for instance, an orientation of its own keeps the keys of one.
+        let is_of_target =
+            channel.target().is_some_and(|it| document.skeleton_rig.target(it).is_some());
+        let is_of_something = is_of_target || channel.value(document).is_some();
+        hold!(is_of_something, "{channel:?} is of something");
     }
     Ok(())
 }

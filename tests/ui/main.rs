@@ -26,6 +26,7 @@ mod skeleton_keys;
 mod skeleton_panel;
 mod skeleton_view;
 mod sliders;
+mod snake;
 mod statistics;
 mod targets;
 mod timeline;

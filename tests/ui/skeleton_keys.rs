@@ -251,9 +251,10 @@ fn the_list_of_keys_fits_a_small_window() {
 #[test]
 fn follow_path_can_be_switched_off_as_its_tooltip_says() {
     let mut bench = example("snake");
-    bench.node(Role::CheckBox, "Follow path").scroll_to_me();
+    bench.node(Role::ComboBox, "Follow path").scroll_to_me();
     bench.settle();
-    bench.click(Role::CheckBox, "Follow path");
+    bench.click(Role::ComboBox, "Follow path");
+    bench.click(Role::Button, "None");
     assert_eq!(bench.session().skeleton_rig().follow_path, None);
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.enter("Rotation x", "10");

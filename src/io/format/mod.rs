@@ -9,6 +9,7 @@ mod arm;
 mod camera;
 mod check;
 mod file;
+mod follow_path;
 mod header;
 mod keys;
 mod read;

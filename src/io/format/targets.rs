@@ -1,5 +1,5 @@
-//! Fields of targets, of the solver and of path following in a file, and conversions between these
-//! fields and a skeleton's rig.
+//! Fields of targets and of the solver in a file, and conversions between these fields and a skeleton's
+//! rig.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::check::{above_0, fraction, from_1_to, joint, number};
 use super::soft_reach::SoftReachFields;
-use crate::document::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath};
+use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, JsonPoint, Whole};
@@ -74,14 +74,6 @@ pub struct SolverFields {
     step: Option<JsonNumber>,
     root: Option<Root>,
     iterations_per_frame: Option<Whole>,
-}
-
-#[derive(Serialize, Deserialize)]
-pub struct FollowPathFields {
-    radius: JsonNumber,
-    amplitude: JsonNumber,
-    waves: Whole,
-    period: JsonNumber,
 }
 
 /// Adds the targets of a file to a rig, which must have its skeleton already.
@@ -256,25 +248,5 @@ impl SolverFields {
             )?;
         }
         Ok(())
-    }
-}
-
-impl FollowPathFields {
-    pub fn new(path: &FollowPath) -> Self {
-        Self {
-            radius: JsonNumber(path.radius),
-            amplitude: JsonNumber(path.amplitude),
-            waves: Whole(path.waves),
-            period: JsonNumber(path.period),
-        }
-    }
-
-    pub fn follow_path(&self, at: &JsonPath) -> Result<FollowPath, FieldError> {
-        Ok(FollowPath {
-            radius: self.radius.0,
-            amplitude: self.amplitude.0,
-            waves: self.waves.0,
-            period: above_0(at.clone().key("period"), self.period.0)?,
-        })
     }
 }

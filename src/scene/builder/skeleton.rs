@@ -5,9 +5,12 @@ use super::scratch::Scratch;
 use super::targets;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId};
 use crate::scene::{Line, Scene};
 use crate::session::Overlays;
+
+/// Number of lines between two keys of a head.
+const STEPS: usize = 16;
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
@@ -66,10 +69,8 @@ pub(super) fn add(
             }
         }
     }
-    if let Some(follow_path) = &rig.follow_path
-        && display.shows(Overlay::Pointer)
-    {
-        add_follow_path(scene, follow_path, skeleton, overlays.time);
+    if display.shows(Overlay::Pointer) {
+        add_path(scene, rig, overlays.time);
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled);
@@ -92,12 +93,32 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
     }
 }
 
-/// Adds one revolution of the path that the skeleton follows.
-fn add_follow_path(scene: &mut Scene, follow_path: &FollowPath, skeleton: &Skeleton, time: f64) {
-    let height = skeleton.joints().first().map_or(0.0, |head| head.offset.y);
-    let head = follow_path.turns_at(time);
-    let curve = || follow_path.trail(skeleton.transform(), height, head, head + 1.0);
+/// Adds the path that the skeleton follows: one revolution of a ring, or the head's way through its keys.
+fn add_path(scene: &mut Scene, rig: &SkeletonRig, time: f64) {
+    let to_world = rig.skeleton.transform();
+    match rig.follow_path {
+        Some(FollowPath::Ring(ring)) => {
+            let height = rig.head().map_or(0.0, |head| rig.skeleton[head].offset.y);
+            let head = ring.turns_at(time);
+            add_curve(scene, || ring.trail(to_world, height, head, head + 1.0));
+        }
+        Some(FollowPath::Head) => {
+            let knots = rig.head_track.as_ref().map_or(&[][..], |track| track.knots());
+            for pair in knots.windows(2) {
+                let (from, to) = (pair[0].time, pair[1].time);
+                let time = move |step: usize| from + (to - from) * step as f64 / STEPS as f64;
+                let at = |step| rig.head_track.as_ref()?.at(time(step));
+                let points = || (0..=STEPS).filter_map(at);
+                add_curve(scene, || points().map(|point| to_world.transform_point3(point)));
+            }
+        }
+        None => {}
+    }
+}
+
+/// Adds the lines between consecutive points.
+fn add_curve<I: Iterator<Item = Vec3>>(scene: &mut Scene, points: impl Fn() -> I) {
     let colour = scene.palette.guide.with_opacity(0.35);
-    let segments = curve().zip(curve().skip(1));
+    let segments = points().zip(points().skip(1));
     scene.lines.extend(segments.map(|(from, to)| Line { from, to, colour, dashed: false }));
 }

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
-use crate::document::Target;
+use crate::document::{FollowPath, Target};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
@@ -27,9 +27,9 @@ const BONE_HIT: f32 = 8.0;
 /// Screen positions of the skeleton's handles.
 pub(in crate::ui) struct SkeletonGizmo {
     bones: Vec<ScreenBone>,
-    targets: Vec<TargetMark>,
-    /// Translation handles of the selected joint's target and its pole.
-    handles: Vec<TargetHandles>,
+    marks: Vec<Mark>,
+    /// Translation handles of the selected joint's target and its pole, or of the selected head.
+    handles: Vec<JointHandles>,
     rings: Vec<RotateRing>,
 }
 
@@ -46,14 +46,15 @@ struct ScreenBone {
 type GripOfJoint = fn(JointId, PointHandle) -> Grip;
 
 /// Translation handles of a point, with the grip of each.
-struct TargetHandles {
+struct JointHandles {
     joint: JointId,
     grip: GripOfJoint,
     handles: TranslateHandles,
 }
 
-struct TargetMark {
-    joint: JointId,
+/// The circle of a target, or of a head that its body follows.
+struct Mark {
+    grip: Grip,
     at: Pos2,
     enabled: bool,
 }
@@ -62,7 +63,7 @@ impl SkeletonGizmo {
     pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         Self {
             bones: bones(screen, session),
-            targets: targets(screen, session),
+            marks: targets(screen, session).into_iter().chain(head(screen, session)).collect(),
             handles: handles(screen, session),
             rings: rings(screen, session),
         }
@@ -73,14 +74,14 @@ impl SkeletonGizmo {
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_handles = self.handles.iter().find_map(|of| of.at(mouse));
         of_handles
-            .or_else(|| self.target_at(mouse))
+            .or_else(|| self.mark_at(mouse))
             .or_else(|| RotateRing::at(&self.rings, mouse).filter(|_| self.tip_at(mouse).is_none()))
             .or_else(|| self.tip_at(mouse))
     }
 
-    fn target_at(&self, mouse: Pos2) -> Option<Grip> {
-        let hit = self.targets.iter().find(|target| target.at.distance(mouse) <= TARGET_HIT)?;
-        Some(Grip::Target(hit.joint, PointHandle::Free))
+    fn mark_at(&self, mouse: Pos2) -> Option<Grip> {
+        let hit = self.marks.iter().find(|mark| mark.at.distance(mouse) <= TARGET_HIT)?;
+        Some(hit.grip)
     }
 
     /// The tip at a screen position; `None` if there is no tip. Among several tips, it
@@ -128,10 +129,9 @@ impl SkeletonGizmo {
             ring.paint(painter, faded(ring.grip, colour), stand_out(ring.grip));
         }
         let strong = ui.visuals().strong_text_color();
-        for target in &self.targets {
-            let grip = Grip::Target(target.joint, PointHandle::Free);
-            let colour = if target.enabled { strong } else { strong.gamma_multiply(0.4) };
-            painter.circle_stroke(target.at, TARGET, Stroke::new(1.5, faded(grip, colour)));
+        for mark in &self.marks {
+            let colour = if mark.enabled { strong } else { strong.gamma_multiply(0.4) };
+            painter.circle_stroke(mark.at, TARGET, Stroke::new(1.5, faded(mark.grip, colour)));
         }
         for (joint, bone) in self.bones.iter().enumerate() {
             let grip = Grip::Tip(JointId::new(joint), PointHandle::Free);
@@ -148,7 +148,7 @@ impl SkeletonGizmo {
     }
 }
 
-impl TargetHandles {
+impl JointHandles {
     /// The grip at a screen position; `None` if there is none.
     fn at(&self, mouse: Pos2) -> Option<Grip> {
         self.handles.at(mouse).map(|handle| (self.grip)(self.joint, handle))
@@ -156,7 +156,10 @@ impl TargetHandles {
 
     /// The handle of a grip; `None` if it belongs to another point.
     fn handle(&self, grip: Grip) -> Option<PointHandle> {
-        let (Grip::Target(_, handle) | Grip::LimbPole(_, handle)) = grip else { return None };
+        let (Grip::Target(_, handle) | Grip::LimbPole(_, handle) | Grip::Head(_, handle)) = grip
+        else {
+            return None;
+        };
         ((self.grip)(self.joint, handle) == grip).then_some(handle)
     }
 }
@@ -172,7 +175,7 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
-            can_be_posed: rig.follow_path.is_none()
+            can_be_posed: !rig.is_on_path()
                 && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
         }
@@ -180,33 +183,50 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     pose.ids().map(bone).collect()
 }
 
-fn targets(screen: &ScreenProjection, session: &Session) -> Vec<TargetMark> {
+fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     let reports = &session.evaluated_skeleton().targets;
     let mark = |(target, report): (&Target, &TargetReport)| {
         let at = screen.place(report.position)?;
-        Some(TargetMark { joint: target.joint, at, enabled: target.enabled })
+        let grip = Grip::Target(target.joint, PointHandle::Free);
+        Some(Mark { grip, at, enabled: target.enabled })
     };
     session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
 }
 
-fn handles(screen: &ScreenProjection, session: &Session) -> Vec<TargetHandles> {
+/// The circle of a head that its body follows; `None` without one.
+fn head(screen: &ScreenProjection, session: &Session) -> Option<Mark> {
+    let head = followed_head(session)?;
+    let at = screen.place(session.skeleton_pose().base(head))?;
+    Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
+}
+
+fn followed_head(session: &Session) -> Option<JointId> {
     let rig = session.skeleton_rig();
-    let target = session.selected().and_then(|joint| rig.target_of_end(joint));
-    let Some(joint) = target.map(|index| rig.targets[index].joint) else { return Vec::new() };
-    let Some(report) = session.target_report(joint) else { return Vec::new() };
-    let points: [(GripOfJoint, Option<Vec3>); 2] =
-        [(Grip::Target, Some(report.position)), (Grip::LimbPole, report.pole)];
-    let handles = |(grip, point): (GripOfJoint, Option<Vec3>)| {
+    rig.head().filter(|_| rig.follow_path == Some(FollowPath::Head))
+}
+
+fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
+    let rig = session.skeleton_rig();
+    let Some(selected) = session.selected() else { return Vec::new() };
+    let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
+    let report = target.and_then(|joint| session.target_report(joint));
+    let head = followed_head(session).filter(|head| *head == selected);
+    let head = head.map(|head| session.skeleton_pose().base(head));
+    let points: [(JointId, GripOfJoint, Option<Vec3>); 3] = [
+        (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
+        (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
+        (selected, Grip::Head, head),
+    ];
+    let handles = |(joint, grip, point): (JointId, GripOfJoint, Option<Vec3>)| {
         let handles = TranslateHandles::new(screen, point?, None)?;
-        Some(TargetHandles { joint, grip, handles })
+        Some(JointHandles { joint, grip, handles })
     };
     points.into_iter().filter_map(handles).collect()
 }
 
 /// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let Some(joint) = session.selected().filter(|_| session.skeleton_rig().follow_path.is_none())
-    else {
+    let Some(joint) = session.selected().filter(|_| !session.skeleton_rig().is_on_path()) else {
         return Vec::new();
     };
     let ring = |axis| RotateRing::new(screen, Grip::Ring(joint, axis), session.ring(joint, axis)?);

@@ -138,7 +138,7 @@ fn select(
 ) {
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match gizmo.at(mouse) {
-        Some(Grip::Target(joint, _) | Grip::Tip(joint, _)) => Some(joint),
+        Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
         Some(Grip::Ring(..)) => return,
         _ => gizmo.joint_at(mouse),
     };

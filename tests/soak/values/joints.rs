@@ -1,6 +1,6 @@
 //! Joints, targets, solver options and path following.
 
-use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath};
+use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
@@ -119,11 +119,16 @@ impl Values<'_> {
     }
 
     pub fn follow_path(&mut self) -> Option<FollowPath> {
-        self.chance(0.4).then(|| FollowPath {
-            radius: self.number(3.0),
-            amplitude: self.number(0.5),
-            waves: self.one_of(&[0, 1, 3, 6, 40]),
-            period: self.above_0(6.0),
+        if self.chance(0.4) {
+            return Some(FollowPath::Head);
+        }
+        self.chance(0.6).then(|| {
+            FollowPath::Ring(WavyRing {
+                radius: self.number(3.0),
+                amplitude: self.number(0.5),
+                waves: self.one_of(&[0, 1, 3, 6, 40]),
+                period: self.above_0(6.0),
+            })
         })
     }
 

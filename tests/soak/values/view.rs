@@ -60,7 +60,7 @@ impl Values<'_> {
 
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
-        match self.random.below(10) {
+        match self.random.below(11) {
             0 | 1 => Grip::Hand(self.handle()),
             2 => Grip::Pole(self.handle()),
             3 => Grip::Shoulder(self.axis()),
@@ -69,6 +69,7 @@ impl Values<'_> {
             6 => Grip::Tip(joint, self.handle()),
             7 => Grip::Root(self.handle()),
             8 => Grip::Twist,
+            9 => Grip::Head(joint, self.handle()),
             _ => Grip::Ring(joint, self.axis()),
         }
     }

@@ -1,37 +1,80 @@
-//! Path following: the joints follow their head along a wavy ring.
+//! The path that the first chain follows: a wavy ring, or the way of its head.
 
 use egui::Ui;
 
-use crate::document::FollowPath;
+use super::choice::Choice;
+use crate::document::{Channel, FollowPath, WavyRing};
 use crate::session::{Actions, EditAction, Session};
-use crate::ui::widgets::Slider;
+use crate::ui::widgets::{AXES, PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    follows_path(ui, session, actions);
-    if let Some(follow_path) = session.skeleton_rig().follow_path {
-        sliders(ui, session, follow_path, actions);
+    choice(ui, session, actions);
+    match session.skeleton_rig().follow_path {
+        Some(FollowPath::Ring(ring)) => sliders(ui, session, ring, actions),
+        Some(FollowPath::Head) => head(ui, session, actions),
+        None => {}
     }
 }
 
-fn follows_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let mut follows_path = session.skeleton_rig().follow_path.is_some();
-    let tooltip = "Move the first chain along a wavy ring, like a snake";
-    if ui.checkbox(&mut follows_path, "Follow path").on_hover_text(tooltip).changed() {
-        let follow_path = first(session.skeleton_rig().reach());
-        actions.push(EditAction::SetFollowPath(follows_path.then_some(follow_path)));
+fn choice(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let now = session.skeleton_rig().follow_path;
+    let (is_ring, is_head) =
+        (matches!(now, Some(FollowPath::Ring(_))), now == Some(FollowPath::Head));
+    let ring = FollowPath::Ring(first(session.skeleton_rig().reach()));
+    let choices = [
+        (now.is_none(), "None", "Pose all joints by their own angles", None),
+        (
+            is_head,
+            "Head",
+            "Drag and key the head; the body follows its way",
+            Some(FollowPath::Head),
+        ),
+        (is_ring, "Wavy ring", "Move along a wavy ring without keys", Some(ring)),
+    ];
+    let shown = choices.iter().find(|(is_now, ..)| *is_now).map_or("", |(_, name, ..)| name);
+    let tooltip = "Let the first chain of joints follow a path, like a snake";
+    Choice { label: "Follow", name: "Follow path", tooltip, shown }.show(ui, |list| {
+        for (is_now, name, tooltip, path) in choices {
+            if list.item(is_now, name, tooltip, None) {
+                actions.push(EditAction::SetFollowPath(path));
+            }
+        }
+    });
+}
+
+/// Default ring of a skeleton with this reach.
+fn first(reach: f32) -> WavyRing {
+    WavyRing { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
+}
+
+fn head(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let Some((head, joint)) = rig.head().and_then(|head| Some((head, rig.skeleton.joint(head)?)))
+    else {
+        return;
+    };
+    let place = PointSliders {
+        name: "Head",
+        labels: AXES,
+        value: joint.offset,
+        default: session.document().skeleton()[head].offset,
+        range: 2.0 * rig.reach(),
+        step: session.shown().grid_cell() * 0.1,
+        tooltip: "Move the head in skeleton space; the body follows",
+        disabled: None,
+        channel: Some(Channel::Offset(head)),
+    };
+    place.show(ui, session, actions, EditAction::SetHead);
+    if rig.head_track.is_none() {
+        ui.weak("Drag the circle at the head, or key the head: the body follows.");
     }
 }
 
-/// Default path of a skeleton with this reach.
-fn first(reach: f32) -> FollowPath {
-    FollowPath { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
-}
-
-fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mut Actions) {
+fn sliders(ui: &mut Ui, session: &Session, ring: WavyRing, actions: &mut Actions) {
     let reach = session.skeleton_rig().reach();
     let first = first(reach);
     let step = session.shown().grid_cell() * 0.1;
-    let set = |follow_path| EditAction::SetFollowPath(Some(follow_path));
+    let set = |ring| EditAction::SetFollowPath(Some(FollowPath::Ring(ring)));
     let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
         name,
         label,
@@ -44,39 +87,25 @@ fn sliders(ui: &mut Ui, session: &Session, follow_path: FollowPath, actions: &mu
         ..Slider::default()
     };
     let tooltip = "Set the radius of the ring";
-    slider(
-        "Radius",
-        "Radius",
-        tooltip,
-        follow_path.radius,
-        (0.0, 2.0 * reach),
-        first.radius,
-        "",
-        step,
-    )
-    .show(ui, session, actions, |radius| set(FollowPath { radius, ..follow_path }));
+    slider("Radius", "Radius", tooltip, ring.radius, (0.0, 2.0 * reach), first.radius, "", step)
+        .show(ui, session, actions, |radius| set(WavyRing { radius, ..ring }));
     let tooltip = "Set the height of the waves";
     let range = (0.0, 0.5 * reach);
-    slider(
-        "Amplitude",
-        "Amplitude",
-        tooltip,
-        follow_path.amplitude,
-        range,
-        first.amplitude,
-        "",
-        step,
-    )
-    .show(ui, session, actions, |amplitude| set(FollowPath { amplitude, ..follow_path }));
+    slider("Amplitude", "Amplitude", tooltip, ring.amplitude, range, first.amplitude, "", step)
+        .show(ui, session, actions, |amplitude| set(WavyRing { amplitude, ..ring }));
     let tooltip = "Set the number of waves around the ring";
-    let waves = follow_path.waves as f32;
+    let waves = ring.waves as f32;
     slider("Waves", "Waves", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0).show(
         ui,
         session,
         actions,
-        |waves| set(FollowPath { waves: waves.round().clamp(0.0, 1000.0) as u32, ..follow_path }),
+        |waves| set(WavyRing { waves: waves.round().clamp(0.0, 1000.0) as u32, ..ring }),
     );
     let tooltip = "Set the time for one round";
-    slider("Period", "Period", tooltip, follow_path.period, (1.0, 60.0), first.period, " s", 1.0)
-        .show(ui, session, actions, |period| set(FollowPath { period, ..follow_path }));
+    slider("Period", "Period", tooltip, ring.period, (1.0, 60.0), first.period, " s", 1.0).show(
+        ui,
+        session,
+        actions,
+        |period| set(WavyRing { period, ..ring }),
+    );
 }

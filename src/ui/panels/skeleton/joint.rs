@@ -14,7 +14,7 @@ use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 
 const STIFF: &str = "The limits leave one angle only";
-const FOLLOWS_PATH: &str = "Switch off Follow path to rotate joints";
+const FOLLOWS_PATH: &str = "Set Follow path to None to rotate joints";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
@@ -35,9 +35,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
-    let shown = match session.skeleton_rig().follow_path {
-        Some(_) => session.evaluated_skeleton().fk[index].rotation,
-        None => joint.rotation,
+    let is_on_path = session.skeleton_rig().is_on_path();
+    let shown = match is_on_path {
+        true => session.evaluated_skeleton().fk[index].rotation,
+        false => joint.rotation,
     };
     if let Some(target) = session.skeleton_rig().target_that_turns(index)
         && let Some((_, end)) = targets::end(session.skeleton_rig(), target)
@@ -51,7 +52,6 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         let range = limit
             .filter(|_| !is_stiff)
             .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
-        let follows_path = session.skeleton_rig().follow_path.map(|_| FOLLOWS_PATH);
         let slider = Slider {
             name: &format!("Rotation {label}"),
             label: &format!("Rotate {label}"),
@@ -62,7 +62,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
             default: 0.0,
             unit: "°",
             step: 1.0,
-            disabled: follows_path.or(is_stiff.then_some(STIFF)),
+            disabled: is_on_path.then_some(FOLLOWS_PATH).or(is_stiff.then_some(STIFF)),
             channel: Some(Channel::Rotation(index)),
         };
         slider.show(ui, session, actions, |degrees| {

@@ -5,8 +5,8 @@ use crate::session::Session;
 /// The reason why solvers are disabled; `None` if they can run.
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton_rig();
-    if rig.follow_path.is_some() {
-        Some("Switch off Follow path to solve")
+    if rig.is_on_path() {
+        Some("Set Follow path to None to solve")
     } else if rig.targets.is_empty() {
         Some("Add a target to a joint first")
     } else if !rig.targets.iter().any(|target| target.enabled) {

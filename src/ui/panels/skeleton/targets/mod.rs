@@ -14,7 +14,7 @@ use crate::rig::{TargetKind, TargetReport};
 use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
 
-const FOLLOWS_PATH: &str = "Switch off Follow path to write joint angles";
+const FOLLOWS_PATH: &str = "Set Follow path to None to write joint angles";
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
 /// Shows the list of targets.
@@ -149,9 +149,9 @@ fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Action
             actions.push(EditAction::MatchTargetToFk(target.joint));
         }
         let tooltip = "Write the shown pose to the joint angles; nothing moves";
-        let disabled = match session.skeleton_rig().follow_path {
-            Some(_) => Some(FOLLOWS_PATH),
-            None => (!target.is_posing()).then_some(NO_INFLUENCE),
+        let disabled = match session.skeleton_rig().is_on_path() {
+            true => Some(FOLLOWS_PATH),
+            false => (!target.is_posing()).then_some(NO_INFLUENCE),
         };
         if widgets::button(ui, "FK to pose", tooltip, disabled) {
             actions.push(EditAction::MatchFkToPose(target.joint));

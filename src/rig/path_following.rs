@@ -1,0 +1,84 @@
+use core::iter::once;
+
+use glam::Vec3;
+
+use super::follow_path::FollowPath;
+use super::path_chain::{PathChain, head};
+use super::skeleton_rig::SkeletonRig;
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
+use crate::kinematics::spline::{Knot, Spline};
+
+/// A skeleton on a path.
+impl SkeletonRig {
+    /// The first root, the head of the chain that follows a path; `None` without joints.
+    pub fn head(&self) -> Option<JointId> {
+        head(&self.skeleton)
+    }
+
+    /// Whether the first chain follows a path, so that its own angles do not pose it.
+    pub fn is_on_path(&self) -> bool {
+        match self.follow_path {
+            Some(FollowPath::Ring(_)) => true,
+            Some(FollowPath::Head) => self.head_track.is_some(),
+            None => false,
+        }
+    }
+
+    /// The FK pose at a time in seconds: on the followed path if there is one, else by the
+    /// skeleton's own angles.
+    pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
+        match self.chain_at(time) {
+            None => self.skeleton.clone(),
+            Some(chain) => Shared::from(chain.posed()),
+        }
+    }
+
+    /// Writes the pose of [`SkeletonRig::fk_at`] into an existing pose, reusing its memory.
+    pub(super) fn write_fk(&self, time: f64, pose: &mut SkeletonPose) {
+        match self.chain_at(time) {
+            None => self.skeleton.write_pose(pose),
+            Some(chain) => chain.write(pose),
+        }
+    }
+
+    /// The path's extent in the world: the corners of a ring, or where the keys put the head.
+    pub(super) fn path_points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let (ring, track) = match self.follow_path {
+            Some(FollowPath::Ring(ring)) => (Some(ring), None),
+            Some(FollowPath::Head) => (None, self.head_track.as_deref()),
+            None => (None, None),
+        };
+        let corners = ring.into_iter().flat_map(|ring| ring.corners(&self.skeleton));
+        let knots = track.into_iter().flat_map(Spline::knots);
+        let to_world = self.skeleton.transform();
+        corners.chain(knots.map(move |knot| to_world.transform_point3(knot.value)))
+    }
+
+    /// The chain on its path at a time in seconds; `None` if its own angles pose it.
+    fn chain_at(&self, time: f64) -> Option<PathChain<'_>> {
+        match self.follow_path? {
+            FollowPath::Ring(ring) => PathChain::on_ring(&self.skeleton, ring, time),
+            FollowPath::Head => {
+                PathChain::behind_head(&self.skeleton, self.head_track.as_deref()?, time)
+            }
+        }
+    }
+
+    /// Moves the head through points of skeleton space; the chain follows. A head with keys moves to the
+    /// last point only: its keys give the path.
+    pub fn pull_head(&mut self, points: &[Vec3]) {
+        let (Some(head), Some(last)) = (self.head(), points.last()) else { return };
+        let from = self.skeleton[head].offset;
+        self.skeleton_mut().write_local(head, |head| head.offset = *last);
+        if self.is_on_path() {
+            return;
+        }
+        let knot = |(time, value): (i32, &Vec3)| Knot { time: time.into(), value: *value };
+        let track: Spline<Vec3> = (0..).zip(once(&from).chain(points)).map(knot).collect();
+        let end = f64::from(i32::try_from(points.len()).unwrap_or(i32::MAX));
+        if let Some(chain) = PathChain::behind_head(&self.skeleton, &track, end) {
+            self.skeleton = Shared::from(chain.posed());
+        }
+    }
+}
