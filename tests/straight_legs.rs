@@ -94,16 +94,21 @@ fn reached(options: &SolverOptions, tip: &str) -> usize {
 
 #[test]
 fn a_straight_leg_bends_its_knee_to_bring_the_ankle_to_every_target() {
-    for method in [Method::DampedLeastSquares, Method::Ccd, Method::Transpose, Method::Fabrik] {
+    for method in [
+        Method::DampedLeastSquares,
+        Method::Ccd,
+        Method::Transpose,
+        Method::TransposeFixed,
+        Method::Fabrik,
+    ] {
         assert_eq!(reached(&SolverOptions::new(method), "left_shin"), CASES, "{method:?}");
     }
 }
 
 #[test]
-fn a_fixed_step_bends_the_knee_too_but_takes_more_than_its_budget_to_reach_every_target() {
-    let options = SolverOptions::new(Method::TransposeFixed);
+fn a_fixed_step_needs_more_iterations_than_a_variable_one() {
+    let options = SolverOptions::new(Method::TransposeFixed).with_iterations(500);
     assert_eq!(reached(&options, "left_shin"), 953);
-    assert_eq!(reached(&options.with_iterations(4_000), "left_shin"), CASES);
 }
 
 #[test]

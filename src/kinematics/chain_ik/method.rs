@@ -53,7 +53,8 @@ impl Method {
     pub fn budget(self) -> u32 {
         match self {
             Self::Fabrik | Self::Ccd => 2_000,
-            Self::TransposeFixed | Self::Transpose | Self::DampedLeastSquares => 500,
+            Self::Transpose | Self::DampedLeastSquares => 500,
+            Self::TransposeFixed => 4_000,
             Self::TwoBone => 1,
         }
     }

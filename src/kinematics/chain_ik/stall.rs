@@ -29,9 +29,8 @@ impl StallDetector {
     pub fn new(method: Method, tolerance: f64, config: &Configuration) -> Self {
         // The fixed step overshoots for longer before it settles.
         let patience = if method == Method::TransposeFixed { 100 } else { 20 };
-        // At this rate of improvement, all iterations of the budget together improve by less than
-        // one tolerance.
-        let fraction = f64::from(patience) / f64::from(method.budget());
+        // At this rate of improvement, 500 iterations together improve by less than one tolerance.
+        let fraction = f64::from(patience) / 500.0;
         let rounding = f64::from(f32::EPSILON);
         let (least, least_moving) = match method {
             // Written angles are rounded, and another run from them takes other steps. For that run

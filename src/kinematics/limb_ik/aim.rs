@@ -13,18 +13,18 @@ impl Aim {
     /// The Pointer and elbow of a bent limb with the upper bone `upper` and the vector `tip` from the
     /// upper joint to the tip. `bending` is the direction in which the elbow would move if the limb bent
     /// farther: it replaces the elbow's own direction where the limb is straight or folded.
-    pub fn of_limb(upper: DVec3, tip: DVec3, bending: DVec3) -> Self {
+    pub fn of_limb(upper: DVec3, tip: DVec3, bending: impl Fn() -> DVec3) -> Self {
         // Sine of the angle at the upper joint below which the elbow's direction is rounding.
         const STRAIGHT: f64 = 1e-6;
         let pointer = tip.try_normalize().unwrap_or_else(|| {
             let elbow = upper.try_normalize().unwrap_or(DVec3::X);
-            bending.reject_from_normalized(elbow).normalize_or(elbow.any_orthonormal_vector())
+            bending().reject_from_normalized(elbow).normalize_or(elbow.any_orthonormal_vector())
         });
         let out = upper.reject_from_normalized(pointer);
         let out = if out.length() > STRAIGHT * upper.length() {
             out
         } else {
-            bending.reject_from_normalized(pointer)
+            bending().reject_from_normalized(pointer)
         };
         let outward = out.try_normalize().unwrap_or_else(|| pointer.any_orthonormal_vector());
         Self { pointer, outward }

@@ -15,9 +15,15 @@ pub(super) struct Bend {
     pub lower: DVec3,
     /// Limits of β in radians; infinite where β is not limited.
     pub limits: (f64, f64),
+    law: Law,
 }
 
 impl Bend {
+    /// The rotation of a bone about `axis`, with the fields of [`Bend`].
+    pub fn new(axis: DVec3, upper: DVec3, lower: DVec3, limits: (f64, f64)) -> Self {
+        Self { axis, upper, lower, limits, law: Law::new(axis, upper, lower) }
+    }
+
     /// The vector from the base of the upper bone to the tip of the lower bone, at the angle β.
     pub fn tip(&self, angle: f64) -> DVec3 {
         self.upper + DMat3::from_axis_angle(self.axis, angle) * self.lower
@@ -27,7 +33,7 @@ impl Bend {
     /// the limits allow.
     pub fn reach(&self) -> (f64, f64) {
         let (from, to) = self.limits;
-        let Law { straight, .. } = self.law();
+        let Law { straight, .. } = self.law;
         let (from, to) = (from - straight, to - straight);
         let passes = |phase: f64| phase + ((from - phase) / TAU).ceil() * TAU <= to;
         let ends = (from.cos(), to.cos());
@@ -42,7 +48,7 @@ impl Bend {
     /// `near`, or, if the limb is straight at `near`, on the side towards which it may bend farther.
     pub fn angles_at(&self, distance: f64, near: f64) -> [f64; 2] {
         const ROUNDING: f64 = 1e-9;
-        let Law { squares, half_range, straight } = self.law();
+        let Law { squares, half_range, straight } = self.law;
         let k = (distance * distance - squares) / 2.0;
         let turn = (half_range * half_range - k * k).max(0.0).sqrt().atan2(k);
         let side = self.side(near);
@@ -65,7 +71,7 @@ impl Bend {
     /// a positive rotation, else −1.
     pub fn side(&self, near: f64) -> f64 {
         const STRAIGHT: f64 = 1e-6;
-        let straight = angle::nearest_f64(self.law().straight, near);
+        let straight = angle::nearest_f64(self.law.straight, near);
         let bent = near - straight;
         if bent.abs() > STRAIGHT {
             return bent.signum();
@@ -82,28 +88,30 @@ impl Bend {
 
     /// The tip's distance, for the cosine of the angle from straight.
     fn distance_at(&self, cos: f64) -> f64 {
-        let Law { squares, half_range, .. } = self.law();
+        let Law { squares, half_range, .. } = self.law;
         (squares + 2.0 * half_range * cos).max(0.0).sqrt()
     }
+}
 
-    fn law(&self) -> Law {
-        let Self { axis, upper, lower, .. } = *self;
+/// The law of cosines for any axis: distance² = `squares` + 2 · `half_range` · cos(β − `straight`).
+#[derive(Clone, Copy, Debug)]
+struct Law {
+    squares: f64,
+    half_range: f64,
+    straight: f64,
+}
+
+impl Law {
+    fn new(axis: DVec3, upper: DVec3, lower: DVec3) -> Self {
         let along = upper.dot(axis) * lower.dot(axis);
         let cos = upper.dot(lower) - along;
         let sin = upper.dot(axis.cross(lower));
-        Law {
+        Self {
             squares: upper.length_squared() + lower.length_squared() + 2.0 * along,
             half_range: cos.hypot(sin),
             straight: sin.atan2(cos),
         }
     }
-}
-
-/// The law of cosines for any axis: distance² = `squares` + 2 · `half_range` · cos(β − `straight`).
-struct Law {
-    squares: f64,
-    half_range: f64,
-    straight: f64,
 }
 
 #[cfg(test)]
@@ -126,11 +134,8 @@ mod tests {
             .prop_filter("unit axis, bones with length", |(axis, upper, lower, _)| {
                 [axis, upper, lower].into_iter().all(|v| v.length() > 0.1)
             })
-            .prop_map(|(axis, upper, lower, limits)| Bend {
-                axis: axis.normalize(),
-                upper,
-                lower,
-                limits,
+            .prop_map(|(axis, upper, lower, limits)| {
+                Bend::new(axis.normalize(), upper, lower, limits)
             })
     }
 
@@ -166,8 +171,8 @@ mod tests {
             let (from, to) = (bend.limits.0.max(-10.0), bend.limits.1.min(10.0));
             let near = from + (to - from) * part;
             let [again, _] = bend.angles_at(bend.tip(near).length(), near);
-            prop_assume!((near - bend.law().straight).sin().abs() > 1e-3);
-            prop_assume!(bend.law().half_range > 1e-3);
+            prop_assume!((near - bend.law.straight).sin().abs() > 1e-3);
+            prop_assume!(bend.law.half_range > 1e-3);
             prop_assert!((bend.tip(again) - bend.tip(near)).length() < 1e-6, "{near} is {again}");
         }
     }

@@ -96,9 +96,13 @@ pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option
     if target.influence > 0.0 {
         solved.write(skeleton, limb, target.influence);
     }
-    let tip = JointSpace::below(skeleton, limb.lower, limb.upper, fk.above);
-    let tip =
-        skeleton.transform().as_daffine3().transform_point3(tip.point(skeleton[limb.lower].axis));
+    let tip = if target.influence < 1.0 {
+        let lower = JointSpace::below(skeleton, limb.lower, limb.upper, fk.above);
+        lower.point(skeleton[limb.lower].axis)
+    } else {
+        solved.tip
+    };
+    let tip = skeleton.transform().as_daffine3().transform_point3(tip);
     let error = saturate(tip.distance(target.point.as_dvec3()));
     Some(LimbReport { error, reach: solved.reach, stretch: solved.stretch as f32 })
 }
@@ -136,8 +140,10 @@ impl<'a> LocalTarget<'a> {
             true => fk.tip(),
             false => to_skeleton.transform_point3(target.point.as_dvec3()),
         };
-        let (_, turned, _) = transform.to_scale_rotation_translation();
-        let hand = target.hand.map(|hand| (turned.inverse() * hand.as_dquat()).normalize());
+        let hand = target.hand.map(|hand| {
+            let (_, turned, _) = transform.to_scale_rotation_translation();
+            (turned.inverse() * hand.as_dquat()).normalize()
+        });
         let is_valid = point.is_finite() && pole.is_finite();
         is_valid.then_some(Self { point, pole, hand, target })
     }
@@ -146,7 +152,6 @@ impl<'a> LocalTarget<'a> {
     fn aim(&self, fk: &FkLimb, pointer: DVec3) -> Aim {
         // Sine of the angle to the Pointer below which a direction gives no elbow.
         const PARALLEL: f64 = 1e-6;
-        let carried = fk.aim().carried_to(pointer);
         let above = fk.above.rotation;
         let outward = match self.target.reference {
             ElbowReference::Fk => None,
@@ -159,7 +164,7 @@ impl<'a> LocalTarget<'a> {
         let outward = outward.map(|outward| outward.reject_from_normalized(pointer));
         match outward.filter(|outward| outward.length() > PARALLEL) {
             Some(outward) => Aim { pointer, outward: outward.normalize() },
-            None => carried,
+            None => fk.aim().carried_to(pointer),
         }
     }
 }
@@ -217,7 +222,7 @@ impl FkLimb {
 
     /// The Pointer and elbow for a vector to the tip in the upper joint's space, bent by `angle`.
     fn aim_of(&self, tip: DVec3, angle: f64) -> Aim {
-        Aim::of_limb(self.bend.upper, tip, self.bend.bending(angle, self.angle))
+        Aim::of_limb(self.bend.upper, tip, || self.bend.bending(angle, self.angle))
     }
 
     /// Distance of the tip before the bones are lengthened, and the factor by which they are, for a
@@ -236,30 +241,28 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<usize>) {
     const STRAIGHT: f64 = 1e-6;
     const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
     let axis = lower.axis.as_dvec3();
-    let turned = mount.rotation * lower.rotation_f64(lower.rotation) * axis;
     let about = |index: usize| {
         let angles = Vec3::from_array(core::array::from_fn(|it| {
             if it == index { 0.0 } else { lower.rotation[it] }
         }));
-        let bend = Bend {
-            axis: mount.rotation * lower.rotation_axes_f64(lower.rotation).col(index),
-            upper: mount.origin,
-            lower: mount.rotation * lower.rotation_f64(angles) * axis,
-            limits: lower.limits[index]
-                .map_or(UNLIMITED, |limit| (f64::from(limit.min), f64::from(limit.max))),
-        };
+        let about = mount.rotation * lower.rotation_axes_f64(lower.rotation).col(index);
+        let unbent = mount.rotation * lower.rotation_f64(angles) * axis;
+        let limits = lower.limits[index]
+            .map_or(UNLIMITED, |limit| (f64::from(limit.min), f64::from(limit.max)));
+        let bend = Bend::new(about, mount.origin, unbent, limits);
         (bend, f64::from(lower.rotation[index]), Some(index))
-    };
-    let free = |axis: DVec3, limits: (f64, f64)| {
-        (Bend { axis, upper: mount.origin, lower: turned, limits }, 0.0, None)
     };
     let is_fixed = |limit: &Option<Limit>| limit.is_some_and(|it| it.max - it.min < 1e-6);
     let movable: Vec<usize> = (0..3).filter(|index| !is_fixed(&lower.limits[*index])).collect();
+    if let ([hinge], false) = (&movable[..], lower.locked) {
+        return about(*hinge);
+    }
+    let turned = mount.rotation * lower.rotation_f64(lower.rotation) * axis;
+    let free = |axis: DVec3, limits: (f64, f64)| {
+        (Bend::new(axis, mount.origin, turned, limits), 0.0, None)
+    };
     if lower.locked || movable.is_empty() {
         return free(DVec3::X, (0.0, 0.0));
-    }
-    if let [hinge] = movable[..] {
-        return about(hinge);
     }
     let normal = mount.origin.cross(turned);
     if normal.length() > STRAIGHT * mount.origin.length() * turned.length() {
@@ -285,6 +288,8 @@ struct SolvedLimb {
     upper: Vec3,
     lower: Vec3,
     hand: Option<Vec3>,
+    /// Position of the tip in skeleton space at full influence.
+    tip: DVec3,
     stretch: f64,
     reach: LimbReach,
 }
@@ -306,12 +311,13 @@ impl SolvedLimb {
         let upper =
             skeleton[limb.upper].angles_within(fk.above.rotation.transpose() * upper_rotation);
 
+        let upper_rotation = fk.above.rotation * skeleton[limb.upper].rotation_f64(upper.angles);
         let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
-            let upper_rotation = skeleton[limb.upper].rotation_f64(upper.angles);
-            let above_hand = fk.above.rotation * upper_rotation * lower_rotation;
+            let above_hand = upper_rotation * lower_rotation;
             let turned = above_hand.transpose() * DMat3::from_quat(turned);
             skeleton[hand].angles_within(turned).angles
         });
+        let tip = fk.base + upper_rotation * tip * stretch;
 
         let distance = distance * stretch;
         let is_reached = (distance - wanted).abs() <= 1e-5 * distance.max(wanted);
@@ -326,7 +332,7 @@ impl SolvedLimb {
         } else {
             LimbReach::TooClose
         };
-        Self { upper: upper.angles, lower: lower.angles, hand, stretch, reach }
+        Self { upper: upper.angles, lower: lower.angles, hand, tip, stretch, reach }
     }
 
     /// Writes the angles, blended with those of the FK pose by the influence.
@@ -371,8 +377,13 @@ impl FkLimb {
             let AnglesWithin { angles, is_limited } = lower.angles_within(turned);
             LowerAngles { angles, bend, is_limited }
         };
-        let [first, second] = self.bend.angles_at(distance, self.angle).map(angles_at);
-        if first.is_limited && !second.is_limited { second } else { first }
+        let [first, second] = self.bend.angles_at(distance, self.angle);
+        let first = angles_at(first);
+        if !first.is_limited {
+            return first;
+        }
+        let second = angles_at(second);
+        if second.is_limited { first } else { second }
     }
 }
 

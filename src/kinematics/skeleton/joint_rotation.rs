@@ -15,6 +15,10 @@ pub(crate) struct AnglesWithin {
 impl Joint {
     /// The rotation A·R_z·R_y·R_x·Aᵀ for Euler angles in radians, in the space of the joint's base.
     pub(crate) fn rotation_f64(&self, angles: Vec3) -> DMat3 {
+        // Exact, and most joints of a figure are in their bind pose.
+        if angles == Vec3::ZERO {
+            return DMat3::IDENTITY;
+        }
         let DVec3 { x, y, z } = angles.as_dvec3();
         let rotation = DMat3::from_euler(EulerRot::ZYX, z, y, x);
         if self.frame == Mat3::IDENTITY {
