@@ -233,6 +233,35 @@ fn whole_body_targets_bend_the_spine_and_limb_targets_follow_it() {
 }
 
 #[test]
+fn reported_distances_are_those_of_the_final_pose_although_limbs_share_a_joint() {
+    let mut random = Random(158);
+    for case in 0..100 {
+        let mut skeleton = forest(&mut random, 1);
+        let mut parent = JointId::new(0);
+        for name in ["upper arm", "forearm", "hand", "finger"] {
+            let above = skeleton[parent].axis;
+            let joint = Joint::new(name, Some(parent), random.direction());
+            parent = skeleton.add(Joint { offset: above, ..joint }).expect("a joint");
+        }
+        let mut rig = SkeletonRig::new(skeleton);
+        for joint in [2, 3, 4].map(JointId::new) {
+            let target = Target::new(joint, rig.skeleton.tip(joint) + random.vector(0.5), 0.1);
+            let kind = TargetKind::Limb(LimbSettings::default());
+            rig.targets.push(Target {
+                kind,
+                influence: random.within(0.3..1.5).min(1.0),
+                ..target
+            });
+        }
+        let evaluated = rig.evaluate(0.0);
+        for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
+            let distance = evaluated.solved.tip(target.joint).distance(report.position);
+            assert!((report.error - distance).abs() < 1e-5, "case {case}: {report:?}, {distance}");
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_solved_is_reported_and_leaves_the_fk_pose() {
     let mut figure = Figure::new();
     figure.rig.targets[0].joint = figure.pelvis;

@@ -60,12 +60,9 @@ impl SkeletonRig {
         let outcomes = self.solve_targets(&mut solved, time);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
-            let error = match &outcome {
-                TargetOutcome::Limb(report) => report.error,
-                _ => solved
-                    .joint(target.joint)
-                    .map_or(0.0, |_| solved.tip(target.joint).distance(position).min(f32::MAX)),
-            };
+            let error = solved
+                .joint(target.joint)
+                .map_or(0.0, |_| solved.tip(target.joint).distance(position).min(f32::MAX));
             let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
             TargetReport { position, pole, error, outcome }
         };

@@ -10,28 +10,27 @@ pub(super) struct JointSpace {
 }
 
 impl JointSpace {
-    pub const IDENTITY: Self = Self { rotation: DMat3::IDENTITY, origin: DVec3::ZERO };
+    const IDENTITY: Self = Self { rotation: DMat3::IDENTITY, origin: DVec3::ZERO };
 
     /// A joint's own space in skeleton space; that of no joint is skeleton space.
     pub fn of(skeleton: &Skeleton, joint: Option<JointId>) -> Self {
-        match joint.and_then(|joint| skeleton.joint(joint)) {
-            Some(joint) => Self::of(skeleton, joint.parent).of_child(joint),
-            None => Self::IDENTITY,
-        }
+        Self::from_top(skeleton, joint.into_iter().flat_map(|joint| skeleton.ancestors(joint)))
     }
 
-    /// The own space of `joint`, for a joint `upper` above it, or the same, whose parent has the space
-    /// `above`.
-    pub fn below(skeleton: &Skeleton, joint: JointId, upper: JointId, above: Self) -> Self {
-        let parent = skeleton[joint].parent.filter(|_| joint != upper);
-        let parent = parent.map_or(above, |parent| Self::below(skeleton, parent, upper, above));
-        parent.of_child(&skeleton[joint])
+    /// The own space of the first of `joints`, each the parent of the one before, in the space of the
+    /// last one's parent.
+    pub fn from_top(skeleton: &Skeleton, joints: impl Iterator<Item = JointId>) -> Self {
+        joints.fold(Self::IDENTITY, |space, joint| {
+            let joint = &skeleton[joint];
+            let rotation = joint.rotation_f64(joint.rotation);
+            Self { rotation, origin: joint.offset.as_dvec3() }.of_inner(space)
+        })
     }
 
-    /// The own space of a child of this space's joint.
-    pub fn of_child(self, child: &Joint) -> Self {
-        let base = self.at_base_of(child);
-        Self { rotation: base.rotation * child.rotation_f64(child.rotation), ..base }
+    /// A space that is given in this space, in the space in which this one is given.
+    pub fn of_inner(self, inner: Self) -> Self {
+        let origin = self.origin + self.rotation * inner.origin;
+        Self { rotation: self.rotation * inner.rotation, origin }
     }
 
     /// The space of a child before its rotation.

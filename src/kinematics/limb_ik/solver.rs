@@ -97,7 +97,9 @@ pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option
         solved.write(skeleton, limb, target.influence);
     }
     let tip = if target.influence < 1.0 {
-        let lower = JointSpace::below(skeleton, limb.lower, limb.upper, fk.above);
+        let above = skeleton[limb.upper].parent;
+        let joints = skeleton.ancestors(limb.lower).take_while(|joint| Some(*joint) != above);
+        let lower = fk.above.of_inner(JointSpace::from_top(skeleton, joints));
         lower.point(skeleton[limb.lower].axis)
     } else {
         solved.tip
@@ -198,12 +200,7 @@ impl FkLimb {
         let (upper, lower) = (skeleton.joint(limb.upper)?, skeleton.joint(limb.lower)?);
         let above = JointSpace::of(skeleton, upper.parent);
         let between = skeleton.ancestors(limb.lower).skip(1).take_while(|it| *it != limb.upper);
-        let between: Vec<JointId> = between.collect();
-        let space = between
-            .iter()
-            .rev()
-            .fold(JointSpace::IDENTITY, |space, joint| space.of_child(&skeleton[*joint]));
-        let mount = space.at_base_of(lower);
+        let mount = JointSpace::from_top(skeleton, between).at_base_of(lower);
         let upper_rotation = above.rotation * upper.rotation_f64(upper.rotation);
         let (bend, angle, free_angle) = bend_of(lower, mount);
         let base = above.point(upper.offset);

@@ -42,7 +42,8 @@ impl Skeleton {
     ///
     /// If there is no such joint.
     pub fn tip(&self, joint: JointId) -> Vec3 {
-        self.full_transform(joint).transform_point3(self[joint].axis)
+        let in_parent = |point, joint: JointId| self[joint].local().transform_point3(point);
+        self.transform.transform_point3(self.ancestors(joint).fold(self[joint].axis, in_parent))
     }
 
     /// Rotation of the joint's own space in the world: that of the skeleton's transform, without its

@@ -55,6 +55,10 @@ impl Joint {
 
     /// The rotation R for other Euler angles.
     pub(crate) fn rotation_by(&self, angles: Vec3) -> Mat3A {
+        // Exact, and most joints of a figure are in their bind pose.
+        if angles == Vec3::ZERO {
+            return Mat3A::IDENTITY;
+        }
         let rotation = JointAngles(angles).matrix();
         if self.frame == Mat3::IDENTITY {
             return rotation;

@@ -75,37 +75,37 @@ fn sliders(ui: &mut Ui, session: &Session, ring: WavyRing, actions: &mut Actions
     let first = first(reach);
     let step = session.shown().grid_cell() * 0.1;
     let set = |ring| EditAction::SetFollowPath(Some(FollowPath::Ring(ring)));
-    let slider = |name, label, tooltip, value, range, default, unit, step| Slider {
+    let slider = |name, tooltip, value, range, default| Slider {
         name,
-        label,
+        label: name,
         tooltip,
         value,
         range,
         default,
-        unit,
         step,
         ..Slider::default()
     };
-    let tooltip = "Set the radius of the ring";
-    slider("Radius", "Radius", tooltip, ring.radius, (0.0, 2.0 * reach), first.radius, "", step)
-        .show(ui, session, actions, |radius| set(WavyRing { radius, ..ring }));
-    let tooltip = "Set the height of the waves";
-    let range = (0.0, 0.5 * reach);
-    slider("Amplitude", "Amplitude", tooltip, ring.amplitude, range, first.amplitude, "", step)
-        .show(ui, session, actions, |amplitude| set(WavyRing { amplitude, ..ring }));
-    let tooltip = "Set the number of waves around the ring";
-    let waves = ring.waves as f32;
-    slider("Waves", "Waves", tooltip, waves, (0.0, 16.0), first.waves as f32, "", 1.0).show(
+    let (tooltip, range) = ("Set the radius of the ring", (0.0, 2.0 * reach));
+    slider("Radius", tooltip, ring.radius, range, first.radius).show(
         ui,
         session,
         actions,
-        |waves| set(WavyRing { waves: waves.round().clamp(0.0, 1000.0) as u32, ..ring }),
+        |radius| set(WavyRing { radius, ..ring }),
     );
-    let tooltip = "Set the time for one round";
-    slider("Period", "Period", tooltip, ring.period, (1.0, 60.0), first.period, " s", 1.0).show(
+    let (tooltip, range) = ("Set the height of the waves", (0.0, 0.5 * reach));
+    slider("Amplitude", tooltip, ring.amplitude, range, first.amplitude).show(
         ui,
         session,
         actions,
-        |period| set(WavyRing { period, ..ring }),
+        |amplitude| set(WavyRing { amplitude, ..ring }),
     );
+    let (tooltip, range) = ("Set the number of waves around the ring", (0.0, 16.0));
+    let waves = slider("Waves", tooltip, ring.waves as f32, range, first.waves as f32);
+    Slider { step: 1.0, ..waves }.show(ui, session, actions, |waves| {
+        set(WavyRing { waves: waves.round().clamp(0.0, 1000.0) as u32, ..ring })
+    });
+    let (tooltip, range) = ("Set the time for one round", (1.0, 60.0));
+    let period = slider("Period", tooltip, ring.period, range, first.period);
+    Slider { step: 1.0, unit: " s", ..period }
+        .show(ui, session, actions, |period| set(WavyRing { period, ..ring }));
 }
