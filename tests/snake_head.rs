@@ -1,4 +1,4 @@
-//! A snake's head is dragged and keyed, and its body follows the way that the head has left.
+//! A snake's head is dragged and keyed, and its body follows the path that the head has travelled.
 #![cfg(feature = "document")]
 
 mod common;
@@ -58,9 +58,9 @@ fn points(skeleton: &Skeleton) -> Vec<Vec3> {
     pose.ids().map(|joint| pose.base(joint)).chain([pose.tip(last)]).collect()
 }
 
-/// The way that the head has left until a time, the newest point first: the spline back to the first key,
+/// The path that the head has travelled until a time, the newest point first: the spline back to the first key,
 /// the body as it was there, and the line straight behind it.
-fn way(document: &Document, time: f64) -> Vec<Vec3> {
+fn travelled(document: &Document, time: f64) -> Vec<Vec3> {
     const STEPS: u32 = 5000;
     let track: &Spline<Vec3> = document.keys.track(Channel::Offset(HEAD)).expect("keys");
     let (first, last) = (track.knots()[0], track.knots()[track.knots().len() - 1]);
@@ -74,13 +74,13 @@ fn way(document: &Document, time: f64) -> Vec<Vec3> {
 }
 
 /// Distance of a point from the lines between consecutive points.
-fn distance(way: &[Vec3], point: Vec3) -> f32 {
+fn distance(path: &[Vec3], point: Vec3) -> f32 {
     let to_line = |pair: &[Vec3]| {
         let (line, at) = (pair[1] - pair[0], point - pair[0]);
         let part = (at.dot(line) / line.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
         at.distance(line * part)
     };
-    way.windows(2).map(to_line).fold(f32::INFINITY, f32::min)
+    path.windows(2).map(to_line).fold(f32::INFINITY, f32::min)
 }
 
 #[test]
@@ -98,20 +98,20 @@ fn without_keys_and_up_to_the_first_key_the_body_has_its_own_angles() {
 }
 
 #[test]
-fn every_joint_is_on_the_way_that_the_head_has_left() {
+fn every_joint_is_on_the_path_that_the_head_has_travelled() {
     let mut random = Random(1501);
     for case in 0..40 {
         let document = keyed_snake(&mut random);
         let lengths: Vec<f32> =
             document.skeleton().joints().iter().map(|it| it.axis.length()).collect();
         for time in [0.6, 1.3, 2.9, 9.0] {
-            let (posed, way) = (points(&posed(&document, time)), way(&document, time));
+            let (posed, path) = (points(&posed(&document, time)), travelled(&document, time));
             let head = document.keys.value(Channel::Offset(HEAD), time).expect("keys");
             assert!(posed[0].distance(head) < 1e-6, "case {case} at {time} s");
             for (index, pair) in posed.windows(2).enumerate() {
                 let error = (pair[0].distance(pair[1]) - lengths[index]).abs();
                 assert!(error < 1e-5, "case {case} at {time} s: bone {index} by {error}");
-                let beside = distance(&way, pair[1]);
+                let beside = distance(&path, pair[1]);
                 assert!(beside < 1e-4, "case {case} at {time} s: joint {index} by {beside}");
             }
         }
@@ -119,7 +119,7 @@ fn every_joint_is_on_the_way_that_the_head_has_left() {
 }
 
 #[test]
-fn the_body_moves_without_leaps_from_its_own_angles_onto_the_way() {
+fn the_body_moves_without_leaps_from_its_own_angles_onto_the_path() {
     let mut random = Random(1502);
     for case in 0..20 {
         let document = keyed_snake(&mut random);
@@ -135,7 +135,7 @@ fn the_body_moves_without_leaps_from_its_own_angles_onto_the_way() {
 }
 
 #[test]
-fn joints_keep_their_roll_on_a_straight_way() {
+fn joints_keep_their_roll_on_a_straight_path() {
     let mut random = Random(1503);
     let mut document = snake(&mut random);
     let rolled = Vec3::new(0.7, 0.0, 0.0);
@@ -210,7 +210,7 @@ fn drag(session: &mut Session, through: &[Vec3]) {
 }
 
 #[test]
-fn a_dragged_head_draws_its_body_along_the_way_of_the_mouse() {
+fn a_dragged_head_draws_its_body_along_the_path_of_the_mouse() {
     let mut random = Random(1506);
     for case in 0..20 {
         let mut session = Session::with_document(Preferences::default(), snake(&mut random));
@@ -219,14 +219,14 @@ fn a_dragged_head_draws_its_body_along_the_way_of_the_mouse() {
             let angle = step as f32 * 0.05;
             before[0] + Vec3::new(angle.sin(), 1.0 - angle.cos(), 0.0)
         };
-        let way: Vec<Vec3> = (1..100).map(round).collect();
-        drag(&mut session, &way);
+        let path: Vec<Vec3> = (1..100).map(round).collect();
+        drag(&mut session, &path);
         let after = points(session.skeleton());
-        assert!(after[0].distance(*way.last().expect("a point")) < 1e-5);
-        let all: Vec<Vec3> = way.iter().rev().chain(&before).copied().collect();
+        assert!(after[0].distance(*path.last().expect("a point")) < 1e-5);
+        let all: Vec<Vec3> = path.iter().rev().chain(&before).copied().collect();
         for (index, point) in after.iter().enumerate() {
             let beside = distance(&all, *point);
-            assert!(beside < 1e-3, "case {case}: joint {index} is {beside} beside the way");
+            assert!(beside < 1e-3, "case {case}: joint {index} is {beside} beside the path");
         }
         assert_eq!(session.undo_label(), Some("Move head"));
         session.apply(TransactionAction::Undo);
@@ -254,10 +254,10 @@ fn auto_key_keys_a_dragged_head_alone() {
     let document = session.document();
     assert!(document.skeleton_rig.head_track.is_none(), "the keys are in the document once");
     for (second, end) in ends.iter().enumerate().skip(1).take(2) {
-        let way = way(document, second as f64);
-        let beside = end.iter().map(|point| distance(&way, *point)).fold(0.0, f32::max);
+        let path = travelled(document, second as f64);
+        let beside = end.iter().map(|point| distance(&path, *point)).fold(0.0, f32::max);
         // The next key changes the tangent of the spline at this one, but no point of it there.
-        assert!(end[0].distance(way[0]) < 1e-5 && beside < 0.2, "{beside}");
+        assert!(end[0].distance(path[0]) < 1e-5 && beside < 0.2, "{beside}");
     }
 }
 
@@ -273,7 +273,7 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
     assert!(after[0].distance(to) < 1e-5);
     let between: Vec<Vec3> =
         (0..=1000).map(|step| before[0].lerp(after[0], step as f32 / 1000.0)).collect();
-    assert!(distance(&between, after[1]) < 1e-3, "the first bone is on the way to the mouse");
+    assert!(distance(&between, after[1]) < 1e-3, "the first bone is on the path to the mouse");
     session.apply(PlaybackAction::SetTime(0.5));
     session.apply(PlaybackAction::SetTime(1.0));
     assert_eq!(points(&session.evaluated_skeleton().solved), before);
@@ -303,4 +303,60 @@ fn following_the_head_is_saved_without_its_keys_a_second_time() {
     let cut = text.replace("\"path\": \"head\"", "\"path\": \"ring\", \"radius\": 1");
     let error = parse("a.json", &cut, None).expect_err("a ring needs numbers").to_string();
     assert!(error.contains("follow_path: must have `amplitude` for a ring"), "{error}");
+}
+
+#[test]
+fn a_click_on_the_head_changes_nothing() {
+    let mut random = Random(1511);
+    let mut session = Session::with_document(Preferences::default(), snake(&mut random));
+    let before = session.document().clone();
+    let head = session.skeleton_pose().base(HEAD);
+    drag(&mut session, &[head]);
+    assert_eq!(*session.document(), before);
+    assert_eq!(session.undo_label(), None);
+}
+
+#[test]
+fn hundreds_of_keys_within_one_bone_still_lay_the_body_along_the_path() {
+    let mut random = Random(1512);
+    let mut document = snake(&mut random);
+    let start = document.skeleton()[HEAD].offset;
+    for key in 0..2_000_u32 {
+        let at = start + Vec3::new(key as f32 * 1e-3, 0.3 * (key as f32 * 2e-3).sin(), 0.0);
+        document.keys.insert(Channel::Offset(HEAD), f64::from(key) / 60.0, at);
+    }
+    let time = 1_999.0 / 60.0;
+    let (posed, path) = (points(&posed(&document, time)), travelled(&document, time));
+    for (joint, point) in posed.iter().enumerate() {
+        assert!(distance(&path, *point) < 1e-3, "joint {joint}");
+    }
+    for (joint, pair) in posed.windows(2).zip(document.skeleton().joints()) {
+        assert!((joint[0].distance(joint[1]) - pair.axis.length()).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn auto_key_lets_the_body_follow_before_its_head_has_keys() {
+    let mut random = Random(1513);
+    let mut session = Session::with_document(Preferences::default(), snake(&mut random));
+    session.apply(PlaybackAction::SetAutoKey(true));
+    let before = points(session.skeleton());
+    let to = before[0] + Vec3::new(0.5, 0.4, 0.0);
+    drag(&mut session, &[to]);
+    let after = points(&session.evaluated_skeleton().solved);
+    let line: Vec<Vec3> = [to].into_iter().chain(before).collect();
+    for point in &after {
+        assert!(distance(&line, *point) < 1e-4, "{point} is on the path");
+    }
+    assert_eq!(session.document().keys.count(), 1);
+}
+
+#[test]
+fn joints_can_be_posed_by_their_own_angles_up_to_the_first_key_of_the_head() {
+    let mut random = Random(1514);
+    let document = keyed_snake(&mut random);
+    let first = document.keys.track(Channel::Offset(HEAD)).expect("keys").knots()[0].time;
+    for (time, is_on_path) in [(first - 0.1, false), (first, false), (first + 0.1, true)] {
+        assert_eq!(document.evaluate(time).skeleton_rig.is_on_path(time), is_on_path);
+    }
 }

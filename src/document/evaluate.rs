@@ -9,8 +9,8 @@ use crate::rig::{FollowPath, Target};
 
 /// Keys applied to the document.
 impl Document {
-    /// The document at a time in seconds: every keyed channel has its interpolated value, and a
-    /// skeleton that follows its head has the head's keys. [`SkeletonRig::evaluate`](super::SkeletonRig::evaluate)
+    /// The document at a time in seconds: every keyed channel has its interpolated value, and with
+    /// [`FollowPath::Head`] the rig has the head's keys. [`SkeletonRig::evaluate`](super::SkeletonRig::evaluate)
     /// poses the skeleton.
     #[must_use]
     pub fn evaluate(&self, time: f64) -> Self {
@@ -47,6 +47,15 @@ impl Document {
             if let Some(value) = keys.value(channel, time) {
                 channel.set(self, value);
             }
+        }
+    }
+
+    /// Whether the skeleton follows a path at any time: a ring, or the keys of its head.
+    pub fn follows_path(&self) -> bool {
+        match (self.skeleton_rig.follow_path, self.skeleton_rig.head()) {
+            (Some(FollowPath::Ring(_)), Some(_)) => true,
+            (Some(FollowPath::Head), Some(head)) => self.keys.has(Channel::Offset(head)),
+            _ => false,
         }
     }
 

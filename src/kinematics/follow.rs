@@ -23,6 +23,41 @@ pub fn along(
     core::iter::once(first).chain(behind(path, head, stride, lengths)).collect()
 }
 
+/// Positions of the joints behind the first point of a line of straight segments, one for each of
+/// `lengths`. The line leads away from the head; beyond its end, the joints go straight on. Takes as many
+/// points of the line as the joints need.
+pub fn along_line(
+    line: impl IntoIterator<Item = Vec3>,
+    lengths: impl IntoIterator<Item = f32>,
+) -> impl Iterator<Item = Vec3> {
+    let mut line = line.into_iter();
+    // The last joint, and the segment of the line on which the next one is searched.
+    let mut joint = line.next().unwrap_or_default();
+    let mut from = joint;
+    let mut to = line.next();
+    let mut direction = Vec3::ZERO;
+    lengths.into_iter().map(move |length| {
+        while let Some(end) = to {
+            direction = (end - from).try_normalize().unwrap_or(direction);
+            if end.distance(joint) > length {
+                break;
+            }
+            from = end;
+            to = line.next();
+        }
+        from += direction * leaves_sphere(from - joint, direction, length);
+        joint = from;
+        joint
+    })
+}
+
+/// Distance along a unit `direction`, from a point in a sphere around the origin to its surface.
+fn leaves_sphere(point: Vec3, direction: Vec3, radius: f32) -> f32 {
+    let along = point.dot(direction);
+    let squared = along * along - point.length_squared() + radius * radius;
+    squared.max(0.0).sqrt() - along
+}
+
 /// [`along`] as an iterator, without the head.
 pub(crate) fn behind(
     path: impl Fn(f64) -> Vec3,

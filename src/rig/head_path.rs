@@ -1,87 +1,59 @@
-use core::iter::once;
+use core::iter::{once, repeat_n};
 
 use glam::Vec3;
 
-use crate::kinematics::spline::Spline;
+use crate::kinematics::spline::{Knot, Spline};
 
-/// The path that the head of a chain has left until a time, in skeleton space.
+/// The path that a head with keys has travelled until a time, as points in skeleton space, the newest
+/// first: where the head is; the spline through its keys, from the time back to the first key; and the
+/// body behind the first key, given by the vectors from joint to joint.
 ///
-/// The path has three parts, from the oldest to the newest: the line of the body as it was at the
-/// head's first key, continued straight behind its end; the spline through the head's keys up to the
-/// time; and the straight line from there to where the head is, if an edit without a key has moved it.
-///
-/// The parameter of a point is negative on the body, with one unit per joint. On the spline it counts
-/// the keys from 0, with one unit from the last key to the time. One more unit leads to the head.
-pub(super) struct HeadPath<'a> {
+/// The head is beside the spline if an edit without a key has moved it.
+pub(super) fn points<'a>(
+    head: Vec3,
     keys: &'a Spline<Vec3>,
     time: f64,
-    /// Index of the last key until the time.
-    last: usize,
-    head: Vec3,
-    /// Points of the body at the first key, the head's first.
-    body: Vec<Vec3>,
-    /// The last bone of non-zero length.
-    end: Vec3,
+    body: &'a [Vec3],
+) -> impl Iterator<Item = Vec3> + 'a {
+    let first = keys.knots().first().map_or(head, |knot| knot.value);
+    let length = body.iter().map(|bone| bone.length()).sum();
+    once(head).chain(on_spline(keys, time, length)).chain(behind(first, body))
 }
 
-impl<'a> HeadPath<'a> {
-    /// Step of the parameter over which the path is nearly straight.
-    pub const STRIDE: f64 = 1.0 / 64.0;
+/// The start of a body and its points, for the vectors from joint to joint.
+pub(super) fn behind(start: Vec3, body: &[Vec3]) -> impl Iterator<Item = Vec3> + '_ {
+    let points = body.iter().scan(start, |point, bone| {
+        *point += bone;
+        Some(*point)
+    });
+    once(start).chain(points)
+}
 
-    /// The path at a time in seconds for a head at `head`. `bones` are the vectors from joint to joint
-    /// behind the head at the first key. `None` without keys.
-    pub fn new(
-        keys: &'a Spline<Vec3>,
-        time: f64,
-        head: Vec3,
-        bones: impl Iterator<Item = Vec3>,
-    ) -> Option<Self> {
-        let first = keys.knots().first()?;
-        let until = keys.knots().partition_point(|knot| knot.time <= time);
-        let mut end = Vec3::ZERO;
-        let behind = bones.scan(first.value, |point, bone| {
-            *point += bone;
-            end = if bone == Vec3::ZERO { end } else { bone };
-            Some(*point)
+/// Points of a spline from a time back to its first knot, close together for a body of this length.
+fn on_spline(keys: &Spline<Vec3>, time: f64, length: f32) -> impl Iterator<Item = Vec3> + '_ {
+    let knots = keys.knots();
+    let until = knots.partition_point(|knot| knot.time <= time);
+    (0..until).rev().flat_map(move |index| {
+        let from = knots[index].time;
+        let to = knots.get(index + 1).map_or(from, |next| next.time.min(time));
+        let steps = steps(knots, index, length);
+        let times = repeat_n((from, to), steps).enumerate().map(move |(step, (from, to))| {
+            let back = step as f64 / steps as f64;
+            to * (1.0 - back) + from * back
         });
-        let body = once(first.value).chain(behind).collect();
-        let last = until.saturating_sub(1);
-        Some(Self { keys, time: time.max(first.time), last, head, body, end })
-    }
+        times.filter_map(|time| keys.at(time))
+    })
+}
 
-    /// Parameter of the head.
-    pub fn head(&self) -> f64 {
-        self.last as f64 + 2.0
-    }
-
-    /// Point at a parameter.
-    pub fn point(&self, at: f64) -> Vec3 {
-        let last = self.last as f64;
-        if at < 0.0 {
-            self.on_body(-at)
-        } else if at <= last + 1.0 {
-            self.on_spline(at)
-        } else {
-            self.on_spline(last + 1.0).lerp(self.head, (at - last - 1.0) as f32)
-        }
-    }
-
-    fn on_spline(&self, at: f64) -> Vec3 {
-        let knots = self.keys.knots();
-        let from = (at as usize).min(self.last);
-        let to = if from < self.last { knots[from + 1].time } else { self.time };
-        let from_time = knots[from].time;
-        let time = from_time + (to - from_time) * (at - from as f64);
-        self.keys.at(time).unwrap_or(self.head)
-    }
-
-    fn on_body(&self, joints: f64) -> Vec3 {
-        let last = self.body.len() - 1;
-        let from = (joints as usize).min(last);
-        let beyond = (joints - from as f64) as f32;
-        match self.body.get(from + 1) {
-            Some(next) => self.body[from].lerp(*next, beyond),
-            None => self.body[from] + self.end * beyond,
-        }
-    }
+/// Number of points between a knot and the next: so many that a body of this length covers at least
+/// 256, but at most 64.
+fn steps(knots: &[Knot<Vec3>], index: usize, length: f32) -> usize {
+    const ON_BODY: f32 = 256.0;
+    const MOST: f32 = 64.0;
+    // The tangents at the ends depend on the neighbours.
+    let around = &knots[index.saturating_sub(1)..(index + 3).min(knots.len())];
+    let way: f32 = around.windows(2).map(|pair| pair[0].value.distance(pair[1].value)).sum();
+    let steps = (ON_BODY * way / length).ceil();
+    // Also for NaN, of a body without length.
+    if steps < MOST { steps.max(1.0) as usize } else { MOST as usize }
 }

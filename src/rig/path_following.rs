@@ -1,13 +1,11 @@
-use core::iter::once;
-
 use glam::Vec3;
 
 use super::follow_path::FollowPath;
-use super::path_chain::{PathChain, head};
+use super::path_chain::{PathChain, bones, head};
 use super::skeleton_rig::SkeletonRig;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
-use crate::kinematics::spline::{Knot, Spline};
+use crate::kinematics::spline::Spline;
 
 /// A skeleton on a path.
 impl SkeletonRig {
@@ -16,12 +14,16 @@ impl SkeletonRig {
         head(&self.skeleton)
     }
 
-    /// Whether the first chain follows a path, so that its own angles do not pose it.
-    pub fn is_on_path(&self) -> bool {
-        match self.follow_path {
-            Some(FollowPath::Ring(_)) => true,
-            Some(FollowPath::Head) => self.head_track.is_some(),
-            None => false,
+    /// Whether the first chain follows a path at a time in seconds, so that its own angles do not pose
+    /// it: on a ring always, behind a head from its first key on.
+    pub fn is_on_path(&self, time: f64) -> bool {
+        let Some(head) = self.head() else { return false };
+        match (self.follow_path, &self.head_track) {
+            (Some(FollowPath::Ring(_)), _) => true,
+            (Some(FollowPath::Head), Some(keys)) => {
+                PathChain::has_left_first_key(keys, time, self.skeleton[head].offset)
+            }
+            _ => false,
         }
     }
 
@@ -60,25 +62,26 @@ impl SkeletonRig {
         match self.follow_path? {
             FollowPath::Ring(ring) => PathChain::on_ring(&self.skeleton, ring, time),
             FollowPath::Head => {
-                PathChain::behind_head(&self.skeleton, self.head_track.as_deref()?, time)
+                PathChain::behind_keys(&self.skeleton, self.head_track.as_deref()?, time)
             }
         }
     }
 
-    /// Moves the head through points of skeleton space; the chain follows. A head with keys moves to the
-    /// last point only: its keys give the path.
+    /// Moves the head through points of skeleton space. With [`FollowPath::Head`] and without keys, the
+    /// chain follows; keys of the head give the path otherwise.
     pub fn pull_head(&mut self, points: &[Vec3]) {
         let (Some(head), Some(last)) = (self.head(), points.last()) else { return };
-        let from = self.skeleton[head].offset;
-        self.skeleton_mut().write_local(head, |head| head.offset = *last);
-        if self.is_on_path() {
-            return;
+        let is_pulled = self.follow_path == Some(FollowPath::Head) && self.head_track.is_none();
+        let chain = PathChain::pulled_through(&self.skeleton, points).filter(|_| is_pulled);
+        if let Some(pulled) = chain.map(|chain| chain.posed()) {
+            self.skeleton = Shared::from(pulled);
+        } else {
+            self.skeleton_mut().write_local(head, |head| head.offset = *last);
         }
-        let knot = |(time, value): (i32, &Vec3)| Knot { time: time.into(), value: *value };
-        let track: Spline<Vec3> = (0..).zip(once(&from).chain(points)).map(knot).collect();
-        let end = f64::from(i32::try_from(points.len()).unwrap_or(i32::MAX));
-        if let Some(chain) = PathChain::behind_head(&self.skeleton, &track, end) {
-            self.skeleton = Shared::from(chain.posed());
-        }
+    }
+
+    /// The joints of the chain that follows a path, the head first.
+    pub fn path_joints(&self) -> impl Iterator<Item = JointId> {
+        bones(&self.skeleton).into_iter().map(|(joint, _)| joint)
     }
 }

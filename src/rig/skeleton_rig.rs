@@ -23,8 +23,8 @@ pub struct SkeletonRig {
     pub iterations_per_frame: u32,
     /// Path that the chain of the first root follows over time, instead of its own angles.
     pub follow_path: Option<FollowPath>,
-    /// The keys of the head's offset. Evaluation copies them here for [`FollowPath::Head`]; documents are
-    /// saved without.
+    /// The keys of the head's offset, with [`FollowPath::Head`]. The evaluation of a document sets them; they
+    /// are `None` in a document that is not evaluated, and never saved.
     pub head_track: Option<Shared<Spline<Vec3>>>,
 }
 

@@ -9,8 +9,8 @@ use super::snapshot::Snapshot;
 use super::transaction_action::TransactionAction;
 use crate::document::{Arm, Channel, Document, Ray};
 
-/// Distance of the points through which the head of a skeleton is dragged, in cells of the grid.
-const HEAD_SPACING: f32 = 0.02;
+/// Minimum distance between waypoints of a dragged head, in cells of the grid.
+const WAYPOINT_SPACING: f32 = 0.02;
 
 /// Transactions and undo steps.
 impl Session {
@@ -188,7 +188,7 @@ impl Session {
     }
 
     fn drag_by(&mut self, change: impl FnOnce(&mut Drag)) {
-        let spacing = self.shown().grid_cell() * HEAD_SPACING;
+        let spacing = self.shown().grid_cell() * WAYPOINT_SPACING;
         let Some((drag, shown)) = self.editing.drag_mut() else { return };
         change(drag);
         let grip = drag.grip;
@@ -229,11 +229,10 @@ impl Session {
                 let twist = turn.angle();
                 self.set_twist(twist);
             }
-            (Grip::Head(..), DragKind::Point(point)) => {
-                let to = point.point();
-                drag.pass(to, spacing);
-                let passed = drag.passed.clone();
-                self.drag_head(&passed);
+            (Grip::Head(..), DragKind::Point(_)) => {
+                drag.add_waypoint(spacing);
+                let waypoints = drag.waypoints.clone();
+                self.drag_head(&waypoints);
             }
             (_, DragKind::Point(point)) => {
                 let to = point.point();

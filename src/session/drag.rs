@@ -24,7 +24,7 @@ pub enum Grip {
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
     LimbPole(JointId, PointHandle),
-    /// The head of a skeleton that follows its head.
+    /// The head of a skeleton that follows a path; dragging it pulls the chain.
     Head(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
@@ -64,7 +64,7 @@ pub struct Drag {
     pub(super) grip: Grip,
     pub(super) kind: DragKind,
     /// Points in the world through which the head of a skeleton was dragged.
-    pub(super) passed: Vec<Vec3>,
+    pub(super) waypoints: Vec<Vec3>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -75,19 +75,24 @@ pub(super) enum DragKind {
 
 impl Drag {
     pub(super) fn new(grip: Grip, kind: DragKind) -> Self {
-        Self { grip, kind, passed: Vec::new() }
+        Self { grip, kind, waypoints: Vec::new() }
     }
 
-    /// Adds a point to [`Drag::passed`]; it replaces the last one, if that was nearer than `spacing`
-    /// to the one before it. A typed offset leads straight to its point.
-    pub(super) fn pass(&mut self, point: Vec3, spacing: f32) {
-        let is_near = |pair: &[Vec3]| pair[0].distance(pair[1]) < spacing;
-        if !self.typed().is_empty() {
-            self.passed.clear();
-        } else if self.passed.last_chunk::<2>().is_some_and(|pair| is_near(pair)) {
-            self.passed.pop();
+    /// Adds the dragged point to [`Drag::waypoints`]; it replaces the last one if that was nearer than
+    /// `spacing` to the one before it. A typed offset discards the others: the head moves straight to
+    /// its point. There are none before the mouse moves.
+    pub(super) fn add_waypoint(&mut self, spacing: f32) {
+        let DragKind::Point(drag) = &mut self.kind else { return };
+        if !drag.typed().is_empty() || !drag.has_moved() {
+            self.waypoints.clear();
+        } else if let [.., before, last] = self.waypoints[..]
+            && before.distance(last) < spacing
+        {
+            self.waypoints.pop();
         }
-        self.passed.push(point);
+        if drag.has_moved() {
+            self.waypoints.push(drag.point());
+        }
     }
 
     /// The part of a gizmo that is dragged.
@@ -137,6 +142,7 @@ impl Drag {
     pub(super) fn set_constraint(&mut self, constraint: Option<Constraint>) {
         if let DragKind::Point(drag) = &mut self.kind {
             drag.set_constraint(constraint);
+            self.waypoints.clear();
         }
     }
 }

@@ -121,8 +121,8 @@ pub enum EditAction {
     },
     /// Sets the path that the skeleton follows; `None` for no path.
     SetFollowPath(Option<FollowPath>),
-    /// Moves the head, which is the first root, to a point of skeleton space. The chain follows, for
-    /// [`FollowPath::Head`](crate::document::FollowPath::Head).
+    /// Moves the first root to a point of skeleton space. With
+    /// [`FollowPath::Head`](crate::document::FollowPath::Head), the chain below it follows.
     SetHead(Vec3),
     /// Moves the origin of the skeleton to a point in world space.
     SetTranslation(Vec3),

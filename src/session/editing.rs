@@ -6,7 +6,7 @@ use super::history::History;
 use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
 use super::transaction::Transaction;
-use crate::document::{Arm, Camera, Channel, Document, TwistReferenceKind};
+use crate::document::{Arm, Camera, Channel, Document, FollowPath, TwistReferenceKind};
 use crate::kinematics::skeleton::Skeleton;
 
 /// The document, its values at the playhead, the open transaction and the history.
@@ -256,6 +256,7 @@ impl Editing {
             .flat_map(Channel::of_rig)
             .chain(switches)
             .filter(|channel| changed(channel) || comes_into_use(channel))
+            .filter(|channel| !is_start_of_body(after, *channel))
             .collect();
         all.into_iter().collect()
     }
@@ -372,6 +373,16 @@ fn is_transported(document: &Document) -> bool {
     arm.twist_reference == TwistReferenceKind::Transport
         && keys.has(Channel::of_cursor(arm))
         && !keys.has(Channel::Twist)
+}
+
+/// Whether a channel has an angle of the body that a head with keys has at its first key: such an angle
+/// is not keyed automatically.
+fn is_start_of_body(document: &Document, channel: Channel) -> bool {
+    let rig = &document.skeleton_rig;
+    let Channel::Rotation(joint) = channel else { return false };
+    rig.follow_path == Some(FollowPath::Head)
+        && !document.keys.has(channel)
+        && rig.path_joints().any(|of_chain| of_chain == joint)
 }
 
 /// Whether joints were removed, renumbered or attached to other parents.

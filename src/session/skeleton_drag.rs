@@ -42,7 +42,9 @@ impl Session {
         ray: Ray,
         forward: Vec3,
     ) {
-        if joint.index() < self.skeleton_pose().len() && !self.skeleton_rig().is_on_path() {
+        if joint.index() < self.skeleton_pose().len()
+            && !self.skeleton_rig().is_on_path(self.time())
+        {
             let tip = self.skeleton_pose().tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
         }
@@ -57,7 +59,7 @@ impl Session {
     ) {
         let rig = self.skeleton_rig();
         if rig.follow_path == Some(FollowPath::Head) && rig.head() == Some(joint) {
-            let at = self.skeleton_pose().base(joint);
+            let at = self.evaluated_skeleton().fk.base(joint);
             self.grab_point(Grip::Head(joint, handle), handle, at, ray, forward);
         }
     }
@@ -129,12 +131,12 @@ impl Session {
         }
     }
 
-    /// Moves the head from where it was at the press through points in the world.
-    pub(super) fn drag_head(&mut self, passed: &[Vec3]) {
+    /// Moves the head from where it was at the press through points in the world; back without points.
+    pub(super) fn drag_head(&mut self, waypoints: &[Vec3]) {
         let before = self.editing.shown_before().skeleton_rig.clone();
         let to_skeleton = before.skeleton.transform().inverse();
         let points: Vec<Vec3> =
-            passed.iter().map(|point| to_skeleton.transform_point3(*point)).collect();
+            waypoints.iter().map(|point| to_skeleton.transform_point3(*point)).collect();
         self.move_head(before, &points);
     }
 

@@ -212,20 +212,23 @@ impl Session {
         self.move_head(self.skeleton_rig().clone(), &[to]);
     }
 
-    /// Moves the head of `before` through points of skeleton space; the chain follows. With auto-key, only
-    /// the head moves: its keys give the path.
+    /// Moves the head of `before` through points of skeleton space, and writes the joints that follow a
+    /// path to the shown skeleton.
     pub(super) fn move_head(&mut self, mut before: SkeletonRig, points: &[Vec3]) {
-        let (Some(head), Some(last)) = (before.head(), points.last()) else { return };
         if let Some(wrong) = points.iter().find(|point| !point.is_finite()) {
             return self.fail(format!("The position of the head must be finite, got {wrong}"));
         }
-        if self.playback.is_auto_key() {
-            before.skeleton_mut().write_local(head, |head| head.offset = *last);
-        } else {
-            before.pull_head(points);
-        }
+        let is_on_path = before.head_track.is_some();
+        before.pull_head(points);
+        let moved = before.path_joints().take(if is_on_path { 1 } else { usize::MAX });
         self.edit_skeleton(|rig| {
-            rig.skeleton = before.skeleton;
+            let count = rig.skeleton.joints().len();
+            for joint in moved.filter(|joint| joint.index() < count) {
+                let Joint { offset, rotation, .. } = before.skeleton[joint];
+                rig.skeleton_mut().write_local(joint, |joint| {
+                    (joint.offset, joint.rotation) = (offset, rotation);
+                });
+            }
             Ok(())
         });
     }

@@ -22,7 +22,7 @@ impl SolverInputs {
         if shown.rig != RigKind::Skeleton {
             return Err("Show the skeleton to solve it");
         }
-        if rig.is_on_path() {
+        if rig.is_on_path(time) {
             return Err("A skeleton that follows a path has nothing to solve");
         }
         let targets = rig.targets_at(time);

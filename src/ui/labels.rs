@@ -1,6 +1,6 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
-use crate::document::{Channel, Overlay, RigKind, TwistReferenceKind};
+use crate::document::{Channel, FollowPath, Overlay, RigKind, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
 use crate::session::Session;
@@ -133,4 +133,16 @@ pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
         Method::Fabrik => "Move joint positions along the chain: very cheap, may stall at limits",
         Method::TwoBone => "Solve the target's joint and its parent in closed form",
     }
+}
+
+/// The reason why the joints' own angles do not pose the skeleton; `None` if they do.
+pub fn why_on_path(session: &Session) -> Option<&'static str> {
+    let rig = session.skeleton_rig();
+    let reason = match rig.follow_path? {
+        FollowPath::Ring(_) => "The joints follow a ring; set Path → Follow to None",
+        FollowPath::Head => {
+            "The joints follow the head; go to its first key, or set Path → Follow to None"
+        }
+    };
+    rig.is_on_path(session.time()).then_some(reason)
 }

@@ -103,10 +103,12 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the item that opens the bake dialog; disabled if there is nothing to bake.
 fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = &session.document().skeleton_rig;
+    let document = session.document();
     let why_not = match session.rig() {
         RigKind::Arm => Some("Show a skeleton: the arm is not baked"),
-        RigKind::Skeleton if rig.targets.is_empty() && rig.follow_path.is_none() => {
+        RigKind::Skeleton
+            if document.skeleton_rig.targets.is_empty() && !document.follows_path() =>
+        {
             Some("Add a target or a path: nothing else poses the skeleton")
         }
         RigKind::Skeleton => None,

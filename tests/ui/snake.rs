@@ -69,7 +69,7 @@ fn the_panel_chooses_what_the_body_follows() {
 }
 
 #[test]
-fn a_head_is_keyed_at_two_times_and_the_body_is_on_its_way() {
+fn a_head_is_keyed_at_two_times_and_the_body_is_on_its_path() {
     let mut bench = unkeyed();
     assert!(!bench.session().document().is_animated());
     bench.apply([SelectAction::Joints(vec![HEAD])]);
@@ -90,6 +90,6 @@ fn a_head_is_keyed_at_two_times_and_the_body_is_on_its_way() {
     let pose = bench.session().skeleton_pose().clone();
     for joint in pose.ids().take(15) {
         let base = pose.base(joint);
-        assert!(base.z.abs() < 1e-3, "joint {joint} is on the straight way at {base}");
+        assert!(base.z.abs() < 1e-3, "joint {joint} is on the straight path at {base}");
     }
 }

@@ -36,7 +36,7 @@ impl Bake {
         if document.rig == RigKind::Arm {
             return Err(BakeError::Arm);
         }
-        if rig.targets.is_empty() && rig.follow_path.is_none() {
+        if rig.targets.is_empty() && !document.follows_path() {
             return Err(BakeError::Nothing);
         }
         if !self.frames.is_valid() {

@@ -59,7 +59,7 @@ impl Motion {
             ends: Vec::with_capacity(frames.frames() * joints),
             lengthened: vec![0.0; joints],
             posed: Vec::new(),
-            follows_path: document.skeleton_rig.follow_path.is_some(),
+            follows_path: document.follows_path(),
         };
         for frame in 0..frames.frames() {
             go_on(frame)?;

@@ -9,8 +9,10 @@ use crate::kinematics::skeleton::{Joint, JointId};
 use crate::scene::{Line, Scene};
 use crate::session::Overlays;
 
-/// Number of lines between two keys of a head.
-const STEPS: usize = 16;
+/// Number of lines of a drawn path, if its head has fewer keys.
+const LINES: usize = 2048;
+/// Greatest number of lines between two keys of a head.
+const MOST_STEPS: usize = 16;
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
@@ -93,7 +95,7 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
     }
 }
 
-/// Adds the path that the skeleton follows: one revolution of a ring, or the head's way through its keys.
+/// Adds the path that the skeleton follows: one revolution of a ring, or the head's path through its keys.
 fn add_path(scene: &mut Scene, rig: &SkeletonRig, time: f64) {
     let to_world = rig.skeleton.transform();
     match rig.follow_path {
@@ -104,11 +106,12 @@ fn add_path(scene: &mut Scene, rig: &SkeletonRig, time: f64) {
         }
         Some(FollowPath::Head) => {
             let knots = rig.head_track.as_ref().map_or(&[][..], |track| track.knots());
+            let steps = (LINES / knots.len().max(1)).clamp(1, MOST_STEPS);
             for pair in knots.windows(2) {
                 let (from, to) = (pair[0].time, pair[1].time);
-                let time = move |step: usize| from + (to - from) * step as f64 / STEPS as f64;
+                let time = move |step: usize| from + (to - from) * step as f64 / steps as f64;
                 let at = |step| rig.head_track.as_ref()?.at(time(step));
-                let points = || (0..=STEPS).filter_map(at);
+                let points = || (0..=steps).filter_map(at);
                 add_curve(scene, || points().map(|point| to_world.transform_point3(point)));
             }
         }

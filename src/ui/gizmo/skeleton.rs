@@ -52,7 +52,7 @@ struct JointHandles {
     handles: TranslateHandles,
 }
 
-/// The circle of a target, or of a head that its body follows.
+/// The circle of a target or of a head that can be dragged.
 struct Mark {
     grip: Grip,
     at: Pos2,
@@ -166,6 +166,7 @@ impl JointHandles {
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
+    let is_on_path = is_on_path(session);
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
         let is_root_point =
@@ -175,12 +176,15 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
-            can_be_posed: !rig.is_on_path()
-                && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
+            can_be_posed: !is_on_path && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
         }
     };
     pose.ids().map(bone).collect()
+}
+
+fn is_on_path(session: &Session) -> bool {
+    session.skeleton_rig().is_on_path(session.time())
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
@@ -193,14 +197,14 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
 }
 
-/// The circle of a head that its body follows; `None` without one.
+/// The circle of the head that can be dragged; `None` without one.
 fn head(screen: &ScreenProjection, session: &Session) -> Option<Mark> {
-    let head = followed_head(session)?;
-    let at = screen.place(session.skeleton_pose().base(head))?;
+    let head = draggable_head(session)?;
+    let at = screen.place(session.evaluated_skeleton().fk.base(head))?;
     Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
 }
 
-fn followed_head(session: &Session) -> Option<JointId> {
+fn draggable_head(session: &Session) -> Option<JointId> {
     let rig = session.skeleton_rig();
     rig.head().filter(|_| rig.follow_path == Some(FollowPath::Head))
 }
@@ -210,12 +214,11 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let Some(selected) = session.selected() else { return Vec::new() };
     let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
     let report = target.and_then(|joint| session.target_report(joint));
-    let head = followed_head(session).filter(|head| *head == selected);
-    let head = head.map(|head| session.skeleton_pose().base(head));
+    let head = draggable_head(session).filter(|head| *head == selected);
     let points: [(JointId, GripOfJoint, Option<Vec3>); 3] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
-        (selected, Grip::Head, head),
+        (selected, Grip::Head, head.map(|head| session.evaluated_skeleton().fk.base(head))),
     ];
     let handles = |(joint, grip, point): (JointId, GripOfJoint, Option<Vec3>)| {
         let handles = TranslateHandles::new(screen, point?, None)?;
@@ -226,7 +229,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
 
 /// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let Some(joint) = session.selected().filter(|_| !session.skeleton_rig().is_on_path()) else {
+    let Some(joint) = session.selected().filter(|_| !is_on_path(session)) else {
         return Vec::new();
     };
     let ring = |axis| RotateRing::new(screen, Grip::Ring(joint, axis), session.ring(joint, axis)?);

@@ -10,11 +10,10 @@ use super::targets;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit};
 use crate::session::{Actions, EditAction, Session};
-use crate::ui::style;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
+use crate::ui::{labels, style};
 
 const STIFF: &str = "The limits leave one angle only";
-const FOLLOWS_PATH: &str = "Set Follow path to None to rotate joints";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
@@ -35,10 +34,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
-    let is_on_path = session.skeleton_rig().is_on_path();
-    let shown = match is_on_path {
-        true => session.evaluated_skeleton().fk[index].rotation,
-        false => joint.rotation,
+    let follows_path = labels::why_on_path(session);
+    let shown = match follows_path {
+        Some(_) => session.evaluated_skeleton().fk[index].rotation,
+        None => joint.rotation,
     };
     if let Some(target) = session.skeleton_rig().target_that_turns(index)
         && let Some((_, end)) = targets::end(session.skeleton_rig(), target)
@@ -62,7 +61,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
             default: 0.0,
             unit: "°",
             step: 1.0,
-            disabled: is_on_path.then_some(FOLLOWS_PATH).or(is_stiff.then_some(STIFF)),
+            disabled: follows_path.or(is_stiff.then_some(STIFF)),
             channel: Some(Channel::Rotation(index)),
         };
         slider.show(ui, session, actions, |degrees| {

@@ -1,12 +1,13 @@
 //! The reason why solvers are disabled.
 
 use crate::session::Session;
+use crate::ui::labels;
 
 /// The reason why solvers are disabled; `None` if they can run.
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton_rig();
-    if rig.is_on_path() {
-        Some("Set Follow path to None to solve")
+    if let Some(reason) = labels::why_on_path(session) {
+        Some(reason)
     } else if rig.targets.is_empty() {
         Some("Add a target to a joint first")
     } else if !rig.targets.iter().any(|target| target.enabled) {

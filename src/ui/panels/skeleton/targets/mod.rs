@@ -12,9 +12,9 @@ use crate::document::{Channel, SkeletonRig, Target, TargetPath};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetKind, TargetReport};
 use crate::session::{Actions, EditAction, SelectAction, Session};
+use crate::ui::labels;
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
 
-const FOLLOWS_PATH: &str = "Set Follow path to None to write joint angles";
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
 /// Shows the list of targets.
@@ -149,10 +149,8 @@ fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Action
             actions.push(EditAction::MatchTargetToFk(target.joint));
         }
         let tooltip = "Write the shown pose to the joint angles; nothing moves";
-        let disabled = match session.skeleton_rig().is_on_path() {
-            true => Some(FOLLOWS_PATH),
-            false => (!target.is_posing()).then_some(NO_INFLUENCE),
-        };
+        let disabled =
+            labels::why_on_path(session).or((!target.is_posing()).then_some(NO_INFLUENCE));
         if widgets::button(ui, "FK to pose", tooltip, disabled) {
             actions.push(EditAction::MatchFkToPose(target.joint));
         }
