@@ -153,3 +153,34 @@ fn a_snake_longer_than_its_path_terminates() {
     assert_eq!(points.len(), JOINTS + 1);
     assert!(evaluated.get() < 2_000_000, "{} evaluations", evaluated.get());
 }
+
+#[test]
+fn joints_on_a_line_of_many_points_are_where_they_are_on_the_path() {
+    let lengths = [0.3, 0.05, 0.2, 0.4, 0.1];
+    for turns in [0.0, 0.3, 2.7] {
+        let on_path = follow::along(|s| PATH.point(s), turns, 1.0 / 256.0, lengths);
+        let line = (0..20_000).map(|step| PATH.point(turns - f64::from(step) * 5e-5));
+        let on_line: Vec<Vec3> = follow::along_line(line, lengths).collect();
+        for (one, other) in on_path[1..].iter().zip(&on_line) {
+            assert!(one.distance(*other) < 1e-4, "{one} and {other}");
+        }
+    }
+}
+
+#[test]
+fn a_line_goes_on_straight_beyond_its_end_and_repeated_points_do_not_bend_it() {
+    let line = [Vec3::X, Vec3::X, Vec3::ZERO, Vec3::ZERO, Vec3::Y, Vec3::Y];
+    let joints: Vec<Vec3> = follow::along_line(line, [0.5, 0.5, 0.0, 1.0, 2.0, 3.0]).collect();
+    let expected = [Vec3::X * 0.5, Vec3::ZERO, Vec3::ZERO, Vec3::Y, Vec3::Y * 3.0, Vec3::Y * 6.0];
+    for (joint, expected) in joints.iter().zip(expected) {
+        assert!(joint.distance(expected) < 1e-6, "{joints:?}");
+    }
+}
+
+#[test]
+fn a_line_of_one_point_or_none_keeps_all_joints_together() {
+    let point: Vec<Vec3> = follow::along_line([Vec3::ONE], [1.0, 2.0]).collect();
+    assert_eq!(point, [Vec3::ONE; 2]);
+    let nothing: Vec<Vec3> = follow::along_line([], [1.0, 2.0]).collect();
+    assert_eq!(nothing, [Vec3::ZERO; 2]);
+}

@@ -1,4 +1,4 @@
-use core::iter::{once, repeat_n};
+use core::iter::once;
 
 use glam::Vec3;
 
@@ -37,11 +37,11 @@ fn on_spline(keys: &Spline<Vec3>, time: f64, length: f32) -> impl Iterator<Item 
         let from = knots[index].time;
         let to = knots.get(index + 1).map_or(from, |next| next.time.min(time));
         let steps = steps(knots, index, length);
-        let times = repeat_n((from, to), steps).enumerate().map(move |(step, (from, to))| {
+        let point = move |step: usize| {
             let back = step as f64 / steps as f64;
-            to * (1.0 - back) + from * back
-        });
-        times.filter_map(|time| keys.at(time))
+            keys.at(to * (1.0 - back) + from * back)
+        };
+        (0..steps).filter_map(point)
     })
 }
 
@@ -52,8 +52,8 @@ fn steps(knots: &[Knot<Vec3>], index: usize, length: f32) -> usize {
     const MOST: f32 = 64.0;
     // The tangents at the ends depend on the neighbours.
     let around = &knots[index.saturating_sub(1)..(index + 3).min(knots.len())];
-    let way: f32 = around.windows(2).map(|pair| pair[0].value.distance(pair[1].value)).sum();
-    let steps = (ON_BODY * way / length).ceil();
+    let distance: f32 = around.windows(2).map(|pair| pair[0].value.distance(pair[1].value)).sum();
+    let steps = (ON_BODY * distance / length).ceil();
     // Also for NaN, of a body without length.
     if steps < MOST { steps.max(1.0) as usize } else { MOST as usize }
 }

@@ -1,6 +1,7 @@
 //! The path that the first chain follows: a wavy ring, or the path of its head.
 
 use egui::Ui;
+use glam::Vec3;
 
 use super::choice::Choice;
 use crate::document::{Channel, FollowPath, WavyRing};
@@ -54,7 +55,7 @@ fn head(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         name: "Head",
         labels: AXES,
         value: rig.skeleton[head].offset,
-        default: session.document().skeleton()[head].offset,
+        default: Vec3::ZERO,
         range: 2.0 * rig.reach(),
         step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the head in skeleton space; the body follows",
