@@ -72,8 +72,8 @@ impl SkeletonRig {
     pub fn pull_head(&mut self, points: &[Vec3]) {
         let (Some(head), Some(last)) = (self.head(), points.last()) else { return };
         let is_pulled = self.follow_path == Some(FollowPath::Head) && self.head_track.is_none();
-        let chain = PathChain::pulled_through(&self.skeleton, points).filter(|_| is_pulled);
-        if let Some(pulled) = chain.map(|chain| chain.posed()) {
+        let pulled = || Some(PathChain::pulled_through(&self.skeleton, points)?.posed());
+        if let Some(pulled) = is_pulled.then(pulled).flatten() {
             self.skeleton = Shared::from(pulled);
         } else {
             self.skeleton_mut().write_local(head, |head| head.offset = *last);
