@@ -15,6 +15,7 @@ mod rotation_between;
 mod saturate;
 mod shared;
 pub mod skeleton;
+pub mod skin;
 pub mod soft_reach;
 pub mod spline;
 pub mod twist;

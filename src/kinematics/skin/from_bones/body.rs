@@ -1,0 +1,209 @@
+//! The round cones that a skin is made of, and how strongly each pair of them blends.
+
+use glam::DVec3;
+
+use super::error::SkinShapeError;
+use super::round_cone::RoundCone;
+use super::shape::{Blob, SkinShape};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+
+/// One round cone of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The joint that it moves with.
+    pub joint: JointId,
+    pub cone: RoundCone,
+    kind: PartKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum PartKind {
+    Bone,
+    /// From a bone to a child whose base is not on it.
+    Link,
+    Blob,
+}
+
+/// Two parts that blend smoothly, with the width of their blend.
+#[derive(Clone, Copy, Debug)]
+pub struct Blend {
+    pub first: usize,
+    pub second: usize,
+    pub width: f64,
+}
+
+/// The parts of one connected tree.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub parts: Vec<Part>,
+    pub blends: Vec<Blend>,
+}
+
+impl Body {
+    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any part.
+    pub fn all(skeleton: &Skeleton, shape: &SkinShape) -> Result<Vec<Self>, SkinShapeError> {
+        check(skeleton, shape)?;
+        let pose = skeleton.bind_pose_in_skeleton();
+        let mut parts = bones(skeleton, &pose, shape.thickness);
+        parts.extend(links(skeleton, &pose, shape.thickness));
+        parts.extend(blobs(&shape.blobs, &pose, shape.thickness));
+        if parts.is_empty() {
+            return Err(SkinShapeError::NoRadius);
+        }
+        let root = |joint: JointId| skeleton.ancestors(joint).last().unwrap_or(joint);
+        let roots = skeleton.ids().filter(|joint| skeleton[*joint].parent.is_none());
+        let of_root = |tree: JointId| {
+            let parts = parts.iter().copied().filter(|part| root(part.joint) == tree);
+            Self::new(parts.collect(), skeleton)
+        };
+        Ok(roots.map(of_root).filter(|body| !body.parts.is_empty()).collect())
+    }
+
+    fn new(parts: Vec<Part>, skeleton: &Skeleton) -> Self {
+        let mut blends = Vec::new();
+        for (second, other) in parts.iter().enumerate() {
+            for (first, part) in parts[..second].iter().enumerate() {
+                let width = blend_width(part, other, skeleton);
+                if width > 0.0 {
+                    blends.push(Blend { first, second, width });
+                }
+            }
+        }
+        Self { parts, blends }
+    }
+
+    /// Makes parts that are thinner than `radius` that thick.
+    pub fn thicken(&mut self, radius: f64) {
+        for part in &mut self.parts {
+            part.cone = part.cone.thickened(radius);
+        }
+    }
+}
+
+fn check(skeleton: &Skeleton, shape: &SkinShape) -> Result<(), SkinShapeError> {
+    let SkinShape { detail, thickness, blobs } = shape;
+    if !(SkinShape::LEAST_DETAIL..=SkinShape::MOST_DETAIL).contains(detail) {
+        return Err(SkinShapeError::Detail(*detail));
+    }
+    if !(thickness.is_finite() && *thickness > 0.0) {
+        return Err(SkinShapeError::Thickness(*thickness));
+    }
+    if blobs.len() > SkinShape::MOST_BLOBS {
+        return Err(SkinShapeError::TooManyBlobs(blobs.len()));
+    }
+    let joints = skeleton.joints().len();
+    for (index, blob) in blobs.iter().enumerate() {
+        if blob.joint.index() >= joints {
+            return Err(SkinShapeError::BlobJoint { blob: index, joints, got: blob.joint });
+        }
+        let is_radius = |radius: f32| radius.is_finite() && radius > 0.0;
+        let is_sound = blob.base.is_finite()
+            && blob.tip.is_finite()
+            && is_radius(blob.base_radius)
+            && is_radius(blob.tip_radius);
+        if !is_sound {
+            return Err(SkinShapeError::Blob { blob: index });
+        }
+    }
+    Ok(())
+}
+
+/// A bone has its joint's radius at its base. At its tip it has the radius of the one joint that continues
+/// it; otherwise its own.
+fn bones(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let with_radius = skeleton.iter().filter(|(_, joint)| joint.radius > 0.0);
+    let bone = |(id, joint): (JointId, &Joint)| {
+        let mut at_tip = skeleton.children(id).filter(|child| is_at_tip(skeleton, *child));
+        let radius = match (at_tip.next(), at_tip.next()) {
+            (Some(child), None) if skeleton[child].radius > 0.0 => skeleton[child].radius,
+            _ => joint.radius,
+        };
+        let (base, tip) = (pose.base(id).as_dvec3(), pose.tip(id).as_dvec3());
+        let [base_radius, tip_radius] =
+            [joint.radius, radius].map(|radius| f64::from(radius * thickness));
+        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
+        Part { joint: id, cone, kind: PartKind::Bone }
+    };
+    with_radius.map(bone).collect()
+}
+
+/// Round cones from bones to the bases of children that are not on them, so that no part of a body
+/// floats beside it.
+fn links(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let link = |(id, joint): (JointId, &Joint)| {
+        let parent = joint.parent?;
+        let radius = f64::from(joint.radius.min(skeleton[parent].radius) * thickness);
+        let (base, tip) = (pose.base(parent).as_dvec3(), pose.tip(parent).as_dvec3());
+        let child = pose.base(id).as_dvec3();
+        let near = nearest_on_segment(base, tip, child);
+        let is_apart = near.distance(child) > 1e-4 * radius;
+        let cone = || RoundCone::new(near, child, radius, radius);
+        let part = || Part { joint: parent, cone: cone(), kind: PartKind::Link };
+        (radius > 0.0 && is_apart).then(part)
+    };
+    skeleton.iter().filter_map(link).collect()
+}
+
+fn blobs(blobs: &[Blob], pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let part = |blob: &Blob| {
+        let space = pose.full(blob.joint);
+        let [base, tip] =
+            [blob.base, blob.tip].map(|centre| space.transform_point3(centre).as_dvec3());
+        let [base_radius, tip_radius] =
+            [blob.base_radius, blob.tip_radius].map(|radius| f64::from(radius * thickness));
+        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
+        Part { joint: blob.joint, cone, kind: PartKind::Blob }
+    };
+    blobs.iter().map(part).collect()
+}
+
+fn nearest_on_segment(base: DVec3, tip: DVec3, point: DVec3) -> DVec3 {
+    let axis = tip - base;
+    let fraction = (point - base).dot(axis) / axis.length_squared();
+    if fraction.is_finite() { base + axis * fraction.clamp(0.0, 1.0) } else { base }
+}
+
+fn is_at_tip(skeleton: &Skeleton, child: JointId) -> bool {
+    let joint = &skeleton[child];
+    let Some(parent) = joint.parent.map(|parent| &skeleton[parent]) else { return false };
+    joint.offset.distance(parent.axis) <= 1e-4 * parent.axis.length()
+}
+
+/// Width of the blend of two parts, at most half of their smaller radius. Bones blend with their parents,
+/// children and the siblings that start at the same point, the more the sharper the bend: bones in line
+/// would swell where they meet. All other bones do not blend, so that fingers do not melt together.
+fn blend_width(one: &Part, other: &Part, skeleton: &Skeleton) -> f64 {
+    let most = 0.5 * one.cone.least_radius().min(other.cone.least_radius());
+    let parent = |part: &Part| skeleton[part.joint].parent;
+    let is_parent = parent(other) == Some(one.joint) || parent(one) == Some(other.joint);
+    let is_sibling = parent(one).is_some() && parent(one) == parent(other);
+    match (one.kind, other.kind) {
+        _ if one.joint == other.joint => most,
+        (PartKind::Bone, PartKind::Bone) if is_parent || is_sibling => {
+            most * sharpness(&one.cone, &other.cone, is_sibling)
+        }
+        _ if is_parent => most,
+        _ => 0.0,
+    }
+}
+
+/// How sharply two bones meet: 0 if they go straight on with one radius, 1 for a bend by 90° or more or if
+/// one is twice as thick. 0 for bones that do not meet.
+fn sharpness(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
+    let direction = |cone: &RoundCone| cone.direction().try_normalize();
+    let cosine = direction(one).zip(direction(other)).map(|(one, other)| one.dot(other));
+    let apart = |one: (DVec3, f64), other: (DVec3, f64)| one.0.distance_squared(other.0);
+    let (ends, sign) = if are_siblings {
+        ([one.start(), other.start()], -1.0)
+    } else if apart(one.end(), other.start()) <= apart(one.start(), other.end()) {
+        ([one.end(), other.start()], 1.0)
+    } else {
+        ([one.start(), other.end()], 1.0)
+    };
+    let [(point, radius), (other_point, other_radius)] = ends;
+    let least = radius.min(other_radius);
+    let bend = cosine.map_or(0.0, |cosine| 1.0 - sign * cosine);
+    let step = (radius - other_radius).abs() / least;
+    let apart = point.distance(other_point) / least;
+    bend.max(step).clamp(0.0, 1.0) * (1.0 - apart).max(0.0)
+}

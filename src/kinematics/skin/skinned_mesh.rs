@@ -1,0 +1,162 @@
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+use super::error::SkinError;
+use super::skin_pose::SkinPose;
+use super::skinning::Skinning;
+use super::triangle_mesh::TriangleMesh;
+use super::vertex_weights::VertexWeights;
+use crate::kinematics::skeleton::{JointId, JointRemap};
+
+/// A mesh whose vertices follow joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinnedMesh {
+    mesh: TriangleMesh,
+    weights: Vec<VertexWeights>,
+    inverse_binds: Vec<Affine3A>,
+}
+
+impl SkinnedMesh {
+    /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹ from
+    /// mesh space to the joint's own space.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinError`] if the lists do not fit each other or a number is not finite.
+    pub fn new(
+        mesh: TriangleMesh,
+        weights: Vec<VertexWeights>,
+        inverse_binds: Vec<Affine3A>,
+    ) -> Result<Self, SkinError> {
+        let vertices = mesh.positions.len();
+        let coordinates = match mesh.texture_coordinates.len() {
+            0 => vertices,
+            some => some,
+        };
+        let lists = [
+            ("normals", mesh.normals.len()),
+            ("texture coordinates", coordinates),
+            ("weights", weights.len()),
+        ];
+        for (list, got) in lists {
+            if got != vertices {
+                return Err(SkinError::Count { list, vertices, got });
+            }
+        }
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
+            if let Some(&got) = corners.iter().find(|corner| **corner as usize >= vertices) {
+                return Err(SkinError::Triangle { triangle, vertices, got });
+            }
+        }
+        let joints = inverse_binds.len();
+        for (vertex, weights) in weights.iter().enumerate() {
+            if let Some((got, _)) = weights.iter().find(|(joint, _)| joint.index() >= joints) {
+                return Err(SkinError::Joint { vertex, joints, got });
+            }
+        }
+        for vectors in [&mesh.positions, &mesh.normals] {
+            if let Some(vertex) = vectors.iter().position(|vector| !vector.is_finite()) {
+                return Err(SkinError::NotFinite { vertex, got: vectors[vertex] });
+            }
+        }
+        if let Some(joint) = inverse_binds.iter().position(|bind| !bind.is_finite()) {
+            return Err(SkinError::Bind { joint: JointId::new(joint) });
+        }
+        Ok(Self { mesh, weights, inverse_binds })
+    }
+
+    /// The mesh as it was attached, in mesh space.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// Weights of the vertices.
+    pub fn weights(&self) -> &[VertexWeights] {
+        &self.weights
+    }
+
+    /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space.
+    pub fn inverse_binds(&self) -> &[Affine3A] {
+        &self.inverse_binds
+    }
+
+    /// Memory in bytes.
+    pub fn bytes(&self) -> usize {
+        let TriangleMesh { positions, normals, texture_coordinates, triangles } = &self.mesh;
+        size_of_val(&positions[..])
+            + size_of_val(&normals[..])
+            + size_of_val(&texture_coordinates[..])
+            + size_of_val(&triangles[..])
+            + size_of_val(&self.weights[..])
+            + size_of_val(&self.inverse_binds[..])
+    }
+
+    /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from outside
+    /// also if the skeleton's transform mirrors.
+    pub fn posed(&self, pose: &SkinPose, skinning: Skinning) -> TriangleMesh {
+        let mut posed = self.mesh.clone();
+        self.write_posed(pose, skinning, &mut posed.positions, &mut posed.normals);
+        if pose.to_world().matrix3.determinant() < 0.0 {
+            for [_, second, third] in &mut posed.triangles {
+                core::mem::swap(second, third);
+            }
+        }
+        posed
+    }
+
+    /// Writes the positions and unit normals of the mesh posed in the world into existing lists.
+    pub fn write_posed(
+        &self,
+        pose: &SkinPose,
+        skinning: Skinning,
+        positions: &mut Vec<Vec3>,
+        normals: &mut Vec<Vec3>,
+    ) {
+        positions.clear();
+        normals.clear();
+        let vertices = self.mesh.positions.iter().zip(&self.mesh.normals).zip(&self.weights);
+        for ((position, normal), weights) in vertices {
+            let blend = match skinning {
+                Skinning::Linear => pose.linear(weights),
+                Skinning::DualQuaternion => pose.dual_quaternion(weights),
+                Skinning::SpreadTwist => pose.spread_twist(weights, *position),
+            };
+            let blend = pose.to_world() * blend;
+            positions.push(blend.transform_point3(*position));
+            normals.push(posed_normal(blend.matrix3, *normal));
+        }
+    }
+
+    /// The mesh for a skeleton with other indices: the vertices of a removed joint follow the nearest
+    /// ancestor that is left. `parents` has the parents before the removal, `joints` is the number of
+    /// joints after it; added joints have no vertices.
+    #[must_use]
+    pub fn remapped(
+        &self,
+        remap: &JointRemap,
+        parents: &[Option<JointId>],
+        inverse_binds: Vec<Affine3A>,
+    ) -> Self {
+        let left = |joint: JointId| {
+            let mut above = core::iter::successors(Some(joint), |joint| {
+                parents.get(joint.index()).copied().flatten()
+            });
+            above.find_map(|joint| remap.get(joint)).unwrap_or(JointId::new(0))
+        };
+        let remapped = |weights: &VertexWeights| {
+            VertexWeights::heaviest(weights.iter().map(|(joint, weight)| (left(joint), weight))).0
+        };
+        let weights = self.weights.iter().map(remapped).collect();
+        Self { mesh: self.mesh.clone(), weights, inverse_binds }
+    }
+}
+
+/// A normal under the linear part of a transform: the inverse transpose, computed by cofactors so that
+/// a collapsed mesh has normals too. Without a direction, the original normal.
+fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
+    let Mat3A { x_axis, y_axis, z_axis } = linear;
+    let cofactors =
+        Mat3A::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));
+    let mirror = if x_axis.dot(y_axis.cross(z_axis)) < 0.0 { -1.0 } else { 1.0 };
+    let posed = cofactors * Vec3A::from(normal) * mirror;
+    posed.try_normalize().map_or(normal, Vec3::from)
+}

@@ -1,0 +1,68 @@
+use crate::kinematics::skeleton::JointId;
+
+/// The joints that a vertex follows, at most four, with their weights: above 0, the heaviest first, their
+/// sum 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexWeights {
+    joints: [u16; 4],
+    weights: [f32; 4],
+}
+
+impl VertexWeights {
+    /// Full weight for one joint.
+    pub fn rigid(joint: JointId) -> Self {
+        Self::heaviest([(joint, 1.0)]).0
+    }
+
+    /// The four heaviest of any number of weights, scaled to the sum 1, and the part of the original sum
+    /// that was cut. Weights of the same joint are added; weights that are not finite or not above 0 count
+    /// as 0. Without any weight above 0 the vertex follows joint 0.
+    pub fn heaviest(weights: impl IntoIterator<Item = (JointId, f32)>) -> (Self, f32) {
+        let mut merged: Vec<(JointId, f64)> = Vec::new();
+        for (joint, weight) in weights {
+            let weight = f64::from(weight);
+            if !(weight.is_finite() && weight > 0.0) {
+                continue;
+            }
+            match merged.iter_mut().find(|(other, _)| *other == joint) {
+                Some((_, sum)) => *sum += weight,
+                None => merged.push((joint, weight)),
+            }
+        }
+        merged.sort_by(|one, other| other.1.total_cmp(&one.1).then(one.0.cmp(&other.0)));
+        let all: f64 = merged.iter().map(|(_, weight)| weight).sum();
+        let kept: f64 = merged.iter().take(4).map(|(_, weight)| weight).sum();
+        let mut result = Self { joints: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] };
+        for (index, (joint, weight)) in merged.into_iter().take(4).enumerate() {
+            result.joints[index] = u16::try_from(joint.index()).unwrap_or(u16::MAX);
+            result.weights[index] = (weight / kept) as f32;
+        }
+        (result, if all > 0.0 { (1.0 - kept / all) as f32 } else { 0.0 })
+    }
+
+    /// The joints with their weights, the heaviest first.
+    pub fn iter(&self) -> impl Iterator<Item = (JointId, f32)> + Clone + '_ {
+        let joints = self.joints.iter().map(|joint| JointId::new(usize::from(*joint)));
+        joints.zip(self.weights).take_while(|(_, weight)| *weight > 0.0)
+    }
+
+    /// The heaviest joint.
+    pub fn first(&self) -> JointId {
+        JointId::new(usize::from(self.joints[0]))
+    }
+
+    /// The weight of a joint; 0 if the vertex does not follow it.
+    pub fn of(&self, joint: JointId) -> f32 {
+        self.iter().find(|(other, _)| *other == joint).map_or(0.0, |(_, weight)| weight)
+    }
+
+    /// Joint indices, with 0 where there are fewer than four, as graphics devices take them.
+    pub fn joints(&self) -> [u16; 4] {
+        self.joints
+    }
+
+    /// Weights in the order of [`VertexWeights::joints`], with 0 where there are fewer than four.
+    pub fn weights(&self) -> [f32; 4] {
+        self.weights
+    }
+}
