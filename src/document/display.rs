@@ -50,6 +50,17 @@ pub enum Overlay {
     Hand,
     /// The skeleton's FK pose, beside the pose that the targets give it.
     FkPose,
+    /// The skin of a skeleton that has one.
+    Skin,
+    /// The bones of a skeleton with a skin, through the skin. Without it, the bones are hidden while the
+    /// skin is shown.
+    Bones,
+    /// The edges of the skin's triangles.
+    Wireframe,
+    /// The weights of the selected joint, as colours of the skin.
+    SkinWeights,
+    /// The skin three times side by side, once for each way of blending joints.
+    CompareSkinning,
 }
 
 impl Overlay {
@@ -73,6 +84,11 @@ impl Overlay {
             Self::TwistReferences => "twist_references",
             Self::Hand => "hand",
             Self::FkPose => "fk_pose",
+            Self::Skin => "skin",
+            Self::Bones => "bones",
+            Self::Wireframe => "wireframe",
+            Self::SkinWeights => "skin_weights",
+            Self::CompareSkinning => "compare_skinning",
         }
     }
 
@@ -94,7 +110,14 @@ impl Overlay {
     pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Overlays of the skeleton alone.
-    pub const SKELETON: [Self; 1] = [Self::FkPose];
+    pub const SKELETON: [Self; 6] = [
+        Self::FkPose,
+        Self::Skin,
+        Self::Bones,
+        Self::Wireframe,
+        Self::SkinWeights,
+        Self::CompareSkinning,
+    ];
 
     /// Overlays that show motion over time.
     pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
@@ -148,10 +171,11 @@ impl FromIterator<Overlay> for Display {
 }
 
 impl Default for Display {
-    /// A display of the surroundings, Cursor, Pointer, hand and trail. The limits are hidden, since
+    /// A display of the surroundings, Cursor, Pointer, hand, skin and trail. The limits are hidden, since
     /// their spheres would cover the arm.
     fn default() -> Self {
-        let guides = [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Trail];
+        let guides =
+            [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Skin, Overlay::Trail];
         Overlay::SURROUNDINGS.into_iter().chain(guides).collect()
     }
 }

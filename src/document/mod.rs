@@ -31,7 +31,7 @@ mod target_space;
 mod timeline;
 
 pub use crate::kinematics::twist::TwistReferenceKind;
-pub use crate::rig::{FollowPath, SkeletonRig, Target, TargetMotion, TargetPath, WavyRing};
+pub use crate::rig::{FollowPath, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing};
 pub use arm::Arm;
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};

@@ -28,7 +28,7 @@ impl Backdrop {
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
                 depth: wgpu::CompareFunction::Always,
-                opaque: true,
+                output: pipeline::Output::Opaque,
             },
         );
         Self { pipeline }

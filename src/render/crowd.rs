@@ -192,7 +192,7 @@ impl CrowdRenderer {
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
                 depth: wgpu::CompareFunction::Greater,
-                opaque: true,
+                output: pipeline::Output::Opaque,
             },
         );
         let uniform_of = |label, size: usize| {

@@ -52,7 +52,7 @@ impl Globes {
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,
                 depth: wgpu::CompareFunction::Greater,
-                opaque: false,
+                output: pipeline::Output::Blended,
             },
         );
         Self { pipeline, uniforms, shown: false }

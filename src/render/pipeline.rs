@@ -11,8 +11,18 @@ pub(super) struct PipelineDescriptor<'a> {
     pub cull: Option<wgpu::Face>,
     /// Depth comparison; nearer depths are greater.
     pub depth: wgpu::CompareFunction,
-    /// Whether the pipeline replaces the colours behind and writes depth, instead of blending.
-    pub opaque: bool,
+    pub output: Output,
+}
+
+/// What a pipeline writes.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Output {
+    /// Replaces the colours behind, and writes depth.
+    Opaque,
+    /// Blends with the colours behind, without depth.
+    Blended,
+    /// Depth without colours.
+    Depth,
 }
 
 pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::RenderPipeline {
@@ -44,7 +54,8 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         depth_stencil: Some(wgpu::DepthStencilState {
             format: Canvas::DEPTH,
             depth_write_enabled: Some(
-                descriptor.opaque && descriptor.depth != wgpu::CompareFunction::Always,
+                descriptor.output != Output::Blended
+                    && descriptor.depth != wgpu::CompareFunction::Always,
             ),
             depth_compare: Some(descriptor.depth),
             stencil: Default::default(),
@@ -57,8 +68,12 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: Canvas::FORMAT,
-                blend: (!descriptor.opaque).then_some(wgpu::BlendState::ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
+                blend: (descriptor.output == Output::Blended)
+                    .then_some(wgpu::BlendState::ALPHA_BLENDING),
+                write_mask: match descriptor.output {
+                    Output::Depth => wgpu::ColorWrites::empty(),
+                    Output::Opaque | Output::Blended => wgpu::ColorWrites::ALL,
+                },
             })],
         }),
         multiview_mask: None,

@@ -38,7 +38,7 @@ impl<T: Pod + PartialEq> Quads<T> {
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,
                 depth: descriptor.depth,
-                opaque: false,
+                output: pipeline::Output::Blended,
             },
         );
         Self { pipeline, instances: InstanceBuffer::new(descriptor.label) }

@@ -3,6 +3,7 @@ use super::crowd::Crowds;
 use super::label::Labels;
 use super::line::Lines;
 use super::shadow::Shadows;
+use super::skin::Skins;
 use super::solid::Solids;
 use super::spheres::Spheres;
 use super::view::ViewUniforms;
@@ -21,6 +22,7 @@ pub struct Renderer {
     lines: Lines,
     labels: Labels,
     crowds: Crowds,
+    skins: Skins,
     counts: Counts,
 }
 
@@ -54,6 +56,7 @@ impl Renderer {
             lines: Lines::new(gpu, view.layout()),
             labels: Labels::new(gpu, view.layout()),
             crowds: Crowds::default(),
+            skins: Skins::default(),
             view,
             counts: Counts::default(),
         }
@@ -92,7 +95,8 @@ impl Renderer {
             + self.spheres.upload(gpu, scene, size)
             + self.lines.upload(gpu, scene)
             + self.labels.upload(gpu, scene, size, scale)
-            + self.crowds.upload(gpu, self.view.layout(), scene, size);
+            + self.crowds.upload(gpu, self.view.layout(), scene, size)
+            + self.skins.upload(gpu, self.view.layout(), scene);
         let count = |lengths: &[usize]| lengths.iter().sum::<usize>() as u32;
         let guides = [scene.guide_solids.len(), scene.guide_balls.len()];
         self.counts = Counts {
@@ -110,6 +114,7 @@ impl Renderer {
             + self.shadows.triangles()
             + self.spheres.triangles()
             + self.lines.triangles()
+            + self.skins.triangles()
             + self.labels.triangles()
     }
 
@@ -151,10 +156,12 @@ impl Renderer {
         self.backdrop.draw(&mut pass);
         self.crowds.draw(&mut pass);
         self.solids.draw(&mut pass);
+        self.skins.draw_opaque(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
         self.spheres.draw(&mut pass);
         self.lines.draw(&mut pass);
+        self.skins.draw_see_through(&mut pass);
         self.labels.draw(&mut pass);
         drop(pass);
         encoder.finish()

@@ -1,7 +1,9 @@
-use super::{backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, solid};
+use super::{
+    backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, skin, skin_deformer, solid,
+};
 
 /// Names and WGSL sources of all complete shaders.
-pub fn shaders() -> [(&'static str, &'static str); 10] {
+pub fn shaders() -> [(&'static str, &'static str); 12] {
     [
         ("backdrop", backdrop::SHADER),
         ("crowd_arms", crowd::ARMS),
@@ -12,6 +14,8 @@ pub fn shaders() -> [(&'static str, &'static str); 10] {
         ("line", line::SHADER),
         ("shadow", shadow::SHADER),
         ("shell", shell::SHADER),
+        ("skin", skin::SHADER),
+        ("skin_deform", skin_deformer::SHADER),
         ("solid", solid::SHADER),
     ]
 }

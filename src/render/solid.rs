@@ -92,7 +92,7 @@ impl Solids {
                 attributes: &instance,
             },
         ];
-        let pipeline = |label, fragment, depth, opaque| {
+        let pipeline = |label, fragment, depth, output| {
             pipeline::build(
                 gpu,
                 &pipeline::PipelineDescriptor {
@@ -104,17 +104,22 @@ impl Solids {
                     topology: wgpu::PrimitiveTopology::TriangleList,
                     cull: Some(wgpu::Face::Back),
                     depth,
-                    opaque,
+                    output,
                 },
             )
         };
         Self {
-            visible: pipeline("solid", "fragment", wgpu::CompareFunction::Greater, true),
+            visible: pipeline(
+                "solid",
+                "fragment",
+                wgpu::CompareFunction::Greater,
+                pipeline::Output::Opaque,
+            ),
             hidden: pipeline(
                 "solid, hidden",
                 "fragment_hidden",
                 wgpu::CompareFunction::Less,
-                false,
+                pipeline::Output::Blended,
             ),
             lods: LODS.map(|lod| DetailMeshes::new(gpu, lod.segments)),
         }

@@ -1,7 +1,9 @@
 //! What is posed: the arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and guides,
-//! the skeleton with its targets, and crowds of arms.
+//! the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
+mod attached_mesh;
+mod bone_skin;
 mod crowd;
 mod evaluate;
 mod follow_path;
@@ -11,6 +13,7 @@ mod moved_joints;
 mod path_chain;
 mod path_following;
 mod skeleton_rig;
+mod skin;
 mod tapered_cylinder;
 mod target;
 mod target_match;
@@ -20,11 +23,14 @@ mod target_space;
 mod wavy_ring;
 
 pub use arm::{ArmPart, ArmRig};
+pub use attached_mesh::AttachedMesh;
+pub use bone_skin::BoneSkin;
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
 pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 pub use follow_path::FollowPath;
 pub use limb_settings::LimbSettings;
 pub use skeleton_rig::SkeletonRig;
+pub use skin::{Skin, SkinSource};
 pub use tapered_cylinder::TaperedCylinder;
 pub use target::{Target, TargetKind};
 pub use target_motion::{TargetMotion, TargetPath};

@@ -3,6 +3,7 @@ use glam::{Vec3, Vec3A};
 use super::follow_path::FollowPath;
 use super::limb_settings::LimbSettings;
 use super::moved_joints::MovedJoints;
+use super::skin::Skin;
 use super::target::{Target, TargetKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
@@ -26,6 +27,8 @@ pub struct SkeletonRig {
     /// The keys of the head's offset, with [`FollowPath::Head`]. The evaluation of a document sets them; they
     /// are `None` in a document that is not evaluated, and never saved.
     pub head_track: Option<Shared<Spline<Vec3>>>,
+    /// The mesh that follows the joints; `None` for bones alone.
+    pub skin: Option<Skin>,
 }
 
 impl SkeletonRig {
@@ -41,6 +44,7 @@ impl SkeletonRig {
             iterations_per_frame: 1,
             follow_path: None,
             head_track: None,
+            skin: None,
         }
     }
 
@@ -144,9 +148,18 @@ impl SkeletonRig {
         self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
     }
 
-    /// Renumbers the joints of the targets; drops the targets of removed joints.
+    /// Renumbers the joints of the targets and of the skin; drops the targets of removed joints.
     pub fn remap(&mut self, remap: &JointRemap) {
         self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
+        self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap));
+    }
+
+    /// Makes a skin from bones again if the bind pose has changed since it was made.
+    pub fn refresh_skin(&mut self) {
+        let refreshed = self.skin.as_ref().and_then(|skin| skin.refreshed(&self.skeleton));
+        if refreshed.is_some() {
+            self.skin = refreshed;
+        }
     }
 }
 

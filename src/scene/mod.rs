@@ -12,6 +12,7 @@ mod planes;
 #[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod scene;
 mod shapes;
+mod skin_instance;
 
 pub use builder::SceneBuilder;
 pub use colour::Colour;
@@ -21,3 +22,4 @@ pub use palette::Palette;
 pub use planes::Planes;
 pub use scene::Scene;
 pub use shapes::{Ball, Line, Shadow, Solid, SphereShell};
+pub use skin_instance::SkinInstance;

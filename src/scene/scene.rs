@@ -4,7 +4,9 @@ use core::ops::Range;
 use glam::Vec3;
 
 use super::label::TextRange;
-use super::{Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, Solid, SphereShell};
+use super::{
+    Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, SkinInstance, Solid, SphereShell,
+};
 use crate::document::{Camera, Display, Theme};
 use crate::rig::{Crowd, TaperedCylinder};
 
@@ -33,6 +35,8 @@ pub struct Scene {
     pub globe: Option<Globe>,
     /// Crowd that is drawn instead of the rig. The renderer solves it.
     pub crowd: Option<Crowd>,
+    /// Skins.
+    pub skins: Vec<SkinInstance>,
     /// Lines.
     pub lines: Vec<Line>,
     /// Labels, drawn over everything else.
@@ -60,6 +64,7 @@ impl Scene {
             shells: Vec::new(),
             globe: None,
             crowd: None,
+            skins: Vec::new(),
             lines: Vec::new(),
             labels: Vec::new(),
             text: String::new(),
@@ -76,6 +81,7 @@ impl Scene {
         self.shells.clear();
         self.globe = None;
         self.crowd = None;
+        self.skins.clear();
         self.lines.clear();
         self.labels.clear();
         self.text.clear();

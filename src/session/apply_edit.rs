@@ -85,6 +85,8 @@ impl Session {
             EditAction::SetLocked { joint, locked } => {
                 self.change_joint(joint, |joint| joint.locked = locked);
             }
+            EditAction::AddSkin => self.add_skin(),
+            EditAction::SetSkin(skin) => self.set_skin(skin),
             EditAction::SetTranslation(to) => self.set_translation(to),
             EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
             EditAction::SetHead(to) => self.set_head(to),

@@ -3,7 +3,8 @@ use glam::Vec3;
 use super::key::Key;
 use super::pose_mode::PoseMode;
 use crate::document::{
-    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Skin, Target, Timeline,
+    TwistReferenceKind,
 };
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{JointId, Limit};
@@ -119,6 +120,10 @@ pub enum EditAction {
         /// Whether the joint is to be locked.
         locked: bool,
     },
+    /// Gives the skeleton a skin from its bones, and shows it.
+    AddSkin,
+    /// Replaces the skin of the skeleton; `None` removes it.
+    SetSkin(Option<Skin>),
     /// Sets the path that the skeleton follows; `None` for no path.
     SetFollowPath(Option<FollowPath>),
     /// Moves the first root to a point of skeleton space. With

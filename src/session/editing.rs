@@ -178,6 +178,9 @@ impl Editing {
             is_transported || after.keys.has(*channel)
         });
         after.skeleton_rig.head_track = None;
+        if !self.is_open() {
+            after.skeleton_rig.refresh_skin();
+        }
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
@@ -345,6 +348,9 @@ impl Editing {
     /// Closes the transaction, if one is open, with an undo step.
     pub fn commit(&mut self, time: f64) {
         if let Some(transaction) = self.transaction.take() {
+            // Not during a drag, which would stop for the time that it takes.
+            self.document.skeleton_rig.refresh_skin();
+            self.shown.skeleton_rig.skin.clone_from(&self.document.skeleton_rig.skin);
             self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
         }
     }

@@ -54,6 +54,7 @@ mod shell_action;
 mod shown_iteration;
 mod skeleton_drag;
 mod skeleton_edits;
+mod skin_edits;
 mod snapshot;
 mod solver_action;
 mod solver_inputs;

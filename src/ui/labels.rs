@@ -76,6 +76,15 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         (_, Overlay::FkPose) => {
             ("FK pose", "Show the pose of the joint angles alone; shown anyway while blended")
         }
+        (_, Overlay::Skin) => ("Skin", "Show the skin"),
+        (_, Overlay::Bones) => ("Bones", "Show the bones through the skin"),
+        (_, Overlay::Wireframe) => ("Wireframe", "Show the edges of the skin's triangles"),
+        (_, Overlay::SkinWeights) => {
+            ("Weights", "Colour the skin by the weights of the selected joint")
+        }
+        (_, Overlay::CompareSkinning) => {
+            ("Compare", "Show the skin three times, once for each way of blending")
+        }
         (_, Overlay::Hand) => ("Hand", "Show the hand, and stripes for the forearm roll"),
         (_, Overlay::SingularityGlobe) => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")

@@ -9,6 +9,7 @@ use super::follow_path::FollowPathFields;
 use super::header::{FORMAT, VERSION};
 use super::keys::{ChannelFields, TimelineFields, keys};
 use super::skeleton::SkeletonFields;
+use super::skin::SkinFields;
 use super::targets::{SolverFields, TargetFields, add_targets};
 use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig};
 use crate::io::field_error::{FieldError, FieldWarnings};
@@ -22,6 +23,8 @@ pub struct DocumentFields {
     rig: RigKind,
     arm: Option<JsonObject<ArmFields>>,
     skeleton: Option<JsonObject<SkeletonFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skin: Option<JsonObject<SkinFields>>,
     targets: Option<Vec<JsonObject<TargetFields>>>,
     solver: Option<JsonObject<SolverFields>>,
     follow_path: Option<JsonObject<FollowPathFields>>,
@@ -38,7 +41,7 @@ pub struct DocumentFields {
 
 impl DocumentFields {
     pub fn new(document: &Document) -> Self {
-        let SkeletonRig { skeleton, targets, follow_path, .. } = &document.skeleton_rig;
+        let SkeletonRig { skeleton, skin, targets, follow_path, .. } = &document.skeleton_rig;
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
             format: FORMAT.to_owned(),
@@ -46,6 +49,7 @@ impl DocumentFields {
             rig: document.rig,
             arm: Some(JsonObject(ArmFields::new(&document.arm))),
             skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
+            skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
             targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
             solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
             follow_path: follow_path.as_ref().map(FollowPathFields::new).map(JsonObject),
@@ -64,6 +68,9 @@ impl DocumentFields {
         let mut skeleton_rig = SkeletonRig::default();
         if let Some(JsonObject(fields)) = self.skeleton {
             skeleton_rig.skeleton = fields.skeleton(&at("skeleton"), warnings)?.into();
+        }
+        if let Some(JsonObject(fields)) = self.skin {
+            skeleton_rig.skin = Some(fields.skin(&skeleton_rig.skeleton, &at("skin"))?);
         }
         add_targets(&mut skeleton_rig, self.targets.unwrap_or_default())?;
         if let Some(JsonObject(fields)) = self.solver {

@@ -15,6 +15,7 @@ mod keys;
 mod read;
 mod save;
 mod skeleton;
+mod skin;
 mod soft_reach;
 mod targets;
 mod version_1;

@@ -1,4 +1,4 @@
-use glam::{Affine3A, DAffine3, DMat3, DQuat, Mat3A, Quat, Vec3, Vec4};
+use glam::{Affine3A, DAffine3, DMat3, DQuat, Mat3A, Quat, Vec4};
 
 /// A rigid motion as a unit dual quaternion: rotation `real`, then translation `2·dual·real*`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,6 +10,7 @@ mod references;
 mod scratch;
 mod shadow;
 mod skeleton;
+mod skin;
 mod solver_ghosts;
 mod targets;
 

@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::drawn_skeleton::DrawnSkeleton;
 use super::scratch::Scratch;
+use super::skin::ShownSkin;
 use super::targets;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
@@ -44,12 +45,20 @@ pub(super) fn add(
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
     let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
+    let skin = ShownSkin::new(rig.skin.as_ref(), display);
     for joint in skeleton.ids() {
+        if let Some(skin) = skin.filter(|skin| !skin.has_bones()) {
+            skin.add_joint(scene, &drawn, joint, overlays, display);
+            continue;
+        }
         let colour = drawn.colour(scene, joint, overlays);
         drawn.add_bone(scene, joint, colour);
         if display.shows(Overlay::Shadow) {
             drawn.add_shadow(scene, joint);
         }
+    }
+    if let Some(skin) = skin {
+        skin.add(scene, &evaluated.solved, overlays, display);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {

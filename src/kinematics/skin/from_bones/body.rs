@@ -42,7 +42,7 @@ pub struct Body {
 impl Body {
     /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any part.
     pub fn all(skeleton: &Skeleton, shape: &SkinShape) -> Result<Vec<Self>, SkinShapeError> {
-        check(skeleton, shape)?;
+        shape.check(skeleton)?;
         let pose = skeleton.bind_pose_in_skeleton();
         let mut parts = bones(skeleton, &pose, shape.thickness);
         parts.extend(links(skeleton, &pose, shape.thickness));
@@ -78,34 +78,6 @@ impl Body {
             part.cone = part.cone.thickened(radius);
         }
     }
-}
-
-fn check(skeleton: &Skeleton, shape: &SkinShape) -> Result<(), SkinShapeError> {
-    let SkinShape { detail, thickness, blobs } = shape;
-    if !(SkinShape::LEAST_DETAIL..=SkinShape::MOST_DETAIL).contains(detail) {
-        return Err(SkinShapeError::Detail(*detail));
-    }
-    if !(thickness.is_finite() && *thickness > 0.0) {
-        return Err(SkinShapeError::Thickness(*thickness));
-    }
-    if blobs.len() > SkinShape::MOST_BLOBS {
-        return Err(SkinShapeError::TooManyBlobs(blobs.len()));
-    }
-    let joints = skeleton.joints().len();
-    for (index, blob) in blobs.iter().enumerate() {
-        if blob.joint.index() >= joints {
-            return Err(SkinShapeError::BlobJoint { blob: index, joints, got: blob.joint });
-        }
-        let is_radius = |radius: f32| radius.is_finite() && radius > 0.0;
-        let is_sound = blob.base.is_finite()
-            && blob.tip.is_finite()
-            && is_radius(blob.base_radius)
-            && is_radius(blob.tip_radius);
-        if !is_sound {
-            return Err(SkinShapeError::Blob { blob: index });
-        }
-    }
-    Ok(())
 }
 
 /// A bone has its joint's radius at its base. At its tip it has the radius of the one joint that continues

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
-use crate::kinematics::skeleton::JointId;
+use super::error::SkinShapeError;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// What a skin from bones is made of beside the skeleton.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +37,39 @@ impl SkinShape {
     pub const MOST_DETAIL: f32 = 16.0;
     /// The most blobs.
     pub const MOST_BLOBS: usize = 4096;
+
+    /// Checks the numbers, and that the joints of the blobs exist.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinShapeError`] names the number and the rule.
+    pub fn check(&self, skeleton: &Skeleton) -> Result<(), SkinShapeError> {
+        let Self { detail, thickness, blobs } = self;
+        if !(Self::LEAST_DETAIL..=Self::MOST_DETAIL).contains(detail) {
+            return Err(SkinShapeError::Detail(*detail));
+        }
+        if !(thickness.is_finite() && *thickness > 0.0) {
+            return Err(SkinShapeError::Thickness(*thickness));
+        }
+        if blobs.len() > Self::MOST_BLOBS {
+            return Err(SkinShapeError::TooManyBlobs(blobs.len()));
+        }
+        let joints = skeleton.joints().len();
+        for (index, blob) in blobs.iter().enumerate() {
+            if blob.joint.index() >= joints {
+                return Err(SkinShapeError::BlobJoint { blob: index, joints, got: blob.joint });
+            }
+            let is_radius = |radius: f32| radius.is_finite() && radius > 0.0;
+            let is_sound = blob.base.is_finite()
+                && blob.tip.is_finite()
+                && is_radius(blob.base_radius)
+                && is_radius(blob.tip_radius);
+            if !is_sound {
+                return Err(SkinShapeError::Blob { blob: index });
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Default for SkinShape {

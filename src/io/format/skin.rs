@@ -1,0 +1,121 @@
+//! Fields of a skin in a file, and conversions between these fields and a [`Skin`].
+
+use serde::{Deserialize, Serialize};
+
+use super::check::{fraction, joint, number};
+use crate::io::field_error::FieldError;
+use crate::io::json_path::JsonPath;
+use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skin::{Blob, SkinShape, SkinShapeError, Skinning};
+use crate::rig::{BoneSkin, Skin, SkinSource};
+
+#[derive(Serialize, Deserialize)]
+pub struct SkinFields {
+    bones: Option<JsonObject<SkinShapeFields>>,
+    skinning: Option<Skinning>,
+    colour: Option<JsonNumbers<3>>,
+}
+
+#[derive(Default, Serialize, Deserialize)]
+struct SkinShapeFields {
+    detail: Option<JsonNumber>,
+    thickness: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blobs: Option<Vec<JsonObject<BlobFields>>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct BlobFields {
+    joint: Whole,
+    base: JsonPoint,
+    /// Without it, the blob is a sphere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tip: Option<JsonPoint>,
+    radius: JsonNumber,
+    /// Without it, both radii are the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tip_radius: Option<JsonNumber>,
+}
+
+impl SkinFields {
+    pub fn new(skin: &Skin) -> Self {
+        let SkinSource::Bones(bones) = &skin.source;
+        Self {
+            bones: Some(JsonObject(SkinShapeFields::new(bones.shape()))),
+            skinning: Some(skin.skinning),
+            colour: Some(JsonNumbers(skin.colour)),
+        }
+    }
+
+    /// Converts the fields to a skin of `skeleton`. `at` is the path of the fields.
+    pub fn skin(self, skeleton: &Shared<Skeleton>, at: &JsonPath) -> Result<Skin, FieldError> {
+        let JsonObject(bones) = self.bones.unwrap_or(JsonObject(SkinShapeFields::default()));
+        let at_bones = at.clone().key("bones");
+        let shape = bones.shape(skeleton.joints().len(), &at_bones)?;
+        shape.check(skeleton).map_err(|error| {
+            let field = match &error {
+                SkinShapeError::Detail(_) => at_bones.clone().key("detail"),
+                SkinShapeError::Thickness(_) => at_bones.clone().key("thickness"),
+                SkinShapeError::Blob { blob } => at_bones.clone().key("blobs").index(*blob),
+                _ => at_bones.clone(),
+            };
+            FieldError::new(field, error.to_string())
+        })?;
+        let skin = Skin::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), shape)));
+        let JsonNumbers(colour) = self.colour.unwrap_or(JsonNumbers(skin.colour));
+        for (channel, value) in colour.into_iter().enumerate() {
+            fraction(at.clone().key("colour").index(channel), value)?;
+        }
+        Ok(Skin { skinning: self.skinning.unwrap_or_default(), colour, ..skin })
+    }
+}
+
+impl SkinShapeFields {
+    fn new(shape: &SkinShape) -> Self {
+        let blobs = shape.blobs.iter().map(BlobFields::new).map(JsonObject).collect();
+        Self {
+            detail: Some(JsonNumber(shape.detail)),
+            thickness: Some(JsonNumber(shape.thickness)),
+            blobs: (!shape.blobs.is_empty()).then_some(blobs),
+        }
+    }
+
+    fn shape(self, joints: usize, at: &JsonPath) -> Result<SkinShape, FieldError> {
+        let default = SkinShape::default();
+        let at_blob = |index: usize| at.clone().key("blobs").index(index);
+        let blobs = self.blobs.unwrap_or_default().into_iter().enumerate();
+        let blobs = blobs.map(|(index, JsonObject(blob))| blob.blob(joints, at_blob(index)));
+        Ok(SkinShape {
+            detail: number(self.detail, default.detail),
+            thickness: number(self.thickness, default.thickness),
+            blobs: blobs.collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl BlobFields {
+    fn new(blob: &Blob) -> Self {
+        let Blob { joint, base, tip, base_radius, tip_radius } = *blob;
+        Self {
+            joint: Whole(u32::try_from(joint.index()).unwrap_or(u32::MAX)),
+            base: JsonPoint(base),
+            tip: (tip != base).then_some(JsonPoint(tip)),
+            radius: JsonNumber(base_radius),
+            tip_radius: (tip_radius != base_radius).then_some(JsonNumber(tip_radius)),
+        }
+    }
+
+    fn blob(self, joints: usize, at: JsonPath) -> Result<Blob, FieldError> {
+        let JsonPoint(base) = self.base;
+        let JsonNumber(base_radius) = self.radius;
+        Ok(Blob {
+            joint: joint(at.key("joint"), self.joint, joints)?.into(),
+            base,
+            tip: self.tip.map_or(base, |JsonPoint(tip)| tip),
+            base_radius,
+            tip_radius: number(self.tip_radius, base_radius),
+        })
+    }
+}

@@ -1,0 +1,303 @@
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+use wgpu::util::DeviceExt as _;
+
+use super::skin_deformer::{DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
+use super::uniforms::Uniforms;
+use super::{Gpu, pipeline};
+use crate::kinematics::Shared;
+use crate::rig::AttachedMesh;
+use crate::scene::{Colour, Palette, Scene, SkinInstance};
+
+pub(super) const SHADER: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/planes.wgsl"),
+    include_str!("../../shaders/skin.wgsl"),
+);
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct Look {
+    colour: Vec4,
+    wire: Vec4,
+    offset: Vec3,
+    has_weights: f32,
+    ramp: [Vec4; Palette::GAINS],
+}
+
+const _: () = assert!(size_of::<Look>() == 8 * 16);
+
+/// Draws skins. Nothing is created before the first skin is drawn.
+#[derive(Debug, Default)]
+pub(super) struct Skins {
+    pipelines: Option<SkinPipelines>,
+    meshes: Vec<SkinMesh>,
+    skins: Vec<DrawnSkin>,
+}
+
+#[derive(Debug)]
+struct SkinPipelines {
+    deformer: SkinDeformer,
+    /// For skins that are not mirrored, and for mirrored ones.
+    opaque: [wgpu::RenderPipeline; 2],
+    /// Depth of the nearest surface of see-through skins.
+    depth: [wgpu::RenderPipeline; 2],
+    see_through: [wgpu::RenderPipeline; 2],
+    wire: wgpu::RenderPipeline,
+}
+
+/// A mesh on the device.
+#[derive(Debug)]
+struct SkinMesh {
+    mesh: Shared<AttachedMesh>,
+    vertices: SkinVertices,
+    triangles: wgpu::Buffer,
+    indices: u32,
+    /// Edges, made for the first wireframe, with the number of their indices.
+    edges: Option<(wgpu::Buffer, u32)>,
+    is_used: bool,
+}
+
+/// A posed mesh on the device.
+#[derive(Debug)]
+struct DrawnSkin {
+    mesh: Shared<AttachedMesh>,
+    deformed: DeformedSkin,
+    look: Uniforms<Look>,
+    is_mirrored: bool,
+    is_opaque: bool,
+    has_wireframe: bool,
+}
+
+impl Skins {
+    /// Sends the changes to the device, moves the vertices if a pose has changed, and returns the number of
+    /// bytes sent.
+    pub fn upload(&mut self, gpu: &Gpu, view: &wgpu::BindGroupLayout, scene: &Scene) -> u64 {
+        if scene.skins.is_empty() {
+            self.skins.clear();
+            self.meshes.clear();
+            return 0;
+        }
+        let pipelines = self.pipelines.get_or_insert_with(|| SkinPipelines::new(gpu, view));
+        self.meshes.iter_mut().for_each(|mesh| mesh.is_used = false);
+        self.skins.truncate(scene.skins.len());
+        let mut sent = 0;
+        for (index, skin) in scene.skins.iter().enumerate() {
+            let mesh = match self.meshes.iter().position(|it| it.mesh.is_same(&skin.mesh)) {
+                Some(known) => &mut self.meshes[known],
+                None => {
+                    sent += skin.mesh.mesh.bytes() as u64;
+                    self.meshes.push(SkinMesh::new(gpu, skin.mesh.clone()));
+                    let last = self.meshes.len() - 1;
+                    &mut self.meshes[last]
+                }
+            };
+            mesh.is_used = true;
+            if skin.wireframe.is_some() {
+                mesh.make_edges(gpu);
+            }
+            if index == self.skins.len() {
+                self.skins.push(DrawnSkin::new(gpu, pipelines, mesh));
+            } else if !self.skins[index].mesh.is_same(&skin.mesh) {
+                self.skins[index] = DrawnSkin::new(gpu, pipelines, mesh);
+            }
+            sent += self.skins[index].upload(gpu, pipelines, mesh, skin, &scene.palette);
+        }
+        self.meshes.retain(|mesh| mesh.is_used);
+        sent
+    }
+
+    pub fn triangles(&self) -> u32 {
+        let of = |skin: &DrawnSkin| self.mesh(skin).map_or(0, |mesh| mesh.indices / 3);
+        self.skins.iter().map(of).sum()
+    }
+
+    /// Draws the opaque skins.
+    pub fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(pipelines) = &self.pipelines else { return };
+        for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
+            self.draw(pass, skin, &pipelines.opaque[usize::from(skin.is_mirrored)]);
+            self.draw_wireframe(pass, pipelines, skin);
+        }
+    }
+
+    /// Draws the nearest surfaces of the see-through skins over what is drawn already.
+    pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(pipelines) = &self.pipelines else { return };
+        for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
+            self.draw(pass, skin, &pipelines.depth[usize::from(skin.is_mirrored)]);
+            self.draw(pass, skin, &pipelines.see_through[usize::from(skin.is_mirrored)]);
+            self.draw_wireframe(pass, pipelines, skin);
+        }
+    }
+
+    fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        skin: &DrawnSkin,
+        pipeline: &wgpu::RenderPipeline,
+    ) {
+        let Some(mesh) = self.mesh(skin) else { return };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &skin.look.group, &[]);
+        pass.set_vertex_buffer(0, skin.deformed.vertices.slice(..));
+        pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..mesh.indices, 0, 0..1);
+    }
+
+    fn draw_wireframe(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipelines: &SkinPipelines,
+        skin: &DrawnSkin,
+    ) {
+        let edges = self.mesh(skin).and_then(|mesh| mesh.edges.as_ref());
+        if let Some((edges, count)) = edges.filter(|_| skin.has_wireframe) {
+            pass.set_pipeline(&pipelines.wire);
+            pass.set_bind_group(1, &skin.look.group, &[]);
+            pass.set_vertex_buffer(0, skin.deformed.vertices.slice(..));
+            pass.set_index_buffer(edges.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..*count, 0, 0..1);
+        }
+    }
+
+    fn mesh(&self, skin: &DrawnSkin) -> Option<&SkinMesh> {
+        self.meshes.iter().find(|mesh| mesh.mesh.is_same(&skin.mesh))
+    }
+}
+
+impl SkinPipelines {
+    fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
+        let look = Uniforms::<Look>::new(gpu, "skin look");
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let buffers = [wgpu::VertexBufferLayout {
+            array_stride: size_of::<DeformedVertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        }];
+        let layouts = [view, &look.layout];
+        let plain = pipeline::PipelineDescriptor {
+            label: "skin",
+            shader: SHADER,
+            fragment: "fragment",
+            layouts: &layouts,
+            buffers: &buffers,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: Some(wgpu::Face::Back),
+            depth: wgpu::CompareFunction::Greater,
+            output: pipeline::Output::Opaque,
+        };
+        let both = |descriptor: &pipeline::PipelineDescriptor<'_>| {
+            [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
+                pipeline::build(
+                    gpu,
+                    &pipeline::PipelineDescriptor { cull: Some(cull), ..*descriptor },
+                )
+            })
+        };
+        Self {
+            deformer: SkinDeformer::new(gpu),
+            opaque: both(&plain),
+            depth: both(&pipeline::PipelineDescriptor {
+                label: "skin depth",
+                output: pipeline::Output::Depth,
+                ..plain
+            }),
+            see_through: both(&pipeline::PipelineDescriptor {
+                label: "skin, see-through",
+                depth: wgpu::CompareFunction::Equal,
+                output: pipeline::Output::Blended,
+                ..plain
+            }),
+            wire: pipeline::build(
+                gpu,
+                &pipeline::PipelineDescriptor {
+                    label: "skin wireframe",
+                    fragment: "fragment_wire",
+                    topology: wgpu::PrimitiveTopology::LineList,
+                    cull: None,
+                    depth: wgpu::CompareFunction::GreaterEqual,
+                    output: pipeline::Output::Blended,
+                    ..plain
+                },
+            ),
+        }
+    }
+}
+
+impl SkinMesh {
+    fn new(gpu: &Gpu, mesh: Shared<AttachedMesh>) -> Self {
+        let vertices = SkinVertices::new(gpu, &mesh.mesh);
+        let corners = mesh.mesh.mesh().triangles.as_flattened();
+        let (triangles, indices) = index_buffer(gpu, "skin triangles", corners);
+        Self { vertices, triangles, indices, mesh, edges: None, is_used: true }
+    }
+
+    fn make_edges(&mut self, gpu: &Gpu) {
+        let mesh = &self.mesh.mesh;
+        self.edges.get_or_insert_with(|| {
+            let triangles = mesh.mesh().triangles.iter();
+            let sides = triangles.flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+            let mut edges: Vec<[u32; 2]> =
+                sides.map(|[from, to]| [from.min(to), from.max(to)]).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            index_buffer(gpu, "skin edges", edges.as_flattened())
+        });
+    }
+}
+
+fn index_buffer(gpu: &Gpu, label: &str, indices: &[u32]) -> (wgpu::Buffer, u32) {
+    let contents = if indices.is_empty() { &[0; 3] } else { indices };
+    let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents: bytemuck::cast_slice(contents),
+        usage: wgpu::BufferUsages::INDEX,
+    });
+    (buffer, indices.len() as u32)
+}
+
+impl DrawnSkin {
+    fn new(gpu: &Gpu, pipelines: &SkinPipelines, mesh: &SkinMesh) -> Self {
+        Self {
+            mesh: mesh.mesh.clone(),
+            deformed: pipelines.deformer.skin(gpu, &mesh.vertices),
+            look: Uniforms::new(gpu, "skin look"),
+            is_mirrored: false,
+            is_opaque: true,
+            has_wireframe: false,
+        }
+    }
+
+    fn upload(
+        &mut self,
+        gpu: &Gpu,
+        pipelines: &SkinPipelines,
+        mesh: &SkinMesh,
+        skin: &SkinInstance,
+        palette: &Palette,
+    ) -> u64 {
+        let screen = |colour: Colour| Vec4::from_array(colour.channels());
+        self.is_mirrored = skin.pose.to_world().matrix3.determinant() < 0.0;
+        self.is_opaque = skin.colour.channels()[3] >= 1.0;
+        self.has_wireframe = skin.wireframe.is_some();
+        let look = Look {
+            colour: screen(skin.colour),
+            wire: skin.wireframe.map_or(Vec4::ZERO, screen),
+            offset: skin.offset,
+            has_weights: if skin.weights_of.is_some() { 1.0 } else { 0.0 },
+            ramp: palette.gains.map(screen),
+        };
+        let SkinInstance { pose, skinning, weights_of, .. } = skin;
+        self.look.upload(gpu, look)
+            + pipelines.deformer.update(
+                gpu,
+                &mesh.vertices,
+                &mut self.deformed,
+                &skin.mesh.mesh,
+                pose,
+                *skinning,
+                *weights_of,
+            )
+    }
+}

@@ -1,0 +1,258 @@
+use bytemuck::{Pod, Zeroable};
+use glam::{Affine3A, Vec3, Vec4};
+
+use super::canvas::fetch;
+use super::compute::{self, BindingKind};
+use super::{Gpu, ReadError};
+use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::{JointDeform, SkinPose, SkinnedMesh, Skinning};
+
+pub(super) const SHADER: &str = include_str!("../../shaders/skin_deform.wgsl");
+
+/// Moves vertices of skins on the device; on a device without compute shaders, on the CPU.
+#[derive(Debug)]
+pub struct SkinDeformer {
+    /// `None` without compute shaders.
+    pipeline: Option<wgpu::ComputePipeline>,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// The vertices of a mesh on the device, as they were attached.
+#[derive(Debug)]
+pub(super) struct SkinVertices {
+    buffer: wgpu::Buffer,
+    count: u32,
+    joints: u32,
+}
+
+/// The vertices of a mesh in a pose on the device.
+#[derive(Debug)]
+pub(super) struct DeformedSkin {
+    uniform: wgpu::Buffer,
+    joints: wgpu::Buffer,
+    /// Vertices with position and normal in the world.
+    pub vertices: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    /// The pose that the vertices are in.
+    sent: Option<(SkinPose, Skinning, Option<JointId>)>,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct SkinData {
+    to_world: [Vec4; 3],
+    vertices: u32,
+    skinning: u32,
+    weights_of: i32,
+    padding: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct JointData {
+    matrix: [Vec4; 3],
+    turn: [Vec4; 3],
+    turn_twice: [Vec4; 3],
+    scale: [Vec4; 3],
+    real: Vec4,
+    dual: Vec4,
+    along: Vec4,
+    roll: Vec4,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct VertexData {
+    position: Vec3,
+    joints_low: u32,
+    normal: Vec3,
+    joints_high: u32,
+    weights: [f32; 4],
+}
+
+/// A vertex in the world; the weight of the chosen joint is the position's w.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct DeformedVertex {
+    position: Vec4,
+    normal: Vec4,
+}
+
+const _: () = assert!(size_of::<SkinData>() == 64);
+const _: () = assert!(size_of::<JointData>() == 256);
+const _: () = assert!(size_of::<VertexData>() == 48);
+const _: () = assert!(size_of::<DeformedVertex>() == 32);
+
+impl SkinDeformer {
+    /// Creates the pipeline.
+    pub fn new(gpu: &Gpu) -> Self {
+        let kinds =
+            [BindingKind::Uniform, BindingKind::Read, BindingKind::Read, BindingKind::Write];
+        let layout = compute::layout(gpu, "skin", wgpu::ShaderStages::COMPUTE, &kinds);
+        let flags = gpu.adapter.get_downlevel_capabilities().flags;
+        let pipeline = flags
+            .contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+            .then(|| compute::pipeline(gpu, "skin", SHADER, &[Some(&layout)]));
+        Self { pipeline, layout }
+    }
+
+    /// Positions and normals in the world of a posed mesh, moved by the device and read back.
+    ///
+    /// # Errors
+    ///
+    /// If the device fails.
+    pub fn deform(
+        &self,
+        gpu: &Gpu,
+        mesh: &SkinnedMesh,
+        pose: &SkinPose,
+        skinning: Skinning,
+    ) -> Result<(Vec<Vec3>, Vec<Vec3>), ReadError> {
+        let vertices = SkinVertices::new(gpu, mesh);
+        let mut deformed = self.skin(gpu, &vertices);
+        self.update(gpu, &vertices, &mut deformed, mesh, pose, skinning, None);
+        let size = u64::from(vertices.count) * size_of::<DeformedVertex>() as u64;
+        let usage = wgpu::BufferUsages::MAP_READ;
+        let copy = compute::buffer(gpu, "skin read", size.max(4), usage);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&deformed.vertices, 0, &copy, 0, size);
+        gpu.queue.submit([encoder.finish()]);
+        let mapped = fetch(gpu, &copy)?;
+        let all: Vec<DeformedVertex> = bytemuck::pod_collect_to_vec(&mapped[..size as usize]);
+        Ok(all.iter().map(|vertex| (vertex.position.truncate(), vertex.normal.truncate())).unzip())
+    }
+
+    /// Buffers for a pose of a mesh.
+    pub(super) fn skin(&self, gpu: &Gpu, mesh: &SkinVertices) -> DeformedSkin {
+        let storage = wgpu::BufferUsages::STORAGE;
+        let uniform_size = size_of::<SkinData>() as u64;
+        let uniform = compute::buffer(gpu, "skin", uniform_size, wgpu::BufferUsages::UNIFORM);
+        let size = u64::from(mesh.joints.max(1)) * size_of::<JointData>() as u64;
+        let joints = compute::buffer(gpu, "skin joints", size, storage);
+        let size = u64::from(mesh.count.max(1)) * size_of::<DeformedVertex>() as u64;
+        let usage = storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
+        let vertices = compute::buffer(gpu, "skin vertices", size, usage);
+        let buffers = [&uniform, &joints, &mesh.buffer, &vertices];
+        let group = compute::group(gpu, "skin", &self.layout, &buffers);
+        DeformedSkin { uniform, joints, vertices, group, sent: None }
+    }
+
+    /// Moves the vertices if the pose is another one than before, and returns the number of bytes sent.
+    #[expect(clippy::too_many_arguments, reason = "all describe one skin")]
+    pub(super) fn update(
+        &self,
+        gpu: &Gpu,
+        vertices: &SkinVertices,
+        deformed: &mut DeformedSkin,
+        mesh: &SkinnedMesh,
+        pose: &SkinPose,
+        skinning: Skinning,
+        weights_of: Option<JointId>,
+    ) -> u64 {
+        if deformed.sent.as_ref().is_some_and(|(sent, how, joint)| {
+            sent == pose && *how == skinning && *joint == weights_of
+        }) {
+            return 0;
+        }
+        deformed.sent = Some((pose.clone(), skinning, weights_of));
+        match &self.pipeline {
+            Some(pipeline) => {
+                let data = SkinData {
+                    to_world: rows(pose.to_world()),
+                    vertices: vertices.count,
+                    skinning: Skinning::ALL.iter().position(|it| *it == skinning).unwrap_or(0)
+                        as u32,
+                    weights_of: weights_of.map_or(-1, |joint| joint.index() as i32),
+                    padding: 0,
+                };
+                let mut joints: Vec<JointData> = pose.joints().iter().map(JointData::new).collect();
+                joints.truncate(vertices.joints as usize);
+                let bytes: &[u8] = bytemuck::cast_slice(&joints);
+                gpu.queue.write_buffer(&deformed.uniform, 0, bytemuck::bytes_of(&data));
+                gpu.queue.write_buffer(&deformed.joints, 0, bytes);
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                let group = (0, &deformed.group);
+                compute::run_for_each(&mut encoder, "skin", pipeline, group, vertices.count);
+                gpu.queue.submit([encoder.finish()]);
+                bytes.len() as u64 + size_of::<SkinData>() as u64
+            }
+            None => {
+                let vertices = on_cpu(mesh, pose, skinning, weights_of);
+                let bytes: &[u8] = bytemuck::cast_slice(&vertices);
+                gpu.queue.write_buffer(&deformed.vertices, 0, bytes);
+                bytes.len() as u64
+            }
+        }
+    }
+}
+
+fn on_cpu(
+    mesh: &SkinnedMesh,
+    pose: &SkinPose,
+    skinning: Skinning,
+    weights_of: Option<JointId>,
+) -> Vec<DeformedVertex> {
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    mesh.write_posed(pose, skinning, &mut positions, &mut normals);
+    let weights = mesh.weights().iter().map(|weights| weights_of.map_or(0.0, |it| weights.of(it)));
+    let vertices = positions.into_iter().zip(normals).zip(weights);
+    vertices
+        .map(|((position, normal), weight)| DeformedVertex {
+            position: position.extend(weight),
+            normal: normal.extend(0.0),
+        })
+        .collect()
+}
+
+impl SkinVertices {
+    pub fn new(gpu: &Gpu, mesh: &SkinnedMesh) -> Self {
+        use wgpu::util::DeviceExt as _;
+        let triangles = mesh.mesh();
+        let vertices = triangles.positions.iter().zip(&triangles.normals).zip(mesh.weights());
+        let vertices: Vec<VertexData> = vertices
+            .map(|((position, normal), weights)| {
+                let [a, b, c, d] = weights.joints().map(u32::from);
+                VertexData {
+                    position: *position,
+                    joints_low: a | b << 16,
+                    normal: *normal,
+                    joints_high: c | d << 16,
+                    weights: weights.weights(),
+                }
+            })
+            .collect();
+        let none = [VertexData::zeroed()];
+        let contents = if vertices.is_empty() { &none[..] } else { &vertices[..] };
+        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("skin mesh"),
+            contents: bytemuck::cast_slice(contents),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        Self { buffer, count: vertices.len() as u32, joints: mesh.inverse_binds().len() as u32 }
+    }
+}
+
+impl JointData {
+    fn new(joint: &JointDeform) -> Self {
+        Self {
+            matrix: rows(joint.matrix),
+            turn: rows(joint.turn),
+            turn_twice: rows(joint.turn_twice),
+            scale: rows(Affine3A { matrix3: joint.scale, ..Affine3A::IDENTITY }),
+            real: joint.real,
+            dual: joint.dual,
+            along: joint.along,
+            roll: Vec4::new(joint.roll, 0.0, 0.0, 0.0),
+        }
+    }
+}
+
+fn rows(transform: Affine3A) -> [Vec4; 3] {
+    let Affine3A { matrix3, translation } = transform;
+    let columns = matrix3.transpose();
+    [
+        columns.x_axis.extend(translation.x),
+        columns.y_axis.extend(translation.y),
+        columns.z_axis.extend(translation.z),
+    ]
+}
