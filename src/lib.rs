@@ -23,16 +23,16 @@
 //! | module | contents | feature |
 //! | --- | --- | --- |
 //! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons; skeletons; chain solvers; path following; splines; skins | |
-//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets; crowds of arms | |
+//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets and its skin; crowds of arms | |
 //! | `document` | saved state: both rigs, keys, timeline, camera, display; bakes | `document` |
-//! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH and CSV; reads and writes lines of `ik-arm solve` | `document` |
+//! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | `document` |
 //! | `session` | the open document and state that is not saved; actions, undo and redo | `document` |
 //! | `scene` | what to draw, as plain lists | `document` |
 //! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
-//! | `export` | files for other programs: motion, tables, pictures | `render` |
+//! | `export` | files for other programs: motion, tables, meshes, pictures | `render` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
 //! | `app` | window, surface and frame loop (winit) | `app` |
-//! | `cli` | commands: solve, pose, render, export, bake, examples, gui | `app` |
+//! | `cli` | commands: solve, pose, render, export, bake, skin, examples, gui | `app` |
 //!
 //! # One frame
 //!

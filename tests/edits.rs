@@ -7,11 +7,12 @@ use ik_arm::document::{
     WavyRing,
 };
 use ik_arm::io::to_json;
+use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::rig::{LimbSettings, Skin, TargetKind, TargetSpace};
 use ik_arm::session::{
     EditAction, PlaybackAction, PoseMode, SelectAction, Session, SolverAction, TransactionAction,
 };
@@ -90,6 +91,9 @@ examples! {
         EditAction::SetLocked { joint: JointId::new(INNER), locked: true },
         EditAction::SetLocked { joint: JointId::new(AIMED), locked: true },
     ];
+    AddSkin: [EditAction::AddSkin];
+    ShowSkin: [EditAction::ShowSkin { skin: false, bones: true }];
+    SetSkin: [EditAction::SetSkin(Some(Skin::from_bones(&Shared::default())))];
     SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath::Ring(WavyRing {
         radius: 1.0,
         amplitude: 0.2,

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use super::argument::{SizeArgument, ThemeName, TimeArgument};
+use super::argument::{SizeArgument, SkinningName, ThemeName, TimeArgument};
 use super::open;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
@@ -19,6 +19,7 @@ use crate::io::{BvhUnit, OpenError, Progress};
   .glb             skinned, animated model in metres (binary glTF)
   .bvh             joints and their motion, for animation programs
   .csv             positions of all joints, one row per frame
+  .obj             posed mesh of the skin at --time: world space, scene units, y up
   .png             one picture, at --time
   .png with a #    one picture per frame: walk_####.png gives walk_0000.png, walk_0001.png, ...
   .apng            all frames in one animated picture
@@ -49,12 +50,15 @@ pub struct ExportArgs {
     /// Colours of a picture [default: dark]
     #[arg(long, value_enum)]
     theme: Option<ThemeName>,
-    /// Time of a single picture in seconds [default: the timeline's start]
+    /// Time of a single picture or mesh in seconds [default: the timeline's start]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     time: Option<TimeArgument>,
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
     unit: Option<UnitName>,
+    /// How the joints of .obj are blended [default: the file's]
+    #[arg(long, value_enum)]
+    skinning: Option<SkinningName>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -110,13 +114,13 @@ impl ExportArgs {
 
     /// Refuses arguments that do not apply to the format.
     fn check(&self, format: Format) -> Result<(), ExportCommandError> {
-        let is_still = format == Format::Png;
         for (is_given, applies, argument) in [
-            (self.fps.is_some(), !is_still, "--fps"),
+            (self.fps.is_some(), !format.is_still(), "--fps"),
             (self.size.is_some(), format.is_picture(), "--size"),
             (self.theme.is_some(), format.is_picture(), "--theme"),
-            (self.time.is_some(), is_still, "--time"),
+            (self.time.is_some(), format.is_still(), "--time"),
             (self.unit.is_some(), format == Format::Bvh, "--unit"),
+            (self.skinning.is_some(), format == Format::Obj, "--skinning"),
         ] {
             if is_given && !applies {
                 return Err(ExportCommandError::Argument(argument));
@@ -133,6 +137,7 @@ impl ExportArgs {
             theme: self.theme.map_or(defaults.theme, ThemeName::into),
             time: self.time.map(|time| time.0),
             unit: self.unit.map_or(defaults.unit, UnitName::into),
+            skinning: self.skinning.map(SkinningName::into),
         }
     }
 }

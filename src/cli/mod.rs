@@ -11,6 +11,7 @@ mod progress_bar;
 mod quiet;
 mod render;
 mod report;
+mod skin;
 mod solve;
 
 use std::process::ExitCode;
@@ -23,6 +24,7 @@ use export::ExportArgs;
 use gui::GuiArgs;
 use pose::PoseArgs;
 use render::RenderArgs;
+use skin::SkinArgs;
 use solve::SolveArgs;
 
 /// Pose arms and skeletons by inverse kinematics (IK) and see how it works.
@@ -43,10 +45,12 @@ enum Command {
     Pose(PoseArgs),
     /// Draw the arm, a file or a crowd to a PNG, without a window
     Render(RenderArgs),
-    /// Export a file's motion or pictures: .glb, .bvh, .csv, .png, .apng
+    /// Export a file's motion, mesh or pictures: .glb, .bvh, .csv, .obj, .png, .apng
     Export(ExportArgs),
     /// Replace a skeleton's targets by keys: a document in, a document out
     Bake(BakeArgs),
+    /// Give a file's skeleton a smooth skin around its bones: a document out
+    Skin(SkinArgs),
     /// List the built-in example scenes, or print one
     Examples(ExamplesArgs),
     /// Open the window (also without a command)
@@ -68,6 +72,7 @@ pub fn run() -> ExitCode {
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Bake(args)) => bake::run(&args),
+        Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&GuiArgs::default()),

@@ -1,7 +1,7 @@
 use thiserror::Error;
 
 use super::format::FormatError;
-use crate::io::{Cancelled, GlbError, MotionError, WriteError};
+use crate::io::{Cancelled, GlbError, MotionError, ObjError, WriteError};
 use crate::render::{DrawError, GpuError};
 
 /// Reasons why no file is exported.
@@ -20,6 +20,9 @@ pub enum ExportError {
     /// The motion cannot be exported.
     #[error(transparent)]
     Motion(MotionError),
+    /// The mesh cannot be exported.
+    #[error(transparent)]
+    Obj(#[from] ObjError),
     /// The time of a single picture is not finite.
     #[error("time must be a finite number of seconds, got {0}")]
     Time(f64),

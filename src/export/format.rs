@@ -14,6 +14,8 @@ pub enum Format {
     Bvh,
     /// Joint positions as a table.
     Csv,
+    /// The mesh of the skin at one time.
+    Obj,
     /// One picture.
     Png,
     /// One picture file per frame.
@@ -31,10 +33,11 @@ pub struct FormatError {
 
 impl Format {
     /// File extensions with their formats.
-    pub const EXTENSIONS: [(&'static str, Self); 5] = [
+    pub const EXTENSIONS: [(&'static str, Self); 6] = [
         ("glb", Self::Glb),
         ("bvh", Self::Bvh),
         ("csv", Self::Csv),
+        ("obj", Self::Obj),
         ("png", Self::Png),
         ("apng", Self::Apng),
     ];
@@ -53,6 +56,11 @@ impl Format {
             Some((_, format)) => Ok(format),
             None => Err(FormatError { path: path.display().to_string() }),
         }
+    }
+
+    /// Whether the format holds one time instead of a motion.
+    pub fn is_still(self) -> bool {
+        matches!(self, Self::Png | Self::Obj)
     }
 
     /// Whether the format consists of pictures.
@@ -96,7 +104,7 @@ mod tests {
         }
         for path in ["a", "a.mp4", ".png", "png", ""] {
             let error = Format::of(Path::new(path)).expect_err("no format").to_string();
-            assert!(error.contains(".glb, .bvh, .csv, .png, .apng"), "{error}");
+            assert!(error.contains(".glb, .bvh, .csv, .obj, .png, .apng"), "{error}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! Files for other programs, made from a document: motions, tables, pictures.
+//! Files for other programs, made from a document: motions, tables, meshes, pictures.
 //!
 //! An export may take long. [`export`] is meant for a thread of its own: it works on its own
 //! document and graphics device, reports its progress, and can be cancelled. A file or sequence of
@@ -45,6 +45,10 @@ pub fn export(
         }
         Format::Bvh => io::to_bvh(document, options.fps, options.unit, progress)?,
         Format::Csv => io::to_csv(document, options.fps, progress)?,
+        Format::Obj => {
+            let time = options.time.unwrap_or(document.timeline.start);
+            io::to_obj(document, time, options.skinning)?
+        }
         Format::Png | Format::PngSequence => pictures::still(document, options, progress)?,
         Format::Apng => return pictures::animation(document, path, options, progress),
     };

@@ -1,5 +1,6 @@
 use crate::document::Theme;
 use crate::io::BvhUnit;
+use crate::kinematics::skin::Skinning;
 
 /// Options of an export. Each format uses only the options that apply to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,10 +11,12 @@ pub struct ExportOptions {
     pub size: (u32, u32),
     /// Theme of a picture.
     pub theme: Theme,
-    /// Time of a single picture in seconds; `None` for the timeline's start.
+    /// Time of a single picture or mesh in seconds; `None` for the timeline's start.
     pub time: Option<f64>,
     /// Unit of lengths in a BVH file.
     pub unit: BvhUnit,
+    /// How the joints of an OBJ file's mesh are blended; `None` for the document's way.
+    pub skinning: Option<Skinning>,
 }
 
 impl ExportOptions {
@@ -30,6 +33,7 @@ impl Default for ExportOptions {
             theme: Theme::Dark,
             time: None,
             unit: BvhUnit::default(),
+            skinning: None,
         }
     }
 }

@@ -1,6 +1,6 @@
-//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`], [`to_bvh`]
-//! and [`to_csv`] write; [`solve_line`] answers the lines of `ik-arm solve`. docs/files.md
-//! describes the formats.
+//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`],
+//! [`to_bvh`], [`to_csv`] and [`to_obj`] write; [`solve_line`] answers the lines of `ik-arm solve`.
+//! docs/files.md describes the formats.
 //!
 //! An [`OpenError`] names the line, the column, the field, the rule and the value. Warnings about a
 //! file that can be opened all the same are [`Remark`]s in [`Opened`]. Content that an export
@@ -23,6 +23,7 @@ mod json_path;
 mod json_style;
 mod line;
 mod motion;
+mod obj;
 mod open;
 mod opened;
 mod progress;
@@ -41,6 +42,7 @@ pub use frames::{ExportFrames, FrameEvaluator};
 pub use gltf::{GlbError, glb};
 pub use line::{Answer, LineError, PreviousLine, solve_line};
 pub use motion::{Exported, MotionError};
+pub use obj::{ObjError, to_obj};
 pub use open::{open, parse, read};
 pub use opened::Opened;
 pub use progress::{Cancelled, Progress};

@@ -10,14 +10,22 @@ use crate::kinematics::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh};
 #[derive(Clone, Debug)]
 pub struct BoneSkin {
     shape: SkinShape,
+    made: Arc<MadeMesh>,
+}
+
+/// A mesh with what it is made from.
+#[derive(Debug)]
+struct MadeMesh {
+    shape: SkinShape,
     skeleton: Shared<Skeleton>,
-    mesh: Arc<OnceLock<Result<Shared<AttachedMesh>, SkinShapeError>>>,
+    mesh: OnceLock<Result<Shared<AttachedMesh>, SkinShapeError>>,
 }
 
 impl BoneSkin {
     /// A skin for the bind pose of a skeleton.
     pub fn new(skeleton: Shared<Skeleton>, shape: SkinShape) -> Self {
-        Self { shape, skeleton, mesh: Arc::default() }
+        let made = MadeMesh { shape: shape.clone(), skeleton, mesh: OnceLock::new() };
+        Self { shape, made: Arc::new(made) }
     }
 
     /// What it is made of beside the bones.
@@ -25,10 +33,10 @@ impl BoneSkin {
         &self.shape
     }
 
-    /// The same bones in another shape.
+    /// The same bones in another shape. The mesh stays until it is refreshed.
     #[must_use]
     pub fn with_shape(&self, shape: SkinShape) -> Self {
-        Self::new(self.skeleton.clone(), shape)
+        Self { shape, made: Arc::clone(&self.made) }
     }
 
     /// The mesh.
@@ -37,16 +45,23 @@ impl BoneSkin {
     ///
     /// See [`SkinnedMesh::from_bones`].
     pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinShapeError> {
+        let MadeMesh { shape, skeleton, mesh } = &*self.made;
         let make = || {
-            let mesh = SkinnedMesh::from_bones(&self.skeleton, &self.shape)?;
-            Ok(Shared::from(AttachedMesh::new(mesh, &self.skeleton)))
+            let mesh = SkinnedMesh::from_bones(skeleton, shape)?;
+            Ok(Shared::from(AttachedMesh::new(mesh, skeleton)))
         };
-        self.mesh.get_or_init(make).as_ref().map_err(Clone::clone)
+        mesh.get_or_init(make).as_ref().map_err(Clone::clone)
+    }
+
+    /// The mesh, if it has been needed already.
+    pub fn made_mesh(&self) -> Option<Result<&Shared<AttachedMesh>, SkinShapeError>> {
+        Some(self.made.mesh.get()?.as_ref().map_err(Clone::clone))
     }
 
     pub(super) fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
-        let has_other_bind_pose = !has_same_bind_pose(&self.skeleton, skeleton);
-        has_other_bind_pose.then(|| Self::new(skeleton.clone(), self.shape.clone()))
+        let MadeMesh { shape, skeleton: made_for, .. } = &*self.made;
+        let is_current = self.shape == *shape && has_same_bind_pose(made_for, skeleton);
+        (!is_current).then(|| Self::new(skeleton.clone(), self.shape.clone()))
     }
 
     pub(super) fn remapped(&self, remap: &JointRemap) -> Self {

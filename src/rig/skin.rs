@@ -48,9 +48,16 @@ impl Skin {
         }
     }
 
-    /// The skin made again, if it is made from bones and the bind pose of `skeleton` is another one than
-    /// that it was made for; otherwise `None`.
-    pub fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
+    /// The mesh, if it has been needed already: see [`Skin::mesh`].
+    pub fn made_mesh(&self) -> Option<Result<&Shared<AttachedMesh>, SkinShapeError>> {
+        match &self.source {
+            SkinSource::Bones(bones) => bones.made_mesh(),
+        }
+    }
+
+    /// The skin with its mesh made again, if it is made from bones and the bind pose or the shape have
+    /// changed since; otherwise `None`.
+    pub(super) fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
         let SkinSource::Bones(bones) = &self.source;
         let source = SkinSource::Bones(bones.refreshed(skeleton)?);
         Some(Self { source, ..self.clone() })

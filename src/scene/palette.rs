@@ -104,12 +104,22 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
+    /// Colour of the weight of a joint from 0 to 1, of the same ramp.
+    pub fn weight(&self, weight: f32) -> Colour {
+        self.along_ramp(weight * (Self::GAINS - 1) as f32).with_opacity(1.0)
+    }
+
     /// Colour and opacity of a [gain](crate::kinematics::twist::TwistReference::gain) on the globe.
     /// The ramp is linear in the logarithm of 1 + gain, from a gain of 0 to [`Palette::MAX_GAIN`].
     pub fn gain(&self, gain: f32) -> Colour {
         let last = Self::GAINS - 1;
         let along = gain.max(0.0).ln_1p() / Self::MAX_GAIN.ln_1p() * last as f32;
-        let step = (along as usize).min(last - 1);
+        self.along_ramp(along)
+    }
+
+    /// Colour of the ramp between its colours; the first is at 0, the next at 1.
+    fn along_ramp(&self, along: f32) -> Colour {
+        let step = (along as usize).min(Self::GAINS - 2);
         self.gains[step].mixed(self.gains[step + 1], (along - step as f32).min(1.0))
     }
 }

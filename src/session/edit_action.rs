@@ -122,6 +122,13 @@ pub enum EditAction {
     },
     /// Gives the skeleton a skin from its bones, and shows it.
     AddSkin,
+    /// Shows the skin of the skeleton, its bones, or both.
+    ShowSkin {
+        /// Whether the skin is shown.
+        skin: bool,
+        /// Whether the bones are shown through the skin.
+        bones: bool,
+    },
     /// Replaces the skin of the skeleton; `None` removes it.
     SetSkin(Option<Skin>),
     /// Sets the path that the skeleton follows; `None` for no path.

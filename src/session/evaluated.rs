@@ -6,6 +6,7 @@ use super::transport::TransportPath;
 use crate::document::{Arm, Document};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::skin::TriangleMesh;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::EvaluatedSkeleton;
 
@@ -18,6 +19,7 @@ pub(super) struct Evaluated {
     transport_path: TransportPath,
     pops: Pops,
     trail: Cached<Vec<Vec3>>,
+    posed_skin: Cached<TriangleMesh>,
 }
 
 impl Evaluated {
@@ -31,6 +33,7 @@ impl Evaluated {
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
             trail: Cached::default(),
+            posed_skin: Cached::default(),
         }
     }
 
@@ -58,6 +61,11 @@ impl Evaluated {
         self.trail.get(sample)
     }
 
+    /// The mesh of the skin in the world.
+    pub fn posed_skin(&self, pose: impl FnOnce() -> TriangleMesh) -> &TriangleMesh {
+        self.posed_skin.get(pose)
+    }
+
     /// Updates the poses, and the values derived from them, to a document that was evaluated at
     /// `time`, in seconds.
     pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
@@ -66,6 +74,7 @@ impl Evaluated {
         self.pops.record(&shown.arm, self.pose, cause, time);
         self.skeleton = Shared::from(shown.skeleton_rig.evaluate(time));
         self.skeleton.solved.write_pose(&mut self.skeleton_pose);
+        self.posed_skin.clear();
     }
 
     pub fn reset_transport(&mut self, arm: &Arm) {

@@ -1,9 +1,24 @@
 use super::session::Session;
-use crate::document::{Overlay, Skin};
-use crate::kinematics::skin::SkinShapeError;
+use crate::document::{Document, Overlay, Ray, Skin};
+use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::{SkinPose, SkinShapeError};
+use crate::rig::SkinSource;
 
-/// Edits of the skin.
+/// Edits of the skin, and what the mouse points at on it.
 impl Session {
+    /// The joint with the greatest weight at the point of the shown skin that a ray meets first; `None` if
+    /// the skin is hidden or the ray meets none.
+    pub fn joint_on_skin(&self, ray: Ray) -> Option<JointId> {
+        let skin = self.skeleton_rig().skin.as_ref();
+        let skin = skin.filter(|_| self.shown().display.shows(Overlay::Skin))?;
+        let mesh = &skin.mesh().ok()?.mesh;
+        let posed = self.evaluated.posed_skin(|| {
+            mesh.posed(&SkinPose::new(mesh, &self.evaluated_skeleton().solved), skin.skinning)
+        });
+        let hit = posed.hit(ray.origin, ray.direction)?;
+        Some(mesh.heaviest_joint(&hit))
+    }
+
     /// Gives the skeleton a skin from its bones, and shows it.
     pub(super) fn add_skin(&mut self) {
         let skin = Skin::from_bones(&self.skeleton_rig().skeleton);
@@ -15,12 +30,30 @@ impl Session {
         });
     }
 
+    /// Replaces the skin, with its colour clamped to valid channels. During a drag its mesh stays; otherwise
+    /// it is made at once.
     pub(super) fn set_skin(&mut self, skin: Option<Skin>) {
+        let skin = skin.map(|skin| Skin {
+            colour: skin.colour.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }),
+            ..skin
+        });
+        let is_dragging = self.is_editing();
         self.edit_document(|document| {
-            skin.as_ref().map(Skin::mesh).transpose()?;
+            if let Some(SkinSource::Bones(bones)) = skin.as_ref().map(|skin| &skin.source) {
+                bones.shape().check(document.skeleton())?;
+            }
             document.skeleton_rig.skin = skin;
-            document.skeleton_rig.refresh_skin();
+            if !is_dragging {
+                document.skeleton_rig.refresh_skin();
+                document.skeleton_rig.skin.as_ref().map(Skin::mesh).transpose()?;
+            }
             Ok::<(), SkinShapeError>(())
         });
+    }
+
+    /// Shows the skin, the bones or both.
+    pub(super) fn show_skin(&mut self, skin: bool, bones: bool) {
+        let display = self.shown().display.with(Overlay::Skin, skin).with(Overlay::Bones, bones);
+        self.commit(Document { display, ..self.shown().clone() });
     }
 }

@@ -114,6 +114,9 @@ kinds! {
         SetAxis: Build 3, |v| EditAction::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
         SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.axis(), limit: v.limit() };
         SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
+        AddSkin: Build 1, |_| EditAction::AddSkin;
+        ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
+        SetSkin: Build 2, |v| EditAction::SetSkin(v.skin());
         SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
         SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
         SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());

@@ -8,6 +8,7 @@ use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, Skeleto
 use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
+use ik_arm::rig::SkinSource;
 use ik_arm::session::Session;
 
 use crate::{Broken, hold};
@@ -88,8 +89,15 @@ fn arm(arm: &Arm) -> Result<(), Broken> {
 }
 
 fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
-    let SkeletonRig { skeleton, targets, solver, iterations_per_frame, follow_path, head_track: _ } =
-        rig;
+    let SkeletonRig {
+        skeleton,
+        targets,
+        solver,
+        iterations_per_frame,
+        follow_path,
+        head_track: _,
+        skin,
+    } = rig;
     let joints = skeleton.joints();
     hold!(skeleton.transform().is_finite(), "the skeleton is somewhere");
     let mut names = HashSet::new();
@@ -101,6 +109,10 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     for target in targets {
         self::target(target, joints.len())?;
         hold!(aimed.insert(target.joint), "joint {} has one target", target.joint);
+    }
+    if let Some(skin) = skin {
+        let SkinSource::Bones(bones) = &skin.source;
+        hold!(bones.shape().check(skeleton).is_ok(), "the skin has a shape: {:?}", bones.shape());
     }
     let SolverOptions { iterations, tolerance, damping, step, .. } = *solver;
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");

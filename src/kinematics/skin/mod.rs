@@ -41,5 +41,5 @@ pub use from_bones::{Blob, SkinShape, SkinShapeError};
 pub use skin_pose::{JointDeform, SkinPose};
 pub use skinned_mesh::SkinnedMesh;
 pub use skinning::{Skinning, UnknownSkinning};
-pub use triangle_mesh::TriangleMesh;
+pub use triangle_mesh::{MeshHit, TriangleMesh};
 pub use vertex_weights::VertexWeights;

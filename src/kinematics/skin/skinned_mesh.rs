@@ -3,7 +3,7 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use super::error::SkinError;
 use super::skin_pose::SkinPose;
 use super::skinning::Skinning;
-use super::triangle_mesh::TriangleMesh;
+use super::triangle_mesh::{MeshHit, TriangleMesh};
 use super::vertex_weights::VertexWeights;
 use crate::kinematics::skeleton::{JointId, JointRemap};
 
@@ -77,6 +77,16 @@ impl SkinnedMesh {
     /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space.
     pub fn inverse_binds(&self) -> &[Affine3A] {
         &self.inverse_binds
+    }
+
+    /// The joint with the greatest weight at a point of the mesh.
+    pub fn heaviest_joint(&self, hit: &MeshHit) -> JointId {
+        let weights = hit.corners.iter().zip(hit.shares).flat_map(|(corner, share)| {
+            self.weights[*corner as usize]
+                .iter()
+                .map(move |(joint, weight)| (joint, weight * share))
+        });
+        VertexWeights::heaviest(weights).0.first()
     }
 
     /// Memory in bytes.

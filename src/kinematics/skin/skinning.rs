@@ -18,6 +18,15 @@ pub enum Skinning {
 impl Skinning {
     /// All methods.
     pub const ALL: [Self; 3] = [Self::Linear, Self::DualQuaternion, Self::SpreadTwist];
+
+    /// Name on screen.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Linear => "Linear",
+            Self::DualQuaternion => "Dual quaternions",
+            Self::SpreadTwist => "Spread twist",
+        }
+    }
 }
 
 impl fmt::Display for Skinning {

@@ -61,7 +61,7 @@ impl<'a> ShownSkin<'a> {
             let offset = Vec3::X * (index as f32 - 1.0) * SPACING * left;
             scene.skins.push(SkinInstance { skinning, offset, ..instance.clone() });
             let label = Label::new(low + offset, 0.0, LabelSide::Below, scene.palette.text);
-            scene.add_label(label, format_args!("{}", name(skinning)));
+            scene.add_label(label, format_args!("{}", skinning.title()));
         }
     }
 
@@ -104,14 +104,5 @@ impl<'a> ShownSkin<'a> {
             }
             scene.guide_balls.push(Ball { centre: base, radius: 1.1 * radius, colour });
         }
-    }
-}
-
-/// Name of a way of blending on screen.
-fn name(skinning: Skinning) -> &'static str {
-    match skinning {
-        Skinning::Linear => "Linear",
-        Skinning::DualQuaternion => "Dual quaternions",
-        Skinning::SpreadTwist => "Spread twist",
     }
 }

@@ -20,7 +20,7 @@ struct FormatChoice {
     tooltip: &'static str,
 }
 
-const CHOICES: [FormatChoice; 6] = [
+const CHOICES: [FormatChoice; 7] = [
     FormatChoice {
         format: Format::Glb,
         name: "GLB",
@@ -38,6 +38,12 @@ const CHOICES: [FormatChoice; 6] = [
         name: "CSV",
         ending: ".csv",
         tooltip: "A table of joint positions, one row a frame",
+    },
+    FormatChoice {
+        format: Format::Obj,
+        name: "OBJ",
+        ending: ".obj",
+        tooltip: "The posed mesh of the skin in the current frame",
     },
     FormatChoice {
         format: Format::Apng,

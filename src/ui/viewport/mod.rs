@@ -10,7 +10,7 @@ use egui::{
     TextureId, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::document::{Camera, RigKind};
+use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, ArmJoint, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction,
@@ -63,7 +63,7 @@ pub(in crate::ui) fn ui(
         wheel(ui, session, &screen, mouse, actions);
     }
     if over && matches!(drag, ViewportDrag::Nothing) {
-        point(session, gizmo.joint_at(mouse), actions);
+        point(session, joint_at(session, &screen, &gizmo, mouse), actions);
     }
     if has_joints(session) && response.clicked() && !on_view_axes {
         select(ui, session, &screen, &gizmo, mouse, actions);
@@ -75,7 +75,9 @@ pub(in crate::ui) fn ui(
     if response.double_clicked() && !on_view_axes {
         actions.push(match pointed {
             Some(_) => commands::frame_selection(session),
-            None if gizmo.joint_at(mouse).is_some() => commands::frame_selection(session),
+            None if joint_at(session, &screen, &gizmo, mouse).is_some() => {
+                commands::frame_selection(session)
+            }
             None => ViewAction::GlideTo(match session.rig() {
                 RigKind::Arm if session.crowd().is_none() => Camera::default(),
                 _ => session.framing_all(),
@@ -118,6 +120,19 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
+/// The joint at the mouse: that of the bone there or, if only the skin is shown, of the skin there.
+fn joint_at(
+    session: &Session,
+    screen: &ScreenProjection,
+    gizmo: &Gizmo,
+    mouse: Pos2,
+) -> Option<JointId> {
+    if !has_joints(session) || session.shown().display.shows(Overlay::Bones) {
+        return gizmo.joint_at(mouse);
+    }
+    session.joint_on_skin(screen.ray(mouse)).or_else(|| gizmo.joint_at(mouse))
+}
+
 /// Pushes an action if the hovered joint has changed.
 fn point(session: &Session, joint: Option<JointId>, actions: &mut Actions) {
     if session.hovered() != joint {
@@ -140,7 +155,7 @@ fn select(
     let joint = match gizmo.at(mouse) {
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
         Some(Grip::Ring(..)) => return,
-        _ => gizmo.joint_at(mouse),
+        _ => joint_at(session, screen, gizmo, mouse),
     };
     let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {

@@ -4,7 +4,8 @@ use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::kinematics::skin::{Blob, SkinShape, Skinning};
+use ik_arm::rig::{LimbSettings, Skin, SkinSource, TargetKind, TargetSpace};
 
 use super::Values;
 
@@ -32,6 +33,26 @@ impl Values<'_> {
             return self.joint();
         }
         targets[self.random.below(targets.len())].joint
+    }
+
+    /// Sometimes none; coarse or invalid shapes of few blobs.
+    pub fn skin(&mut self) -> Option<Skin> {
+        if self.chance(0.2) {
+            return None;
+        }
+        let rig = self.session.skeleton_rig();
+        let mut skin = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
+        skin.skinning = self.one_of(&Skinning::ALL);
+        skin.colour = [(); 3].map(|()| self.part());
+        let SkinSource::Bones(bones) = &skin.source;
+        let detail = self.one_of(&[1.2, 1.2, 1.5, 0.0, f32::NAN]);
+        let thickness = self.one_of(&[0.5, 1.0, 2.0, -1.0, f32::INFINITY]);
+        let joint = self.joint();
+        let (base, tip) = (self.small_point(), self.small_point());
+        let blob = Blob { joint, base, tip, base_radius: 1.0, tip_radius: 2.0 };
+        let blobs = if self.chance(0.2) { vec![blob] } else { Vec::new() };
+        skin.source = SkinSource::Bones(bones.with_shape(SkinShape { detail, thickness, blobs }));
+        Some(skin)
     }
 
     /// None, one or several, with repetitions.

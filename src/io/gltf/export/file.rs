@@ -13,18 +13,15 @@ use ::gltf::json::{
 use glam::{DAffine3, DMat4};
 
 use super::error::GlbError;
-use super::limbs::{LimbMesh, MeshPart};
+use super::mesh_part::{GltfMesh, MeshPart};
 use super::motion::{JointAnimation, JointTrack};
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
 
-/// Colours of the limbs in the dark theme, as sRGB components.
-const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
-
 pub fn write(
     bones: &JointNodes,
     motion: &JointAnimation,
-    limbs: &LimbMesh,
+    mesh: &GltfMesh,
 ) -> Result<Vec<u8>, GlbError> {
     let mut writer = GltfWriter::default();
     writer.root.asset = Asset {
@@ -32,8 +29,8 @@ pub fn write(
         ..Asset::default()
     };
     let [armature, mesh_node] = add_nodes(&mut writer, bones);
-    let mesh = add_mesh(&mut writer, limbs);
-    let skin = add_skin(&mut writer, bones, armature);
+    let skin = add_skin(&mut writer, bones, &mesh.attached, armature);
+    let mesh = add_mesh(&mut writer, mesh);
     if let Some(node) = writer.root.nodes.get_mut(mesh_node.value()) {
         (node.mesh, node.skin) = (Some(mesh), Some(skin));
     }
@@ -93,13 +90,9 @@ fn node_index(node: usize) -> Index<Node> {
     Index::new(u32::try_from(node).unwrap_or(u32::MAX))
 }
 
-fn add_mesh(writer: &mut GltfWriter, limbs: &LimbMesh) -> Index<Mesh> {
-    let mut primitives = Vec::new();
-    for (part, colour) in limbs.parts.iter().zip(COLOURS) {
-        if !part.indices.is_empty() {
-            primitives.push(primitive(writer, part, colour));
-        }
-    }
+fn add_mesh(writer: &mut GltfWriter, mesh: &GltfMesh) -> Index<Mesh> {
+    let parts = mesh.parts.iter().filter(|part| !part.indices.is_empty());
+    let primitives = parts.map(|part| primitive(writer, part)).collect();
     writer.root.push(Mesh {
         name: Some(JointNodes::MESH.to_owned()),
         primitives,
@@ -109,12 +102,10 @@ fn add_mesh(writer: &mut GltfWriter, limbs: &LimbMesh) -> Index<Mesh> {
     })
 }
 
-fn primitive(writer: &mut GltfWriter, part: &MeshPart, colour: [u8; 3]) -> Primitive {
-    const NONE: [u8; 6] = [0; 6];
+fn primitive(writer: &mut GltfWriter, part: &MeshPart) -> Primitive {
     let vertices = part.positions.len();
     let array = Some(ArrayBuffer);
-    let joints = part.joints.iter().flat_map(|joint| joint.to_le_bytes().into_iter().chain(NONE));
-    let weights = part.joints.iter().flat_map(|_| [255, 0, 0, 0]);
+    let joints = part.joints.iter().flatten().flat_map(|joint| joint.to_le_bytes());
     let attributes = BTreeMap::from([
         (Valid(Semantic::Positions), writer.bounded(&part.positions, array, AccessorKind::POINT)),
         (
@@ -124,7 +115,7 @@ fn primitive(writer: &mut GltfWriter, part: &MeshPart, colour: [u8; 3]) -> Primi
         (Valid(Semantic::Joints(0)), writer.array(joints, array, vertices, AccessorKind::JOINTS)),
         (
             Valid(Semantic::Weights(0)),
-            writer.array(weights, array, vertices, AccessorKind::WEIGHTS),
+            writer.array(floats(&part.weights), array, vertices, AccessorKind::WEIGHTS),
         ),
     ]);
     let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
@@ -133,7 +124,7 @@ fn primitive(writer: &mut GltfWriter, part: &MeshPart, colour: [u8; 3]) -> Primi
     Primitive {
         attributes,
         indices: Some(indices),
-        material: Some(writer.root.push(matte(colour))),
+        material: Some(writer.root.push(matte(part.colour))),
         mode: Valid(Mode::Triangles),
         targets: None,
         extensions: None,
@@ -160,14 +151,22 @@ fn linear(srgb: u8) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-fn add_skin(writer: &mut GltfWriter, bones: &JointNodes, armature: Index<Node>) -> Index<Skin> {
+fn add_skin(
+    writer: &mut GltfWriter,
+    bones: &JointNodes,
+    attached: &[DAffine3],
+    armature: Index<Node>,
+) -> Index<Skin> {
     let mut worlds: Vec<DAffine3> = Vec::with_capacity(bones.nodes.len());
     for (node, bind_pose) in bones.nodes.iter().zip(&bones.bind_pose) {
         let local = DAffine3::from_rotation_translation(bind_pose.rotation, bind_pose.translation);
         worlds.push(node.parent.map_or(local, |parent| worlds[parent] * local));
     }
-    let inverse = |world: &DAffine3| DMat4::from(world.inverse()).as_mat4().to_cols_array();
-    let matrices: Vec<[f32; 16]> = worlds.iter().map(inverse).collect();
+    let attached = attached.iter().copied().chain(core::iter::repeat(DAffine3::IDENTITY));
+    let bind = |(world, attached): (&DAffine3, DAffine3)| {
+        DMat4::from(world.inverse() * attached).as_mat4().to_cols_array()
+    };
+    let matrices: Vec<[f32; 16]> = worlds.iter().zip(attached).map(bind).collect();
     let accessor = writer.array(floats(&matrices), None, matrices.len(), AccessorKind::MATRIX);
     writer.root.push(Skin {
         name: Some(JointNodes::ARMATURE.to_owned()),

@@ -3,6 +3,7 @@ use core::f64::consts::{PI, TAU};
 use glam::{DMat3, DVec3};
 
 use super::error::GlbError;
+use super::mesh_part::{GltfMesh, MeshPart};
 use super::nodes::JointNodes;
 use super::rig::GltfRig;
 
@@ -13,19 +14,19 @@ pub struct LimbMesh {
     pub parts: [MeshPart; 2],
 }
 
-#[derive(Default)]
-pub struct MeshPart {
-    /// Positions of the vertices in the world, in metres.
-    pub positions: Vec<[f32; 3]>,
-    pub normals: Vec<[f32; 3]>,
-    /// The joint that each vertex follows.
-    pub joints: Vec<u16>,
-    /// Indices of three vertices for each triangle, counter-clockwise seen from outside.
-    pub indices: Vec<u32>,
-}
-
 /// Ratio of the radius of a ball to the radius of the bone's end that it covers.
 const BALL: f64 = 1.1;
+
+/// Colours of the limbs in the dark theme, as sRGB components.
+const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
+
+impl From<LimbMesh> for GltfMesh {
+    fn from(limbs: LimbMesh) -> Self {
+        let coloured = limbs.parts.into_iter().zip(COLOURS);
+        let parts = coloured.map(|(part, colour)| MeshPart { colour, ..part }).collect();
+        Self { parts, attached: Vec::new() }
+    }
+}
 
 impl LimbMesh {
     pub fn new(rig: &GltfRig, bones: &JointNodes) -> Result<Self, GlbError> {
@@ -111,7 +112,8 @@ impl MeshPart {
     fn add_vertex(&mut self, at: DVec3, normal: DVec3, joint: usize) {
         self.positions.push(at.as_vec3().to_array());
         self.normals.push(normal.as_vec3().to_array());
-        self.joints.push(u16::try_from(joint).unwrap_or_default());
+        self.joints.push([u16::try_from(joint).unwrap_or_default(), 0, 0, 0]);
+        self.weights.push([1.0, 0.0, 0.0, 0.0]);
     }
 
     /// Index of the vertex that is added next.

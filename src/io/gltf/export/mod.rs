@@ -3,20 +3,24 @@
 mod error;
 mod file;
 mod limbs;
+mod mesh_part;
 mod motion;
 mod nodes;
 mod rig;
+mod skin_mesh;
 mod writer;
 
 use crate::document::{Document, Timeline};
 use crate::io::progress::Progress;
 pub use error::GlbError;
 use limbs::LimbMesh;
+use mesh_part::GltfMesh;
 use motion::JointAnimation;
 use nodes::JointNodes;
 use rig::GltfRig;
 
-/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The frame
+/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is the skin of
+/// the skeleton; without one, cones around the bones. The frame
 /// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 1 to
 /// 1000. Lengths are in metres, and no node has a scale.
 ///
@@ -35,6 +39,9 @@ pub fn glb(
     let mut rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;
     let motion = JointAnimation::new(&mut rig, &bones, timeline, progress)?;
-    let limbs = LimbMesh::new(&rig, &bones)?;
-    file::write(&bones, &motion, &limbs)
+    let mesh = match GltfMesh::of_skin(document) {
+        Some(skin) => skin,
+        None => LimbMesh::new(&rig, &bones)?.into(),
+    };
+    file::write(&bones, &motion, &mesh)
 }

@@ -23,8 +23,7 @@ impl AccessorKind {
     pub const QUATERNION: Self = Self { component: ComponentType::F32, shape: Type::Vec4 };
     pub const MATRIX: Self = Self { component: ComponentType::F32, shape: Type::Mat4 };
     pub const JOINTS: Self = Self { component: ComponentType::U16, shape: Type::Vec4 };
-    /// Normalized integers: 255 stands for 1.
-    pub const WEIGHTS: Self = Self { component: ComponentType::U8, shape: Type::Vec4 };
+    pub const WEIGHTS: Self = Self { component: ComponentType::F32, shape: Type::Vec4 };
     pub const INDEX: Self = Self { component: ComponentType::U32, shape: Type::Scalar };
 }
 

@@ -1,4 +1,5 @@
-//! The round cones that a skin is made of, and how strongly each pair of them blends.
+//! The round cones that a skin is made of, and which of them blend: those of a joint with those of its
+//! parent, and siblings that start at one point. All others do not, so that fingers do not melt together.
 
 use glam::DVec3;
 
@@ -24,19 +25,25 @@ enum PartKind {
     Blob,
 }
 
-/// Two parts that blend smoothly, with the width of their blend.
-#[derive(Clone, Copy, Debug)]
-pub struct Blend {
-    pub first: usize,
-    pub second: usize,
-    pub width: f64,
+/// Parts that blend into one surface.
+#[derive(Clone, Debug)]
+pub struct Group {
+    pub members: Vec<Member>,
 }
 
-/// The parts of one connected tree.
+/// One or two parts as a member of a group.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Member {
+    Part(usize),
+    /// Two bones that meet, with the width of their blend, which depends on the bend.
+    Bend(usize, usize, f64),
+}
+
+/// The parts of one connected tree, and the groups that blend.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub parts: Vec<Part>,
-    pub blends: Vec<Blend>,
+    pub groups: Vec<Group>,
 }
 
 impl Body {
@@ -60,16 +67,20 @@ impl Body {
     }
 
     fn new(parts: Vec<Part>, skeleton: &Skeleton) -> Self {
-        let mut blends = Vec::new();
-        for (second, other) in parts.iter().enumerate() {
-            for (first, part) in parts[..second].iter().enumerate() {
-                let width = blend_width(part, other, skeleton);
-                if width > 0.0 {
-                    blends.push(Blend { first, second, width });
-                }
-            }
+        let mut of_joint = vec![Vec::new(); skeleton.joints().len()];
+        for (index, part) in parts.iter().enumerate() {
+            of_joint[part.joint.index()].push(index);
         }
-        Self { parts, blends }
+        let mut groups: Vec<Group> = skeleton
+            .iter()
+            .filter(|(joint, _)| !of_joint[joint.index()].is_empty())
+            .map(|(id, joint)| {
+                let above = joint.parent.map_or(&[][..], |parent| &of_joint[parent.index()]);
+                group(&parts, above, &of_joint[id.index()])
+            })
+            .collect();
+        groups.extend(forks(&parts, skeleton));
+        Self { parts, groups }
     }
 
     /// Makes parts that are thinner than `radius` that thick.
@@ -141,22 +152,44 @@ fn is_at_tip(skeleton: &Skeleton, child: JointId) -> bool {
     joint.offset.distance(parent.axis) <= 1e-4 * parent.axis.length()
 }
 
-/// Width of the blend of two parts, at most half of their smaller radius. Bones blend with their parents,
-/// children and the siblings that start at the same point, the more the sharper the bend: bones in line
-/// would swell where they meet. All other bones do not blend, so that fingers do not melt together.
-fn blend_width(one: &Part, other: &Part, skeleton: &Skeleton) -> f64 {
-    let most = 0.5 * one.cone.least_radius().min(other.cone.least_radius());
-    let parent = |part: &Part| skeleton[part.joint].parent;
-    let is_parent = parent(other) == Some(one.joint) || parent(one) == Some(other.joint);
-    let is_sibling = parent(one).is_some() && parent(one) == parent(other);
-    match (one.kind, other.kind) {
-        _ if one.joint == other.joint => most,
-        (PartKind::Bone, PartKind::Bone) if is_parent || is_sibling => {
-            most * sharpness(&one.cone, &other.cone, is_sibling)
+/// The parts of a joint and of its parent.
+fn group(parts: &[Part], of_parent: &[usize], of_joint: &[usize]) -> Group {
+    let is_bone = |index: &&usize| parts[**index].kind == PartKind::Bone;
+    let bones = [of_parent, of_joint].map(|of| of.iter().find(is_bone).copied());
+    let mut members: Vec<Member> = match bones {
+        [Some(above), Some(own)] => {
+            vec![Member::Bend(above, own, bend_width(&parts[above].cone, &parts[own].cone, false))]
         }
-        _ if is_parent => most,
-        _ => 0.0,
+        bones => bones.into_iter().flatten().map(Member::Part).collect(),
+    };
+    let others = of_parent.iter().chain(of_joint).filter(|index| !is_bone(index));
+    members.extend(others.map(|index| Member::Part(*index)));
+    Group { members }
+}
+
+/// Siblings that start at one point and blend there.
+fn forks(parts: &[Part], skeleton: &Skeleton) -> Vec<Group> {
+    let parent = |part: &Part| skeleton[part.joint].parent;
+    let bones = || parts.iter().enumerate().filter(|(_, part)| part.kind == PartKind::Bone);
+    let mut forks = Vec::new();
+    for (second, other) in bones() {
+        for (first, part) in bones().take_while(|(first, _)| *first < second) {
+            if parent(part).is_some() && parent(part) == parent(other) {
+                let width = bend_width(&part.cone, &other.cone, true);
+                if width > 0.0 {
+                    forks.push(Group { members: vec![Member::Bend(first, second, width)] });
+                }
+            }
+        }
     }
+    forks
+}
+
+/// Width of the blend of two bones, at most half of their smaller radius: the more, the sharper the bend,
+/// since bones in line would swell where they meet.
+fn bend_width(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
+    let most = 0.5 * one.least_radius().min(other.least_radius());
+    most * sharpness(one, other, are_siblings)
 }
 
 /// How sharply two bones meet: 0 if they go straight on with one radius, 1 for a bend by 90° or more or if

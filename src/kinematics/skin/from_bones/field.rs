@@ -2,62 +2,95 @@
 
 use glam::DVec3;
 
-use super::body::{Blend, Body, Part};
-use super::round_cone::Sighting;
+use super::body::{Body, Group, Member, Part};
+use super::round_cone::{RoundCone, Sighting};
 
-/// The parts of a body that shape its surface near a box, so that the distance costs as much as there are
-/// parts nearby. Equal to the field of all parts inside the box, bit for bit.
+/// The parts of a body that shape its surface near a point, so that the distance costs as much as there
+/// are parts nearby. Equal to the field of all parts in its range, but for rounding.
 #[derive(Clone, Debug)]
-pub struct Field<'a> {
-    body: &'a Body,
+pub struct Field {
     /// Indices of the parts in the body.
     parts: Vec<usize>,
-    /// Blends of parts, by their indices in `parts`.
-    blends: Vec<Blend>,
+    /// The parts.
+    cones: Vec<RoundCone>,
+    /// The distance within which each part blends with others, and its inverse.
+    widths: Vec<[f64; 2]>,
+    /// Groups of parts, by their indices in `parts`.
+    groups: Vec<Group>,
 }
 
 /// Memory for intermediate results of a [`Field`].
 #[derive(Debug, Default)]
 pub struct FieldScratch {
-    distances: Vec<f64>,
     sightings: Vec<Sighting>,
+    distances: Vec<f64>,
+    members: Vec<NearMember>,
 }
 
-impl<'a> Field<'a> {
+/// A member of a group from a point: its distance, and that within which it blends with others.
+#[derive(Clone, Copy, Debug)]
+struct NearMember {
+    distance: f64,
+    width: f64,
+    /// 1/width.
+    per_width: f64,
+}
+
+impl Field {
     /// The field of all parts.
-    pub fn new(body: &'a Body) -> Self {
-        Self { body, parts: (0..body.parts.len()).collect(), blends: body.blends.clone() }
+    pub fn new(body: &Body) -> Self {
+        let widths = |part: &Part| {
+            let width = 0.5 * part.cone.least_radius();
+            [width, 1.0 / width]
+        };
+        Self {
+            parts: (0..body.parts.len()).collect(),
+            cones: body.parts.iter().map(|part| part.cone).collect(),
+            widths: body.parts.iter().map(widths).collect(),
+            groups: body.groups.clone(),
+        }
     }
 
     /// The field for points at most `radius` away from a point, which must be in the range of this field.
     pub fn near(&self, point: DVec3, radius: f64) -> Self {
-        let distances: Vec<f64> = self.all().map(|part| part.cone.distance(point)).collect();
-        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        // Each distance changes by at most `radius` on the way, and rounding by much less than that.
-        let reach = 2.02 * radius;
-        let is_near = |blend: &&Blend| {
-            let (first, second) = (distances[blend.first], distances[blend.second]);
-            first.min(second) <= least + reach + blend.width
-                && (first - second).abs() <= reach + blend.width
-        };
-        let blends: Vec<&Blend> = self.blends.iter().filter(is_near).collect();
-        let mut is_kept: Vec<bool> =
-            distances.iter().map(|distance| *distance <= least + reach).collect();
-        for blend in &blends {
-            (is_kept[blend.first], is_kept[blend.second]) = (true, true);
+        // Each distance changes by at most `radius` on the way, that of a group by a little more where its
+        // members have different widths.
+        let reach = 2.2 * radius;
+        let distances: Vec<f64> = self.cones.iter().map(|cone| cone.distance(point)).collect();
+        let mut members = Vec::new();
+        let mut kept: Vec<(f64, Group)> = Vec::new();
+        for group in &self.groups {
+            self.measure(group, &distances, &mut members);
+            let distance = blended_distance(&members);
+            let is_near = |near: &NearMember| near.distance <= distance + reach + near.width;
+            let near = group.members.iter().zip(&members).filter(|(_, near)| is_near(near));
+            let members = near.map(|(member, _)| self.reduced(member, &distances, reach)).collect();
+            kept.push((distance, Group { members }));
         }
-        let mut index = vec![0; self.parts.len()];
-        let mut parts = Vec::new();
-        for (old, part) in self.parts.iter().enumerate().filter(|(old, _)| is_kept[*old]) {
-            index[old] = parts.len();
-            parts.push(*part);
+        let least = kept.iter().map(|(distance, _)| *distance).fold(f64::INFINITY, f64::min);
+        kept.retain(|(distance, _)| *distance <= least + reach);
+        self.with_groups(&without_subsets(kept))
+    }
+
+    /// The field of some groups, and of the parts in them.
+    fn with_groups(&self, groups: &[Group]) -> Self {
+        let members = groups.iter().flat_map(|group| &group.members);
+        let mut used: Vec<usize> = members.flat_map(Member::parts).collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut index = vec![usize::MAX; self.parts.len()];
+        for (new, old) in used.iter().enumerate() {
+            index[*old] = new;
         }
-        let reindexed = |blend: &Blend| Blend {
-            first: index[blend.first],
-            second: index[blend.second],
-            ..*blend
+        let reindexed = |group: &Group| Group {
+            members: group.members.iter().map(|member| member.reindexed(&index)).collect(),
         };
-        Self { body: self.body, parts, blends: blends.into_iter().map(reindexed).collect() }
+        Self {
+            parts: used.iter().map(|old| self.parts[*old]).collect(),
+            cones: used.iter().map(|old| self.cones[*old]).collect(),
+            widths: used.iter().map(|old| self.widths[*old]).collect(),
+            groups: groups.iter().map(reindexed).collect(),
+        }
     }
 
     /// Indices of the parts, in the order of the body.
@@ -65,45 +98,174 @@ impl<'a> Field<'a> {
         &self.parts
     }
 
-    /// Signed distance: the least over all parts and all blends. It changes by no more than the way.
+    /// Signed distance: the least over all groups. It changes by no more than the way, but for a tenth.
     pub fn distance(&self, point: DVec3, scratch: &mut FieldScratch) -> f64 {
-        let distances = &mut scratch.distances;
+        let FieldScratch { distances, members, .. } = scratch;
         distances.clear();
-        distances.extend(self.all().map(|part| part.cone.distance(point)));
-        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        let blended = |blend: &Blend| {
-            smooth_minimum(distances[blend.first], distances[blend.second], blend.width).0
-        };
-        self.blends.iter().map(blended).fold(least, f64::min)
+        distances.extend(self.cones.iter().map(|cone| cone.distance(point)));
+        let mut least = f64::INFINITY;
+        for group in &self.groups {
+            self.measure(group, distances, members);
+            least = least.min(blended_distance(members));
+        }
+        least
     }
 
     /// Distance, gradient (at most 1 long) and local radius.
     pub fn sighting(&self, point: DVec3, scratch: &mut FieldScratch) -> Sighting {
-        let sightings = &mut scratch.sightings;
+        let FieldScratch { sightings, distances, members } = scratch;
         sightings.clear();
-        sightings.extend(self.all().map(|part| part.cone.sighting(point)));
-        let nearest = sightings.iter().copied().fold(Sighting::NONE, Sighting::nearer);
-        let blended = |blend: &Blend| {
-            let (first, second) = (&sightings[blend.first], &sightings[blend.second]);
-            let (distance, share) = smooth_minimum(first.distance, second.distance, blend.width);
-            Sighting {
-                distance,
-                gradient: first.gradient.lerp(second.gradient, share),
-                radius: first.radius.min(second.radius),
+        sightings.extend(self.cones.iter().map(|cone| cone.sighting(point)));
+        distances.clear();
+        distances.extend(sightings.iter().map(|seen| seen.distance));
+        let mut nearest = Sighting::NONE;
+        for group in &self.groups {
+            self.measure(group, distances, members);
+            let distance = blended_distance(members);
+            if distance < nearest.distance {
+                nearest = blend(group, sightings, members, distance);
             }
-        };
-        self.blends.iter().map(blended).fold(nearest, Sighting::nearer)
+        }
+        nearest
     }
 
-    fn all(&self) -> impl Iterator<Item = &Part> {
-        self.parts.iter().map(|part| &self.body.parts[*part])
+    /// Writes the members of a group as they are at a point with these distances from the parts.
+    fn measure(&self, group: &Group, distances: &[f64], members: &mut Vec<NearMember>) {
+        let near = |part: usize| {
+            let ([width, per_width], distance) = (self.widths[part], distances[part]);
+            NearMember { distance, width, per_width }
+        };
+        members.clear();
+        members.extend(group.members.iter().map(|member| match *member {
+            Member::Part(part) => near(part),
+            Member::Bend(first, second, width) => {
+                let (first, second) = (near(first), near(second));
+                let (distance, _) = smooth_minimum(first.distance, second.distance, width);
+                let width = width_at_bend(first, second);
+                NearMember { distance, width, per_width: 1.0 / width }
+            }
+        }));
     }
+
+    /// A bend is one of its bones where the other one is too far away to count.
+    fn reduced(&self, member: &Member, distances: &[f64], reach: f64) -> Member {
+        let Member::Bend(first, second, bend) = *member else { return *member };
+        let width = bend.max(self.widths[first][0].min(self.widths[second][0]));
+        let farther = distances[first] - distances[second];
+        if farther.abs() <= width + reach {
+            return *member;
+        }
+        Member::Part(if farther < 0.0 { first } else { second })
+    }
+}
+
+/// The groups that are no part of another one, whose distance is never greater.
+fn without_subsets(groups: Vec<(f64, Group)>) -> Vec<Group> {
+    let mut kept: Vec<Group> = Vec::new();
+    let is_part = |one: &Group, other: &Group| {
+        one.members.iter().all(|member| other.members.contains(member))
+    };
+    for (_, group) in groups {
+        if !kept.iter().any(|other| is_part(&group, other)) {
+            kept.retain(|other| !is_part(other, &group));
+            kept.push(group);
+        }
+    }
+    kept
 }
 
 /// The quadratic smooth minimum: min(a, b) where they differ by more than `width`, and at most
 /// `width`/4 below it; with the share of b in its gradient.
 fn smooth_minimum(a: f64, b: f64, width: f64) -> (f64, f64) {
-    let overlap = (width - (a - b).abs()).max(0.0) / width;
-    let value = a.min(b) - 0.25 * width * overlap * overlap;
-    (value, if a <= b { 0.5 * overlap } else { 1.0 - 0.5 * overlap })
+    let overlap = width - (a - b).abs();
+    if overlap <= 0.0 {
+        return if a <= b { (a, 0.0) } else { (b, 1.0) };
+    }
+    let overlap = overlap / width;
+    let share_of_b = if a <= b { 0.5 * overlap } else { 1.0 - 0.5 * overlap };
+    (a.min(b) - 0.25 * width * overlap * overlap, share_of_b)
+}
+
+/// Width of two bones that meet: that of the nearer one, changing evenly from one to the other where both
+/// are near.
+fn width_at_bend(first: NearMember, second: NearMember) -> f64 {
+    let farther = (first.distance - second.distance) / first.width.min(second.width);
+    let share = (0.5 + 0.5 * farther).clamp(0.0, 1.0);
+    first.width + (second.width - first.width) * share
+}
+
+/// Distance of the members of a group: the f with Σ x_i² = 1, where x_i = max(0, f + k_i − d_i)/k_i for a
+/// member with the distance d_i and the width k_i. It is d_i where no other member is near, at most the
+/// smallest width below the least d_i however many members meet, and smooth.
+fn blended_distance(members: &[NearMember]) -> f64 {
+    let mut f = members.iter().map(|near| near.distance).fold(f64::INFINITY, f64::min);
+    // Newton's method from above; the sum is convex in f, so that it converges from one side. The first
+    // step finds nothing to do where one member alone is near.
+    for _ in 0..12 {
+        let (mut sum, mut slope) = (-1.0, 0.0);
+        for near in members.iter().filter(|near| f + near.width > near.distance) {
+            let part = near.part(f);
+            sum += part * part;
+            slope += part * near.per_width;
+        }
+        if sum <= 1e-10 {
+            break;
+        }
+        f -= 0.5 * sum / slope;
+    }
+    f
+}
+
+/// The members of a group as one surface: each has its share x_i/k_i of the gradient.
+fn blend(group: &Group, sightings: &[Sighting], members: &[NearMember], f: f64) -> Sighting {
+    let mut blended = Sighting { distance: f, gradient: DVec3::ZERO, radius: f64::INFINITY };
+    let mut total = 0.0;
+    for (member, near) in group.members.iter().zip(members) {
+        let share = near.part(f) * near.per_width;
+        if share == 0.0 {
+            continue;
+        }
+        let (gradient, radius) = match *member {
+            Member::Part(part) => (sightings[part].gradient, sightings[part].radius),
+            Member::Bend(first, second, width) => {
+                let (first, second) = (&sightings[first], &sightings[second]);
+                let (_, of_second) = smooth_minimum(first.distance, second.distance, width);
+                let radius = match of_second {
+                    0.0 => first.radius,
+                    1.0 => second.radius,
+                    _ => first.radius.min(second.radius),
+                };
+                (first.gradient.lerp(second.gradient, of_second), radius)
+            }
+        };
+        total += share;
+        blended.gradient += share * gradient;
+        blended.radius = blended.radius.min(radius);
+    }
+    blended.gradient /= total;
+    blended
+}
+
+impl NearMember {
+    /// The member's x in [`blended_distance`] for a distance f.
+    fn part(&self, f: f64) -> f64 {
+        ((f + self.width - self.distance) * self.per_width).max(0.0)
+    }
+}
+
+impl Member {
+    fn parts(&self) -> impl Iterator<Item = usize> + use<> {
+        let (first, second) = match *self {
+            Self::Part(part) => (part, None),
+            Self::Bend(first, second, _) => (first, Some(second)),
+        };
+        core::iter::once(first).chain(second)
+    }
+
+    fn reindexed(&self, index: &[usize]) -> Self {
+        match *self {
+            Self::Part(part) => Self::Part(index[part]),
+            Self::Bend(first, second, width) => Self::Bend(index[first], index[second], width),
+        }
+    }
 }

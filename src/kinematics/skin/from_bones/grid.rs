@@ -6,12 +6,11 @@ use glam::{DVec3, IVec3};
 
 use super::field::{Field, FieldScratch};
 
-/// Cells by their integer coordinates.
-pub type Cells = HashMap<IVec3, Cell>;
-
 /// Distances at the corners of a cell; corner c has the coordinates of its bits: 1 for x, 2 for y, 4 for z.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
+    /// Integer coordinates of the lowest corner.
+    pub at: IVec3,
     pub corners: [f64; 8],
     /// Index of the block that it belongs to, in [`Grid::blocks`].
     pub block: u32,
@@ -19,20 +18,28 @@ pub struct Cell {
 
 /// The cells of a grid that the surface passes through, found by an octree of cubes whose centre is nearer
 /// to the surface than their corners are.
-pub struct Grid<'a> {
+pub struct Grid {
     origin: DVec3,
-    cell: f64,
-    pub cells: Cells,
+    /// Size of a cell.
+    pub cell: f64,
+    /// The cells, in the order of the octree.
+    pub cells: Vec<Cell>,
+    /// Indices in `cells` by coordinates.
+    index: HashMap<IVec3, u32>,
     /// The field near each block of cells.
-    pub blocks: Vec<Field<'a>>,
+    pub blocks: Vec<Field>,
 }
 
+/// Upper bound of the change of the distance per unit of the way.
+const STEEPEST: f64 = 1.1;
 /// Cells along the edge of a block.
 const BLOCK: i32 = 4;
+/// Distance around a block, in cells, in which the field near the block is exact.
+pub const MARGIN: f64 = 1.0;
 
-impl<'a> Grid<'a> {
+impl Grid {
     /// The grid of cells of the size `cell` over the box from `low` to `high`.
-    pub fn new(field: &Field<'a>, cell: f64, low: DVec3, high: DVec3) -> Self {
+    pub fn new(field: &Field, cell: f64, low: DVec3, high: DVec3) -> Self {
         let mut blocks = 1;
         while f64::from(blocks * BLOCK) * cell < (high - low).max_element() {
             blocks *= 2;
@@ -40,7 +47,8 @@ impl<'a> Grid<'a> {
         // Not on the bones, where symmetric bodies would have distances of exactly 0.
         let shift = DVec3::new(0.317, 0.229, 0.411) * cell;
         let origin = low.midpoint(high) - 0.5 * f64::from(blocks * BLOCK) * cell + shift;
-        let mut grid = Self { origin, cell, cells: Cells::new(), blocks: Vec::new() };
+        let mut grid =
+            Self { origin, cell, cells: Vec::new(), index: HashMap::new(), blocks: Vec::new() };
         grid.visit(field, IVec3::ZERO, blocks * BLOCK);
         grid
     }
@@ -50,12 +58,17 @@ impl<'a> Grid<'a> {
         self.origin + corner.as_dvec3() * self.cell
     }
 
-    fn visit(&mut self, field: &Field<'a>, low: IVec3, cells: i32) {
+    /// Index of the cell at some coordinates; `None` if the surface does not pass through it.
+    pub fn index_of(&self, at: IVec3) -> Option<usize> {
+        self.index.get(&at).map(|index| *index as usize)
+    }
+
+    fn visit(&mut self, field: &Field, low: IVec3, cells: i32) {
         let half = 0.5 * f64::from(cells) * self.cell;
         let centre = self.corner(low) + half;
         let radius = half * 3.0_f64.sqrt();
-        let near = field.near(centre, radius + 2.0 * self.cell);
-        if near.distance(centre, &mut FieldScratch::default()).abs() > 1.001 * radius {
+        let near = field.near(centre, radius + MARGIN * self.cell);
+        if near.distance(centre, &mut FieldScratch::default()).abs() > STEEPEST * radius {
             return;
         }
         if cells == BLOCK {
@@ -68,31 +81,51 @@ impl<'a> Grid<'a> {
         }
     }
 
-    fn sample(&mut self, field: Field<'a>, low: IVec3) {
-        const CORNERS: usize = BLOCK as usize + 1;
-        let mut scratch = FieldScratch::default();
-        let mut distances = [[[0.0; CORNERS]; CORNERS]; CORNERS];
-        for (z, plane) in (0..).zip(&mut distances) {
-            for (y, row) in (0..).zip(plane) {
-                for (x, distance) in (0..).zip(row) {
-                    let corner = self.corner(low + IVec3::new(x, y, z));
-                    *distance = field.distance(corner, &mut scratch);
+    /// Adds the cells of a block that the surface passes through.
+    fn sample(&mut self, field: Field, low: IVec3) {
+        let mut corners = BlockCorners::default();
+        let block = self.blocks.len() as u32;
+        let (origin, size) = (self.origin, self.cell);
+        let mut distance = |at: IVec3| {
+            let point = origin + (low + at).as_dvec3() * size;
+            corners.distance(at, |scratch| field.distance(point, scratch))
+        };
+        for octant in 0..8 {
+            // The middle of an octant of 2×2×2 cells is √3 cells away from its farthest corners.
+            let first = corner_offset(octant) * (BLOCK / 2);
+            if distance(first + 1).abs() > STEEPEST * 3.0_f64.sqrt() * size {
+                continue;
+            }
+            for cell in 0..8 {
+                let at = first + corner_offset(cell);
+                let corners =
+                    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| distance(at + corner_offset(corner)));
+                let inside = corners.iter().filter(|distance| **distance < 0.0).count();
+                if (1..8).contains(&inside) {
+                    let at = low + at;
+                    self.index.insert(at, self.cells.len() as u32);
+                    self.cells.push(Cell { at, corners, block });
                 }
             }
         }
-        let block = self.blocks.len() as u32;
-        for index in 0..BLOCK.pow(3) {
-            let at = IVec3::new(index % BLOCK, index / BLOCK % BLOCK, index / BLOCK.pow(2));
-            let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
-                let IVec3 { x, y, z } = at + corner_offset(corner);
-                distances[z as usize][y as usize][x as usize]
-            });
-            let inside = corners.iter().filter(|distance| **distance < 0.0).count();
-            if (1..8).contains(&inside) {
-                self.cells.insert(low + at, Cell { corners, block });
-            }
-        }
         self.blocks.push(field);
+    }
+}
+
+/// Distances at the corners of a block, computed when they are first needed.
+#[derive(Default)]
+struct BlockCorners {
+    distances: [[[Option<f64>; CORNERS]; CORNERS]; CORNERS],
+    scratch: FieldScratch,
+}
+
+/// Corners of cells along the edge of a block.
+const CORNERS: usize = BLOCK as usize + 1;
+
+impl BlockCorners {
+    fn distance(&mut self, at: IVec3, compute: impl FnOnce(&mut FieldScratch) -> f64) -> f64 {
+        let [x, y, z] = at.to_array().map(|index| index as usize);
+        *self.distances[z][y][x].get_or_insert_with(|| compute(&mut self.scratch))
     }
 }
 

@@ -1,10 +1,9 @@
 //! Skins made from the bones of a skeleton.
 //!
-//! Each bone is a round cone with the radii of its joint. The signed distances of bones that are next to
-//! each other in the tree blend by a smooth minimum whose width grows with the bend between them; all
-//! others by the minimum. The surface of that field is meshed by dual marching cubes, a form of surface
-//! nets whose meshes are closed manifolds, one for each tree; its vertices are then moved onto the
-//! surface.
+//! Each bone is a round cone with the radii of its joint. The signed distances of the parts of a joint and
+//! of its parent blend smoothly, two bones the more the sharper the bend between them; all others by the
+//! minimum. The surface of that field is meshed by dual marching cubes, a form of surface nets whose meshes
+//! are closed manifolds, one for each tree; its vertices are then moved onto the surface.
 
 mod body;
 mod error;
@@ -25,7 +24,7 @@ use glam::{DVec3, Vec3};
 use super::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::kinematics::skeleton::Skeleton;
 use body::Body;
-use field::{Field, FieldScratch};
+use field::Field;
 use grid::Grid;
 use surface_nets::SurfaceNet;
 use weights::Weights;
@@ -86,11 +85,11 @@ fn add(
     mesh: &mut TriangleMesh,
     weights: &mut Vec<VertexWeights>,
 ) {
-    const ROUNDS: usize = 3;
+    const ROUNDS: usize = 2;
     let (low, high) = bounds(body);
     let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
     let mut net = SurfaceNet::new(&grid);
-    projection::relax(&mut net, &grid.blocks, ROUNDS);
+    projection::relax(&mut net, &grid, ROUNDS);
     let field = |vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
     let by_distance = Weights::new(body, skeleton);
     let mut own: Vec<VertexWeights> = net
@@ -103,12 +102,8 @@ fn add(
         net.quads.iter().flat_map(|quad| halves(&net.vertices, *quad)).collect();
     weights::smooth(&mut own, &edges(&triangles));
     let first = mesh.positions.len() as u32;
-    let mut scratch = FieldScratch::default();
-    for (vertex, at) in net.vertices.iter().enumerate() {
-        let normal = field(vertex).sighting(*at, &mut scratch).gradient.normalize_or(DVec3::Y);
-        mesh.positions.push(at.as_vec3());
-        mesh.normals.push(normal.as_vec3().normalize_or(Vec3::Y));
-    }
+    mesh.positions.extend(net.vertices.iter().map(|at| at.as_vec3()));
+    mesh.normals.extend(net.normals.iter().map(|normal| normal.as_vec3().normalize_or(Vec3::Y)));
     mesh.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     weights.extend(own);
 }

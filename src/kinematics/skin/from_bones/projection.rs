@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::field::{Field, FieldScratch};
+use super::grid::{Grid, MARGIN};
 use super::round_cone::Sighting;
 use super::surface_nets::SurfaceNet;
 
@@ -10,13 +11,24 @@ use super::surface_nets::SurfaceNet;
 const TOLERANCE: f64 = 2e-4;
 
 /// Spreads the vertices evenly over the surface: each moves to the mean of its neighbours, along the
-/// surface, and back onto it.
-pub fn relax(net: &mut SurfaceNet, blocks: &[Field<'_>], rounds: usize) {
+/// surface, and back onto it. A vertex stays near the cell that it was made in, where the field of its block
+/// is exact.
+pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) {
     let mut scratch = FieldScratch::default();
     let directed =
         net.quads.iter().flat_map(|[a, b, c, d]| [[*a, *b], [*b, *c], [*c, *d], [*d, *a]]);
     let edges: Vec<[u32; 2]> = directed.collect();
-    project(net, blocks, &mut scratch);
+    let starts = net.vertices.clone();
+    let nearest = |field: &Field, point: DVec3, scratch: &mut FieldScratch| {
+        let seen = field.sighting(point, scratch);
+        (point - newton_step(&seen), seen.gradient.normalize_or(DVec3::X))
+    };
+    let block = |net: &SurfaceNet, vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
+    let mut normals = vec![DVec3::X; net.vertices.len()];
+    for vertex in 0..net.vertices.len() {
+        let field = block(net, vertex);
+        (net.vertices[vertex], normals[vertex]) = nearest(field, starts[vertex], &mut scratch);
+    }
     for _ in 0..rounds {
         // Each edge belongs to two quads, once in each direction.
         let mut sums = vec![(DVec3::ZERO, 0.0); net.vertices.len()];
@@ -27,54 +39,61 @@ pub fn relax(net: &mut SurfaceNet, blocks: &[Field<'_>], rounds: usize) {
         }
         for (vertex, (sum, count)) in sums.into_iter().enumerate() {
             let here = net.vertices[vertex];
-            let field = &blocks[net.blocks[vertex] as usize];
-            let normal = field.sighting(here, &mut scratch).gradient.normalize_or(DVec3::X);
-            net.vertices[vertex] = here + 0.5 * (sum / count - here).reject_from(normal);
+            let moved = here + 0.5 * (sum / count - here).reject_from(normals[vertex]);
+            let (moved, normal) = nearest(block(net, vertex), moved, &mut scratch);
+            if moved.distance(starts[vertex]) <= MARGIN * grid.cell {
+                (net.vertices[vertex], normals[vertex]) = (moved, normal);
+            }
         }
-        project(net, blocks, &mut scratch);
     }
+    for vertex in 0..net.vertices.len() {
+        let field = block(net, vertex);
+        (net.vertices[vertex], normals[vertex]) =
+            onto_surface(field, net.vertices[vertex], &mut scratch);
+    }
+    net.normals = normals;
 }
 
-fn project(net: &mut SurfaceNet, blocks: &[Field<'_>], scratch: &mut FieldScratch) {
-    for (vertex, block) in net.vertices.iter_mut().zip(&net.blocks) {
-        *vertex = onto_surface(&blocks[*block as usize], *vertex, scratch);
-    }
+/// The step of Newton's method towards the surface, backwards.
+fn newton_step(seen: &Sighting) -> DVec3 {
+    seen.gradient * (seen.distance / seen.gradient.length_squared().max(0.25))
 }
 
-/// The point of the surface that Newton steps along the gradient lead to. Where they go back and forth
+/// The point of the surface that Newton steps along the gradient lead to, and the normal there. Where they go back and forth
 /// across a crease, the surface is between the last points on either side.
-fn onto_surface(field: &Field<'_>, start: DVec3, scratch: &mut FieldScratch) -> DVec3 {
+fn onto_surface(field: &Field, start: DVec3, scratch: &mut FieldScratch) -> (DVec3, DVec3) {
     let mut point = start;
     let mut sides: [Option<DVec3>; 2] = [None, None];
     for _ in 0..8 {
-        let Sighting { distance, gradient, radius } = field.sighting(point, scratch);
-        if distance.abs() <= TOLERANCE * radius {
-            return point;
+        let seen = field.sighting(point, scratch);
+        if seen.distance.abs() <= TOLERANCE * seen.radius {
+            return (point, seen.gradient.normalize_or(DVec3::Y));
         }
-        sides[usize::from(distance < 0.0)] = Some(point);
-        let length = gradient.length_squared().max(0.25);
-        point -= gradient * (distance / length);
+        sides[usize::from(seen.distance < 0.0)] = Some(point);
+        point -= newton_step(&seen);
     }
     match sides {
         [Some(outside), Some(inside)] => between(field, outside, inside, scratch),
-        _ => point,
+        _ => (point, DVec3::Y),
     }
 }
 
 fn between(
-    field: &Field<'_>,
+    field: &Field,
     mut outside: DVec3,
     mut inside: DVec3,
     scratch: &mut FieldScratch,
-) -> DVec3 {
+) -> (DVec3, DVec3) {
     let mut point = outside.midpoint(inside);
+    let mut normal = DVec3::Y;
     for _ in 0..60 {
-        let Sighting { distance, radius, .. } = field.sighting(point, scratch);
+        let Sighting { distance, gradient, radius } = field.sighting(point, scratch);
+        normal = gradient.normalize_or(normal);
         if distance.abs() <= TOLERANCE * radius {
             break;
         }
         *(if distance < 0.0 { &mut inside } else { &mut outside }) = point;
         point = outside.midpoint(inside);
     }
-    point
+    (point, normal)
 }

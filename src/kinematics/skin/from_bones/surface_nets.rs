@@ -1,8 +1,6 @@
 //! A closed mesh through the cells of a grid: one vertex per patch of surface in a cell, one quad around
 //! each crossed edge.
 
-use std::collections::HashMap;
-
 use glam::{DVec3, IVec3};
 
 use super::grid::{Cell, Grid, corner_offset};
@@ -11,33 +9,30 @@ use super::patches::{EDGES, Patches, edge, edge_corners};
 /// Vertices, with the block of the grid that each is in, and quads, counter-clockwise seen from outside.
 pub struct SurfaceNet {
     pub vertices: Vec<DVec3>,
+    /// Unit normals, as many as vertices once these are moved onto the surface; empty before.
+    pub normals: Vec<DVec3>,
     pub blocks: Vec<u32>,
     pub quads: Vec<[u32; 4]>,
 }
 
-/// Patches of a cell with the index of its first vertex.
-struct Patched {
-    patches: Patches,
-    first_vertex: u32,
-}
-
 impl SurfaceNet {
-    pub fn new(grid: &Grid<'_>) -> Self {
-        // In one order on every run: the order of a hash map differs.
-        let mut order: Vec<IVec3> = grid.cells.keys().copied().collect();
-        order.sort_unstable_by_key(glam::IVec3::to_array);
-        let mut patched = patches(grid, &order);
-        let mut net = Self { vertices: Vec::new(), blocks: Vec::new(), quads: Vec::new() };
-        for at in &order {
-            let (cell, patched) = (&grid.cells[at], patched.get_mut(at));
-            if let Some(Patched { patches, first_vertex }) = patched {
-                *first_vertex = net.vertices.len() as u32;
-                net.vertices.extend(centres(grid, *at, cell, patches));
-                net.blocks.resize(net.vertices.len(), cell.block);
-            }
+    pub fn new(grid: &Grid) -> Self {
+        let patches = patches(grid);
+        let mut net = Self {
+            vertices: Vec::new(),
+            normals: Vec::new(),
+            blocks: Vec::new(),
+            quads: Vec::new(),
+        };
+        let mut first_vertices = Vec::with_capacity(grid.cells.len());
+        for (cell, patches) in grid.cells.iter().zip(&patches) {
+            first_vertices.push(net.vertices.len() as u32);
+            net.vertices.extend(centres(grid, cell, patches));
+            net.blocks.resize(net.vertices.len(), cell.block);
         }
-        for at in &order {
-            net.quads.extend((0..3).filter_map(|axis| quad(grid, &patched, *at, axis)));
+        for cell in 0..grid.cells.len() {
+            let quad = |axis| quad(grid, &patches, &first_vertices, cell, axis);
+            net.quads.extend((0..3).filter_map(quad));
         }
         net.without_cavities()
     }
@@ -51,7 +46,12 @@ impl SurfaceNet {
             volumes[piece[quad[0] as usize]] += (a - c).cross(b - d).dot(a + b + c + d);
         }
         let mut index = vec![u32::MAX; self.vertices.len()];
-        let mut solid = Self { vertices: Vec::new(), blocks: Vec::new(), quads: Vec::new() };
+        let mut solid = Self {
+            vertices: Vec::new(),
+            normals: Vec::new(),
+            blocks: Vec::new(),
+            quads: Vec::new(),
+        };
         for (vertex, at) in self.vertices.iter().enumerate() {
             if volumes[piece[vertex]] > 0.0 {
                 index[vertex] = solid.vertices.len() as u32;
@@ -86,24 +86,18 @@ fn pieces(vertices: usize, quads: &[[u32; 4]]) -> Vec<usize> {
 }
 
 /// The patches of all cells, with no face that has two segments of the same patches on both sides.
-fn patches(grid: &Grid<'_>, order: &[IVec3]) -> HashMap<IVec3, Patched> {
-    let patched = |(at, cell): (&IVec3, &Cell)| {
-        (*at, Patched { patches: Patches::new(cell), first_vertex: 0 })
-    };
-    let mut all: HashMap<IVec3, Patched> = grid.cells.iter().map(patched).collect();
-    for at in order {
+fn patches(grid: &Grid) -> Vec<Patches> {
+    let mut all: Vec<Patches> = grid.cells.iter().map(Patches::new).collect();
+    for (index, cell) in grid.cells.iter().enumerate() {
         for axis in 0..3 {
-            let beyond = *at + IVec3::AXES[axis];
             let (low, high) = (2 * axis, 2 * axis + 1);
-            let has_twice = |at: &IVec3, face: usize| {
-                all.get(at).is_some_and(|patched| patched.patches.has_twice(face))
-            };
-            if has_twice(at, high) && has_twice(&beyond, low) {
-                for (at, face) in [(at, high), (&beyond, low)] {
-                    if let Some(patched) = all.get_mut(at) {
-                        patched.patches.flip(&grid.cells[at], face);
-                    }
-                }
+            if !all[index].has_twice(high) {
+                continue;
+            }
+            let beyond = grid.index_of(cell.at + IVec3::AXES[axis]);
+            if let Some(beyond) = beyond.filter(|beyond| all[*beyond].has_twice(low)) {
+                all[index].flip(cell, high);
+                all[beyond].flip(&grid.cells[beyond], low);
             }
         }
     }
@@ -111,18 +105,14 @@ fn patches(grid: &Grid<'_>, order: &[IVec3]) -> HashMap<IVec3, Patched> {
 }
 
 /// The mean of the points where the surface crosses the edges of each patch.
-fn centres(
-    grid: &Grid<'_>,
-    at: IVec3,
-    cell: &Cell,
-    patches: &Patches,
-) -> impl Iterator<Item = DVec3> {
+fn centres(grid: &Grid, cell: &Cell, patches: &Patches) -> impl Iterator<Item = DVec3> {
     let mut sums = vec![(DVec3::ZERO, 0.0); patches.count()];
     for crossed in 0..EDGES {
         if let Some(patch) = patches.of_edge(crossed) {
             let [low, high] = edge_corners(crossed);
             let (a, b) = (cell.corners[usize::from(low)], cell.corners[usize::from(high)]);
-            let [low, high] = [low, high].map(|corner| grid.corner(at + corner_offset(corner)));
+            let [low, high] =
+                [low, high].map(|corner| grid.corner(cell.at + corner_offset(corner)));
             sums[patch].0 += low.lerp(high, a / (a - b));
             sums[patch].1 += 1.0;
         }
@@ -133,22 +123,26 @@ fn centres(
 /// The quad around the edge from the lowest corner of a cell along an axis; `None` if the surface does
 /// not cross it.
 fn quad(
-    grid: &Grid<'_>,
-    patched: &HashMap<IVec3, Patched>,
-    at: IVec3,
+    grid: &Grid,
+    patches: &[Patches],
+    first_vertices: &[u32],
+    cell: usize,
     axis: usize,
 ) -> Option<[u32; 4]> {
+    patches[cell].of_edge(edge(0, 1 << axis))?;
+    let at = grid.cells[cell].at;
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
     // The four cells around the edge, counter-clockwise seen from its end.
     let around = [(0, 0), (1, 0), (1, 1), (0, 1)];
     let mut corners = [0; 4];
     for (corner, (back, down)) in corners.iter_mut().zip(around) {
         let neighbour = at - IVec3::AXES[second] * back - IVec3::AXES[third] * down;
+        let neighbour = grid.index_of(neighbour)?;
         let low = (back as u8) << second | (down as u8) << third;
-        let Patched { patches, first_vertex } = patched.get(&neighbour)?;
-        *corner = first_vertex + patches.of_edge(edge(low, low | 1 << axis))? as u32;
+        let patch = patches[neighbour].of_edge(edge(low, low | 1 << axis))?;
+        *corner = first_vertices[neighbour] + patch as u32;
     }
-    if grid.cells.get(&at)?.corners[0] >= 0.0 {
+    if grid.cells[cell].corners[0] >= 0.0 {
         corners.reverse();
     }
     Some(corners)

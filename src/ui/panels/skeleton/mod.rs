@@ -4,6 +4,7 @@ mod choice;
 mod follow_path;
 mod joint;
 mod outliner;
+mod skin;
 mod targets;
 
 use crate::ui::widgets::{self, AXES, PointSliders};
@@ -31,6 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
     }
     widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
     widgets::section(ui, "Translation", |ui| place(ui, session, actions));
     widgets::section(ui, "Path", |ui| follow_path::ui(ui, session, actions));
 }

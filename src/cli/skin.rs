@@ -1,0 +1,112 @@
+//! `ik-arm skin`: a document whose skeleton has a skin around its bones.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use thiserror::Error;
+
+use super::argument::{NumberArgument, SkinningName};
+use super::open;
+use super::report::{USAGE, fail, say};
+use crate::document::{Document, Overlay, RigKind, Skin};
+use crate::io::{OpenError, SaveError, save};
+use crate::kinematics::skin::{SkinShape, SkinShapeError};
+use crate::rig::{BoneSkin, SkinSource};
+
+#[derive(clap::Args)]
+#[command(
+    after_help = r#"The skin is a closed mesh around the bones in the bind pose, as thick as the joints' radii. The
+document holds its settings; the mesh is made again when the document is opened. Settings that are
+not given stay as they are in FILE, also blobs, which only a document can have. The numbers of
+vertices and triangles are listed on stderr."#
+)]
+pub struct SkinArgs {
+    /// File with a skeleton: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -
+    /// reads standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Document to write (.json)
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Skeleton to take, if the file has several [default: the first]
+    #[arg(long, value_name = "NAME")]
+    skeleton: Option<String>,
+    /// Cells of the grid on the smallest radius, 1.2 to 16: twice the detail gives four times the
+    /// vertices [default: 2]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    detail: Option<NumberArgument>,
+    /// Factor of all radii, above 0 [default: 1]
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    thickness: Option<NumberArgument>,
+    /// How a vertex between joints follows them [default: dual-quaternion]
+    #[arg(long, value_enum)]
+    blend: Option<SkinningName>,
+}
+
+/// Reasons why no file is written.
+#[derive(Debug, Error)]
+enum SkinCommandError {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error("skin writes a document, so OUT must end in .json, got {0}")]
+    Extension(String),
+    #[error("{0}: a skin needs a skeleton, and the document shows an arm")]
+    NoSkeleton(String),
+    #[error("{file}: {error}")]
+    Shape { file: String, error: SkinShapeError },
+    #[error(transparent)]
+    Save(#[from] SaveError),
+}
+
+pub fn run(args: &SkinArgs) -> ExitCode {
+    match args.skin() {
+        Ok(report) => {
+            say(&report);
+            ExitCode::SUCCESS
+        }
+        Err(error @ SkinCommandError::Extension(_)) => {
+            say(&error);
+            ExitCode::from(USAGE)
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+impl SkinArgs {
+    /// Writes the document; returns the sizes of the mesh.
+    fn skin(&self) -> Result<String, SkinCommandError> {
+        if !self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+        {
+            return Err(SkinCommandError::Extension(self.output.display().to_string()));
+        }
+        let file = open::name(&self.file);
+        let mut document = open::open(&self.file, self.skeleton.as_deref())?.document;
+        if document.rig == RigKind::Arm {
+            return Err(SkinCommandError::NoSkeleton(file));
+        }
+        let skin = self.made(&document);
+        let mesh = skin.mesh().map_err(|error| SkinCommandError::Shape { file, error })?;
+        let mesh = mesh.mesh.mesh();
+        let report =
+            format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
+        document.skeleton_rig.skin = Some(skin);
+        document.display = document.display.with(Overlay::Skin, true);
+        save(&document, &self.output)?;
+        Ok(report)
+    }
+
+    /// The skin of the document with the settings that are given.
+    fn made(&self, document: &Document) -> Skin {
+        let rig = &document.skeleton_rig;
+        let old = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
+        let SkinSource::Bones(bones) = &old.source;
+        let shape = SkinShape {
+            detail: self.detail.map_or(bones.shape().detail, |detail| detail.0),
+            thickness: self.thickness.map_or(bones.shape().thickness, |thickness| thickness.0),
+            blobs: bones.shape().blobs.clone(),
+        };
+        let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
+        let skinning = self.blend.map_or(old.skinning, SkinningName::into);
+        Skin { source, skinning, ..old }
+    }
+}

@@ -1,0 +1,25 @@
+use glam::DAffine3;
+
+/// The mesh of an exported rig.
+pub struct GltfMesh {
+    /// One part for each colour.
+    pub parts: Vec<MeshPart>,
+    /// For each joint the transform from the mesh to the world in the bind pose, in metres; identity for
+    /// joints beyond the list.
+    pub attached: Vec<DAffine3>,
+}
+
+/// Triangles of one colour.
+#[derive(Default)]
+pub struct MeshPart {
+    /// Colour as sRGB components.
+    pub colour: [u8; 3],
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    /// The four joints that each vertex follows.
+    pub joints: Vec<[u16; 4]>,
+    /// Their weights, with the sum 1.
+    pub weights: Vec<[f32; 4]>,
+    /// Indices of three vertices for each triangle, counter-clockwise seen from outside.
+    pub indices: Vec<u32>,
+}
