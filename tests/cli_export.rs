@@ -317,7 +317,7 @@ fn an_unknown_extension_is_an_error_that_lists_the_known_ones() {
         let output = desk.run(out, &[]);
         assert_eq!(output.status.code(), Some(1));
         let said = complaint(&output);
-        assert!(said.ends_with("must be one of .glb, .bvh, .csv, .png, .apng"), "{said}");
+        assert!(said.ends_with("must be one of .glb, .bvh, .csv, .obj, .png, .apng"), "{said}");
     }
     let output = desk.run("a.csv", &[]);
     assert_eq!(output.status.code(), Some(1));

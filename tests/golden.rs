@@ -281,3 +281,42 @@ fn the_arm_with_all_overlays_of_an_animator() {
         check(&format!("{name}-light"), &with(arm, layers), Theme::Light);
     }
 }
+
+fn with_selection(document: &Document, joint: usize) -> Overlays {
+    Overlays { selection: vec![JointId::new(joint)], ..Overlays::new(document, 0.0) }
+}
+
+/// The Human in its bind pose.
+fn bind_pose() -> Document {
+    let mut human = example("human");
+    let joints = human.skeleton().ids();
+    human.skeleton_rig.targets.clear();
+    for joint in joints {
+        let _ = human.skeleton_rig.skeleton_mut().set_rotation(joint, Vec3::ZERO);
+    }
+    human
+}
+
+#[test]
+fn the_skin_of_the_human_in_its_bind_pose() {
+    check("skin_bind", &bind_pose(), Theme::Dark);
+    check("skin_bind-light", &bind_pose(), Theme::Light);
+}
+
+#[test]
+fn the_weights_of_a_joint_colour_the_skin() {
+    let document = showing(bind_pose(), &[Overlay::SkinWeights]);
+    for (name, theme) in [("skin_weights", Theme::Dark), ("skin_weights-light", Theme::Light)] {
+        pictures::check(name, &Scene::new(&document, &with_selection(&document, 13), theme));
+    }
+}
+
+#[test]
+fn the_wireframe_and_the_bones_of_a_skin() {
+    for (name, theme) in [("skin_wireframe", Theme::Dark), ("skin_wireframe-light", Theme::Light)] {
+        check(name, &showing(example("two-targets"), &[Overlay::Wireframe]), theme);
+    }
+    for (name, theme) in [("skin_and_bones", Theme::Dark), ("skin_and_bones-light", Theme::Light)] {
+        check(name, &showing(example("human"), &[Overlay::Bones]), theme);
+    }
+}

@@ -7,7 +7,7 @@ use common::skeletons::{forest, shake, space_f64, transform};
 use glam::{Affine3A, DMat3, DMat4, DQuat, DVec3, Mat3, Mat3A, Vec3};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::skin::{
-    SkinError, SkinPose, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+    SkinError, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use nalgebra::Matrix3;
 
@@ -69,7 +69,7 @@ impl Case {
     /// Compares positions and normals with a twin that gives the deformed position for a vertex, and the
     /// transform whose inverse transpose its normal has.
     fn compare(&self, skinning: Skinning, twin: impl Fn(&VertexWeights, DVec3) -> (DVec3, DMat3)) {
-        let posed = self.mesh.posed(&SkinPose::new(&self.mesh, &self.skeleton), skinning);
+        let posed = self.mesh.posed(&self.mesh.pose(&self.skeleton), skinning);
         let to_world = self.to_world();
         for (vertex, weights) in self.mesh.weights().iter().enumerate() {
             let position = self.mesh.mesh().positions[vertex].as_dvec3();
@@ -271,7 +271,7 @@ fn in_the_pose_in_which_it_was_attached_a_mesh_stays() {
             let pose = case.skeleton.bind_pose_in_skeleton();
             let attached = pose.full(root) * case.mesh.inverse_binds()[0];
             let place = case.skeleton.transform() * attached;
-            let posed = case.mesh.posed(&SkinPose::new(&case.mesh, &case.skeleton), skinning);
+            let posed = case.mesh.posed(&case.mesh.pose(&case.skeleton), skinning);
             for (posed, original) in posed.positions.iter().zip(&case.mesh.mesh().positions) {
                 let error = f64::from(posed.distance(place.transform_point3(*original)));
                 assert!(error < TOLERANCE * case.size, "{skinning}: {error:.1e}");
@@ -319,9 +319,7 @@ fn section_area(mesh: &TriangleMesh, height: f32) -> f64 {
 fn a_forearm_twisted_by_180_degrees_collapses_only_under_linear_blending() {
     let (skeleton, mesh) = twisted_forearm(std::f32::consts::PI);
     let before = section_area(mesh.mesh(), 4.0);
-    let kept = |skinning| {
-        section_area(&mesh.posed(&SkinPose::new(&mesh, &skeleton), skinning), 4.0) / before
-    };
+    let kept = |skinning| section_area(&mesh.posed(&mesh.pose(&skeleton), skinning), 4.0) / before;
     assert!((0.95..1.05).contains(&(before / (std::f64::consts::PI * 0.25))), "{before}");
     assert!(kept(Skinning::Linear) < 0.1, "{}", kept(Skinning::Linear));
     assert!(kept(Skinning::DualQuaternion) > 0.9, "{}", kept(Skinning::DualQuaternion));
@@ -331,7 +329,7 @@ fn a_forearm_twisted_by_180_degrees_collapses_only_under_linear_blending() {
 #[test]
 fn spread_twist_turns_a_bone_little_by_little_up_to_all_of_its_roll_at_the_tip() {
     let (skeleton, mesh) = twisted_forearm(2.0);
-    let posed = mesh.posed(&SkinPose::new(&mesh, &skeleton), Skinning::SpreadTwist);
+    let posed = mesh.posed(&mesh.pose(&skeleton), Skinning::SpreadTwist);
     let own = mesh.weights().iter().map(|weights| weights.of(1.into()) == 1.0);
     let vertices = mesh.mesh().positions.iter().zip(&posed.positions).zip(own);
     for ((before, after), _) in vertices.filter(|(_, is_own)| *is_own) {
@@ -348,7 +346,7 @@ fn a_mirrored_mesh_has_normals_and_triangles_that_face_outwards() {
         Affine3A { matrix3: Mat3A::from_diagonal(Vec3::new(-1.0, 1.0, 1.0)), ..Affine3A::IDENTITY };
     skeleton.set_transform(mirror).expect("transform");
     for skinning in Skinning::ALL {
-        let posed = mesh.posed(&SkinPose::new(&mesh, &skeleton), skinning);
+        let posed = mesh.posed(&mesh.pose(&skeleton), skinning);
         for triangle in &posed.triangles {
             let [a, b, c] = triangle.map(|corner| posed.positions[corner as usize]);
             let face = (b - a).cross(c - a);

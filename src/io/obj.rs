@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::motion::Exported;
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::is_within_numbers;
-use crate::kinematics::skin::{SkinPose, SkinShapeError, Skinning, TriangleMesh};
+use crate::kinematics::skin::{SkinShapeError, Skinning, TriangleMesh};
 
 /// The reason why no mesh is exported.
 #[derive(Debug, Error, PartialEq)]
@@ -44,7 +44,7 @@ pub fn to_obj(
     let skin = skin.filter(|_| shown.rig == RigKind::Skeleton).ok_or(ObjError::NoSkin)?;
     let skinning = skinning.unwrap_or(skin.skinning);
     let mesh = &skin.mesh()?.mesh;
-    let posed = mesh.posed(&SkinPose::new(mesh, &shown.skeleton_rig.skeleton_at(time)), skinning);
+    let posed = mesh.posed(&mesh.pose(&shown.skeleton_rig.skeleton_at(time)), skinning);
     if let Some(vertex) = posed.positions.iter().position(|at| !is_within_numbers(*at)) {
         return Err(ObjError::TooFar(vertex));
     }

@@ -1,7 +1,7 @@
 use super::session::Session;
 use crate::document::{Document, Overlay, Ray, Skin};
 use crate::kinematics::skeleton::JointId;
-use crate::kinematics::skin::{SkinPose, SkinShapeError};
+use crate::kinematics::skin::SkinShapeError;
 use crate::rig::SkinSource;
 
 /// Edits of the skin, and what the mouse points at on it.
@@ -13,7 +13,7 @@ impl Session {
         let skin = skin.filter(|_| self.shown().display.shows(Overlay::Skin))?;
         let mesh = &skin.mesh().ok()?.mesh;
         let posed = self.evaluated.posed_skin(|| {
-            mesh.posed(&SkinPose::new(mesh, &self.evaluated_skeleton().solved), skin.skinning)
+            mesh.posed(&mesh.pose(&self.evaluated_skeleton().solved), skin.skinning)
         });
         let hit = posed.hit(ray.origin, ray.direction)?;
         Some(mesh.heaviest_joint(&hit))

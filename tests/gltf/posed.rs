@@ -206,7 +206,8 @@ fn by_pose(document: &Document, time: f64) -> Bases {
 
 /// The greatest distance of a base from the nearest ball of the picture.
 fn farthest_from_balls(document: &Document, time: f64, bases: &Bases) -> f32 {
-    let shown = document.evaluate(time);
+    let mut shown = document.evaluate(time);
+    shown.skeleton_rig.skin = None;
     let scene = Scene::new(&shown, &Overlays::new(document, time), Theme::Dark);
     let nearest = |base: &Vec3| {
         let distances = scene.balls.iter().map(|ball| ball.centre.distance(*base));

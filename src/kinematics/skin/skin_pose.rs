@@ -2,7 +2,6 @@ use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec4};
 
 use super::dual_quaternion::{DualQuaternion, motion_and_scale};
 use super::roll::roll;
-use super::skinned_mesh::SkinnedMesh;
 use super::vertex_weights::VertexWeights;
 use crate::kinematics::skeleton::{Joint, Skeleton};
 
@@ -35,14 +34,14 @@ pub struct JointDeform {
 }
 
 impl SkinPose {
-    /// The joints of a posed skeleton. Joints beyond the mesh's inverse bind transforms, which no vertex
-    /// follows, are left out.
-    pub fn new(mesh: &SkinnedMesh, skeleton: &Skeleton) -> Self {
+    /// The joints of a posed skeleton, with their inverse bind transforms. Joints beyond these, which no
+    /// vertex follows, are left out.
+    pub(super) fn new(inverse_binds: &[Affine3A], skeleton: &Skeleton) -> Self {
         let pose = skeleton.pose_in_skeleton();
         let deform = |((joint, parameters), inverse_bind)| {
             JointDeform::new(parameters, pose.full(joint), inverse_bind)
         };
-        let joints = skeleton.iter().zip(mesh.inverse_binds().iter().copied()).map(deform);
+        let joints = skeleton.iter().zip(inverse_binds.iter().copied()).map(deform);
         Self { joints: joints.collect(), to_world: skeleton.transform() }
     }
 

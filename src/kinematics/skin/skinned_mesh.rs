@@ -5,7 +5,7 @@ use super::skin_pose::SkinPose;
 use super::skinning::Skinning;
 use super::triangle_mesh::{MeshHit, TriangleMesh};
 use super::vertex_weights::VertexWeights;
-use crate::kinematics::skeleton::{JointId, JointRemap};
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
 
 /// A mesh whose vertices follow joints.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,6 +98,11 @@ impl SkinnedMesh {
             + size_of_val(&triangles[..])
             + size_of_val(&self.weights[..])
             + size_of_val(&self.inverse_binds[..])
+    }
+
+    /// How the joints of a posed skeleton move the mesh.
+    pub fn pose(&self, skeleton: &Skeleton) -> SkinPose {
+        SkinPose::new(&self.inverse_binds, skeleton)
     }
 
     /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from outside

@@ -5,7 +5,7 @@ use super::shadow::above_ground;
 use crate::document::{Display, Overlay, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::kinematics::skin::{SkinPose, Skinning};
+use crate::kinematics::skin::Skinning;
 use crate::rig::AttachedMesh;
 use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow, SkinInstance};
 use crate::session::Overlays;
@@ -40,7 +40,7 @@ impl<'a> ShownSkin<'a> {
 
     /// Adds the skin of a posed skeleton; to compare ways of blending, once for each, side by side.
     pub fn add(&self, scene: &mut Scene, posed: &Skeleton, overlays: &Overlays, display: Display) {
-        let pose = SkinPose::new(&self.mesh.mesh, posed);
+        let pose = self.mesh.mesh.pose(posed);
         let guide = scene.palette.guide;
         let is_coloured = display.shows(Overlay::SkinWeights);
         let instance = SkinInstance {
