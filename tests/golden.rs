@@ -320,3 +320,24 @@ fn the_wireframe_and_the_bones_of_a_skin() {
         check(name, &showing(example("human"), &[Overlay::Bones]), theme);
     }
 }
+
+#[test]
+fn the_candy_wrapper_half_way_and_at_its_end() {
+    let document = example("candy-wrapper");
+    for (name, time, theme) in
+        [("candy_wrapper", 3.0, Theme::Dark), ("candy_wrapper-light", 2.0, Theme::Light)]
+    {
+        let scene = Scene::new(&document.evaluate(time), &Overlays::new(&document, time), theme);
+        pictures::check(name, &scene);
+    }
+}
+
+#[test]
+fn the_human_reaches_up_in_its_skin() {
+    let mut human = bind_pose();
+    for (joint, angles) in [(6, Vec3::Z * 1.7), (10, Vec3::Z * -1.2), (11, Vec3::X * -1.0)] {
+        let _ = human.skeleton_rig.skeleton_mut().set_rotation(JointId::new(joint), angles);
+    }
+    check("skin_reach", &human, Theme::Dark);
+    check("skin_reach-light", &human, Theme::Light);
+}

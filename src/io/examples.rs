@@ -37,7 +37,7 @@ pub fn new_document() -> Document {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self {
             group: Group::Tour,
             name: "arm",
@@ -73,6 +73,14 @@ impl Example {
             title: "Two hands on a wheel",
             sentence: "A figure whose hands hold a wheel that turns: their targets are on the wheel.",
             text: include_str!("../../assets/wheel.json"),
+        },
+        Self {
+            group: Group::Tour,
+            name: "candy-wrapper",
+            title: "Candy wrapper",
+            sentence: "A forearm that is twisted by 180°, with its skin blended in three ways; press \
+                       Space to play, and watch the area of its middle.",
+            text: include_str!("../../assets/candy-wrapper.json"),
         },
         Self {
             group: Group::Tour,

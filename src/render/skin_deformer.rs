@@ -33,8 +33,10 @@ pub(super) struct DeformedSkin {
     /// Vertices with position and normal in the world.
     pub vertices: wgpu::Buffer,
     group: wgpu::BindGroup,
-    /// The pose that the vertices are in.
-    sent: Option<(SkinPose, Skinning, Option<JointId>)>,
+    /// The uniforms of the pose that the vertices are in; `None` before the first.
+    data: Option<SkinData>,
+    /// The joints of that pose.
+    sent: Vec<JointData>,
 }
 
 #[repr(C)]
@@ -134,7 +136,7 @@ impl SkinDeformer {
         let vertices = compute::buffer(gpu, "skin vertices", size, usage);
         let buffers = [&uniform, &joints, &mesh.buffer, &vertices];
         let group = compute::group(gpu, "skin", &self.layout, &buffers);
-        DeformedSkin { uniform, joints, vertices, group, sent: None }
+        DeformedSkin { uniform, joints, vertices, group, data: None, sent: Vec::new() }
     }
 
     /// Moves the vertices if the pose is another one than before, and returns the number of bytes sent.
@@ -149,32 +151,32 @@ impl SkinDeformer {
         skinning: Skinning,
         weights_of: Option<JointId>,
     ) -> u64 {
-        if deformed.sent.as_ref().is_some_and(|(sent, how, joint)| {
-            sent == pose && *how == skinning && *joint == weights_of
-        }) {
+        let data = SkinData {
+            to_world: rows(pose.to_world()),
+            vertices: vertices.count,
+            skinning: Skinning::ALL.iter().position(|it| *it == skinning).unwrap_or(0) as u32,
+            weights_of: weights_of.map_or(-1, |joint| joint.index() as i32),
+            padding: 0,
+        };
+        let followed = pose.joints().iter().take(vertices.joints as usize);
+        let is_same = deformed.data == Some(data)
+            && followed.clone().map(JointData::new).eq(deformed.sent.iter().copied());
+        if is_same {
             return 0;
         }
-        deformed.sent = Some((pose.clone(), skinning, weights_of));
+        deformed.data = Some(data);
+        deformed.sent.clear();
+        deformed.sent.extend(followed.map(JointData::new));
         match &self.pipeline {
             Some(pipeline) => {
-                let data = SkinData {
-                    to_world: rows(pose.to_world()),
-                    vertices: vertices.count,
-                    skinning: Skinning::ALL.iter().position(|it| *it == skinning).unwrap_or(0)
-                        as u32,
-                    weights_of: weights_of.map_or(-1, |joint| joint.index() as i32),
-                    padding: 0,
-                };
-                let mut joints: Vec<JointData> = pose.joints().iter().map(JointData::new).collect();
-                joints.truncate(vertices.joints as usize);
-                let bytes: &[u8] = bytemuck::cast_slice(&joints);
+                let bytes: &[u8] = bytemuck::cast_slice(&deformed.sent);
                 gpu.queue.write_buffer(&deformed.uniform, 0, bytemuck::bytes_of(&data));
                 gpu.queue.write_buffer(&deformed.joints, 0, bytes);
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 let group = (0, &deformed.group);
                 compute::run_for_each(&mut encoder, "skin", pipeline, group, vertices.count);
                 gpu.queue.submit([encoder.finish()]);
-                bytes.len() as u64 + size_of::<SkinData>() as u64
+                (bytes.len() + size_of::<SkinData>()) as u64
             }
             None => {
                 let vertices = on_cpu(mesh, pose, skinning, weights_of);

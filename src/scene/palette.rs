@@ -1,6 +1,7 @@
 use super::Colour;
 use crate::document::{Theme, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
+use crate::kinematics::skin::Skinning;
 
 /// Colours of the scene in a theme. The panels use the colours of the two limbs and the accent too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +90,15 @@ impl Palette {
             TwistReferenceKind::Transport => [0xf08fb4, 0xb02a63],
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
+    }
+
+    /// Colour of a way of blending joints where several are compared.
+    pub fn skinning(&self, skinning: Skinning) -> Colour {
+        match skinning {
+            Skinning::Linear => self.upper,
+            Skinning::DualQuaternion => self.lower,
+            Skinning::SpreadTwist => self.accent,
+        }
     }
 
     /// Colour of a solver method in the comparison of solvers.

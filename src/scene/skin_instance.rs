@@ -12,7 +12,7 @@ pub struct SkinInstance {
     /// The mesh. Clones of one mesh are sent to the device once.
     pub mesh: Shared<AttachedMesh>,
     /// How the joints move the mesh.
-    pub pose: SkinPose,
+    pub pose: Shared<SkinPose>,
     /// How the joints of a vertex are blended.
     pub skinning: Skinning,
     /// Offset in the world.

@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::cached::Cached;
 use super::pops::{CursorMove, Pops};
+use super::skin_areas::SkinAreas;
 use super::transport::TransportPath;
 use crate::document::{Arm, Document};
 use crate::kinematics::Shared;
@@ -20,6 +21,7 @@ pub(super) struct Evaluated {
     pops: Pops,
     trail: Cached<Vec<Vec3>>,
     posed_skin: Cached<TriangleMesh>,
+    skin_areas: Cached<Option<SkinAreas>>,
 }
 
 impl Evaluated {
@@ -34,6 +36,7 @@ impl Evaluated {
             pops: Pops::new(&document.arm, pose, 0.0),
             trail: Cached::default(),
             posed_skin: Cached::default(),
+            skin_areas: Cached::default(),
         }
     }
 
@@ -66,6 +69,11 @@ impl Evaluated {
         self.posed_skin.get(pose)
     }
 
+    /// The areas of the skin over the timeline.
+    pub fn skin_areas(&self, compute: impl FnOnce() -> Option<SkinAreas>) -> Option<&SkinAreas> {
+        self.skin_areas.get(compute).as_ref()
+    }
+
     /// Updates the poses, and the values derived from them, to a document that was evaluated at
     /// `time`, in seconds.
     pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
@@ -85,8 +93,9 @@ impl Evaluated {
         self.pops = Pops::new(arm, self.pose, time);
     }
 
-    /// Discards the trail; the next [`Self::trail`] computes it again.
+    /// Discards the trail and the areas of the skin; they are computed again when they are next needed.
     pub fn forget_trail(&mut self) {
         self.trail.clear();
+        self.skin_areas.clear();
     }
 }

@@ -1,4 +1,5 @@
 use super::session::Session;
+use super::skin_areas::SkinAreas;
 use crate::document::{Document, Overlay, Ray, Skin};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::SkinShapeError;
@@ -17,6 +18,12 @@ impl Session {
         });
         let hit = posed.hit(ray.origin, ray.direction)?;
         Some(mesh.heaviest_joint(&hit))
+    }
+
+    /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
+    /// skins are not compared or have no section there.
+    pub fn skin_areas(&self) -> Option<&SkinAreas> {
+        self.evaluated.skin_areas(|| SkinAreas::new(self.document(), self.selected()))
     }
 
     /// Gives the skeleton a skin from its bones, and shows it.

@@ -25,6 +25,7 @@ mod safe_hands;
 mod skeleton_keys;
 mod skeleton_panel;
 mod skeleton_view;
+mod skin;
 mod sliders;
 mod snake;
 mod statistics;

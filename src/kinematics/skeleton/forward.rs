@@ -87,6 +87,12 @@ impl Skeleton {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local_in_bind_pose())
     }
 
+    /// Writes [`Skeleton::pose_in_skeleton`] into an existing pose. Allocates only if that pose has too
+    /// little memory.
+    pub fn write_pose_in_skeleton(&self, pose: &mut SkeletonPose) {
+        pose.refill(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local());
+    }
+
     /// Transforms of all joints in skeleton space.
     pub fn pose_in_skeleton(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local())

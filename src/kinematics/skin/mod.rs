@@ -29,6 +29,7 @@
 mod dual_quaternion;
 mod error;
 mod from_bones;
+mod mesh_section;
 mod roll;
 mod skin_pose;
 mod skinned_mesh;
@@ -38,6 +39,7 @@ mod vertex_weights;
 
 pub use error::SkinError;
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
+pub use mesh_section::MeshSection;
 pub use skin_pose::{JointDeform, SkinPose};
 pub use skinned_mesh::SkinnedMesh;
 pub use skinning::{Skinning, UnknownSkinning};

@@ -2,14 +2,17 @@ use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec4};
 
 use super::dual_quaternion::{DualQuaternion, motion_and_scale};
 use super::roll::roll;
+use super::skinning::Skinning;
 use super::vertex_weights::VertexWeights;
-use crate::kinematics::skeleton::{Joint, Skeleton};
+use crate::kinematics::skeleton::{Joint, Skeleton, SkeletonPose};
 
 /// How each joint of a posed skeleton moves a mesh, for all ways of blending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinPose {
     joints: Vec<JointDeform>,
     to_world: Affine3A,
+    /// Transforms of the joints in skeleton space.
+    spaces: SkeletonPose,
 }
 
 /// How one joint moves a mesh.
@@ -34,15 +37,16 @@ pub struct JointDeform {
 }
 
 impl SkinPose {
-    /// The joints of a posed skeleton, with their inverse bind transforms. Joints beyond these, which no
-    /// vertex follows, are left out.
-    pub(super) fn new(inverse_binds: &[Affine3A], skeleton: &Skeleton) -> Self {
-        let pose = skeleton.pose_in_skeleton();
+    /// Writes the joints of a posed skeleton, with their inverse bind transforms. Joints beyond these, which
+    /// no vertex follows, are left out.
+    pub(super) fn refill(&mut self, inverse_binds: &[Affine3A], skeleton: &Skeleton) {
+        skeleton.write_pose_in_skeleton(&mut self.spaces);
         let deform = |((joint, parameters), inverse_bind)| {
-            JointDeform::new(parameters, pose.full(joint), inverse_bind)
+            JointDeform::new(parameters, self.spaces.full(joint), inverse_bind)
         };
-        let joints = skeleton.iter().zip(inverse_binds.iter().copied()).map(deform);
-        Self { joints: joints.collect(), to_world: skeleton.transform() }
+        self.joints.clear();
+        self.joints.extend(skeleton.iter().zip(inverse_binds.iter().copied()).map(deform));
+        self.to_world = skeleton.transform();
     }
 
     /// The joints in their order.
@@ -55,13 +59,27 @@ impl SkinPose {
         self.to_world
     }
 
+    /// The transform of a vertex at `position` in mesh space, to skeleton space.
+    pub(super) fn blend(
+        &self,
+        weights: &VertexWeights,
+        position: Vec3,
+        skinning: Skinning,
+    ) -> Affine3A {
+        match skinning {
+            Skinning::Linear => self.linear(weights),
+            Skinning::DualQuaternion => self.dual_quaternion(weights),
+            Skinning::SpreadTwist => self.spread_twist(weights, position),
+        }
+    }
+
     /// Linear blend of the joints of a vertex.
-    pub(super) fn linear(&self, weights: &VertexWeights) -> Affine3A {
+    fn linear(&self, weights: &VertexWeights) -> Affine3A {
         self.sum(weights, |joint| joint.matrix)
     }
 
     /// Blend of the joints' unit dual quaternions, after the linear blend of their scales.
-    pub(super) fn dual_quaternion(&self, weights: &VertexWeights) -> Affine3A {
+    fn dual_quaternion(&self, weights: &VertexWeights) -> Affine3A {
         let Some(first) = self.joints.get(weights.first().index()) else {
             return Affine3A::IDENTITY;
         };
@@ -79,7 +97,7 @@ impl SkinPose {
     }
 
     /// Linear blend of the joints of a vertex, each with the part of its roll at that vertex.
-    pub(super) fn spread_twist(&self, weights: &VertexWeights, vertex: Vec3) -> Affine3A {
+    fn spread_twist(&self, weights: &VertexWeights, vertex: Vec3) -> Affine3A {
         self.sum(weights, |joint| joint.with_spread_roll(vertex))
     }
 

@@ -79,6 +79,18 @@ impl SkinnedMesh {
         &self.inverse_binds
     }
 
+    /// Position in the world of a vertex of the posed mesh.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such vertex.
+    pub fn posed_vertex(&self, pose: &SkinPose, skinning: Skinning, vertex: u32) -> Vec3 {
+        let vertex = vertex as usize;
+        let position = self.mesh.positions[vertex];
+        let blend = pose.blend(&self.weights[vertex], position, skinning);
+        pose.to_world().transform_point3(blend.transform_point3(position))
+    }
+
     /// The joint with the greatest weight at a point of the mesh.
     pub fn heaviest_joint(&self, hit: &MeshHit) -> JointId {
         let weights = hit.corners.iter().zip(hit.shares).flat_map(|(corner, share)| {
@@ -102,7 +114,14 @@ impl SkinnedMesh {
 
     /// How the joints of a posed skeleton move the mesh.
     pub fn pose(&self, skeleton: &Skeleton) -> SkinPose {
-        SkinPose::new(&self.inverse_binds, skeleton)
+        let mut pose = SkinPose::default();
+        self.write_pose(skeleton, &mut pose);
+        pose
+    }
+
+    /// Writes [`SkinnedMesh::pose`] into an existing pose, reusing its memory.
+    pub fn write_pose(&self, skeleton: &Skeleton, pose: &mut SkinPose) {
+        pose.refill(&self.inverse_binds, skeleton);
     }
 
     /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from outside
@@ -130,12 +149,7 @@ impl SkinnedMesh {
         normals.clear();
         let vertices = self.mesh.positions.iter().zip(&self.mesh.normals).zip(&self.weights);
         for ((position, normal), weights) in vertices {
-            let blend = match skinning {
-                Skinning::Linear => pose.linear(weights),
-                Skinning::DualQuaternion => pose.dual_quaternion(weights),
-                Skinning::SpreadTwist => pose.spread_twist(weights, *position),
-            };
-            let blend = pose.to_world() * blend;
+            let blend = pose.to_world() * pose.blend(weights, *position, skinning);
             positions.push(blend.transform_point3(*position));
             normals.push(posed_normal(blend.matrix3, *normal));
         }

@@ -3,7 +3,6 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow};
 use crate::session::Overlays;
-
 /// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
 /// reach.
 const MAX_RADIUS: (f32, f32) = (0.45, 0.028);

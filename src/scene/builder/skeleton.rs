@@ -33,7 +33,8 @@ pub(super) fn add(
     display: Display,
     scratch: &mut Scratch,
 ) {
-    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled } = scratch;
+    let Scratch { pose, fk_pose, skin_pose, influences, distances, depths, are_leaves, labelled } =
+        scratch;
     let skeleton = &*rig.skeleton;
     let evaluated = match &overlays.evaluated {
         Some(evaluated) => evaluated.clone(),
@@ -45,7 +46,7 @@ pub(super) fn add(
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
     let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
-    let skin = ShownSkin::new(rig.skin.as_ref(), display);
+    let skin = ShownSkin::new(rig, display);
     for joint in skeleton.ids() {
         if let Some(skin) = skin.filter(|skin| !skin.has_bones()) {
             skin.add_joint(scene, &drawn, joint, overlays, display);
@@ -58,7 +59,7 @@ pub(super) fn add(
         }
     }
     if let Some(skin) = skin {
-        skin.add(scene, &evaluated.solved, overlays, display);
+        skin.add(scene, &evaluated.solved, overlays, display, skin_pose);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {

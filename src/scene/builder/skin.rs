@@ -2,10 +2,10 @@ use glam::{Affine3A, Vec3};
 
 use super::drawn_skeleton::DrawnSkeleton;
 use super::shadow::above_ground;
-use crate::document::{Display, Overlay, Skin};
+use crate::document::{Display, Overlay, SkeletonRig, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::kinematics::skin::Skinning;
+use crate::kinematics::skin::{SkinPose, Skinning};
 use crate::rig::AttachedMesh;
 use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow, SkinInstance};
 use crate::session::Overlays;
@@ -15,7 +15,7 @@ const OVER_BONES: f32 = 0.5;
 /// Opacity of the edges of triangles.
 const WIRE: f32 = 0.3;
 /// Distance between compared skins, as a multiple of their width.
-const SPACING: f32 = 1.5;
+const SPACING: f32 = 1.8;
 
 /// A skin that is shown, with its mesh.
 #[derive(Clone, Copy)]
@@ -23,14 +23,26 @@ pub(super) struct ShownSkin<'a> {
     skin: &'a Skin,
     mesh: &'a Shared<AttachedMesh>,
     has_bones: bool,
+    row: Option<Row>,
+}
+
+/// Compared skins side by side.
+#[derive(Clone, Copy)]
+struct Row {
+    /// Middle of the lower side of the mesh in the world, as it was attached.
+    low: Vec3,
+    /// From one skin to the next, in the world.
+    step: Vec3,
 }
 
 impl<'a> ShownSkin<'a> {
-    /// The skin of a skeleton as the display shows it; `None` if it is hidden or cannot be made.
-    pub fn new(skin: Option<&'a Skin>, display: Display) -> Option<Self> {
-        let skin = skin.filter(|_| display.shows(Overlay::Skin))?;
+    /// The skin of a rig as the display shows it; `None` if it is hidden or cannot be made.
+    pub fn new(rig: &'a SkeletonRig, display: Display) -> Option<Self> {
+        let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
         let mesh = skin.mesh().ok()?;
-        Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones) })
+        let is_compared = display.shows(Overlay::CompareSkinning);
+        let row = is_compared.then(|| Row::new(mesh, rig.skeleton.transform()));
+        Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones), row })
     }
 
     /// Whether the bones are drawn too.
@@ -39,8 +51,15 @@ impl<'a> ShownSkin<'a> {
     }
 
     /// Adds the skin of a posed skeleton; to compare ways of blending, once for each, side by side.
-    pub fn add(&self, scene: &mut Scene, posed: &Skeleton, overlays: &Overlays, display: Display) {
-        let pose = self.mesh.mesh.pose(posed);
+    pub fn add(
+        &self,
+        scene: &mut Scene,
+        posed: &Skeleton,
+        overlays: &Overlays,
+        display: Display,
+        pose: &mut Shared<SkinPose>,
+    ) {
+        self.mesh.mesh.write_pose(posed, pose.make_mut());
         let guide = scene.palette.guide;
         let is_coloured = display.shows(Overlay::SkinWeights);
         let instance = SkinInstance {
@@ -50,34 +69,31 @@ impl<'a> ShownSkin<'a> {
             colour: self.colour(),
             wireframe: display.shows(Overlay::Wireframe).then(|| guide.with_opacity(WIRE)),
             weights_of: overlays.selection.last().copied().filter(|_| is_coloured),
-            pose,
+            pose: pose.clone(),
         };
-        if !display.shows(Overlay::CompareSkinning) {
+        let Some(Row { low, .. }) = self.row else {
             scene.skins.push(instance);
             return;
-        }
-        let (left, low) = self.corner(posed.transform());
-        for (index, skinning) in Skinning::ALL.into_iter().enumerate() {
-            let offset = Vec3::X * (index as f32 - 1.0) * SPACING * left;
+        };
+        for (skinning, offset) in Skinning::ALL.into_iter().zip(self.offsets()) {
             scene.skins.push(SkinInstance { skinning, offset, ..instance.clone() });
-            let label = Label::new(low + offset, 0.0, LabelSide::Below, scene.palette.text);
+            let colour = scene.palette.skinning(skinning);
+            let label = Label::new(low + offset, 0.0, LabelSide::Below, colour);
             scene.add_label(label, format_args!("{}", skinning.title()));
         }
+    }
+
+    /// Offsets in the world of the skins that are drawn.
+    fn offsets(&self) -> impl Iterator<Item = Vec3> + use<> {
+        let step = self.row.map_or(Vec3::ZERO, |row| row.step);
+        let sides: &[f32] = if self.row.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+        sides.iter().map(move |side| step * side)
     }
 
     fn colour(&self) -> Colour {
         let [r, g, b] = self.skin.colour.map(|channel| (channel * 255.0).round() as u8);
         let opacity = if self.has_bones { OVER_BONES } else { 1.0 };
         Colour([r, g, b, 255]).with_opacity(opacity)
-    }
-
-    /// Width of the mesh along x, and the middle of its lower side, in the world and as it was attached.
-    fn corner(&self, to_world: Affine3A) -> (f32, Vec3) {
-        let positions = &self.mesh.mesh.mesh().positions;
-        let in_world = || positions.iter().map(|at| to_world.transform_point3(*at));
-        let low = in_world().reduce(Vec3::min).unwrap_or_default();
-        let high = in_world().reduce(Vec3::max).unwrap_or_default();
-        (high.x - low.x, low.midpoint(high).with_y(low.y))
     }
 
     /// Adds what a skin without bones shows of a joint: its shadow, and its bone if it is selected or
@@ -93,8 +109,11 @@ impl<'a> ShownSkin<'a> {
         let (base, tip) = (drawn.pose.base(joint), drawn.pose.tip(joint));
         let thickness = self.mesh.radii.get(joint.index()).map_or(0.0, |it| it * drawn.scale);
         if display.shows(Overlay::Shadow) && thickness > 0.0 {
-            let (base_radius, tip_radius) = (thickness, thickness);
-            scene.shadows.extend(above_ground(Shadow { base, base_radius, tip, tip_radius }));
+            for offset in self.offsets() {
+                let (base, tip) = (base + offset, tip + offset);
+                let limb = Shadow { base, base_radius: thickness, tip, tip_radius: thickness };
+                scene.shadows.extend(above_ground(limb));
+            }
         }
         if overlays.selection.contains(&joint) || overlays.hovered == Some(joint) {
             let colour = drawn.colour(scene, joint, overlays);
@@ -104,5 +123,15 @@ impl<'a> ShownSkin<'a> {
             }
             scene.guide_balls.push(Ball { centre: base, radius: 1.1 * radius, colour });
         }
+    }
+}
+
+impl Row {
+    fn new(mesh: &AttachedMesh, to_world: Affine3A) -> Self {
+        let in_world = mesh.mesh.mesh().positions.iter().map(|at| to_world.transform_point3(*at));
+        let bounds = in_world.map(|at| (at, at)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = bounds.unwrap_or_default();
+        let step = Vec3::X * SPACING * (high.x - low.x);
+        Self { low: low.midpoint(high).with_y(low.y), step }
     }
 }

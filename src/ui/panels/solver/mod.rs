@@ -4,9 +4,11 @@ mod can_solve;
 mod comparison;
 mod convergence;
 mod iteration;
+mod skin_areas;
 
 use egui::{Align, Button, ComboBox, Layout, RichText, ScrollArea, Ui};
 
+use crate::document::Overlay;
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
 use crate::ui::labels;
@@ -16,6 +18,10 @@ use can_solve::why_not;
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(6.0);
+        let display = session.shown().display;
+        if display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning) {
+            widgets::section(ui, "Skin", |ui| skin_areas::ui(ui, session));
+        }
         widgets::section(ui, "Solver", |ui| {
             method(ui, session, actions);
             settings(ui, session, actions);
