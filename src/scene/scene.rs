@@ -8,6 +8,8 @@ use super::{
     Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, SkinInstance, Solid, SphereShell,
 };
 use crate::document::{Camera, Display, Theme};
+use crate::kinematics::Shared;
+use crate::kinematics::skin::SkinPose;
 use crate::rig::{Crowd, TaperedCylinder};
 
 /// Everything that is drawn in a picture.
@@ -43,6 +45,8 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// Texts of all labels, concatenated.
     text: String,
+    /// The pose of a skin of the last picture, while the scene is refilled: its memory is used again.
+    pub(super) spare_skin_pose: Option<Shared<SkinPose>>,
 }
 
 impl Scene {
@@ -68,6 +72,7 @@ impl Scene {
             lines: Vec::new(),
             labels: Vec::new(),
             text: String::new(),
+            spare_skin_pose: None,
         }
     }
 
@@ -81,7 +86,7 @@ impl Scene {
         self.shells.clear();
         self.globe = None;
         self.crowd = None;
-        self.skins.clear();
+        self.spare_skin_pose = self.skins.drain(..).next().map(|skin| skin.pose);
         self.lines.clear();
         self.labels.clear();
         self.text.clear();

@@ -59,6 +59,8 @@ impl Session {
 
     pub(super) fn replace_by_bake(&mut self, baked: &Baked) {
         self.discard_unkeyed_edits();
+        // Also if the bake changes nothing, the discarded edits are no longer shown.
+        self.refresh();
         self.edit_keys(|document| {
             document.keys = baked.document.keys.clone();
             document.skeleton_rig.follow_path = baked.document.skeleton_rig.follow_path;

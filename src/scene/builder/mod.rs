@@ -89,6 +89,7 @@ impl SceneBuilder {
             }
         }
         motion::add(scene, document, overlays, reach);
+        scene.spare_skin_pose = None;
         scene.remove_non_finite();
     }
 }

@@ -1,14 +1,10 @@
-use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
-use crate::kinematics::skin::SkinPose;
 
 /// Buffers for intermediate results of a [`SceneBuilder`](super::SceneBuilder).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     pub pose: SkeletonPose,
     pub fk_pose: SkeletonPose,
-    /// Shared with the skins of the scene until it is cleared.
-    pub skin_pose: Shared<SkinPose>,
     /// For each joint the influence of the targets that turn it.
     pub influences: Vec<f32>,
     /// Distance of each joint from its root along offsets, in skeleton space.

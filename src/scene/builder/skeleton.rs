@@ -33,8 +33,7 @@ pub(super) fn add(
     display: Display,
     scratch: &mut Scratch,
 ) {
-    let Scratch { pose, fk_pose, skin_pose, influences, distances, depths, are_leaves, labelled } =
-        scratch;
+    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
     let evaluated = match &overlays.evaluated {
         Some(evaluated) => evaluated.clone(),
@@ -59,7 +58,7 @@ pub(super) fn add(
         }
     }
     if let Some(skin) = skin {
-        skin.add(scene, &evaluated.solved, overlays, display, skin_pose);
+        skin.add(scene, &evaluated.solved, overlays, display);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {

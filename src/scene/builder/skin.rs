@@ -51,14 +51,8 @@ impl<'a> ShownSkin<'a> {
     }
 
     /// Adds the skin of a posed skeleton; to compare ways of blending, once for each, side by side.
-    pub fn add(
-        &self,
-        scene: &mut Scene,
-        posed: &Skeleton,
-        overlays: &Overlays,
-        display: Display,
-        pose: &mut Shared<SkinPose>,
-    ) {
+    pub fn add(&self, scene: &mut Scene, posed: &Skeleton, overlays: &Overlays, display: Display) {
+        let mut pose: Shared<SkinPose> = scene.spare_skin_pose.take().unwrap_or_default();
         self.mesh.mesh.write_pose(posed, pose.make_mut());
         let guide = scene.palette.guide;
         let is_coloured = display.shows(Overlay::SkinWeights);
@@ -69,7 +63,7 @@ impl<'a> ShownSkin<'a> {
             colour: self.colour(),
             wireframe: display.shows(Overlay::Wireframe).then(|| guide.with_opacity(WIRE)),
             weights_of: overlays.selection.last().copied().filter(|_| is_coloured),
-            pose: pose.clone(),
+            pose,
         };
         let Some(Row { low, .. }) = self.row else {
             scene.skins.push(instance);
