@@ -1,9 +1,9 @@
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
 
 use super::mesh_part::{GltfMesh, MeshPart};
 use crate::document::{Document, RigKind, Skin};
 use crate::kinematics::skeleton::Skeleton;
-use crate::kinematics::skin::SkinnedMesh;
+use crate::kinematics::skin::{SkinnedMesh, VertexWeights};
 
 impl GltfMesh {
     /// The skin of the shown skeleton; `None` without one.
@@ -31,10 +31,10 @@ fn part(skin: &Skin, mesh: &SkinnedMesh, skeleton: &Skeleton) -> MeshPart {
     });
     MeshPart {
         colour: skin.colour.map(|channel| (channel * 255.0).round() as u8),
-        positions: triangles.positions.iter().map(|at| at.to_array()).collect(),
-        normals: triangles.normals.iter().map(|normal| normal.to_array()).collect(),
-        joints: mesh.weights().iter().map(|weights| weights.joints()).collect(),
-        weights: mesh.weights().iter().map(|weights| weights.weights()).collect(),
+        positions: triangles.positions.iter().map(Vec3::to_array).collect(),
+        normals: triangles.normals.iter().map(Vec3::to_array).collect(),
+        joints: mesh.weights().iter().map(VertexWeights::joints).collect(),
+        weights: mesh.weights().iter().map(VertexWeights::weights).collect(),
         indices: indices.collect(),
     }
 }
@@ -49,6 +49,6 @@ fn attached(mesh: &SkinnedMesh, skeleton: &Skeleton, metres: f64) -> Vec<DAffine
         let local = DAffine3::from_mat3_translation(DMat3::IDENTITY, joint.offset.as_dvec3());
         spaces.push(above * local);
     }
-    let binds = mesh.inverse_binds().iter().map(|bind| bind.as_daffine3());
+    let binds = mesh.inverse_binds().iter().map(Affine3A::as_daffine3);
     spaces.into_iter().zip(binds).map(|(space, bind)| space * bind).collect()
 }

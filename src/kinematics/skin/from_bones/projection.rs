@@ -24,10 +24,11 @@ pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) {
         (point - newton_step(&seen), seen.gradient.normalize_or(DVec3::X))
     };
     let block = |net: &SurfaceNet, vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
-    let mut normals = vec![DVec3::X; net.vertices.len()];
-    for vertex in 0..net.vertices.len() {
-        let field = block(net, vertex);
-        (net.vertices[vertex], normals[vertex]) = nearest(field, starts[vertex], &mut scratch);
+    let mut normals = Vec::with_capacity(net.vertices.len());
+    for (vertex, start) in starts.iter().enumerate() {
+        let (point, normal) = nearest(block(net, vertex), *start, &mut scratch);
+        net.vertices[vertex] = point;
+        normals.push(normal);
     }
     for _ in 0..rounds {
         // Each edge belongs to two quads, once in each direction.
@@ -46,10 +47,9 @@ pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) {
             }
         }
     }
-    for vertex in 0..net.vertices.len() {
+    for (vertex, normal) in normals.iter_mut().enumerate() {
         let field = block(net, vertex);
-        (net.vertices[vertex], normals[vertex]) =
-            onto_surface(field, net.vertices[vertex], &mut scratch);
+        (net.vertices[vertex], *normal) = onto_surface(field, net.vertices[vertex], &mut scratch);
     }
     net.normals = normals;
 }
