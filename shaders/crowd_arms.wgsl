@@ -84,8 +84,6 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 
 @fragment
 fn fragment(s: Surface) -> @location(0) vec4f {
-    let ray = pixel_ray(s.position.xy);
-    let along = dot(s.world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    let colour = fogged(lit(s.colour, normalize(s.normal)), s.position.xy, along);
-    return vec4f(behind_planes(colour, ray, along), 1.0);
+    let colour = lit(s.colour, normalize(s.normal));
+    return vec4f(in_scene(colour, s.world, s.position.xy), 1.0);
 }

@@ -43,11 +43,7 @@ fn gain(pointer: vec3f) -> f32 {
 
 // Colour for a level, the logarithm of 1 + gain.
 fn ramp(level: f32) -> vec4f {
-    let at = level / log(1.0 + globe.max_gain) * 4.0;
-    let first = mix(globe.ramp[0], globe.ramp[1], saturate(at));
-    let second = mix(first, globe.ramp[2], saturate(at - 1.0));
-    let third = mix(second, globe.ramp[3], saturate(at - 2.0));
-    return mix(third, globe.ramp[4], saturate(at - 3.0));
+    return along_ramp(globe.ramp, level / log(1.0 + globe.max_gain) * 4.0);
 }
 
 // Fraction of a pixel that is covered by the lines of gain 1, 2 and 5.

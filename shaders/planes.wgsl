@@ -74,3 +74,10 @@ fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
     let laid = over(near.colour, over(middle.colour, far.colour));
     return laid.rgb + behind * (1.0 - laid.a);
 }
+
+// The colour of a surface at a point of the world that a pixel shows: fogged, and behind the planes.
+fn in_scene(colour: vec3f, world: vec3f, position: vec2f) -> vec3f {
+    let ray = pixel_ray(position);
+    let along = dot(world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    return behind_planes(fogged(colour, position, along), ray, along);
+}

@@ -70,10 +70,8 @@ fn stripe_shade(s: Surface) -> f32 {
 }
 
 fn shaded(s: Surface) -> vec3f {
-    let ray = pixel_ray(s.position.xy);
-    let along = dot(s.world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    let colour = fogged(lit(s.colour.rgb * (1.0 - stripe_shade(s)), normalize(s.normal)), s.position.xy, along);
-    return behind_planes(colour, ray, along);
+    let colour = lit(s.colour.rgb * (1.0 - stripe_shade(s)), normalize(s.normal));
+    return in_scene(colour, s.world, s.position.xy);
 }
 
 @fragment

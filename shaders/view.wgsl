@@ -102,3 +102,11 @@ fn fogged(colour: vec3f, position: vec2f, along: f32) -> vec3f {
     let depth = along / (view.focus_distance * 7.0);
     return mix(sky(position), colour, exp(-depth * depth));
 }
+
+// Colour between those of a ramp; the first is at 0, the next at 1.
+fn along_ramp(ramp: array<vec4f, 5>, at: f32) -> vec4f {
+    let first = mix(ramp[0], ramp[1], saturate(at));
+    let second = mix(first, ramp[2], saturate(at - 1.0));
+    let third = mix(second, ramp[3], saturate(at - 2.0));
+    return mix(third, ramp[4], saturate(at - 3.0));
+}

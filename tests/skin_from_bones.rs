@@ -339,4 +339,7 @@ fn what_cannot_become_a_skin_is_refused_with_the_reason() {
     let far = Blob { base: Vec3::X * 1e30, ..blob(0, 1.0) };
     let error = SkinnedMesh::from_bones(&tube, &with(far)).expect_err("refused");
     assert!(matches!(error, SkinShapeError::TooThin { .. }), "{error}");
+    let huge = self::tube(2, 1.6e38, 1e38);
+    let error = SkinnedMesh::from_bones(&huge, &SkinShape::default()).expect_err("refused");
+    assert!(matches!(error, SkinShapeError::NotFinite(_)), "{error}");
 }

@@ -54,12 +54,20 @@ impl Case {
         Self { skeleton, mesh, size }
     }
 
-    /// J_i in f64, in skeleton space.
-    fn joint(&self, joint: JointId) -> DMat4 {
+    /// X_i in f64, in skeleton space.
+    fn space(&self, joint: JointId) -> DMat4 {
         let angles: Vec<DVec3> =
             self.skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
-        let bind = self.mesh.inverse_binds()[joint.index()].as_daffine3();
-        space_f64(&self.skeleton, joint, &angles) * DMat4::from(bind)
+        space_f64(&self.skeleton, joint, &angles)
+    }
+
+    fn inverse_bind(&self, joint: JointId) -> DMat4 {
+        DMat4::from(self.mesh.inverse_binds()[joint.index()].as_daffine3())
+    }
+
+    /// J_i in f64, in skeleton space.
+    fn joint(&self, joint: JointId) -> DMat4 {
+        self.space(joint) * self.inverse_bind(joint)
     }
 
     fn to_world(&self) -> DMat4 {
@@ -238,10 +246,8 @@ fn spread(case: &Case, joint: JointId, position: DVec3) -> DMat4 {
     let Joint { parent, offset, axis, .. } = case.skeleton[joint];
     let Some(axis) = axis.as_dvec3().try_normalize() else { return case.joint(joint) };
     let length = case.skeleton[joint].axis.as_dvec3().length();
-    let angles: Vec<DVec3> =
-        case.skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
-    let bind = case.mesh.inverse_binds()[joint.index()].as_daffine3();
-    let space = |joint| space_f64(&case.skeleton, joint, &angles);
+    let bind = case.inverse_bind(joint);
+    let space = |joint| case.space(joint);
     let above = parent.map_or(DMat4::IDENTITY, space) * DMat4::from_translation(offset.as_dvec3());
     let rotation = DMat3::from_mat4(above.inverse() * space(joint));
     let swing = DMat3::from_quat(DQuat::from_rotation_arc(axis, rotation * axis));
@@ -250,7 +256,7 @@ fn spread(case: &Case, joint: JointId, position: DVec3) -> DMat4 {
     let roll = from.cross(to).dot(rotation * axis).atan2(from.dot(to));
     let fraction = (bind.transform_point3(position).dot(axis) / length).clamp(0.0, 1.0);
     let part = swing * DMat3::from_axis_angle(axis, fraction * roll);
-    above * DMat4::from_mat3(part) * DMat4::from(bind)
+    above * DMat4::from_mat3(part) * bind
 }
 
 #[test]

@@ -8,7 +8,6 @@ use thiserror::Error;
 
 use crate::document::{Display, Overlay, Theme};
 use crate::export::ExportOptions;
-use crate::kinematics::skin::Skinning;
 use crate::kinematics::two_bone::TwoBone;
 
 /// Rule that the text of an argument breaks. clap adds the argument's name and its text to the
@@ -56,16 +55,6 @@ pub struct PointArgument(pub Vec3);
 pub enum ThemeName {
     Dark,
     Light,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum SkinningName {
-    /// Weighted sum of the joints' matrices
-    Linear,
-    /// Weighted sum of the joints' unit dual quaternions
-    DualQuaternion,
-    /// Each bone's roll spread along the bone, then linear
-    SpreadTwist,
 }
 
 /// Guides that are shown; all others are hidden.
@@ -160,16 +149,6 @@ impl From<ThemeName> for Theme {
         match name {
             ThemeName::Dark => Self::Dark,
             ThemeName::Light => Self::Light,
-        }
-    }
-}
-
-impl From<SkinningName> for Skinning {
-    fn from(name: SkinningName) -> Self {
-        match name {
-            SkinningName::Linear => Self::Linear,
-            SkinningName::DualQuaternion => Self::DualQuaternion,
-            SkinningName::SpreadTwist => Self::SpreadTwist,
         }
     }
 }

@@ -76,8 +76,7 @@ pub fn run(args: &BakeArgs) -> ExitCode {
 impl BakeArgs {
     /// Bakes the file; returns the lines of the report.
     fn bake(&self) -> Result<Vec<String>, BakeCommandError> {
-        if !self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-        {
+        if !open::is_document(&self.output) {
             return Err(BakeCommandError::Extension(self.output.display().to_string()));
         }
         let document = open::open(&self.file, None)?.document;

@@ -6,13 +6,14 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use super::argument::{SizeArgument, SkinningName, ThemeName, TimeArgument};
+use super::argument::{SizeArgument, ThemeName, TimeArgument};
 use super::open;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
 use crate::document::{Document, Timeline};
 use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{BvhUnit, OpenError, Progress};
+use crate::kinematics::skin::Skinning;
 
 #[derive(clap::Args)]
 #[command(after_help = r#"The extension of OUT selects the format:
@@ -56,9 +57,10 @@ pub struct ExportArgs {
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
     unit: Option<UnitName>,
-    /// How the joints of .obj are blended [default: the file's]
-    #[arg(long, value_enum)]
-    skinning: Option<SkinningName>,
+    /// How the joints of .obj are blended: linear, dual-quaternion or spread-twist [default: the
+    /// file's]
+    #[arg(long, value_name = "WAY")]
+    skinning: Option<Skinning>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -137,7 +139,7 @@ impl ExportArgs {
             theme: self.theme.map_or(defaults.theme, ThemeName::into),
             time: self.time.map(|time| time.0),
             unit: self.unit.map_or(defaults.unit, UnitName::into),
-            skinning: self.skinning.map(SkinningName::into),
+            skinning: self.skinning,
         }
     }
 }

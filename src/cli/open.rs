@@ -14,6 +14,11 @@ pub fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
+/// Whether a path has the extension of a document.
+pub fn is_document(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
 /// Opens a file, or standard input for `-`, and prints its warnings.
 pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
     let opened = if path == Path::new(STANDARD_INPUT) {

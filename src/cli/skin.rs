@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
-use super::argument::{NumberArgument, SkinningName};
+use super::argument::NumberArgument;
 use super::open;
 use super::report::{USAGE, fail, say};
 use crate::document::{Document, Overlay, RigKind, Skin};
 use crate::io::{OpenError, SaveError, save};
-use crate::kinematics::skin::{SkinShape, SkinShapeError};
+use crate::kinematics::skin::{SkinShape, SkinShapeError, Skinning};
 use crate::rig::{BoneSkin, SkinSource};
 
 #[derive(clap::Args)]
@@ -38,9 +38,10 @@ pub struct SkinArgs {
     /// Factor of all radii, above 0 [default: 1]
     #[arg(long, value_name = "X", allow_hyphen_values = true)]
     thickness: Option<NumberArgument>,
-    /// How a vertex between joints follows them [default: dual-quaternion]
-    #[arg(long, value_enum)]
-    blend: Option<SkinningName>,
+    /// How a vertex between joints follows them: linear, dual-quaternion or spread-twist [default:
+    /// dual-quaternion]
+    #[arg(long, value_name = "WAY")]
+    blend: Option<Skinning>,
 }
 
 /// Reasons why no file is written.
@@ -75,8 +76,7 @@ pub fn run(args: &SkinArgs) -> ExitCode {
 impl SkinArgs {
     /// Writes the document; returns the sizes of the mesh.
     fn skin(&self) -> Result<String, SkinCommandError> {
-        if !self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-        {
+        if !open::is_document(&self.output) {
             return Err(SkinCommandError::Extension(self.output.display().to_string()));
         }
         let file = open::name(&self.file);
@@ -106,7 +106,7 @@ impl SkinArgs {
             blobs: bones.shape().blobs.clone(),
         };
         let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
-        let skinning = self.blend.map_or(old.skinning, SkinningName::into);
+        let skinning = self.blend.unwrap_or(old.skinning);
         Skin { source, skinning, ..old }
     }
 }

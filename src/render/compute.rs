@@ -80,16 +80,16 @@ pub(super) fn pipeline(
     })
 }
 
-/// Number of arms per workgroup; the shaders have the same number.
+/// Number of items per workgroup; the shaders have the same number.
 const GROUP: u32 = 256;
 
-/// Encodes a compute pass with one invocation per arm.
+/// Encodes a compute pass with one invocation per item.
 pub(super) fn run_for_each(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
     pipeline: &wgpu::ComputePipeline,
     (index, group): (u32, &wgpu::BindGroup),
-    arms: u32,
+    items: u32,
 ) {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some(label),
@@ -97,7 +97,7 @@ pub(super) fn run_for_each(
     });
     pass.set_pipeline(pipeline);
     pass.set_bind_group(index, group, &[]);
-    pass.dispatch_workgroups(arms.div_ceil(GROUP), 1, 1);
+    pass.dispatch_workgroups(items.div_ceil(GROUP), 1, 1);
 }
 
 pub(super) fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -2,7 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 use wgpu::util::DeviceExt as _;
 
-use super::skin_deformer::{DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
+use super::skin_deformer::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
 use super::uniforms::Uniforms;
 use super::{Gpu, pipeline};
 use crate::kinematics::Shared;
@@ -288,16 +288,13 @@ impl DrawnSkin {
             has_weights: if skin.weights_of.is_some() { 1.0 } else { 0.0 },
             ramp: palette.gains.map(screen),
         };
-        let SkinInstance { pose, skinning, weights_of, .. } = skin;
+        let deformation = Deformation {
+            mesh: &skin.mesh.mesh,
+            pose: &skin.pose,
+            skinning: skin.skinning,
+            weights_of: skin.weights_of,
+        };
         self.look.upload(gpu, look)
-            + pipelines.deformer.update(
-                gpu,
-                &mesh.vertices,
-                &mut self.deformed,
-                &skin.mesh.mesh,
-                pose,
-                *skinning,
-                *weights_of,
-            )
+            + pipelines.deformer.update(gpu, &mesh.vertices, &mut self.deformed, deformation)
     }
 }

@@ -25,6 +25,16 @@ pub(super) struct SkinVertices {
     joints: u32,
 }
 
+/// A mesh and how it is to be moved.
+#[derive(Clone, Copy)]
+pub(super) struct Deformation<'a> {
+    pub mesh: &'a SkinnedMesh,
+    pub pose: &'a SkinPose,
+    pub skinning: Skinning,
+    /// The joint whose weights are passed on; `None` for none.
+    pub weights_of: Option<JointId>,
+}
+
 /// The vertices of a mesh in a pose on the device.
 #[derive(Debug)]
 pub(super) struct DeformedSkin {
@@ -112,7 +122,8 @@ impl SkinDeformer {
     ) -> Result<(Vec<Vec3>, Vec<Vec3>), ReadError> {
         let vertices = SkinVertices::new(gpu, mesh);
         let mut deformed = self.skin(gpu, &vertices);
-        self.update(gpu, &vertices, &mut deformed, mesh, pose, skinning, None);
+        let deformation = Deformation { mesh, pose, skinning, weights_of: None };
+        self.update(gpu, &vertices, &mut deformed, deformation);
         let size = u64::from(vertices.count) * size_of::<DeformedVertex>() as u64;
         let usage = wgpu::BufferUsages::MAP_READ;
         let copy = compute::buffer(gpu, "skin read", size.max(4), usage);
@@ -140,17 +151,14 @@ impl SkinDeformer {
     }
 
     /// Moves the vertices if the pose is another one than before, and returns the number of bytes sent.
-    #[expect(clippy::too_many_arguments, reason = "all describe one skin")]
     pub(super) fn update(
         &self,
         gpu: &Gpu,
         vertices: &SkinVertices,
         deformed: &mut DeformedSkin,
-        mesh: &SkinnedMesh,
-        pose: &SkinPose,
-        skinning: Skinning,
-        weights_of: Option<JointId>,
+        deformation: Deformation<'_>,
     ) -> u64 {
+        let Deformation { pose, skinning, weights_of, .. } = deformation;
         let data = SkinData {
             to_world: rows(pose.to_world()),
             vertices: vertices.count,
@@ -179,7 +187,7 @@ impl SkinDeformer {
                 (bytes.len() + size_of::<SkinData>()) as u64
             }
             None => {
-                let vertices = on_cpu(mesh, pose, skinning, weights_of);
+                let vertices = on_cpu(deformation);
                 let bytes: &[u8] = bytemuck::cast_slice(&vertices);
                 gpu.queue.write_buffer(&deformed.vertices, 0, bytes);
                 bytes.len() as u64
@@ -188,12 +196,8 @@ impl SkinDeformer {
     }
 }
 
-fn on_cpu(
-    mesh: &SkinnedMesh,
-    pose: &SkinPose,
-    skinning: Skinning,
-    weights_of: Option<JointId>,
-) -> Vec<DeformedVertex> {
+fn on_cpu(deformation: Deformation<'_>) -> Vec<DeformedVertex> {
+    let Deformation { mesh, pose, skinning, weights_of } = deformation;
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     mesh.write_posed(pose, skinning, &mut positions, &mut normals);
     let weights = mesh.weights().iter().map(|weights| weights_of.map_or(0.0, |it| weights.of(it)));

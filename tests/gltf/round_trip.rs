@@ -37,18 +37,18 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
     named.into_iter().map(|(name, point): (String, Vec3)| (name, point * metres)).collect()
 }
 
-/// The same of an imported document, whose hand is a joint where its bone's length has keys.
+/// The same of an imported document, in which an arm's hand is a joint only where the length of
+/// its bone has keys.
 fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
     let document = document.evaluate(time);
     let skeleton = document.skeleton();
     let pose = skeleton.pose();
-    let joint = |name| skeleton.find(name).map(|joint| pose.base(joint));
-    match name {
-        "hand" => {
-            joint("lower_tip").or_else(|| skeleton.find("lower").map(|lower| pose.tip(lower)))
-        }
-        name => joint(name),
-    }
+    let base = |name| skeleton.find(name).map(|joint| pose.base(joint));
+    let arm_hand = || {
+        let end_of_lower = || skeleton.find("lower").map(|lower| pose.tip(lower));
+        base("lower_tip").or_else(end_of_lower).filter(|_| name == "hand")
+    };
+    base(name).or_else(arm_hand)
 }
 
 fn largest(points: &[(String, Vec3)]) -> f32 {

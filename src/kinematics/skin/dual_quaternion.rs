@@ -1,4 +1,4 @@
-use glam::{Affine3A, DAffine3, DMat3, DQuat, Mat3A, Quat, Vec4};
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Quat, Vec4};
 
 /// A rigid motion as a unit dual quaternion: rotation `real`, then translation `2·dual·real*`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct DualQuaternion {
 }
 
 impl DualQuaternion {
-    pub fn new(rotation: DQuat, translation: glam::DVec3) -> Self {
+    pub fn new(rotation: DQuat, translation: DVec3) -> Self {
         let dual = DQuat::from_vec4((translation * 0.5).extend(0.0)) * rotation;
         Self { real: Vec4::from(rotation.as_quat()), dual: Vec4::from(dual.as_quat()) }
     }

@@ -175,12 +175,7 @@ fn along(inverse_bind: Affine3A, axis: DVec3) -> Vec4 {
 /// The matrix K with K·p = axis × p.
 fn cross_matrix(axis: DVec3) -> Mat3A {
     let DVec3 { x, y, z } = axis;
-    Mat3A::from(
-        glam::DMat3::from_cols(
-            DVec3::new(0.0, z, -y),
-            DVec3::new(-z, 0.0, x),
-            DVec3::new(y, -x, 0.0),
-        )
-        .as_mat3(),
-    )
+    let columns = [DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0)]
+        .map(DVec3::as_vec3a);
+    Mat3A::from_cols(columns[0], columns[1], columns[2])
 }

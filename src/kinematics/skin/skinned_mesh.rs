@@ -5,7 +5,7 @@ use super::skin_pose::SkinPose;
 use super::skinning::Skinning;
 use super::triangle_mesh::{MeshHit, TriangleMesh};
 use super::vertex_weights::VertexWeights;
-use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// A mesh whose vertices follow joints.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -153,29 +153,6 @@ impl SkinnedMesh {
             positions.push(blend.transform_point3(*position));
             normals.push(posed_normal(blend.matrix3, *normal));
         }
-    }
-
-    /// The mesh for a skeleton with other indices: the vertices of a removed joint follow the nearest
-    /// ancestor that is left. `parents` has the parents before the removal, `joints` is the number of
-    /// joints after it; added joints have no vertices.
-    #[must_use]
-    pub fn remapped(
-        &self,
-        remap: &JointRemap,
-        parents: &[Option<JointId>],
-        inverse_binds: Vec<Affine3A>,
-    ) -> Self {
-        let left = |joint: JointId| {
-            let mut above = core::iter::successors(Some(joint), |joint| {
-                parents.get(joint.index()).copied().flatten()
-            });
-            above.find_map(|joint| remap.get(joint)).unwrap_or(JointId::new(0))
-        };
-        let remapped = |weights: &VertexWeights| {
-            VertexWeights::heaviest(weights.iter().map(|(joint, weight)| (left(joint), weight))).0
-        };
-        let weights = self.weights.iter().map(remapped).collect();
-        Self { mesh: self.mesh.clone(), weights, inverse_binds }
     }
 }
 

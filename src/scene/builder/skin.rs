@@ -111,7 +111,8 @@ impl<'a> ShownSkin<'a> {
         }
         if overlays.selection.contains(&joint) || overlays.hovered == Some(joint) {
             let colour = drawn.colour(scene, joint, overlays);
-            let radius = drawn.radius(joint).min(0.4 * thickness.max(drawn.radius(joint)));
+            let plain = drawn.radius(joint);
+            let radius = plain.min(0.4 * thickness.max(plain));
             if base != tip {
                 scene.add_guide_solid(base, tip, radius, 0.5 * radius, colour);
             }

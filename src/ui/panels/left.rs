@@ -2,11 +2,10 @@
 
 use egui::{ScrollArea, Ui};
 
-use super::{arm, skeleton};
+use super::{arm, overlays, skeleton};
 use crate::document::{Overlay, RigKind};
 use crate::session::{Actions, EditAction, Session};
-use crate::ui::labels;
-use crate::ui::widgets;
+use crate::ui::widgets::{self, Segment};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
@@ -17,10 +16,14 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton::ui(ui, session, actions),
         }
-        widgets::section(ui, "Guides", |ui| overlays(ui, session, 2, guides(session), actions));
+        widgets::section(ui, "Guides", |ui| {
+            overlays::check_boxes(ui, session, 2, guides(session), None, actions)
+        });
         let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
         let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
-        widgets::section(ui, "Display", |ui| overlays(ui, session, 3, &surroundings, actions));
+        widgets::section(ui, "Display", |ui| {
+            overlays::check_boxes(ui, session, 3, &surroundings, None, actions)
+        });
         resets(ui, session, actions);
         ui.add_space(8.0);
     });
@@ -28,22 +31,19 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rigs = [
-        (RigKind::Arm, "Arm", "Pose an arm of two limbs, solved in closed form"),
-        (RigKind::Skeleton, "Skeleton", "Pose a tree of joints, solved by iteration"),
+        Segment {
+            name: "Arm",
+            tooltip: "Pose an arm of two limbs, solved in closed form",
+            value: RigKind::Arm,
+        },
+        Segment {
+            name: "Skeleton",
+            tooltip: "Pose a tree of joints, solved by iteration",
+            value: RigKind::Skeleton,
+        },
     ];
-    ui.columns(2, |columns| {
-        for (column, (rig, name, tooltip)) in columns.iter_mut().zip(rigs) {
-            let chosen = session.rig() == rig;
-            let layout = egui::Layout::top_down_justified(egui::Align::Center);
-            column.with_layout(layout, |ui| {
-                let button =
-                    ui.add(egui::Button::selectable(chosen, name).frame_when_inactive(true));
-                if button.on_hover_text(tooltip).clicked() && !chosen {
-                    actions.push(EditAction::ShowRig(rig));
-                }
-            });
-        }
-    });
+    let chosen = widgets::segments(ui, session.rig(), &rigs);
+    actions.extend(chosen.map(EditAction::ShowRig));
 }
 
 fn guides(session: &Session) -> &'static [Overlay] {
@@ -54,26 +54,6 @@ fn guides(session: &Session) -> &'static [Overlay] {
         }
         RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose],
     }
-}
-
-/// Shows check boxes of overlays in `count` columns.
-fn overlays(
-    ui: &mut Ui,
-    session: &Session,
-    count: usize,
-    overlays: &[Overlay],
-    actions: &mut Actions,
-) {
-    ui.columns(count, |columns| {
-        for (index, overlay) in overlays.iter().enumerate() {
-            let (name, tooltip) = labels::overlay(session.rig(), *overlay);
-            let mut shown = session.shown().display.shows(*overlay);
-            let column = &mut columns[index % count];
-            if column.checkbox(&mut shown, name).on_hover_text(tooltip).changed() {
-                actions.push(EditAction::ShowOverlay(*overlay, shown));
-            }
-        }
-    });
 }
 
 fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {

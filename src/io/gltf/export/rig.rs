@@ -184,6 +184,17 @@ fn local_rotation(joint: &Joint) -> DMat3 {
 }
 
 fn placements(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
+    let placement = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
+        base: full.translation,
+        along: full.matrix3 * joint.axis.as_dvec3(),
+        x: full.matrix3.x_axis,
+        y: full.matrix3.y_axis,
+    };
+    skeleton.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
+}
+
+/// Transforms of all joints to the world, in units of the scene, with local rotations by `rotation`.
+pub fn joint_spaces(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<DAffine3> {
     let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
     for joint in skeleton.joints() {
         let parent =
@@ -192,13 +203,7 @@ fn placements(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Bo
             parent * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
         );
     }
-    let placement = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
-        base: full.translation,
-        along: full.matrix3 * joint.axis.as_dvec3(),
-        x: full.matrix3.x_axis,
-        y: full.matrix3.y_axis,
-    };
-    skeleton.iter().zip(full).map(placement).collect()
+    full
 }
 
 /// The bind pose of the arm: straight along the Root's +x, bending about z.

@@ -1,6 +1,7 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
 
 use super::mesh_part::{GltfMesh, MeshPart};
+use super::rig::joint_spaces;
 use crate::document::{Document, RigKind, Skin};
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{SkinnedMesh, VertexWeights};
@@ -42,13 +43,8 @@ fn part(skin: &Skin, mesh: &SkinnedMesh, skeleton: &Skeleton) -> MeshPart {
 /// For each joint the transform from mesh space to the world that its inverse bind transform gives in the
 /// bind pose of the skeleton, in metres.
 fn attached(mesh: &SkinnedMesh, skeleton: &Skeleton, metres: f64) -> Vec<DAffine3> {
-    let to_world = DAffine3::from_scale(DVec3::splat(metres)) * skeleton.transform().as_daffine3();
-    let mut spaces: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
-    for joint in skeleton.joints() {
-        let above = joint.parent.map_or(to_world, |parent| spaces[parent.index()]);
-        let local = DAffine3::from_mat3_translation(DMat3::IDENTITY, joint.offset.as_dvec3());
-        spaces.push(above * local);
-    }
+    let to_metres = DAffine3::from_scale(DVec3::splat(metres));
+    let spaces = joint_spaces(skeleton, |_| DMat3::IDENTITY).into_iter();
     let binds = mesh.inverse_binds().iter().map(Affine3A::as_daffine3);
-    spaces.into_iter().zip(binds).map(|(space, bind)| space * bind).collect()
+    spaces.zip(binds).map(|(space, bind)| to_metres * space * bind).collect()
 }

@@ -1,4 +1,5 @@
 use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::SkinError;
 
 /// No skin can be made from these bones.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,4 +40,7 @@ pub enum SkinShapeError {
         /// Ratio of the size of the skeleton to the smallest radius.
         got: f64,
     },
+    /// The surface has numbers that are not finite, because the bones are near the limit of `f32`.
+    #[error(transparent)]
+    NotFinite(#[from] SkinError),
 }

@@ -26,6 +26,7 @@ use crate::kinematics::skeleton::Skeleton;
 use body::Body;
 use field::Field;
 use grid::Grid;
+use round_cone::RoundCone;
 use surface_nets::SurfaceNet;
 use weights::Weights;
 
@@ -36,7 +37,8 @@ impl SkinnedMesh {
     ///
     /// # Errors
     ///
-    /// [`SkinShapeError`] if no joint has a radius, or if the shape is invalid.
+    /// [`SkinShapeError`] if no joint has a radius, if the shape is invalid, or if the bones are so long
+    /// that the surface has numbers that are not finite.
     pub fn from_bones(skeleton: &Skeleton, shape: &SkinShape) -> Result<Self, SkinShapeError> {
         let mut bodies = Body::all(skeleton, shape)?;
         let cell = cell_size(&bodies, shape.detail)?;
@@ -48,7 +50,7 @@ impl SkinnedMesh {
         }
         let pose = skeleton.bind_pose_in_skeleton();
         let inverse_binds = skeleton.ids().map(|joint| pose.full(joint).inverse());
-        Ok(Self::new(mesh, weights, inverse_binds.collect()).unwrap_or_default())
+        Ok(Self::new(mesh, weights, inverse_binds.collect())?)
     }
 }
 
@@ -58,8 +60,8 @@ fn cell_size(bodies: &[Body], detail: f32) -> Result<f64, SkinShapeError> {
     const MOST_CELLS: f64 = 2e5;
     const MOST_CELLS_ALONG: f64 = 1e5;
     let cones = || bodies.iter().flat_map(|body| &body.parts).map(|part| &part.cone);
-    let least = cones().map(round_cone::RoundCone::least_radius).fold(f64::INFINITY, f64::min);
-    let area: f64 = cones().map(round_cone::RoundCone::area).sum();
+    let least = cones().map(RoundCone::least_radius).fold(f64::INFINITY, f64::min);
+    let area: f64 = cones().map(RoundCone::area).sum();
     let cell = (least / f64::from(detail)).max((area / MOST_CELLS).sqrt());
     let size = bodies.iter().map(bounds).map(|(low, high)| (high - low).max_element());
     let ratio = size.fold(0.0, f64::max) / cell;
@@ -78,6 +80,7 @@ fn bounds(body: &Body) -> (DVec3, DVec3) {
     boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
 }
 
+/// Adds the mesh of a body and its weights.
 fn add(
     body: &Body,
     cell: f64,
@@ -89,7 +92,7 @@ fn add(
     let (low, high) = bounds(body);
     let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
     let mut net = SurfaceNet::new(&grid);
-    projection::relax(&mut net, &grid, ROUNDS);
+    let normals = projection::relax(&mut net, &grid, ROUNDS);
     let field = |vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
     let by_distance = Weights::new(body, skeleton);
     let mut own: Vec<VertexWeights> = net
@@ -103,7 +106,7 @@ fn add(
     weights::smooth(&mut own, &edges(&triangles));
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(net.vertices.iter().map(|at| at.as_vec3()));
-    mesh.normals.extend(net.normals.iter().map(|normal| normal.as_vec3().normalize_or(Vec3::Y)));
+    mesh.normals.extend(normals.iter().map(|normal| normal.as_vec3().normalize_or(Vec3::Y)));
     mesh.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     weights.extend(own);
 }

@@ -12,8 +12,8 @@ const TOLERANCE: f64 = 2e-4;
 
 /// Spreads the vertices evenly over the surface: each moves to the mean of its neighbours, along the
 /// surface, and back onto it. A vertex stays near the cell that it was made in, where the field of its block
-/// is exact.
-pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) {
+/// is exact. Returns the unit normals of the vertices.
+pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) -> Vec<DVec3> {
     let mut scratch = FieldScratch::default();
     let directed =
         net.quads.iter().flat_map(|[a, b, c, d]| [[*a, *b], [*b, *c], [*c, *d], [*d, *a]]);
@@ -51,7 +51,7 @@ pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) {
         let field = block(net, vertex);
         (net.vertices[vertex], *normal) = onto_surface(field, net.vertices[vertex], &mut scratch);
     }
-    net.normals = normals;
+    normals
 }
 
 /// The step of Newton's method towards the surface, backwards.
@@ -59,8 +59,8 @@ fn newton_step(seen: &Sighting) -> DVec3 {
     seen.gradient * (seen.distance / seen.gradient.length_squared().max(0.25))
 }
 
-/// The point of the surface that Newton steps along the gradient lead to, and the normal there. Where they go back and forth
-/// across a crease, the surface is between the last points on either side.
+/// The point of the surface that Newton steps along the gradient lead to, and the normal there. Where the
+/// steps go back and forth across a crease, the surface is between the last points on either side.
 fn onto_surface(field: &Field, start: DVec3, scratch: &mut FieldScratch) -> (DVec3, DVec3) {
     let mut point = start;
     let mut sides: [Option<DVec3>; 2] = [None, None];
@@ -78,6 +78,7 @@ fn onto_surface(field: &Field, start: DVec3, scratch: &mut FieldScratch) -> (DVe
     }
 }
 
+/// A point of the surface between a point outside and one inside, and the normal there.
 fn between(
     field: &Field,
     mut outside: DVec3,

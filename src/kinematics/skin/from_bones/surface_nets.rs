@@ -7,10 +7,9 @@ use super::grid::{Cell, Grid, corner_offset};
 use super::patches::{EDGES, Patches, edge, edge_corners};
 
 /// Vertices, with the block of the grid that each is in, and quads, counter-clockwise seen from outside.
+#[derive(Default)]
 pub struct SurfaceNet {
     pub vertices: Vec<DVec3>,
-    /// Unit normals, as many as vertices once these are moved onto the surface; empty before.
-    pub normals: Vec<DVec3>,
     pub blocks: Vec<u32>,
     pub quads: Vec<[u32; 4]>,
 }
@@ -18,12 +17,7 @@ pub struct SurfaceNet {
 impl SurfaceNet {
     pub fn new(grid: &Grid) -> Self {
         let patches = patches(grid);
-        let mut net = Self {
-            vertices: Vec::new(),
-            normals: Vec::new(),
-            blocks: Vec::new(),
-            quads: Vec::new(),
-        };
+        let mut net = Self::default();
         let mut first_vertices = Vec::with_capacity(grid.cells.len());
         for (cell, patches) in grid.cells.iter().zip(&patches) {
             first_vertices.push(net.vertices.len() as u32);
@@ -46,12 +40,7 @@ impl SurfaceNet {
             volumes[piece[quad[0] as usize]] += (a - c).cross(b - d).dot(a + b + c + d);
         }
         let mut index = vec![u32::MAX; self.vertices.len()];
-        let mut solid = Self {
-            vertices: Vec::new(),
-            normals: Vec::new(),
-            blocks: Vec::new(),
-            quads: Vec::new(),
-        };
+        let mut solid = Self::default();
         for (vertex, at) in self.vertices.iter().enumerate() {
             if volumes[piece[vertex]] > 0.0 {
                 index[vertex] = solid.vertices.len() as u32;

@@ -29,7 +29,8 @@ impl<'a> Weights<'a> {
     }
 
     /// The weights at a point. The nearest joint has the greatest one. Those of the joints around it
-    /// fall to 0 where they are farther away by the smaller radius of the two.
+    /// fall to 0 where they are farther away by [`REACH`] times the smaller radius of the two.
+    /// `candidates` are parts, among them the nearest one.
     pub fn at(&self, point: DVec3, candidates: &[usize]) -> VertexWeights {
         let (joint, own) = self.nearest(point, candidates);
         let weight = |(joint, parts): &(JointId, Vec<usize>)| {
@@ -38,7 +39,7 @@ impl<'a> Weights<'a> {
             let far = (seen.distance - own.distance).max(0.0) / radius;
             (*joint, falloff(far) as f32)
         };
-        four_of(self.near[joint.index()].iter().map(weight))
+        VertexWeights::heaviest_evenly(self.near[joint.index()].iter().map(weight))
     }
 
     fn nearest(&self, point: DVec3, candidates: &[usize]) -> (JointId, Sighting) {
@@ -74,22 +75,6 @@ fn falloff(far: f64) -> f64 {
 /// Distance in local radii, beyond the nearest joint's, at which weights become 0. In the middle third of a
 /// straight bone longer than six radii it is √5 − 1 = 1.236 to the next bone.
 const REACH: f64 = 1.2;
-
-/// The four heaviest weights. If there are more, the fifth is subtracted from each first, so that the
-/// weights change evenly where another joint becomes one of the four.
-fn four_of(weights: impl Iterator<Item = (JointId, f32)>) -> VertexWeights {
-    let mut merged: Vec<(JointId, f32)> = Vec::new();
-    for (joint, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
-        match merged.iter_mut().find(|(other, _)| *other == joint) {
-            Some((_, sum)) => *sum += weight,
-            None => merged.push((joint, weight)),
-        }
-    }
-    merged.sort_by(|one, other| other.1.total_cmp(&one.1).then(one.0.cmp(&other.0)));
-    let fifth = merged.get(4).map_or(0.0, |(_, weight)| 0.999 * weight);
-    let cut = merged.into_iter().take(4).map(|(joint, weight)| (joint, weight - fifth));
-    VertexWeights::heaviest(cut).0
-}
 
 fn within_two_steps(skeleton: &Skeleton, joint: JointId) -> Vec<JointId> {
     let mut near = vec![joint];

@@ -1,8 +1,6 @@
 //! Comparison of the four twist references: elbow rotation, gain, and holonomy.
 
-use egui::{
-    Align, Align2, FontId, Grid, Layout, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Arm, Overlay, TwistReferenceKind};
 use crate::kinematics::twist::TransportedFrame;
@@ -44,32 +42,15 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the colour bar of the singularity globe, on a logarithmic scale of the gain.
 fn legend(ui: &mut Ui) {
-    const HEIGHT: f32 = 30.0;
-    const STEPS: usize = 64;
-    let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let summary = "Gain: elbow degrees per degree of the Pointer, 0 to 8 and more";
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, summary));
-    let (palette, painter) = (style::palette(ui), ui.painter());
-    let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
-    let end = Palette::MAX_GAIN.ln_1p();
-    for step in 0..STEPS {
-        let [from, to] = [step, step + 1].map(|step| step as f32 / STEPS as f32);
-        let gain = (0.5 * (from + to) * end).exp_m1();
-        let colour = style::colour(palette.gain(gain).with_opacity(1.0));
-        let [left, right] = [from, to].map(|part| bar.left() + part * bar.width());
-        let part = Rect::from_x_y_ranges(left..=right, bar.y_range());
-        painter.rect_filled(part, 0.0, colour);
-    }
-    let font = FontId::proportional(12.0);
-    for (gain, text) in [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")]
-    {
-        let x = bar.left() + bar.width() * f32::ln_1p(gain) / end;
-        let at = pos2(x, bar.bottom() + 3.0);
-        let colour = ui.visuals().weak_text_color();
-        painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);
-    }
-    response.on_hover_text(summary);
+    let (palette, end) = (style::palette(ui), Palette::MAX_GAIN.ln_1p());
+    let colour = |place: f32| {
+        let gain = (place * end).exp_m1();
+        style::colour(palette.gain(gain).with_opacity(1.0))
+    };
+    let marks = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")];
+    let marks = marks.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
+    widgets::colour_bar(ui, summary, colour, &marks);
 }
 
 fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {

@@ -1,15 +1,15 @@
 //! The skin of the skeleton: how it is shown, blended and made.
 
-use egui::{Align2, FontId, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::Ui;
 
 use super::choice::Choice;
 use crate::document::{Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, SkinSource};
 use crate::session::{Actions, EditAction, Session, TransactionAction};
-use crate::ui::labels;
+use crate::ui::panels::overlays;
 use crate::ui::style;
-use crate::ui::widgets::{self, Slider};
+use crate::ui::widgets::{self, Segment, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(skin) = &session.skeleton_rig().skin else {
@@ -21,7 +21,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         return;
     };
     shown(ui, session, actions);
-    overlays(ui, session, actions);
+    details(ui, session, actions);
     skinning(ui, skin, actions);
     let SkinSource::Bones(bones) = &skin.source;
     shape(ui, session, skin, bones, actions);
@@ -37,38 +37,20 @@ fn shown(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let display = session.shown().display;
     let now = (display.shows(Overlay::Skin), display.shows(Overlay::Bones));
     let choices = [
-        ("Skin", "Show the skin alone", (true, false)),
-        ("Bones", "Show the bones alone", (false, now.1)),
-        ("Both", "Show the bones through the skin", (true, true)),
+        Segment { name: "Skin", tooltip: "Show the skin alone", value: (true, false) },
+        Segment { name: "Bones", tooltip: "Show the bones alone", value: (false, now.1) },
+        Segment { name: "Both", tooltip: "Show the bones through the skin", value: (true, true) },
     ];
-    ui.columns(choices.len(), |columns| {
-        for (column, (name, tooltip, (skin, bones))) in columns.iter_mut().zip(choices) {
-            let is_now = now == (skin, bones);
-            let layout = egui::Layout::top_down_justified(egui::Align::Center);
-            column.with_layout(layout, |ui| {
-                let button = egui::Button::selectable(is_now, name).frame_when_inactive(true);
-                if ui.add(button).on_hover_text(tooltip).clicked() && !is_now {
-                    actions.push(EditAction::ShowSkin { skin, bones });
-                }
-            });
-        }
-    });
+    let chosen = widgets::segments(ui, now, &choices);
+    actions.extend(chosen.map(|(skin, bones)| EditAction::ShowSkin { skin, bones }));
 }
 
-fn overlays(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// Shows what else is drawn of the skin.
+fn details(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let all = [Overlay::Wireframe, Overlay::SkinWeights, Overlay::CompareSkinning];
     let is_shown = session.shown().display.shows(Overlay::Skin);
-    ui.columns(all.len(), |columns| {
-        for (column, overlay) in columns.iter_mut().zip(all) {
-            let (name, tooltip) = labels::overlay(session.rig(), overlay);
-            let mut on = session.shown().display.shows(overlay);
-            let check_box = egui::Checkbox::new(&mut on, name);
-            let check_box = column.add_enabled(is_shown, check_box).on_hover_text(tooltip);
-            if check_box.on_disabled_hover_text("Show the skin first").changed() {
-                actions.push(EditAction::ShowOverlay(overlay, on));
-            }
-        }
-    });
+    let why_not = (!is_shown).then_some("Show the skin first");
+    overlays::check_boxes(ui, session, all.len(), &all, why_not, actions);
     if is_shown && session.shown().display.shows(Overlay::SkinWeights) {
         match session.selected().and_then(|joint| session.skeleton_rig().skeleton.joint(joint)) {
             Some(joint) => legend(ui, &joint.name),
@@ -81,27 +63,10 @@ fn overlays(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the colour bar of a joint's weights.
 fn legend(ui: &mut Ui, joint: &str) {
-    const HEIGHT: f32 = 30.0;
-    const STEPS: usize = 64;
-    let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let summary = format!("Weight of {joint}, from 0 to 1");
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &summary));
-    let (palette, painter) = (style::palette(ui), ui.painter());
-    let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
-    for step in 0..STEPS {
-        let [from, to] = [step, step + 1].map(|step| step as f32 / STEPS as f32);
-        let colour = style::colour(palette.weight(0.5 * (from + to)));
-        let [left, right] = [from, to].map(|part| bar.left() + part * bar.width());
-        painter.rect_filled(Rect::from_x_y_ranges(left..=right, bar.y_range()), 0.0, colour);
-    }
-    let font = FontId::proportional(12.0);
-    for (part, text) in [(0.0, "0"), (0.5, "0.5"), (1.0, "1")] {
-        let at = pos2(bar.left() + bar.width() * part, bar.bottom() + 3.0);
-        let colour = ui.visuals().weak_text_color();
-        painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);
-    }
-    response.on_hover_text(summary);
+    let palette = style::palette(ui);
+    let colour = |weight| style::colour(palette.weight(weight));
+    widgets::colour_bar(ui, &summary, colour, &[(0.0, "0"), (0.5, "0.5"), (1.0, "1")]);
 }
 
 fn skinning(ui: &mut Ui, skin: &Skin, actions: &mut Actions) {
