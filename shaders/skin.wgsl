@@ -10,9 +10,16 @@ struct Look {
 
 @group(1) @binding(0) var<uniform> look: Look;
 
+// Material of a part. Colours multiply as sRGB: nearly a power of linear light, it gives nearly the same
+// products.
+@group(2) @binding(0) var<uniform> part_colour: vec4f;
+@group(2) @binding(1) var part_texture: texture_2d<f32>;
+@group(2) @binding(2) var part_sampler: sampler;
+
 struct Vertex {
     @location(0) position_weight: vec4f,
     @location(1) normal: vec4f,
+    @location(2) coordinates: vec2f,
 }
 
 struct Surface {
@@ -20,18 +27,22 @@ struct Surface {
     @location(0) world: vec3f,
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) weight: f32,
+    @location(3) coordinates: vec2f,
 }
 
 @vertex
 fn vertex(v: Vertex) -> Surface {
     let world = v.position_weight.xyz + look.offset;
-    return Surface(view.clip_from_world * vec4f(world, 1.0), world, v.normal.xyz, v.position_weight.w);
+    let position = view.clip_from_world * vec4f(world, 1.0);
+    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates);
 }
 
 @fragment
 fn fragment(s: Surface) -> @location(0) vec4f {
+    let of_texture = textureSample(part_texture, part_sampler, s.coordinates).rgb;
+    let own = look.colour.rgb * part_colour.rgb * of_texture;
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
-    let colour = lit(mix(look.colour.rgb, of_weight, look.has_weights), normalize(s.normal));
+    let colour = lit(mix(own, of_weight, look.has_weights), normalize(s.normal));
     return vec4f(in_scene(colour, s.world, s.position.xy), look.colour.a);
 }
 

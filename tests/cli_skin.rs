@@ -56,7 +56,7 @@ fn a_document_gets_a_skin_around_its_bones() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let document = io::open(&out, None).expect("opens").document;
     let skin = document.skeleton_rig.skin.expect("a skin");
-    let SkinSource::Bones(bones) = &skin.source;
+    let SkinSource::Bones(bones) = &skin.source else { panic!("a skin from bones") };
     assert_eq!(bones.shape().detail, 1.5);
     assert_eq!(bones.shape().thickness, 0.8);
     assert_eq!(skin.skinning, Skinning::SpreadTwist);

@@ -12,7 +12,9 @@ use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::rig::{LimbSettings, Skin, TargetKind, TargetSpace};
+use ik_arm::rig::{
+    FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinSource, TargetKind, TargetSpace,
+};
 use ik_arm::session::{
     EditAction, PlaybackAction, PoseMode, SelectAction, Session, SolverAction, TransactionAction,
 };
@@ -93,6 +95,7 @@ examples! {
     ];
     AddSkin: [EditAction::AddSkin];
     ShowSkin: [EditAction::ShowSkin { skin: false, bones: true }];
+    PackSkin: [EditAction::PackSkin];
     SetSkin: [EditAction::SetSkin(Some(Skin::from_bones(&Shared::default())))];
     SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath::Ring(WavyRing {
         radius: 1.0,
@@ -134,6 +137,17 @@ examples! {
     SetMetres: [EditAction::SetMetres(Some(2.0))];
 }
 
+/// The mesh of the skin as from a file.
+fn skin_of_a_file(session: &Session) -> Skin {
+    let rig = session.skeleton_rig();
+    let mesh = rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh.clone();
+    let parents = rig.skeleton.joints().iter().map(|joint| joint.parent).collect();
+    let file = SkinFile { path: "x.glb".into(), checksum: 5, skeleton: "x".to_owned() };
+    let joints = rig.skeleton.ids().map(Some).collect();
+    let mesh = FileMesh { mesh, parents, parts: Vec::new() };
+    Skin::new(SkinSource::Mesh(MeshSkin::new(mesh.into(), Some(file), joints, &rig.skeleton)))
+}
+
 /// A bake of one key.
 fn baked() -> Box<Baked> {
     let mut document = session_for(&EditAction::PasteKeys).document().clone();
@@ -166,6 +180,9 @@ fn session_for(edit: &EditAction) -> Session {
     session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
     session.apply(SelectAction::CopyKeys);
     session.apply(PlaybackAction::SetTime(1.0));
+    if *edit == EditAction::PackSkin {
+        session.apply(EditAction::SetSkin(Some(skin_of_a_file(&session))));
+    }
     if *edit == EditAction::ApplyPose {
         session.apply(EditAction::ShowRig(RigKind::Skeleton));
         session.apply(SolverAction::Step);

@@ -524,3 +524,195 @@ fn damaged_scenes_open_or_are_refused_and_never_crash() {
         }
     }
 }
+
+// Skins
+
+fn base64(bytes: &[u8]) -> String {
+    use base64::Engine as _;
+    // Scotty3D writes no padding.
+    base64::engine::general_purpose::STANDARD_NO_PAD.encode(bytes)
+}
+
+fn wholes(numbers: &[u32]) -> String {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    format!("uint32:{}", base64(&bytes))
+}
+
+fn floats(kind: &str, numbers: &[f32]) -> String {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    format!("{kind}:{}", base64(&bytes))
+}
+
+/// A box from y = 0 to 2 as six quads around two bones of length 1, as Scotty3D saves it. The faces are numbered
+/// by their corners, counter-clockwise seen from outside.
+struct HalfEdgeBox {
+    positions: Vec<Vec3>,
+    faces: Vec<[usize; 4]>,
+}
+
+impl HalfEdgeBox {
+    fn new() -> Self {
+        let corner = |at: usize| {
+            Vec3::new((at & 1) as f32 - 0.5, (at >> 1 & 1) as f32 * 2.0, (at >> 2) as f32 - 0.5)
+        };
+        let faces = vec![
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        Self { positions: (0..8).map(corner).collect(), faces }
+    }
+
+    /// The mesh as JSON, without weights.
+    fn json(&self) -> serde_json::Value {
+        let sides =
+            self.faces.iter().flat_map(|face| (0..4).map(|at| (face[at], face[(at + 1) % 4])));
+        let sides: Vec<(usize, usize)> = sides.collect();
+        // Edges, and for each of their sides the index of its half-edge.
+        let mut edges: Vec<(usize, usize)> =
+            sides.iter().filter(|(from, to)| from < to).copied().collect();
+        edges.sort_unstable();
+        let index = |(from, to): (usize, usize)| {
+            let edge = edges.iter().position(|edge| *edge == (from.min(to), from.max(to)));
+            2 * edge.expect("an edge") as u32 + u32::from(from > to)
+        };
+        let mut nexts = vec![0; sides.len()];
+        for face in &self.faces {
+            for at in 0..4 {
+                let next = (face[(at + 1) % 4], face[(at + 2) % 4]);
+                nexts[index((face[at], face[(at + 1) % 4])) as usize] = index(next);
+            }
+        }
+        let of_vertex = |vertex: usize| {
+            index(*sides.iter().find(|(from, _)| *from == vertex).expect("a half-edge"))
+        };
+        let faces: Vec<u32> = self.faces.iter().map(|face| index((face[0], face[1]))).collect();
+        let positions: Vec<f32> = self.positions.iter().flat_map(Vec3::to_array).collect();
+        serde_json::json!({
+            "FORMAT": "s3d-hm-1",
+            "halfedge_nexts": wholes(&nexts),
+            "halfedge_corner_uvs": floats("vec2", &vec![0.25; 2 * nexts.len()]),
+            "halfedge_corner_normals": floats("vec3", &vec![0.0; 3 * nexts.len()]),
+            "vertex_halfedges": wholes(&(0..8).map(of_vertex).collect::<Vec<_>>()),
+            "vertex_positions": floats("vec3", &positions),
+            "face_halfedges": wholes(&faces),
+            "face_boundaries": format!("bool:{}", base64(&[0])),
+        })
+    }
+
+    fn scene(mesh: &serde_json::Value) -> Opened {
+        let text = serde_json::json!({ "scene": { "skinned_meshes": { "X": {
+            "mesh": mesh,
+            "skeleton": { "bones": [
+                { "extent": [0, 1, 0], "radius": 0.9, "parent": 1 },
+                { "extent": [0, 1, 0], "radius": 2.0 },
+            ] },
+        } } } });
+        open(&text.to_string())
+    }
+}
+
+#[test]
+fn a_half_edge_mesh_becomes_a_skin_with_the_weights_of_the_file() {
+    let cube = HalfEdgeBox::new();
+    let mut mesh = cube.json();
+    // Vertices below follow the root, which is bone 1, the others both bones.
+    let (mut bones, mut weights, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+    for position in &cube.positions {
+        match position.y {
+            0.0 => (bones.push(1), weights.push(1.0)),
+            _ => (bones.extend([0, 1]), weights.extend([3.0, 1.0])),
+        };
+        ends.push(bones.len() as u32);
+    }
+    mesh["vertex_bone_weight_ends"] = wholes(&ends).into();
+    mesh["bone_weight_bones"] = wholes(&bones).into();
+    mesh["bone_weight_weights"] = floats("float", &weights).into();
+    let opened = HalfEdgeBox::scene(&mesh);
+    assert_eq!(opened.warnings, []);
+    let attached =
+        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    let (mesh, weights) = (attached.mesh.mesh(), attached.mesh.weights());
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (24, 12));
+    let mut volume = 0.0;
+    for corners in &mesh.triangles {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+        volume += a.dot(b.cross(c)) / 6.0;
+        let normal = mesh.normals[corners[0] as usize];
+        assert!((b - a).cross(c - a).normalize().distance(normal) < 1e-6, "flat without normals");
+    }
+    assert!((volume - 2.0).abs() < 1e-5, "all faces look outwards: {volume}");
+    // The root comes first in the skeleton.
+    for (position, weights) in mesh.positions.iter().zip(weights) {
+        let expected = if position.y == 0.0 { (1.0, 0.0) } else { (0.25, 0.75) };
+        let found = (weights.of(JointId::new(0)), weights.of(JointId::new(1)));
+        assert_eq!(found, expected, "{position}");
+    }
+}
+
+#[test]
+fn without_weights_in_the_file_bones_weigh_by_the_rest_of_their_radii() {
+    let opened = HalfEdgeBox::scene(&HalfEdgeBox::new().json());
+    assert_eq!(opened.warnings, []);
+    let attached =
+        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    for (position, weights) in attached.mesh.mesh().positions.iter().zip(attached.mesh.weights()) {
+        // The root goes from y = 0 to 1 with the radius 2, the other bone to y = 2 with 0.9.
+        let beside = 0.5_f32.hypot(0.5);
+        let [of_root, of_tip] = match position.y {
+            0.0 => [1.0 - beside / 2.0, (1.0 - beside.hypot(1.0) / 0.9).max(0.0)],
+            _ => [1.0 - beside.hypot(1.0) / 2.0, 1.0 - beside / 0.9],
+        };
+        let found = weights.of(JointId::new(0));
+        assert!((found - of_root / (of_root + of_tip)).abs() < 1e-5, "{position}: {weights:?}");
+    }
+}
+
+#[test]
+fn vertices_out_of_all_radii_follow_the_nearest_bone_with_a_remark() {
+    let mut cube = HalfEdgeBox::new();
+    cube.positions.iter_mut().for_each(|position| *position *= 10.0);
+    let opened = HalfEdgeBox::scene(&cube.json());
+    let said = &opened.warnings[0].reason;
+    assert_eq!(said, "8 of 8 vertices have no weights; they follow the nearest bone");
+    let attached =
+        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    for (position, weights) in attached.mesh.mesh().positions.iter().zip(attached.mesh.weights()) {
+        assert_eq!(weights.first().index(), usize::from(position.y > 0.0), "{position}");
+    }
+}
+
+#[test]
+fn damaged_half_edges_leave_the_skin_out_with_the_reason() {
+    let plain = HalfEdgeBox::new().json();
+    for (key, value, expected) in [
+        ("FORMAT", "s3d-hm-2".to_owned(), "must be \"s3d-hm-1\", got \"s3d-hm-2\""),
+        ("halfedge_nexts", wholes(&[0, 1, 2]), "must have an even number of entries, got 3"),
+        ("halfedge_nexts", wholes(&[99; 24]), "must be below 24, the number of half-edges, got 99"),
+        ("vertex_positions", "vec2:AAAA".to_owned(), "must begin with \"vec3:\""),
+        (
+            "vertex_positions",
+            floats("vec3", &[0.0; 3]),
+            "must have 8 entries like vertex_halfedges",
+        ),
+        ("face_halfedges", wholes(&[24]), "must be below 24, the number of half-edges, got 24"),
+    ] {
+        let mut mesh = plain.clone();
+        mesh[key] = value.into();
+        let opened = HalfEdgeBox::scene(&mesh);
+        let said = opened.warnings[0].to_string();
+        assert!(said.contains(expected) && said.ends_with("; the skin is left out"), "{said}");
+        assert!(opened.document.skeleton_rig.skin.is_none());
+    }
+    // Half-edges that lead nowhere, faces that share them: some triangles are missing, no more.
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let mut mesh = plain.clone();
+        let nexts: Vec<u32> = (0..24).map(|_| random.below(24) as u32).collect();
+        mesh["halfedge_nexts"] = wholes(&nexts).into();
+        HalfEdgeBox::scene(&mesh);
+    }
+}

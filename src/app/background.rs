@@ -9,10 +9,11 @@ use winit::event_loop::EventLoopProxy;
 
 use super::user_event::{PathChoice, UserEvent, send};
 use super::viewport_picture::ViewportPicture;
-use crate::document::{Bake, Document};
+use crate::document::{Bake, Document, SkeletonRig, Skin};
 use crate::export::{self, ExportError, ExportOptions, Format};
 use crate::io::{self, OpenError, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
+use crate::rig::SkinSource;
 use crate::scene::Scene;
 use crate::session::{
     Action, Actions, BakeJob, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
@@ -115,6 +116,17 @@ pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProx
     });
 }
 
+/// Reads the mesh of the skin of `rig` from a file on a thread of its own, because the file may be large.
+pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProxy<UserEvent>) {
+    let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &rig.skin else { return };
+    let (skin, skeleton) = (skin.clone(), rig.skeleton.clone());
+    thread::spawn(move || {
+        let name = skin.file().map_or("", |file| &file.skeleton);
+        let read = Box::new(io::relocated_skin(&path, name, skin.joints(), &skeleton));
+        send(&proxy, UserEvent::SkinLocated { path, read });
+    });
+}
+
 /// Actions for a file that was read: they show the file's document or the error, and ask which of
 /// several skeletons to open.
 pub(super) fn open_actions(
@@ -157,6 +169,7 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
         PathDialog::SavePicture { .. } => ("PNG", &["png"]),
         PathDialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
         PathDialog::SaveAs { .. } => ("Scene", &["json"]),
+        PathDialog::LocateSkin { .. } => ("Skin", &["glb", "gltf", "js3d"]),
         PathDialog::Export(_) => ("Export", &export_extensions),
     };
     let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
@@ -167,7 +180,7 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
         system = system.set_directory(folder);
     }
     let start = Instant::now();
-    let is_open = matches!(dialog, PathDialog::Open { .. });
+    let is_open = matches!(dialog, PathDialog::Open { .. } | PathDialog::LocateSkin { .. });
     let (open, save) = match is_open {
         true => (Some(system.pick_file()), None),
         false => (None, Some(system.save_file())),
@@ -195,6 +208,9 @@ pub(super) fn path_action(dialog: PathDialog, choice: PathChoice) -> Action {
             FileAction::Open { path, skeleton: None }.into()
         }
         (PathChoice::Path(path), PathDialog::SaveAs { .. }) => FileAction::SaveAs(path).into(),
+        (PathChoice::Path(path), PathDialog::LocateSkin { .. }) => {
+            FileAction::LocateSkin(path).into()
+        }
         (PathChoice::Path(path), PathDialog::SavePicture { .. }) => {
             FileAction::SavePicture(path.display().to_string()).into()
         }

@@ -75,6 +75,9 @@ impl AppWindow {
                 background::choose_path(dialog, &path, proxy.clone());
             }
             Effect::Open { path, skeleton } => background::open(path, skeleton, proxy.clone()),
+            Effect::LocateSkin(path) => {
+                background::locate_skin(path, session.skeleton_rig(), proxy.clone());
+            }
             Effect::Save(path) => {
                 let saved = match io::save(session.document(), &path) {
                     Ok(()) => FileAction::Saved(path),

@@ -211,6 +211,9 @@ impl ApplicationHandler<UserEvent> for App {
                     self.session.apply(action);
                 }
             }
+            UserEvent::SkinLocated { path, read } => {
+                self.session.apply(FileAction::SkinLocated { path, read });
+            }
             UserEvent::Chosen(dialog, choice) => {
                 let action = background::path_action(dialog, choice);
                 window.act(action, &mut self.session, &self.proxy);

@@ -10,8 +10,8 @@ use super::open;
 use super::report::{USAGE, fail, say};
 use crate::document::{Document, Overlay, RigKind, Skin};
 use crate::io::{OpenError, SaveError, save};
-use crate::kinematics::skin::{SkinShape, SkinShapeError, Skinning};
-use crate::rig::{BoneSkin, SkinSource};
+use crate::kinematics::skin::{SkinShape, Skinning};
+use crate::rig::{BoneSkin, SkinMeshError, SkinSource};
 
 #[derive(clap::Args)]
 #[command(
@@ -54,7 +54,7 @@ enum SkinCommandError {
     #[error("{0}: a skin needs a skeleton, and the document shows an arm")]
     NoSkeleton(String),
     #[error("{file}: {error}")]
-    Shape { file: String, error: SkinShapeError },
+    Mesh { file: String, error: SkinMeshError },
     #[error(transparent)]
     Save(#[from] SaveError),
 }
@@ -85,7 +85,7 @@ impl SkinArgs {
             return Err(SkinCommandError::NoSkeleton(file));
         }
         let skin = self.made(&document);
-        let mesh = skin.mesh().map_err(|error| SkinCommandError::Shape { file, error })?;
+        let mesh = skin.mesh().map_err(|error| SkinCommandError::Mesh { file, error })?;
         let mesh = mesh.mesh.mesh();
         let report =
             format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
@@ -99,12 +99,16 @@ impl SkinArgs {
     fn made(&self, document: &Document) -> Skin {
         let rig = &document.skeleton_rig;
         let old = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
-        let SkinSource::Bones(bones) = &old.source;
-        let shape = SkinShape {
-            detail: self.detail.map_or(bones.shape().detail, |detail| detail.0),
-            thickness: self.thickness.map_or(bones.shape().thickness, |thickness| thickness.0),
-            blobs: bones.shape().blobs.clone(),
+        let old = match old.source {
+            SkinSource::Bones(_) => old,
+            SkinSource::Mesh(_) => Skin::from_bones(&rig.skeleton),
         };
+        let mut shape = match &old.source {
+            SkinSource::Bones(bones) => bones.shape().clone(),
+            SkinSource::Mesh(_) => SkinShape::default(),
+        };
+        shape.detail = self.detail.map_or(shape.detail, |detail| detail.0);
+        shape.thickness = self.thickness.map_or(shape.thickness, |thickness| thickness.0);
         let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
         let skinning = self.blend.unwrap_or(old.skinning);
         Skin { source, skinning, ..old }

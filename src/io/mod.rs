@@ -9,12 +9,15 @@
 //! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]. No
 //! other code writes documents or exports.
 
+mod attach_skin;
+mod base64;
 mod bvh;
 mod csv;
 pub(crate) mod error;
 mod examples;
 mod field_error;
 mod file_batch;
+mod file_format;
 mod format;
 mod frames;
 mod gltf;
@@ -27,7 +30,9 @@ mod obj;
 mod open;
 mod opened;
 mod progress;
+mod skin_file;
 mod source;
+mod texture;
 mod translation;
 pub(crate) mod value;
 mod write;
@@ -46,4 +51,5 @@ pub use obj::{ObjError, to_obj};
 pub use open::{open, parse, read};
 pub use opened::Opened;
 pub use progress::{Cancelled, Progress};
+pub use skin_file::relocated_skin;
 pub use write::{write, write_with};

@@ -5,7 +5,8 @@ use thiserror::Error;
 use super::motion::Exported;
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::is_within_numbers;
-use crate::kinematics::skin::{SkinShapeError, Skinning, TriangleMesh};
+use crate::kinematics::skin::{Skinning, TriangleMesh};
+use crate::rig::SkinMeshError;
 
 /// The reason why no mesh is exported.
 #[derive(Debug, Error, PartialEq)]
@@ -13,9 +14,9 @@ pub enum ObjError {
     /// The document shows an arm, or its skeleton has no skin.
     #[error("an .obj holds the skin of a skeleton, and there is none: ik-arm skin makes one")]
     NoSkin,
-    /// The skin cannot be made from the bones.
+    /// The skin has no mesh.
     #[error(transparent)]
-    Shape(#[from] SkinShapeError),
+    Mesh(#[from] SkinMeshError),
     /// A position overflows.
     #[error("vertex {0} must be within ±3.4028235e38")]
     TooFar(usize),

@@ -18,8 +18,10 @@ pub struct Source {
     translated: Option<(String, Translation)>,
     /// The binary chunk of a GLB file.
     binary: Option<Vec<u8>>,
-    /// The folder of the file, in which other files that it names are looked up.
-    folder: Option<PathBuf>,
+    /// The absolute path of the file; `None` if it was not opened by its path.
+    path: Option<PathBuf>,
+    /// CRC-32 of the bytes of the file.
+    checksum: crc32fast::Hasher,
 }
 
 impl Source {
@@ -31,8 +33,8 @@ impl Source {
                 Err(OpenError::TooLarge { file: name })
             }
             Ok((_, file)) => {
-                let folder = path.parent().map(Path::to_owned);
-                Ok(Self { folder, ..Self::read(&name, file)? })
+                let path = std::path::absolute(path).ok();
+                Ok(Self { path, ..Self::read(&name, file)? })
             }
             Err(source) => Err(OpenError::Read { file: name, source }),
         }
@@ -48,13 +50,15 @@ impl Source {
         if bytes.len() as u64 > OpenError::MAX_BYTES {
             return Err(OpenError::TooLarge { file });
         }
+        let mut checksum = crc32fast::Hasher::new();
+        checksum.update(&bytes);
         if bytes.starts_with(chunks::MAGIC) {
             let Chunks { json, binary } =
                 chunks::split(&bytes).map_err(|reason| invalid_chunks(file, reason))?;
-            return Ok(Self { binary: Some(binary), ..Self::new(name, &json) });
+            return Ok(Self { binary: Some(binary), checksum, ..Self::new(name, &json) });
         }
         match String::from_utf8(bytes) {
-            Ok(text) => Ok(Self::new(name, &text)),
+            Ok(text) => Ok(Self { checksum, ..Self::new(name, &text) }),
             Err(error) => Err(not_utf8(file, error.as_bytes())),
         }
     }
@@ -66,7 +70,8 @@ impl Source {
             text: text.to_owned(),
             translated: None,
             binary: None,
-            folder: None,
+            path: None,
+            checksum: crc32fast::Hasher::new(),
         }
     }
 
@@ -74,7 +79,11 @@ impl Source {
     /// text.
     pub fn translated(&self, translation: Translation) -> Self {
         let translated = Self::new(&self.name, &translation.text);
-        Self { translated: Some((self.text.clone(), translation)), ..translated }
+        Self {
+            path: self.path.clone(),
+            translated: Some((self.text.clone(), translation)),
+            ..translated
+        }
     }
 
     pub fn name(&self) -> &str {
@@ -90,9 +99,20 @@ impl Source {
         self.binary.as_deref()
     }
 
-    /// The folder of the file; `None` if the file was not opened by its path.
+    /// The absolute path of the file; `None` if it was not opened by its path.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The folder of the file, in which other files that it names are looked up; `None` if the file was not
+    /// opened by its path.
     pub fn folder(&self) -> Option<&Path> {
-        self.folder.as_deref()
+        self.path()?.parent()
+    }
+
+    /// CRC-32 of the file, to be updated with the files that it names.
+    pub fn checksum(&self) -> crc32fast::Hasher {
+        self.checksum.clone()
     }
 
     /// Parses the whole text, and calls `ignored` with each unknown field.

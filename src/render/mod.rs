@@ -31,6 +31,7 @@ mod shadow;
 mod shell;
 mod skin;
 mod skin_deformer;
+mod skin_material;
 mod solid;
 mod solid_mesh;
 mod sphere_order;

@@ -1,11 +1,13 @@
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt as _;
 
 use super::skin_deformer::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
+use super::skin_material::{SkinMaterial, SkinMaterials};
 use super::uniforms::Uniforms;
 use super::{Gpu, pipeline};
 use crate::kinematics::Shared;
+use crate::kinematics::skin::TriangleMesh;
 use crate::rig::AttachedMesh;
 use crate::scene::{Colour, Palette, Scene, SkinInstance};
 
@@ -38,6 +40,7 @@ pub(super) struct Skins {
 #[derive(Debug)]
 struct SkinPipelines {
     deformer: SkinDeformer,
+    materials: SkinMaterials,
     /// For skins that are not mirrored, and for mirrored ones.
     opaque: [wgpu::RenderPipeline; 2],
     /// Depth of the nearest surface of see-through skins.
@@ -51,8 +54,10 @@ struct SkinPipelines {
 struct SkinMesh {
     mesh: Shared<AttachedMesh>,
     vertices: SkinVertices,
+    coordinates: wgpu::Buffer,
     triangles: wgpu::Buffer,
     indices: u32,
+    materials: Vec<SkinMaterial>,
     /// Edges, made for the first wireframe, with the number of their indices.
     edges: Option<(wgpu::Buffer, u32)>,
     is_used: bool,
@@ -87,7 +92,7 @@ impl Skins {
                 Some(known) => &mut self.meshes[known],
                 None => {
                     sent += skin.mesh.mesh.bytes() as u64;
-                    self.meshes.push(SkinMesh::new(gpu, skin.mesh.clone()));
+                    self.meshes.push(SkinMesh::new(gpu, &pipelines.materials, skin.mesh.clone()));
                     let last = self.meshes.len() - 1;
                     &mut self.meshes[last]
                 }
@@ -139,10 +144,12 @@ impl Skins {
     ) {
         let Some(mesh) = self.mesh(skin) else { return };
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(1, &skin.look.group, &[]);
-        pass.set_vertex_buffer(0, skin.deformed.vertices.slice(..));
+        skin.bind(pass, mesh);
         pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..mesh.indices, 0, 0..1);
+        for material in &mesh.materials {
+            pass.set_bind_group(2, &material.group, &[]);
+            pass.draw_indexed(material.corners.clone(), 0, 0..1);
+        }
     }
 
     fn draw_wireframe(
@@ -151,11 +158,11 @@ impl Skins {
         pipelines: &SkinPipelines,
         skin: &DrawnSkin,
     ) {
-        let edges = self.mesh(skin).and_then(|mesh| mesh.edges.as_ref());
-        if let Some((edges, count)) = edges.filter(|_| skin.has_wireframe) {
+        let Some(mesh) = self.mesh(skin).filter(|_| skin.has_wireframe) else { return };
+        if let (Some((edges, count)), [material, ..]) = (&mesh.edges, &mesh.materials[..]) {
             pass.set_pipeline(&pipelines.wire);
-            pass.set_bind_group(1, &skin.look.group, &[]);
-            pass.set_vertex_buffer(0, skin.deformed.vertices.slice(..));
+            skin.bind(pass, mesh);
+            pass.set_bind_group(2, &material.group, &[]);
             pass.set_index_buffer(edges.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..*count, 0, 0..1);
         }
@@ -169,13 +176,22 @@ impl Skins {
 impl SkinPipelines {
     fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let look = Uniforms::<Look>::new(gpu, "skin look");
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let buffers = [wgpu::VertexBufferLayout {
-            array_stride: size_of::<DeformedVertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &attributes,
-        }];
-        let layouts = [view, &look.layout];
+        let materials = SkinMaterials::new(gpu);
+        let moved = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let fixed = wgpu::vertex_attr_array![2 => Float32x2];
+        let buffers = [
+            wgpu::VertexBufferLayout {
+                array_stride: size_of::<DeformedVertex>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &moved,
+            },
+            wgpu::VertexBufferLayout {
+                array_stride: size_of::<Vec2>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &fixed,
+            },
+        ];
+        let layouts = [view, &look.layout, &materials.layout];
         let plain = pipeline::PipelineDescriptor {
             label: "skin",
             shader: SHADER,
@@ -221,16 +237,26 @@ impl SkinPipelines {
                     ..plain
                 },
             ),
+            materials,
         }
     }
 }
 
 impl SkinMesh {
-    fn new(gpu: &Gpu, mesh: Shared<AttachedMesh>) -> Self {
+    fn new(gpu: &Gpu, materials: &SkinMaterials, mesh: Shared<AttachedMesh>) -> Self {
+        let TriangleMesh { positions, texture_coordinates, triangles, .. } = mesh.mesh.mesh();
+        let mut coordinates = texture_coordinates.clone();
+        coordinates.resize(positions.len().max(1), Vec2::ZERO);
+        let coordinates = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("skin texture coordinates"),
+            contents: bytemuck::cast_slice(&coordinates),
+            usage: wgpu::BufferUsages::VERTEX,
+        });
+        let materials = materials.of_parts(gpu, &mesh.parts, triangles.len());
+        let (triangles, indices) = index_buffer(gpu, "skin triangles", triangles.as_flattened());
         let vertices = SkinVertices::new(gpu, &mesh.mesh);
-        let corners = mesh.mesh.mesh().triangles.as_flattened();
-        let (triangles, indices) = index_buffer(gpu, "skin triangles", corners);
-        Self { vertices, triangles, indices, mesh, edges: None, is_used: true }
+        let (edges, is_used) = (None, true);
+        Self { vertices, coordinates, triangles, indices, materials, mesh, edges, is_used }
     }
 
     fn make_edges(&mut self, gpu: &Gpu) {
@@ -267,6 +293,13 @@ impl DrawnSkin {
             is_opaque: true,
             has_wireframe: false,
         }
+    }
+
+    /// Sets the look and the vertices.
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, mesh: &SkinMesh) {
+        pass.set_bind_group(1, &self.look.group, &[]);
+        pass.set_vertex_buffer(0, self.deformed.vertices.slice(..));
+        pass.set_vertex_buffer(1, mesh.coordinates.slice(..));
     }
 
     fn upload(

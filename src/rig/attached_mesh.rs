@@ -1,21 +1,30 @@
 use glam::Vec3;
 
+use super::skin_part::SkinPart;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::SkinnedMesh;
 
-/// A skinned mesh with its thickness around each bone.
+/// A skinned mesh on the joints of a skeleton, with its materials and its thickness around each bone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedMesh {
     /// The mesh.
     pub mesh: SkinnedMesh,
+    /// The parts of the mesh in the order of its triangles, one after the other.
+    pub parts: Vec<SkinPart>,
     /// For each joint the mean distance from its bone of the vertices that follow it most, in skeleton
     /// units; 0 for a joint without vertices.
     pub radii: Vec<f32>,
 }
 
 impl AttachedMesh {
-    /// Measures the thickness of a mesh around the bones of its skeleton.
-    pub fn new(mesh: SkinnedMesh, skeleton: &Skeleton) -> Self {
+    /// Measures the thickness of a mesh around the bones of its skeleton. Triangles after the last of `parts`
+    /// become a white part.
+    pub fn new(mesh: SkinnedMesh, mut parts: Vec<SkinPart>, skeleton: &Skeleton) -> Self {
+        let listed: usize = parts.iter().map(|part| part.triangles).sum();
+        let rest = mesh.mesh().triangles.len().saturating_sub(listed);
+        if rest > 0 {
+            parts.push(SkinPart { triangles: rest, colour: [1.0; 3], texture: None });
+        }
         let mut sums = vec![(0.0_f32, 0_u32); skeleton.joints().len()];
         for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
             let joint = weights.first();
@@ -28,7 +37,7 @@ impl AttachedMesh {
             }
         }
         let mean = |(sum, count): (f32, u32)| if count > 0 { sum / count as f32 } else { 0.0 };
-        Self { mesh, radii: sums.into_iter().map(mean).collect() }
+        Self { mesh, parts, radii: sums.into_iter().map(mean).collect() }
     }
 }
 

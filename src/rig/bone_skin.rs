@@ -48,7 +48,7 @@ impl BoneSkin {
         let MadeMesh { shape, skeleton, mesh } = &*self.made;
         let make = || {
             let mesh = SkinnedMesh::from_bones(skeleton, shape)?;
-            Ok(Shared::from(AttachedMesh::new(mesh, skeleton)))
+            Ok(Shared::from(AttachedMesh::new(mesh, Vec::new(), skeleton)))
         };
         mesh.get_or_init(make).as_ref().map_err(Clone::clone)
     }

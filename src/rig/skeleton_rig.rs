@@ -148,10 +148,11 @@ impl SkeletonRig {
         self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
     }
 
-    /// Renumbers the joints of the targets and of the skin; drops the targets of removed joints.
+    /// Renumbers the joints of the targets and of the skin after an edit of the skeleton; drops the targets
+    /// of removed joints.
     pub fn remap(&mut self, remap: &JointRemap) {
         self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
-        self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap));
+        self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap, &self.skeleton));
     }
 
     /// Makes a skin from bones again if the bind pose or its shape have changed since it was made.

@@ -1,5 +1,8 @@
+use thiserror::Error;
+
 use super::attached_mesh::AttachedMesh;
 use super::bone_skin::BoneSkin;
+use super::mesh_skin::{MeshSkin, SkinFileError};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointRemap, Skeleton};
 use crate::kinematics::skin::{SkinShapeError, Skinning};
@@ -11,7 +14,7 @@ pub struct Skin {
     pub source: SkinSource,
     /// How the joints of a vertex are blended.
     pub skinning: Skinning,
-    /// Colour as sRGB channels from 0 to 1.
+    /// Colour as sRGB channels from 0 to 1. For a mesh from a file, it multiplies the file's colours.
     pub colour: [f32; 3],
 }
 
@@ -20,6 +23,19 @@ pub struct Skin {
 pub enum SkinSource {
     /// Made from the bones of the skeleton.
     Bones(BoneSkin),
+    /// From a file of another program.
+    Mesh(MeshSkin),
+}
+
+/// The reason why a skin has no mesh.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SkinMeshError {
+    /// No mesh can be made from the bones.
+    #[error(transparent)]
+    Shape(#[from] SkinShapeError),
+    /// The file of the mesh cannot be read.
+    #[error(transparent)]
+    File(#[from] SkinFileError),
 }
 
 impl Skin {
@@ -31,9 +47,14 @@ impl Skin {
         Self::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), Default::default())))
     }
 
-    /// A skin in the default colour, with dual quaternions.
+    /// A skin from bones in the default colour with dual quaternions, or a mesh in the colours of its file
+    /// with linear blending, which most programs have.
     pub fn new(source: SkinSource) -> Self {
-        Self { source, skinning: Skinning::default(), colour: Self::DEFAULT_COLOUR }
+        let (skinning, colour) = match &source {
+            SkinSource::Bones(_) => (Skinning::default(), Self::DEFAULT_COLOUR),
+            SkinSource::Mesh(_) => (Skinning::Linear, [1.0; 3]),
+        };
+        Self { source, skinning, colour }
     }
 
     /// The mesh. That of a skin from bones is made when it is first needed, in about ten milliseconds per
@@ -41,32 +62,44 @@ impl Skin {
     ///
     /// # Errors
     ///
-    /// [`SkinShapeError`] if no mesh can be made from the bones.
-    pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinShapeError> {
-        match &self.source {
-            SkinSource::Bones(bones) => bones.mesh(),
-        }
+    /// [`SkinMeshError`] if no mesh can be made from the bones, or the file of the mesh cannot be read.
+    pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinMeshError> {
+        Ok(match &self.source {
+            SkinSource::Bones(bones) => bones.mesh()?,
+            SkinSource::Mesh(mesh) => mesh.mesh()?,
+        })
     }
 
     /// The mesh, if it has been needed already: see [`Skin::mesh`].
-    pub fn made_mesh(&self) -> Option<Result<&Shared<AttachedMesh>, SkinShapeError>> {
+    pub fn made_mesh(&self) -> Option<Result<&Shared<AttachedMesh>, SkinMeshError>> {
         match &self.source {
-            SkinSource::Bones(bones) => bones.made_mesh(),
+            SkinSource::Bones(bones) => bones.made_mesh().map(|made| made.map_err(Into::into)),
+            SkinSource::Mesh(_) => Some(self.mesh()),
         }
+    }
+
+    /// Whether the mesh of the skin is from a file, and follows the same joints as `mesh`.
+    pub fn has_joints_of(&self, mesh: &MeshSkin) -> bool {
+        matches!(&self.source, SkinSource::Mesh(own) if own.joints() == mesh.joints())
     }
 
     /// The skin with its mesh made again, if it is made from bones and the bind pose or the shape have
     /// changed since; otherwise `None`.
     pub(super) fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
-        let SkinSource::Bones(bones) = &self.source;
-        let source = SkinSource::Bones(bones.refreshed(skeleton)?);
+        let source = match &self.source {
+            SkinSource::Bones(bones) => SkinSource::Bones(bones.refreshed(skeleton)?),
+            SkinSource::Mesh(_) => return None,
+        };
         Some(Self { source, ..self.clone() })
     }
 
     /// The skin for a skeleton with other joint indices.
     #[must_use]
-    pub(super) fn remapped(&self, remap: &JointRemap) -> Self {
-        let SkinSource::Bones(bones) = &self.source;
-        Self { source: SkinSource::Bones(bones.remapped(remap)), ..self.clone() }
+    pub(super) fn remapped(&self, remap: &JointRemap, skeleton: &Skeleton) -> Self {
+        let source = match &self.source {
+            SkinSource::Bones(bones) => SkinSource::Bones(bones.remapped(remap)),
+            SkinSource::Mesh(mesh) => SkinSource::Mesh(mesh.remapped(remap, skeleton)),
+        };
+        Self { source, ..self.clone() }
     }
 }

@@ -87,6 +87,7 @@ impl Session {
             }
             EditAction::AddSkin => self.add_skin(),
             EditAction::ShowSkin { skin, bones } => self.show_skin(skin, bones),
+            EditAction::PackSkin => self.pack_skin(),
             EditAction::SetSkin(skin) => self.set_skin(skin),
             EditAction::SetTranslation(to) => self.set_translation(to),
             EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),

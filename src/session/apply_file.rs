@@ -174,6 +174,12 @@ impl Session {
             }
             FileAction::Opened { document, file } => self.replace_document(*document, file),
             FileAction::NotOpened { path, why } => self.fail_open(&path, &why),
+            FileAction::LocateSkin(path) => {
+                self.shell.take_dialog();
+                self.shell.set_choosing(false);
+                return Some(Effect::LocateSkin(path));
+            }
+            FileAction::SkinLocated { path, read } => self.take_located_skin(&path, *read),
             FileAction::Save => {
                 self.files.take_after_save();
                 return Some(self.save());

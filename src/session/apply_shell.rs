@@ -73,10 +73,10 @@ impl Session {
             }
             PathDialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
             // A file that exists relative to the current folder takes precedence.
-            PathDialog::Open { .. } if !typed.exists() => {
+            PathDialog::Open { .. } | PathDialog::LocateSkin { .. } if !typed.exists() => {
                 self.files.document_folder().map(in_folder)
             }
-            PathDialog::Open { .. } => None,
+            PathDialog::Open { .. } | PathDialog::LocateSkin { .. } => None,
         };
         full.unwrap_or_else(|| typed.to_owned())
     }

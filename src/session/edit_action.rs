@@ -129,6 +129,8 @@ pub enum EditAction {
         /// Whether the bones are shown through the skin.
         bones: bool,
     },
+    /// Makes the mesh of a file, which the skin has, a part of the document.
+    PackSkin,
     /// Replaces the skin of the skeleton; `None` removes it.
     SetSkin(Option<Skin>),
     /// Sets the path that the skeleton follows; `None` for no path.

@@ -47,6 +47,7 @@ impl EditAction {
             Self::ShowSkin { skin: true, bones: true } => "Show skin and bones",
             Self::ShowSkin { skin: true, bones: false } => "Show skin",
             Self::ShowSkin { skin: false, .. } => "Show bones",
+            Self::PackSkin => "Pack skin into file",
             Self::SetSkin(None) => "Remove skin",
             Self::SetSkin(Some(_)) => "Change skin",
             Self::SetFollowPath(_) => "Change path",

@@ -24,6 +24,8 @@ pub enum Effect {
         /// Name of the skeleton to open, for a file with several; `None` opens the first.
         skeleton: Option<String>,
     },
+    /// Reads the mesh of the document's skin from a file.
+    LocateSkin(PathBuf),
     /// Saves the document to a file.
     Save(PathBuf),
     /// Ends the program.

@@ -4,6 +4,7 @@ use super::export::{Export, ExportJob};
 use super::path_dialog::PathDialog;
 use crate::document::Document;
 use crate::io::Example;
+use crate::rig::{MeshSkin, SkinFileError};
 
 /// Opens, saves, exports and quits.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,15 @@ pub enum FileAction {
         path: PathBuf,
         /// The error.
         why: String,
+    },
+    /// Reads the mesh of the skin from a file.
+    LocateSkin(PathBuf),
+    /// Replaces the mesh of the skin by that of a file, or reports why the file cannot be read.
+    SkinLocated {
+        /// The file.
+        path: PathBuf,
+        /// The skin with the mesh of the file.
+        read: Box<Result<MeshSkin, SkinFileError>>,
     },
     /// Saves to the document's file; asks for a path if it has none.
     Save,

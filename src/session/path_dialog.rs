@@ -27,6 +27,13 @@ pub enum PathDialog {
         /// Error of the previous attempt; `None` before the first attempt.
         problem: Option<String>,
     },
+    /// Asks for the file of the skin's mesh.
+    LocateSkin {
+        /// The path as typed so far.
+        path: String,
+        /// Error of the previous attempt; `None` before the first attempt.
+        problem: Option<String>,
+    },
 }
 
 impl PathDialog {
@@ -48,9 +55,10 @@ impl PathDialog {
     /// The path as typed so far.
     pub fn path(&self) -> &Path {
         match self {
-            Self::SavePicture { path } | Self::Open { path, .. } | Self::SaveAs { path, .. } => {
-                Path::new(path)
-            }
+            Self::SavePicture { path }
+            | Self::Open { path, .. }
+            | Self::SaveAs { path, .. }
+            | Self::LocateSkin { path, .. } => Path::new(path),
             Self::Export(export) => &export.path,
         }
     }

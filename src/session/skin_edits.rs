@@ -1,9 +1,12 @@
+use std::path::Path;
+
+use super::path_dialog::PathDialog;
 use super::session::Session;
 use super::skin_areas::SkinAreas;
 use crate::document::{Document, Overlay, Ray, Skin};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::SkinShapeError;
-use crate::rig::SkinSource;
+use crate::rig::{MeshSkin, SkinFileError, SkinMeshError, SkinSource};
 
 /// Edits of the skin, and what the mouse points at on it.
 impl Session {
@@ -33,7 +36,7 @@ impl Session {
             skin.mesh()?;
             document.skeleton_rig.skin = Some(skin);
             document.display = document.display.with(Overlay::Skin, true);
-            Ok::<(), SkinShapeError>(())
+            Ok::<(), SkinMeshError>(())
         });
     }
 
@@ -46,16 +49,49 @@ impl Session {
         });
         let is_dragging = self.is_editing();
         self.edit_document(|document| {
-            if let Some(SkinSource::Bones(bones)) = skin.as_ref().map(|skin| &skin.source) {
-                bones.shape().check(document.skeleton())?;
-            }
-            document.skeleton_rig.skin = skin;
+            let rig = &mut document.skeleton_rig;
+            rig.skin = skin;
             if !is_dragging {
-                document.skeleton_rig.refresh_skin();
-                document.skeleton_rig.skin.as_ref().map(Skin::mesh).transpose()?;
+                rig.refresh_skin();
+            }
+            if let Some(Skin { source: SkinSource::Bones(bones), .. }) = &rig.skin {
+                bones.shape().check(&rig.skeleton)?;
+                if !is_dragging {
+                    bones.mesh()?;
+                }
             }
             Ok::<(), SkinShapeError>(())
         });
+    }
+
+    /// Makes the mesh of a file, which the skin has, a part of the document.
+    pub(super) fn pack_skin(&mut self) {
+        let packed = self.skeleton_rig().skin.as_ref().and_then(|skin| match &skin.source {
+            SkinSource::Mesh(mesh) => {
+                Some(Skin { source: SkinSource::Mesh(mesh.packed()?), ..skin.clone() })
+            }
+            SkinSource::Bones(_) => None,
+        });
+        if packed.is_some() {
+            self.set_skin(packed);
+        }
+    }
+
+    /// Replaces the mesh of the skin by that of a file. If the file cannot be read, asks for another one.
+    pub(super) fn take_located_skin(&mut self, path: &Path, read: Result<MeshSkin, SkinFileError>) {
+        match (read, self.skeleton_rig().skin.clone()) {
+            (Ok(mesh), Some(skin)) if skin.has_joints_of(&mesh) => {
+                self.commit_edit();
+                self.set_skin(Some(Skin { source: SkinSource::Mesh(mesh), ..skin }));
+                self.say(format!("The skin comes from {}", path.display()));
+            }
+            (Ok(_), _) => self.fail("the skin has changed since its file was chosen"),
+            (Err(error), _) => {
+                self.fail(error.to_string());
+                let (path, problem) = (path.display().to_string(), Some(error.to_string()));
+                self.open_dialog(PathDialog::LocateSkin { path, problem }.into());
+            }
+        }
     }
 
     /// Shows the skin, the bones or both.

@@ -12,4 +12,5 @@ mod import;
 #[cfg(feature = "app")]
 mod posed;
 mod round_trip;
+mod skin;
 mod text;

@@ -39,12 +39,18 @@ impl Text {
         self.accessor(&bytes, 5126, numbers.len() / width, &shape)
     }
 
-    pub fn accessor(&mut self, bytes: &[u8], component: u32, count: usize, shape: &str) -> usize {
+    /// A buffer view with these bytes.
+    pub fn view(&mut self, bytes: &[u8]) -> usize {
         let view = push(
             &mut self.json["bufferViews"],
             json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() }),
         );
         self.bytes.extend(bytes);
+        view
+    }
+
+    pub fn accessor(&mut self, bytes: &[u8], component: u32, count: usize, shape: &str) -> usize {
+        let view = self.view(bytes);
         let is_normalized = component < 5125;
         push(
             &mut self.json["accessors"],
@@ -103,7 +109,7 @@ pub fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
     [b"glTF".to_vec(), 2_u32.to_le_bytes().to_vec(), length.to_le_bytes().to_vec(), chunks].concat()
 }
 
-fn push(list: &mut Value, value: Value) -> usize {
+pub fn push(list: &mut Value, value: Value) -> usize {
     let list = list.as_array_mut().expect("a list");
     list.push(value);
     list.len() - 1

@@ -116,6 +116,7 @@ kinds! {
         SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
         AddSkin: Build 1, |_| EditAction::AddSkin;
         ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
+        PackSkin: Build 1, |_| EditAction::PackSkin;
         SetSkin: Build 2, |v| EditAction::SetSkin(v.skin());
         SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
         SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
@@ -211,6 +212,8 @@ kinds! {
         Open: Files 1, |v| FileAction::Open { path: v.path(), skeleton: None };
         Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file() };
         NotOpened: Look 1, |v| FileAction::NotOpened { path: v.path(), why: v.name() };
+        LocateSkin: Look 1, |v| FileAction::LocateSkin(v.path());
+        SkinLocated: Build 1, |v| FileAction::SkinLocated { path: v.path(), read: Box::new(v.located_skin()) };
         Save: Look 1, |_| FileAction::Save;
         SaveAs: Look 1, |v| FileAction::SaveAs(v.path());
         Saved: Files 4, |v| FileAction::Saved(v.path());

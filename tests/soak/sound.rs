@@ -7,8 +7,9 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, SkeletonRig, Target};
 use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::ik::IkState;
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit};
-use ik_arm::rig::SkinSource;
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skin::VertexWeights;
+use ik_arm::rig::{Skin, SkinSource};
 use ik_arm::session::Session;
 
 use crate::{Broken, hold};
@@ -111,8 +112,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         hold!(aimed.insert(target.joint), "joint {} has one target", target.joint);
     }
     if let Some(skin) = skin {
-        let SkinSource::Bones(bones) = &skin.source;
-        hold!(bones.shape().check(skeleton).is_ok(), "the skin has a shape: {:?}", bones.shape());
+        self::skin(skin, skeleton)?;
     }
     let SolverOptions { iterations, tolerance, damping, step, .. } = *solver;
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
@@ -121,6 +121,29 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     let per_frame = 1..=SkeletonRig::MAX_ITERATIONS_PER_FRAME;
     hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
     hold!(follow_path.is_none_or(|it| it.is_valid()), "the snake has a way: {follow_path:?}");
+    Ok(())
+}
+
+fn skin(skin: &Skin, skeleton: &Skeleton) -> Result<(), Broken> {
+    let mesh = match &skin.source {
+        SkinSource::Bones(bones) => {
+            let shape = bones.shape();
+            hold!(shape.check(skeleton).is_ok(), "the skin has a shape: {shape:?}");
+            return Ok(());
+        }
+        SkinSource::Mesh(mesh) => mesh,
+    };
+    let count = skeleton.joints().len();
+    let mut own = HashSet::new();
+    for joint in mesh.joints().iter().flatten() {
+        hold!(joint.index() < count, "the skin has joints of the skeleton: {joint:?}");
+        hold!(own.insert(joint), "no two joints of the file are the same joint: {joint:?}");
+    }
+    if let Ok(mesh) = mesh.mesh() {
+        let joints = mesh.mesh.weights().iter().flat_map(VertexWeights::iter);
+        let greatest = joints.map(|(joint, _)| joint.index()).max().unwrap_or(0);
+        hold!(greatest < count.max(1), "vertices follow joints of the skeleton: {greatest}");
+    }
     Ok(())
 }
 

@@ -94,11 +94,16 @@ fn a_dragged_thickness_is_one_undo_step() {
     let mut bench = with_skin();
     bench.reveal(Role::Slider, "Skin thickness");
     bench.enter("Skin thickness", "1.5");
-    let SkinSource::Bones(bones) = &skin(&bench).expect("a skin").source;
-    assert_eq!(bones.shape().thickness, 1.5);
+    assert_eq!(thickness(&bench), 1.5);
     bench.choose(&["Edit", "Undo Change skin"]);
-    let SkinSource::Bones(bones) = &skin(&bench).expect("a skin").source;
-    assert_eq!(bones.shape().thickness, 1.0);
+    assert_eq!(thickness(&bench), 1.0);
+}
+
+fn thickness(bench: &Bench) -> f32 {
+    match &skin(bench).expect("a skin").source {
+        SkinSource::Bones(bones) => bones.shape().thickness,
+        SkinSource::Mesh(_) => panic!("the skin is from bones"),
+    }
 }
 
 #[test]

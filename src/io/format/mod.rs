@@ -12,6 +12,7 @@ mod file;
 mod follow_path;
 mod header;
 mod keys;
+mod mesh_skin;
 mod read;
 mod save;
 mod skeleton;

@@ -5,6 +5,7 @@ use crate::io::error::OpenError;
 use crate::io::field_error::FieldWarnings;
 use crate::io::json_path::JsonPath;
 use crate::io::opened::Opened;
+use crate::io::skin_file::load_skin;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
 
@@ -27,7 +28,8 @@ fn read_fields(source: &Source) -> Result<Opened, OpenError> {
         let reason = unknown(&field);
         warnings.push(field, reason);
     })?;
-    let document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
+    let mut document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
+    load_skin(&mut document, source.folder(), &mut warnings);
     Ok(Opened {
         order: document.skeleton().ids().collect(),
         document,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::check::{fraction, joint, number};
+use super::mesh_skin::MeshSkinFields;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
@@ -13,7 +14,11 @@ use crate::rig::{BoneSkin, Skin, SkinSource};
 
 #[derive(Serialize, Deserialize)]
 pub struct SkinFields {
+    #[serde(skip_serializing_if = "Option::is_none")]
     bones: Option<JsonObject<SkinShapeFields>>,
+    /// The mesh of a skin that is not from bones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mesh: Option<JsonObject<MeshSkinFields>>,
     skinning: Option<Skinning>,
     colour: Option<JsonNumbers<3>>,
 }
@@ -41,9 +46,13 @@ struct BlobFields {
 
 impl SkinFields {
     pub fn new(skin: &Skin) -> Self {
-        let SkinSource::Bones(bones) = &skin.source;
+        let (bones, mesh) = match &skin.source {
+            SkinSource::Bones(bones) => (Some(SkinShapeFields::new(bones.shape())), None),
+            SkinSource::Mesh(mesh) => (None, Some(MeshSkinFields::new(mesh))),
+        };
         Self {
-            bones: Some(JsonObject(SkinShapeFields::new(bones.shape()))),
+            bones: bones.map(JsonObject),
+            mesh: mesh.map(JsonObject),
             skinning: Some(skin.skinning),
             colour: Some(JsonNumbers(skin.colour)),
         }
@@ -51,24 +60,24 @@ impl SkinFields {
 
     /// Converts the fields to a skin of `skeleton`. `at` is the path of the fields.
     pub fn skin(self, skeleton: &Shared<Skeleton>, at: &JsonPath) -> Result<Skin, FieldError> {
-        let JsonObject(bones) = self.bones.unwrap_or(JsonObject(SkinShapeFields::default()));
-        let at_bones = at.clone().key("bones");
-        let shape = bones.shape(skeleton.joints().len(), &at_bones)?;
-        shape.check(skeleton).map_err(|error| {
-            let field = match &error {
-                SkinShapeError::Detail(_) => at_bones.clone().key("detail"),
-                SkinShapeError::Thickness(_) => at_bones.clone().key("thickness"),
-                SkinShapeError::Blob { blob } => at_bones.clone().key("blobs").index(*blob),
-                _ => at_bones.clone(),
-            };
-            FieldError::new(field, error.to_string())
-        })?;
-        let skin = Skin::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), shape)));
+        let source = match (self.bones, self.mesh) {
+            (Some(_), Some(_)) => {
+                return Err(FieldError::new(at.clone(), "must not have both `bones` and `mesh`"));
+            }
+            (None, Some(JsonObject(mesh))) => {
+                SkinSource::Mesh(mesh.skin(skeleton, &at.clone().key("mesh"))?)
+            }
+            (bones, None) => {
+                let JsonObject(bones) = bones.unwrap_or(JsonObject(SkinShapeFields::default()));
+                SkinSource::Bones(bones.skin(skeleton, &at.clone().key("bones"))?)
+            }
+        };
+        let skin = Skin::new(source);
         let JsonNumbers(colour) = self.colour.unwrap_or(JsonNumbers(skin.colour));
         for (channel, value) in colour.into_iter().enumerate() {
             fraction(at.clone().key("colour").index(channel), value)?;
         }
-        Ok(Skin { skinning: self.skinning.unwrap_or_default(), colour, ..skin })
+        Ok(Skin { skinning: self.skinning.unwrap_or(skin.skinning), colour, ..skin })
     }
 }
 
@@ -80,6 +89,20 @@ impl SkinShapeFields {
             thickness: Some(JsonNumber(shape.thickness)),
             blobs: (!shape.blobs.is_empty()).then_some(blobs),
         }
+    }
+
+    fn skin(self, skeleton: &Shared<Skeleton>, at: &JsonPath) -> Result<BoneSkin, FieldError> {
+        let shape = self.shape(skeleton.joints().len(), at)?;
+        shape.check(skeleton).map_err(|error| {
+            let field = match &error {
+                SkinShapeError::Detail(_) => at.clone().key("detail"),
+                SkinShapeError::Thickness(_) => at.clone().key("thickness"),
+                SkinShapeError::Blob { blob } => at.clone().key("blobs").index(*blob),
+                _ => at.clone(),
+            };
+            FieldError::new(field, error.to_string())
+        })?;
+        Ok(BoneSkin::new(skeleton.clone(), shape))
     }
 
     fn shape(self, joints: usize, at: &JsonPath) -> Result<SkinShape, FieldError> {

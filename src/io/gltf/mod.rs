@@ -8,7 +8,8 @@
 //! ```text
 //! Armature             identity transform; the skin's `skeleton`
 //!  └ joints…           as in the document, or the arm's `upper` and `lower`: at the bone's base,
-//!                      +y along the bone, x as near to the joint's own x as possible
+//!                      +y along the bone, x as near to the joint's own x as possible, or
+//!                      for a bone along that to its z
 //!     └ NAME_tip       at the tip of a bone that has no children or whose length changes
 //! Limbs                the skinned mesh: a cone for each bone, balls at joints
 //! ```
@@ -22,14 +23,19 @@
 //! A skin's joints become a skeleton in the world, in metres, parents before their children. The
 //! nodes are the bind pose: a joint's frame is its node's rotation. A joint that moves has keys at
 //! every frame of the first animation; its offset has keys if lengths or scales change. A node
-//! `NAME_tip` without children is not a joint but the tip of NAME's bone. Meshes, materials and
-//! cameras are ignored.
+//! `NAME_tip` without children is not a joint but the tip of NAME's bone.
+//!
+//! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:
+//! triangles, normals, weights, and base colours with their textures. Other meshes and channels of
+//! materials, morph targets and cameras are not read, with one remark; a mesh that cannot be read is
+//! left out, with another.
 //!
 //! # Source
 //!
 //! *glTF 2.0 Specification*, The Khronos Group, 2021.
 
 pub(super) mod chunks;
+mod colour;
 mod export;
 mod frame;
 mod import;

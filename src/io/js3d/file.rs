@@ -26,7 +26,7 @@ pub struct Js3dScene {
     #[serde(default)]
     pub transforms: Named<Js3dTransform>,
     #[serde(default)]
-    skinned_meshes: Named<Js3dMesh>,
+    pub skinned_meshes: Named<Js3dSkinnedMesh>,
     #[serde(default)]
     pub instances: JsonObject<Js3dInstances>,
     #[serde(default)]
@@ -56,10 +56,52 @@ pub struct Js3dTransform {
 }
 
 #[derive(Deserialize)]
-struct Js3dMesh {
-    #[serde(default)]
-    mesh: Unread,
-    skeleton: Option<JsonObject<Js3dSkeleton>>,
+pub struct Js3dSkinnedMesh {
+    mesh: Option<Js3dMeshField>,
+    pub skeleton: Option<JsonObject<Js3dSkeleton>>,
+}
+
+/// A mesh, or anything else that is not read.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Js3dMeshField {
+    HalfEdges(Js3dMesh),
+    Other(Unread),
+}
+
+/// A half-edge mesh. Half-edges 2·i and 2·i + 1 are the two sides of an edge. Lists are texts of a type, a
+/// colon and base64, like `uint32:AgAAAA`.
+#[derive(Deserialize)]
+pub struct Js3dMesh {
+    #[serde(rename = "FORMAT")]
+    pub format: String,
+    /// For each half-edge the next one around its face.
+    #[serde(default, rename = "halfedge_nexts")]
+    pub nexts: String,
+    /// For each half-edge the texture coordinates of the corner from which it goes.
+    #[serde(default, rename = "halfedge_corner_uvs")]
+    pub coordinates: String,
+    /// For each half-edge the normal of that corner.
+    #[serde(default, rename = "halfedge_corner_normals")]
+    pub normals: String,
+    /// For each vertex a half-edge that goes from it.
+    #[serde(default, rename = "vertex_halfedges")]
+    pub vertices: String,
+    #[serde(default, rename = "vertex_positions")]
+    pub positions: String,
+    /// For each vertex the end of its weights in the two following lists.
+    #[serde(default, rename = "vertex_bone_weight_ends")]
+    pub weight_ends: String,
+    #[serde(default, rename = "bone_weight_bones")]
+    pub weight_bones: String,
+    #[serde(default, rename = "bone_weight_weights")]
+    pub weights: String,
+    /// For each face a half-edge around it.
+    #[serde(default, rename = "face_halfedges")]
+    pub faces: String,
+    /// For each face a bit, from the lowest of a byte to the highest: 1 for a hole.
+    #[serde(default, rename = "face_boundaries")]
+    pub boundaries: String,
 }
 
 #[derive(Default, Deserialize)]
@@ -116,10 +158,9 @@ impl Js3dFile {
 impl Js3dScene {
     /// Contents of the scene that are not read: their name in the singular, and how many there are.
     pub fn unread(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let is_mesh = |(_, mesh): &&(String, Js3dMesh)| mesh.mesh.0 > 0;
-        let meshes = self.meshes.0 + self.skinned_meshes.0.iter().filter(is_mesh).count();
+        let skinned = self.skinned_meshes.0.iter().filter(|(_, skinned)| skinned.has_other_mesh());
         let contents = [
-            ("mesh", meshes),
+            ("mesh", self.meshes.0 + skinned.count()),
             ("shape", self.shapes.0),
             ("particle system", self.particles.0),
             ("camera", self.cameras.0),
@@ -134,6 +175,19 @@ impl Js3dScene {
     pub fn skeletons(&self) -> impl Iterator<Item = (&str, &Js3dSkeleton)> {
         let meshes = self.skinned_meshes.0.iter();
         meshes.filter_map(|(name, mesh)| Some((name.as_str(), &mesh.skeleton.as_ref()?.0)))
+    }
+}
+
+impl Js3dSkinnedMesh {
+    pub fn mesh(&self) -> Option<&Js3dMesh> {
+        match &self.mesh {
+            Some(Js3dMeshField::HalfEdges(mesh)) => Some(mesh),
+            _ => None,
+        }
+    }
+
+    fn has_other_mesh(&self) -> bool {
+        matches!(self.mesh, Some(Js3dMeshField::Other(Unread(1..))))
     }
 }
 

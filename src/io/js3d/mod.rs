@@ -5,6 +5,7 @@
 //!     base, base_offset      their sum is the base of bones without a parent
 //!     bones[]                extent, roll (degrees), radius, parent, pose (x, y, z in degrees)
 //!     handles[]              bone, target (in the skeleton's own space), enabled
+//! scene.skinned_meshes.NAME.mesh       a half-edge mesh, the skin of that skeleton
 //! scene.instances.skinned_meshes.*   mesh (a NAME), transform (a name in scene.transforms)
 //! scene.transforms.*                 parent, translation, rotation [x, y, z, w], scale
 //! ```
@@ -16,10 +17,12 @@
 
 mod bones;
 mod file;
+mod mesh;
 mod transform;
 
 use glam::DAffine3;
 
+use super::attach_skin::attach_skin;
 use super::error::OpenError;
 use super::field_error::{FieldError, FieldWarnings};
 use super::json_path::JsonPath;
@@ -28,6 +31,7 @@ use super::source::Source;
 use super::value::JsonObject;
 use crate::document::{Camera, Document, RigKind, SkeletonRig, Target};
 use crate::kinematics::skeleton::JointId;
+use crate::rig::SkinFile;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
@@ -56,17 +60,40 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
         rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
     warn_of_unread(&file, &mut warnings);
     let camera = Camera::framing_skeleton(&rig);
-    Ok(Opened {
-        document: Document {
-            rig: RigKind::Skeleton,
-            skeleton_rig: rig,
-            camera,
-            ..Document::default()
-        },
-        warnings: source.warnings(&warnings),
-        order,
-        skeletons: names,
-    })
+    let mut document =
+        Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, ..Document::default() };
+    add_skin(&mut document, source, scene, chosen, &order, &mut warnings);
+    Ok(Opened { document, warnings: source.warnings(&warnings), order, skeletons: names })
+}
+
+/// Gives the skeleton the mesh called `name`. A mesh that cannot be read is left out, with a warning.
+fn add_skin(
+    document: &mut Document,
+    source: &Source,
+    scene: &Js3dScene,
+    name: &str,
+    order: &[JointId],
+    warnings: &mut FieldWarnings,
+) {
+    let mut meshes = scene.skinned_meshes.0.iter().filter(|(other, _)| other == name);
+    let Some((_, skinned)) = meshes.next() else { return };
+    let (Some(mesh), Some(JsonObject(bones))) = (skinned.mesh(), &skinned.skeleton) else {
+        return;
+    };
+    let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("mesh");
+    match mesh::read(mesh, bones, document.skeleton(), order, &at, warnings) {
+        Ok(mesh) => {
+            let checksum = source.checksum().finalize();
+            let skeleton = name.to_owned();
+            let file = source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
+            let joints = document.skeleton().ids().map(Some).collect();
+            attach_skin(document, mesh, file, joints);
+        }
+        Err(error) => {
+            let reason = format!("{}; the skin is left out", error.reason);
+            warnings.push(error.field, reason);
+        }
+    }
 }
 
 /// Warns of animation, and of everything else in the scene that is not read.

@@ -101,6 +101,31 @@ impl SkinnedMesh {
         VertexWeights::heaviest(weights).0.first()
     }
 
+    /// The same mesh with its joints renumbered: `joints[i]` is the new index of joint i, and the weights of
+    /// joints without one go to their nearest ancestor that has one, or else to the new joint 0. `parents`
+    /// are the parents of the old joints, which precede their children.
+    #[must_use]
+    pub fn renumbered(&self, joints: &[Option<JointId>], parents: &[Option<JointId>]) -> Self {
+        let mut heirs: Vec<Option<JointId>> = Vec::with_capacity(parents.len());
+        for (old, parent) in parents.iter().enumerate() {
+            let of_parent = parent.and_then(|parent| heirs.get(parent.index()).copied().flatten());
+            heirs.push(joints.get(old).copied().flatten().or(of_parent));
+        }
+        let heir = |joint: JointId| heirs.get(joint.index()).copied().flatten().unwrap_or_default();
+        let of_heirs = |weights: &VertexWeights| {
+            VertexWeights::heaviest(weights.iter().map(|(joint, weight)| (heir(joint), weight))).0
+        };
+        let count = joints.iter().flatten().map(|joint| joint.index() + 1).max().unwrap_or(1);
+        let mut inverse_binds = vec![Affine3A::IDENTITY; count];
+        for (joint, bind) in joints.iter().zip(&self.inverse_binds) {
+            if let Some(joint) = joint {
+                inverse_binds[joint.index()] = *bind;
+            }
+        }
+        let weights = self.weights.iter().map(of_heirs).collect();
+        Self { mesh: self.mesh.clone(), weights, inverse_binds }
+    }
+
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         let TriangleMesh { positions, normals, texture_coordinates, triangles } = &self.mesh;

@@ -14,6 +14,19 @@ impl VertexWeights {
         Self::heaviest([(joint, 1.0)]).0
     }
 
+    /// Weights in the form of [`VertexWeights::joints`] and [`VertexWeights::weights`], unchanged if they are
+    /// valid; otherwise as [`VertexWeights::heaviest`].
+    pub fn listed(joints: [u16; 4], weights: [f32; 4]) -> Self {
+        const ROUNDING: f32 = 1e-5;
+        let sum: f32 = weights.iter().sum();
+        let is_sorted = weights.is_sorted_by(|one, next| one >= next) && weights[3] >= 0.0;
+        if is_sorted && (sum - 1.0).abs() <= ROUNDING {
+            return Self { joints, weights };
+        }
+        let joints = joints.map(|joint| JointId::new(usize::from(joint)));
+        Self::heaviest(joints.into_iter().zip(weights)).0
+    }
+
     /// The four heaviest of any number of weights, scaled to the sum 1, and the part of the original sum
     /// that was cut. Weights of the same joint are added; weights that are not finite or not above 0 count
     /// as 0. Without any weight above 0 the vertex follows joint 0.

@@ -43,6 +43,7 @@ pub(in crate::ui) fn ui(
         Dialog::Path(PathDialog::Export(_)) => "Export",
         Dialog::Path(PathDialog::Open { .. }) => "Open",
         Dialog::Path(PathDialog::SaveAs { .. }) => "Save as",
+        Dialog::Path(PathDialog::LocateSkin { .. }) => "Locate skin",
         Dialog::ChooseSkeleton { .. } => "Choose a skeleton",
         Dialog::Rename { .. } => "Rename",
         Dialog::Bake { job: None, .. } => "Bake to keys",
@@ -71,14 +72,12 @@ pub(in crate::ui) fn ui(
             path::ask_path(ui, session, &path::OPEN, (path, problem.as_deref()), is_new, actions);
         }
         Dialog::Path(PathDialog::SaveAs { path, problem }) => {
-            path::ask_path(
-                ui,
-                session,
-                &path::SAVE_AS,
-                (path, problem.as_deref()),
-                is_new,
-                actions,
-            );
+            let typed = (path.as_str(), problem.as_deref());
+            path::ask_path(ui, session, &path::SAVE_AS, typed, is_new, actions);
+        }
+        Dialog::Path(PathDialog::LocateSkin { path, problem }) => {
+            let typed = (path.as_str(), problem.as_deref());
+            path::ask_path(ui, session, &path::LOCATE_SKIN, typed, is_new, actions);
         }
         Dialog::ChooseSkeleton { path, names } => joints::choose_skeleton(ui, path, names, actions),
         Dialog::Rename { joint, name } => {

@@ -38,6 +38,13 @@ pub(super) const SAVE_AS: PathPrompt = PathPrompt {
     action: FileAction::SaveAs,
 };
 
+pub(super) const LOCATE_SKIN: PathPrompt = PathPrompt {
+    prompt: "File with the mesh: .glb, .gltf or .js3d",
+    accept: "Locate",
+    dialog: |path| PathDialog::LocateSkin { path, problem: None },
+    action: FileAction::LocateSkin,
+};
+
 /// Shows a text box that contains `path`, the `problem` with the path, if any, and the buttons of
 /// the dialog, one of which opens the system's file dialog.
 pub(super) fn ask_path(
@@ -68,7 +75,7 @@ pub(super) fn ask_path(
             let path = session.full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
             actions.push(match dialog {
-                PathDialog::Open { .. } => action.into(),
+                PathDialog::Open { .. } | PathDialog::LocateSkin { .. } => action.into(),
                 _ => unless_there(session, path, action, dialog),
             });
         }

@@ -1,11 +1,17 @@
 //! Joints, targets, solver options and path following.
 
+use glam::{Affine3A, Vec3};
 use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
-use ik_arm::kinematics::skin::{Blob, SkinShape, Skinning};
-use ik_arm::rig::{LimbSettings, Skin, SkinSource, TargetKind, TargetSpace};
+use ik_arm::kinematics::skin::{
+    Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+};
+use ik_arm::rig::{
+    BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
+    SkinSource, TargetKind, TargetSpace,
+};
 
 use super::Values;
 
@@ -44,7 +50,14 @@ impl Values<'_> {
         let mut skin = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
         skin.skinning = self.one_of(&Skinning::ALL);
         skin.colour = [(); 3].map(|()| self.part());
-        let SkinSource::Bones(bones) = &skin.source;
+        if self.chance(0.3) {
+            skin.source = SkinSource::Mesh(self.mesh_skin());
+            return Some(skin);
+        }
+        let bones = match skin.source {
+            SkinSource::Bones(bones) => bones,
+            SkinSource::Mesh(_) => BoneSkin::new(rig.skeleton.clone(), SkinShape::default()),
+        };
         let detail = self.one_of(&[1.2, 1.2, 1.5, 0.0, f32::NAN]);
         let thickness = self.one_of(&[0.5, 1.0, 2.0, -1.0, f32::INFINITY]);
         let joint = self.joint();
@@ -53,6 +66,45 @@ impl Values<'_> {
         let blobs = if self.chance(0.2) { vec![blob] } else { Vec::new() };
         skin.source = SkinSource::Bones(bones.with_shape(SkinShape { detail, thickness, blobs }));
         Some(skin)
+    }
+
+    /// A few triangles on the joints of the skeleton, in the document or from a file that is missing.
+    pub fn mesh_skin(&mut self) -> MeshSkin {
+        let skeleton = self.session.skeleton_rig().skeleton.clone();
+        let count = skeleton.joints().len();
+        let joints: Vec<_> =
+            skeleton.ids().map(|it| Some(it).filter(|_| self.chance(0.9))).collect();
+        let file =
+            SkinFile { path: "/nowhere/figure.glb".into(), checksum: 7, skeleton: self.name() };
+        if self.chance(0.3) || count == 0 {
+            let missing = SkinFileError::Missing(file.path.clone());
+            return MeshSkin::without_mesh(file, joints, missing);
+        }
+        let corner = |values: &mut Self| {
+            let weights: Vec<_> = (0..5).map(|_| (values.joint(), values.part())).collect();
+            (values.small_point(), VertexWeights::heaviest(weights).0)
+        };
+        let (positions, weights): (Vec<Vec3>, Vec<_>) = (0..9).map(|_| corner(self)).unzip();
+        let mesh = TriangleMesh {
+            normals: vec![Vec3::Y; positions.len()],
+            positions,
+            texture_coordinates: Vec::new(),
+            triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+        };
+        let binds = vec![Affine3A::from_scale(Vec3::splat(0.5)); count];
+        let Ok(mesh) = SkinnedMesh::new(mesh, weights, binds) else {
+            let missing = SkinFileError::Missing(file.path.clone());
+            return MeshSkin::without_mesh(file, joints, missing);
+        };
+        let part = SkinPart { triangles: 2, colour: [1.0, 0.5, 0.0], texture: None };
+        let parents = skeleton.joints().iter().map(|joint| joint.parent).collect();
+        let mesh = FileMesh { mesh, parents, parts: vec![part] };
+        MeshSkin::new(mesh.into(), None, joints, &skeleton)
+    }
+
+    pub fn located_skin(&mut self) -> Result<MeshSkin, SkinFileError> {
+        let skin = self.mesh_skin();
+        skin.mesh().map(|_| skin.clone())
     }
 
     /// None, one or several, with repetitions.

@@ -3,25 +3,30 @@ use std::collections::BTreeMap;
 use ::gltf::binary::{Glb, Header};
 use ::gltf::json::animation::{Channel, Interpolation, Property, Sampler, Target};
 use ::gltf::json::buffer::Target::{ArrayBuffer, ElementArrayBuffer};
+use ::gltf::json::image::MimeType;
 use ::gltf::json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::scene::UnitQuaternion;
 use ::gltf::json::validation::Checked::Valid;
 use ::gltf::json::{
-    Accessor, Animation, Asset, Buffer, Extras, Index, Material, Mesh, Node, Scene, Skin, buffer,
+    Accessor, Animation, Asset, Buffer, Extras, Image, Index, Material, Mesh, Node, Scene, Skin,
+    Texture, buffer, texture,
 };
 use glam::{DAffine3, DMat4};
 
 use super::error::GlbError;
-use super::mesh_part::{GltfMesh, MeshPart};
+use super::mesh_part::{MeshPart, RigMesh};
 use super::motion::{JointAnimation, JointTrack};
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
+use crate::io::gltf::colour::linear;
+use crate::kinematics::Shared;
+use crate::rig::SkinTexture;
 
 pub fn write(
     bones: &JointNodes,
     motion: &JointAnimation,
-    mesh: &GltfMesh,
+    mesh: &RigMesh,
 ) -> Result<Vec<u8>, GlbError> {
     let mut writer = GltfWriter::default();
     writer.root.asset = Asset {
@@ -90,9 +95,10 @@ fn node_index(node: usize) -> Index<Node> {
     Index::new(u32::try_from(node).unwrap_or(u32::MAX))
 }
 
-fn add_mesh(writer: &mut GltfWriter, mesh: &GltfMesh) -> Index<Mesh> {
+fn add_mesh(writer: &mut GltfWriter, mesh: &RigMesh) -> Index<Mesh> {
     let parts = mesh.parts.iter().filter(|part| !part.indices.is_empty());
-    let primitives = parts.map(|part| primitive(writer, part)).collect();
+    let mut textures = Textures::default();
+    let primitives = parts.map(|part| primitive(writer, part, &mut textures)).collect();
     writer.root.push(Mesh {
         name: Some(JointNodes::MESH.to_owned()),
         primitives,
@@ -102,11 +108,11 @@ fn add_mesh(writer: &mut GltfWriter, mesh: &GltfMesh) -> Index<Mesh> {
     })
 }
 
-fn primitive(writer: &mut GltfWriter, part: &MeshPart) -> Primitive {
+fn primitive(writer: &mut GltfWriter, part: &MeshPart, textures: &mut Textures) -> Primitive {
     let vertices = part.positions.len();
     let array = Some(ArrayBuffer);
     let joints = part.joints.iter().flatten().flat_map(|joint| joint.to_le_bytes());
-    let attributes = BTreeMap::from([
+    let mut attributes = BTreeMap::from([
         (Valid(Semantic::Positions), writer.bounded(&part.positions, array, AccessorKind::POINT)),
         (
             Valid(Semantic::Normals),
@@ -118,13 +124,19 @@ fn primitive(writer: &mut GltfWriter, part: &MeshPart) -> Primitive {
             writer.array(floats(&part.weights), array, vertices, AccessorKind::WEIGHTS),
         ),
     ]);
+    if !part.coordinates.is_empty() {
+        let coordinates = floats(&part.coordinates);
+        let coordinates = writer.array(coordinates, array, vertices, AccessorKind::COORDINATES);
+        attributes.insert(Valid(Semantic::TexCoords(0)), coordinates);
+    }
+    let texture = part.texture.as_ref().map(|texture| textures.index(writer, texture));
     let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
     let target = Some(ElementArrayBuffer);
     let indices = writer.array(indices, target, part.indices.len(), AccessorKind::INDEX);
     Primitive {
         attributes,
         indices: Some(indices),
-        material: Some(writer.root.push(matte(part.colour))),
+        material: Some(writer.root.push(matte(part.colour, texture))),
         mode: Valid(Mode::Triangles),
         targets: None,
         extensions: None,
@@ -132,23 +144,60 @@ fn primitive(writer: &mut GltfWriter, part: &MeshPart) -> Primitive {
     }
 }
 
-fn matte(colour: [u8; 3]) -> Material {
+/// The textures of a file that are written already.
+#[derive(Default)]
+struct Textures(Vec<(Shared<SkinTexture>, Index<Texture>)>);
+
+impl Textures {
+    /// Index of a texture, which is written if it is new.
+    fn index(&mut self, writer: &mut GltfWriter, texture: &Shared<SkinTexture>) -> Index<Texture> {
+        if let Some((_, known)) = self.0.iter().find(|(known, _)| known.is_same(texture)) {
+            return *known;
+        }
+        let start = writer.bytes.len();
+        writer.bytes.extend(&texture.file);
+        let view = writer.view(start, None);
+        let padded = writer.bytes.len().next_multiple_of(4);
+        writer.bytes.resize(padded, 0);
+        let is_png = texture.file.starts_with(b"\x89PNG");
+        let mime = if is_png { "image/png" } else { "image/jpeg" };
+        let image = writer.root.push(Image {
+            buffer_view: Some(view),
+            mime_type: Some(MimeType(mime.to_owned())),
+            name: None,
+            uri: None,
+            extensions: None,
+            extras: Extras::default(),
+        });
+        let index = writer.root.push(Texture {
+            name: None,
+            sampler: None,
+            source: image,
+            extensions: None,
+            extras: Extras::default(),
+        });
+        self.0.push((texture.clone(), index));
+        index
+    }
+}
+
+fn matte(colour: [f32; 3], texture: Option<Index<Texture>>) -> Material {
     let [red, green, blue] = colour.map(linear);
     Material {
         pbr_metallic_roughness: PbrMetallicRoughness {
             base_color_factor: PbrBaseColorFactor([red, green, blue, 1.0]),
+            base_color_texture: texture.map(|index| texture::Info {
+                index,
+                tex_coord: 0,
+                extensions: None,
+                extras: Extras::default(),
+            }),
             metallic_factor: StrengthFactor(0.0),
             roughness_factor: StrengthFactor(1.0),
             ..PbrMetallicRoughness::default()
         },
         ..Material::default()
     }
-}
-
-/// Converts an sRGB component to its linear value from 0 to 1.
-fn linear(srgb: u8) -> f32 {
-    let value = f32::from(srgb) / 255.0;
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 fn add_skin(

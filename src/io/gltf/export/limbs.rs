@@ -3,7 +3,7 @@ use core::f64::consts::{PI, TAU};
 use glam::{DMat3, DVec3};
 
 use super::error::GlbError;
-use super::mesh_part::{GltfMesh, MeshPart};
+use super::mesh_part::{MeshPart, RigMesh};
 use super::nodes::JointNodes;
 use super::rig::GltfRig;
 
@@ -20,10 +20,14 @@ const BALL: f64 = 1.1;
 /// Colours of the limbs in the dark theme, as sRGB components.
 const COLOURS: [[u8; 3]; 2] = [[0xd8, 0x74, 0x4b], [0x64, 0x92, 0xc6]];
 
-impl From<LimbMesh> for GltfMesh {
+impl From<LimbMesh> for RigMesh {
     fn from(limbs: LimbMesh) -> Self {
         let coloured = limbs.parts.into_iter().zip(COLOURS);
-        let parts = coloured.map(|(part, colour)| MeshPart { colour, ..part }).collect();
+        let parts = coloured.map(|(part, colour)| {
+            let colour = colour.map(|component| f32::from(component) / 255.0);
+            MeshPart { colour, ..part }
+        });
+        let parts = parts.collect();
         Self { parts, attached: Vec::new() }
     }
 }

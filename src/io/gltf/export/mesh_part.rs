@@ -1,19 +1,26 @@
 use glam::DAffine3;
 
+use crate::kinematics::Shared;
+use crate::rig::SkinTexture;
+
 /// The mesh of an exported rig.
-pub struct GltfMesh {
-    /// One part for each colour.
+pub struct RigMesh {
+    /// One part for each material.
     pub parts: Vec<MeshPart>,
     /// For each joint the transform from the mesh to the world in the bind pose, in metres; identity for
     /// joints beyond the list.
     pub attached: Vec<DAffine3>,
 }
 
-/// Triangles of one colour.
+/// Triangles of one material.
 #[derive(Default)]
 pub struct MeshPart {
-    /// Colour as sRGB components.
-    pub colour: [u8; 3],
+    /// Colour as sRGB channels from 0 to 1.
+    pub colour: [f32; 3],
+    /// Image that multiplies the colour.
+    pub texture: Option<Shared<SkinTexture>>,
+    /// Texture coordinates; empty without a texture.
+    pub coordinates: Vec<[f32; 2]>,
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     /// The four joints that each vertex follows.

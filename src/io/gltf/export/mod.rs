@@ -14,7 +14,7 @@ use crate::document::{Document, Timeline};
 use crate::io::progress::Progress;
 pub use error::GlbError;
 use limbs::LimbMesh;
-use mesh_part::GltfMesh;
+use mesh_part::RigMesh;
 use motion::JointAnimation;
 use nodes::JointNodes;
 use rig::GltfRig;
@@ -39,7 +39,7 @@ pub fn glb(
     let mut rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;
     let motion = JointAnimation::new(&mut rig, &bones, timeline, progress)?;
-    let mesh = match GltfMesh::of_skin(document) {
+    let mesh = match RigMesh::of_skin(document) {
         Some(skin) => skin,
         None => LimbMesh::new(&rig, &bones)?.into(),
     };

@@ -40,17 +40,19 @@ pub struct BonePlacement {
     pub base: DVec3,
     /// The vector from base to tip.
     pub along: DVec3,
-    /// The joint's x and y axes, of any length.
-    pub x: DVec3,
+    /// An axis of the joint that is not along the bone, of any length: its x axis, or for a bone along that
+    /// its z axis.
+    pub across: DVec3,
+    /// The joint's y axis, of any length.
     pub y: DVec3,
 }
 
 impl BonePlacement {
-    /// Rotation of the bone's node in the world, with y along the bone. For a bone without length,
-    /// y is along the joint's y axis.
+    /// Rotation of the bone's node in the world, with y along the bone, and x as near to
+    /// [`BonePlacement::across`] as possible. For a bone without length, y is along the joint's y axis.
     pub fn frame(&self) -> DMat3 {
         let has_direction = self.along.try_normalize().is_some();
-        frame(if has_direction { self.along } else { self.y }, self.x)
+        frame(if has_direction { self.along } else { self.y }, self.across)
     }
 }
 
@@ -187,10 +189,18 @@ fn placements(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<Bo
     let placement = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
         base: full.translation,
         along: full.matrix3 * joint.axis.as_dvec3(),
-        x: full.matrix3.x_axis,
+        across: full.matrix3 * across(joint),
         y: full.matrix3.y_axis,
     };
     skeleton.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
+}
+
+/// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x, whose
+/// node would not turn with the joint otherwise.
+fn across(joint: &Joint) -> DVec3 {
+    const ALONG: f64 = 0.99;
+    let axis = joint.axis.as_dvec3();
+    if axis.x.abs() > ALONG * axis.length() { DVec3::Z } else { DVec3::X }
 }
 
 /// Transforms of all joints to the world, in units of the scene, with local rotations by `rotation`.
@@ -228,7 +238,7 @@ fn limbs(arm: &Arm, bones: TwoBone, rotations: [DMat3; 2]) -> Vec<BonePlacement>
     let mut base = arm.root.as_dvec3();
     let limb = |(rotation, length): (DMat3, f64)| {
         let along = rotation.x_axis.normalize_or(DVec3::X) * length;
-        let limb = BonePlacement { base, along, x: rotation.z_axis, y: rotation.x_axis };
+        let limb = BonePlacement { base, along, across: rotation.z_axis, y: rotation.x_axis };
         base += along;
         limb
     };

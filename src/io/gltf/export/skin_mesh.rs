@@ -1,42 +1,69 @@
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2};
 
-use super::mesh_part::{GltfMesh, MeshPart};
+use super::mesh_part::{MeshPart, RigMesh};
 use super::rig::joint_spaces;
 use crate::document::{Document, RigKind, Skin};
 use crate::kinematics::skeleton::Skeleton;
-use crate::kinematics::skin::{SkinnedMesh, VertexWeights};
+use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::rig::{AttachedMesh, SkinPart};
 
-impl GltfMesh {
-    /// The skin of the shown skeleton; `None` without one.
+impl RigMesh {
+    /// The skin of the shown skeleton; `None` without one that has triangles.
     ///
     /// The mesh keeps its own space. Inverse bind matrices bring it to the joints, so that a viewer gets
     /// the vertices that linear blending gives in the program.
     pub fn of_skin(document: &Document) -> Option<Self> {
         let skin = document.skeleton_rig.skin.as_ref();
         let skin = skin.filter(|_| document.rig == RigKind::Skeleton)?;
-        let mesh = &skin.mesh().ok()?.mesh;
+        let mesh = skin.mesh().ok().filter(|mesh| !mesh.mesh.mesh().triangles.is_empty())?;
         let metres = f64::from(document.metres_per_unit());
         Some(Self {
-            parts: vec![part(skin, mesh, document.skeleton())],
-            attached: attached(mesh, document.skeleton(), metres),
+            parts: parts(skin, mesh, document.skeleton()),
+            attached: attached(&mesh.mesh, document.skeleton(), metres),
         })
     }
 }
 
-fn part(skin: &Skin, mesh: &SkinnedMesh, skeleton: &Skeleton) -> MeshPart {
-    let triangles = mesh.mesh();
+/// The parts of a skin, each with its own vertices in the order of the mesh.
+fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart> {
     let is_mirrored = skeleton.transform().matrix3.determinant() < 0.0;
-    let indices = triangles.triangles.iter().flat_map(|[a, b, c]| match is_mirrored {
-        true => [*a, *c, *b],
-        false => [*a, *b, *c],
-    });
+    let mut rest = &mesh.mesh.mesh().triangles[..];
+    let part = |part: &SkinPart| {
+        let (triangles, others) = rest.split_at(part.triangles.min(rest.len()));
+        rest = others;
+        let colour = std::array::from_fn(|channel| skin.colour[channel] * part.colour[channel]);
+        let corners = triangles.iter().flat_map(|[a, b, c]| match is_mirrored {
+            true => [*a, *c, *b],
+            false => [*a, *b, *c],
+        });
+        MeshPart {
+            colour,
+            texture: part.texture.clone(),
+            ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), part.texture.is_some())
+        }
+    };
+    mesh.parts.iter().map(part).collect()
+}
+
+/// The triangles with these corners, and the vertices that they have.
+fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPart {
+    let TriangleMesh { positions, normals, texture_coordinates, .. } = mesh.mesh();
+    let mut places: Vec<Option<u32>> = vec![None; positions.len()];
+    corners.iter().for_each(|corner| places[*corner as usize] = Some(0));
+    let vertices: Vec<usize> = (0..places.len()).filter(|at| places[*at].is_some()).collect();
+    for (place, vertex) in vertices.iter().enumerate() {
+        places[*vertex] = Some(place as u32);
+    }
+    let weights = || vertices.iter().map(|vertex| &mesh.weights()[*vertex]);
+    let coordinates = vertices.iter().filter_map(|vertex| texture_coordinates.get(*vertex));
     MeshPart {
-        colour: skin.colour.map(|channel| (channel * 255.0).round() as u8),
-        positions: triangles.positions.iter().map(Vec3::to_array).collect(),
-        normals: triangles.normals.iter().map(Vec3::to_array).collect(),
-        joints: mesh.weights().iter().map(VertexWeights::joints).collect(),
-        weights: mesh.weights().iter().map(VertexWeights::weights).collect(),
-        indices: indices.collect(),
+        positions: vertices.iter().map(|vertex| positions[*vertex].to_array()).collect(),
+        normals: vertices.iter().map(|vertex| normals[*vertex].to_array()).collect(),
+        joints: weights().map(VertexWeights::joints).collect(),
+        weights: weights().map(VertexWeights::weights).collect(),
+        coordinates: coordinates.filter(|_| has_texture).map(Vec2::to_array).collect(),
+        indices: corners.iter().filter_map(|corner| places[*corner as usize]).collect(),
+        ..MeshPart::default()
     }
 }
 

@@ -20,6 +20,7 @@ pub struct AccessorKind {
 impl AccessorKind {
     pub const NUMBER: Self = Self { component: ComponentType::F32, shape: Type::Scalar };
     pub const POINT: Self = Self { component: ComponentType::F32, shape: Type::Vec3 };
+    pub const COORDINATES: Self = Self { component: ComponentType::F32, shape: Type::Vec2 };
     pub const QUATERNION: Self = Self { component: ComponentType::F32, shape: Type::Vec4 };
     pub const MATRIX: Self = Self { component: ComponentType::F32, shape: Type::Mat4 };
     pub const JOINTS: Self = Self { component: ComponentType::U16, shape: Type::Vec4 };

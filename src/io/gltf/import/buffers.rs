@@ -1,10 +1,11 @@
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
 use std::path::{Component, Path};
 
-use super::base64;
 use super::file::{GltfBuffer, GltfFile, index_rule};
+use crate::io::base64;
 use crate::io::error::OpenError;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
@@ -17,7 +18,11 @@ impl<'a> GltfBuffers<'a> {
     /// Reads the buffers with the indices `needed` from the binary chunk, from data URIs or from
     /// files in the folder of the glTF file. Fails if these buffers have more than
     /// [`OpenError::MAX_BYTES`] together.
-    pub fn read(source: &'a Source, file: &GltfFile, needed: &[usize]) -> Result<Self, FieldError> {
+    pub fn read(
+        source: &'a Source,
+        file: &GltfFile,
+        needed: &BTreeSet<usize>,
+    ) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
         let mut remaining = OpenError::MAX_BYTES;
         for &index in needed {
@@ -60,14 +65,9 @@ fn bytes<'a>(
             let reason = "must be given, except for the first buffer of a .glb file";
             return Err(FieldError::new(at_uri, reason));
         }
-        (Some(uri), _) => Cow::Owned(match uri.strip_prefix("data:") {
-            Some(data) => {
-                decode_data_uri(data).map_err(|reason| FieldError::new(at_uri, reason))?
-            }
-            None => {
-                read_file(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?
-            }
-        }),
+        (Some(uri), _) => Cow::Owned(
+            read_uri(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?,
+        ),
     };
     if bytes.len() < length {
         let size = bytes.len();
@@ -79,6 +79,20 @@ fn bytes<'a>(
         Cow::Owned(bytes) => bytes.truncate(length),
     }
     Ok(bytes)
+}
+
+/// Whether a URI names a file, rather than containing data.
+pub fn is_file(uri: &str) -> bool {
+    !uri.starts_with("data:")
+}
+
+/// Reads a data URI, or at most `most` bytes of a file in the folder of the glTF file. The error is the reason
+/// why that is impossible.
+pub fn read_uri(source: &Source, uri: &str, most: usize) -> Result<Vec<u8>, String> {
+    match uri.strip_prefix("data:") {
+        Some(data) => decode_data_uri(data),
+        None => read_file(source, uri, most),
+    }
 }
 
 fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {

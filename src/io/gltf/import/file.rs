@@ -1,16 +1,19 @@
-//! Those fields of a file that concern skeletons and their motions.
+//! Those fields of a file that concern skeletons, their skins and their motions.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
 use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
 pub struct GltfFile {
     pub asset: JsonObject<GltfAsset>,
+    #[serde(default, rename = "extensionsRequired")]
+    pub required: Vec<String>,
     #[serde(default)]
     pub nodes: List<GltfNode>,
     #[serde(default)]
@@ -23,6 +26,14 @@ pub struct GltfFile {
     pub views: List<GltfBufferView>,
     #[serde(default)]
     pub buffers: List<GltfBuffer>,
+    #[serde(default)]
+    pub meshes: List<GltfMesh>,
+    #[serde(default)]
+    pub materials: List<GltfMaterial>,
+    #[serde(default)]
+    pub textures: List<GltfTexture>,
+    #[serde(default)]
+    pub images: List<GltfImage>,
 }
 
 #[derive(Deserialize)]
@@ -38,6 +49,7 @@ pub struct GltfNode {
     pub translation: Option<JsonPoint>,
     pub rotation: Option<JsonNumbers<4>>,
     pub scale: Option<JsonPoint>,
+    pub mesh: Option<Whole>,
     pub skin: Option<Whole>,
 }
 
@@ -45,6 +57,72 @@ pub struct GltfNode {
 pub struct GltfSkin {
     pub name: Option<String>,
     pub joints: Vec<Whole>,
+    #[serde(rename = "inverseBindMatrices")]
+    pub inverse_binds: Option<Whole>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfMesh {
+    pub primitives: List<GltfPrimitive>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfPrimitive {
+    /// Accessors by attribute, like `POSITION` or `JOINTS_0`.
+    pub attributes: BTreeMap<String, Whole>,
+    pub indices: Option<Whole>,
+    pub material: Option<Whole>,
+    pub mode: Option<Whole>,
+    pub targets: Option<IgnoredAny>,
+}
+
+#[derive(Default, Deserialize)]
+pub struct GltfMaterial {
+    #[serde(rename = "pbrMetallicRoughness")]
+    pub roughness: Option<JsonObject<GltfRoughness>>,
+    #[serde(rename = "normalTexture")]
+    pub normal: Option<IgnoredAny>,
+    #[serde(rename = "occlusionTexture")]
+    pub occlusion: Option<IgnoredAny>,
+    #[serde(rename = "emissiveTexture")]
+    pub emissive_texture: Option<IgnoredAny>,
+    #[serde(rename = "emissiveFactor")]
+    pub emissive: Option<JsonPoint>,
+    #[serde(rename = "alphaMode")]
+    pub alpha_mode: Option<String>,
+    #[serde(default)]
+    pub extensions: BTreeMap<String, IgnoredAny>,
+}
+
+#[derive(Default, Deserialize)]
+pub struct GltfRoughness {
+    #[serde(rename = "baseColorFactor")]
+    pub factor: Option<JsonNumbers<4>>,
+    #[serde(rename = "baseColorTexture")]
+    pub texture: Option<JsonObject<GltfTextureUse>>,
+    #[serde(rename = "metallicRoughnessTexture")]
+    pub roughness_texture: Option<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfTextureUse {
+    pub index: Whole,
+    #[serde(rename = "texCoord")]
+    pub coordinates: Option<Whole>,
+    #[serde(default)]
+    pub extensions: BTreeMap<String, IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfTexture {
+    pub source: Option<Whole>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfImage {
+    pub uri: Option<String>,
+    #[serde(rename = "bufferView")]
+    pub view: Option<Whole>,
 }
 
 #[derive(Deserialize)]
@@ -84,7 +162,33 @@ pub struct GltfAccessor {
     #[serde(rename = "type")]
     pub shape: String,
     pub normalized: Option<bool>,
-    pub sparse: Option<serde::de::IgnoredAny>,
+    pub sparse: Option<JsonObject<GltfSparse>>,
+}
+
+/// Rows of an accessor that replace those of its buffer view.
+#[derive(Deserialize)]
+pub struct GltfSparse {
+    pub count: Whole,
+    pub indices: JsonObject<GltfSparseIndices>,
+    pub values: JsonObject<GltfSparseValues>,
+}
+
+#[derive(Deserialize)]
+pub struct GltfSparseIndices {
+    #[serde(rename = "bufferView")]
+    pub view: Whole,
+    #[serde(rename = "byteOffset")]
+    pub offset: Option<Whole>,
+    #[serde(rename = "componentType")]
+    pub component: Whole,
+}
+
+#[derive(Deserialize)]
+pub struct GltfSparseValues {
+    #[serde(rename = "bufferView")]
+    pub view: Whole,
+    #[serde(rename = "byteOffset")]
+    pub offset: Option<Whole>,
 }
 
 #[derive(Deserialize)]

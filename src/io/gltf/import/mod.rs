@@ -1,19 +1,22 @@
 //! Import of the skeleton of a skin, with its motion.
 
-mod base64;
 mod buffers;
 mod clip;
 mod file;
+mod material;
 mod motion;
 mod nodes;
 mod part;
+mod primitive;
 mod rig;
 mod rows;
 mod sampler;
+mod skin_mesh;
 mod skins;
 mod tracks;
 
 use crate::document::Timeline;
+use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
@@ -21,10 +24,12 @@ use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
 use crate::kinematics::skeleton::{Joint, JointId};
+use crate::rig::SkinFile;
 use file::{GltfAnimation, GltfFile, GltfSkin};
 use motion::{JointMotion, JointPlacement, NodePoser};
 use nodes::NodeTree;
 use rig::ImportedRig;
+use skin_mesh::MeshImport;
 use skins::{SkinJoints, at_skin};
 use tracks::NodeTracks;
 
@@ -96,7 +101,29 @@ fn import(
         }
     };
     let built = rig::build(joints, &motions, timeline);
-    let built = built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
+    let mut built = built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
+    let mesh = MeshImport {
+        source,
+        file,
+        nodes: &nodes,
+        index,
+        skin,
+        joints: &skin_joints,
+        bind_pose: &bind_pose,
+    };
+    match mesh.read(warnings) {
+        Ok(Some((mesh, checksum))) => {
+            let skeleton = skins::names(file).swap_remove(index);
+            let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
+            let file = source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
+            attach_skin(&mut built.document, mesh, file, joints);
+        }
+        Ok(None) => {}
+        Err(error) => {
+            let reason = format!("{}; the skin is left out", error.reason);
+            warnings.push(error.field, reason);
+        }
+    }
     Ok((built, skin_joints.order))
 }
 

@@ -53,6 +53,16 @@ impl NodeTree {
         let locals = nodes.iter().enumerate().map(|(index, node)| local(index, node));
         Ok(Self { order, locals: locals.collect::<Result<_, _>>()?, parents })
     }
+
+    /// Transforms of all nodes to the world, without animation.
+    pub fn worlds(&self) -> Vec<DAffine3> {
+        let mut worlds = vec![DAffine3::IDENTITY; self.parents.len()];
+        for &node in &self.order {
+            let parent = self.parents[node].map_or(DAffine3::IDENTITY, |parent| worlds[parent]);
+            worlds[node] = parent * self.locals[node].affine();
+        }
+        worlds
+    }
 }
 
 fn parents(nodes: &[GltfNode]) -> Result<Vec<Option<usize>>, FieldError> {

@@ -8,7 +8,6 @@ use super::rows::{AccessorRows, at_accessor};
 use crate::io::field_error::FieldError;
 
 /// The keys of one animated part of a node, with their interpolation.
-#[derive(Clone, Copy)]
 pub struct KeySampler<'a> {
     times: AccessorRows<'a>,
     /// One row per time, or with cubic splines three rows: in-tangent, value, out-tangent.

@@ -95,9 +95,10 @@ pub fn buffers<'a>(
 ) -> Result<GltfBuffers<'a>, FieldError> {
     let accessors: BTreeSet<usize> =
         channels.iter().flat_map(|channel| [channel.input, channel.output]).collect();
-    let needed: Result<BTreeSet<usize>, FieldError> =
-        accessors.into_iter().map(|accessor| super::rows::buffer_of(file, accessor)).collect();
-    let needed: Vec<usize> = needed?.into_iter().collect();
+    let mut needed = BTreeSet::new();
+    for accessor in accessors {
+        needed.extend(super::rows::buffers_of(file, accessor)?);
+    }
     GltfBuffers::read(source, file, &needed)
 }
 

@@ -5,8 +5,8 @@ use egui::Ui;
 use super::choice::Choice;
 use crate::document::{Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
-use crate::rig::{BoneSkin, SkinSource};
-use crate::session::{Actions, EditAction, Session, TransactionAction};
+use crate::rig::{BoneSkin, MeshSkin, SkinSource};
+use crate::session::{Actions, EditAction, FileAction, PathDialog, Session, TransactionAction};
 use crate::ui::panels::overlays;
 use crate::ui::style;
 use crate::ui::widgets::{self, Segment, Slider};
@@ -23,8 +23,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     shown(ui, session, actions);
     details(ui, session, actions);
     skinning(ui, skin, actions);
-    let SkinSource::Bones(bones) = &skin.source;
-    shape(ui, session, skin, bones, actions);
+    match &skin.source {
+        SkinSource::Bones(bones) => shape(ui, session, skin, bones, actions),
+        SkinSource::Mesh(mesh) => file(ui, mesh, actions),
+    }
     colour(ui, session, skin, actions);
     summary(ui, skin);
     if widgets::button(ui, "Remove skin", "Show the bones alone again", None) {
@@ -121,6 +123,30 @@ fn shape(ui: &mut Ui, session: &Session, skin: &Skin, bones: &BoneSkin, actions:
     thickness.show(ui, session, actions, |thickness| {
         with(SkinShape { thickness: thickness.max(1e-3), ..shape.clone() })
     });
+}
+
+/// Shows where the mesh comes from.
+fn file(ui: &mut Ui, mesh: &MeshSkin, actions: &mut Actions) {
+    let Some(file) = mesh.file() else {
+        widgets::pair(ui, "Mesh", |ui| {
+            ui.label("in this document").on_hover_text("Save writes the mesh with the document");
+        });
+        return;
+    };
+    let name = file.path.file_name().unwrap_or(file.path.as_os_str()).to_string_lossy();
+    widgets::pair(ui, "Mesh", |ui| {
+        let path = file.path.display().to_string();
+        ui.add(egui::Label::new(&*name).truncate()).on_hover_text(path);
+    });
+    let path = file.path.display().to_string();
+    if widgets::button(ui, "Locate…", "Take the mesh from another file", None) {
+        actions.push(FileAction::AskPath(PathDialog::LocateSkin { path, problem: None }));
+    }
+    let why_not = mesh.mesh().is_err().then_some("Locate the mesh first");
+    let tooltip = "Keep the mesh in the document, so that it needs no other file";
+    if widgets::button(ui, "Pack skin into file", tooltip, why_not) {
+        actions.push(EditAction::PackSkin);
+    }
 }
 
 fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {

@@ -1,0 +1,257 @@
+//! Fields of a skin whose mesh comes from a file of another program: either the name of that file, or the
+//! mesh itself, whose lists of numbers are little-endian bytes in base64.
+
+use std::path::PathBuf;
+
+use glam::{Affine3A, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::check::{fraction, joint};
+use crate::io::base64;
+use crate::io::field_error::FieldError;
+use crate::io::json_path::JsonPath;
+use crate::io::texture::decoded;
+use crate::io::value::{JsonNumbers, JsonObject, Whole};
+use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture};
+
+#[derive(Serialize, Deserialize)]
+pub struct MeshSkinFields {
+    /// Path of the file; without it, `packed` has the mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checksum: Option<Whole>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skeleton: Option<String>,
+    joints: Vec<Option<Whole>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    packed: Option<JsonObject<FileMeshFields>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FileMeshFields {
+    parents: Vec<Option<Whole>>,
+    inverse_binds: Bytes,
+    positions: Bytes,
+    normals: Bytes,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    texture_coordinates: Option<Bytes>,
+    triangles: Bytes,
+    vertex_joints: Bytes,
+    vertex_weights: Bytes,
+    parts: Vec<JsonObject<SkinPartFields>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SkinPartFields {
+    triangles: Whole,
+    colour: JsonNumbers<3>,
+    /// A PNG or JPEG file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    texture: Option<Bytes>,
+}
+
+/// Bytes in base64.
+#[derive(Serialize, Deserialize)]
+#[serde(transparent)]
+struct Bytes(String);
+
+impl Bytes {
+    fn of_floats(numbers: impl IntoIterator<Item = f32>) -> Self {
+        Self::new(numbers.into_iter().flat_map(f32::to_le_bytes))
+    }
+
+    fn new(bytes: impl IntoIterator<Item = u8>) -> Self {
+        Self(base64::encode(&bytes.into_iter().collect::<Vec<u8>>()))
+    }
+
+    fn decoded(&self, at: &JsonPath) -> Result<Vec<u8>, FieldError> {
+        base64::decode(&self.0).map_err(|reason| FieldError::new(at.clone(), reason))
+    }
+
+    /// Rows of `N` floats.
+    fn floats<const N: usize>(&self, at: &JsonPath) -> Result<Vec<[f32; N]>, FieldError> {
+        let bytes = self.decoded(at)?;
+        let (floats, rest) = bytes.as_chunks();
+        let floats: Vec<f32> = floats.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+        let (rows, beyond) = floats.as_chunks();
+        match (rest, beyond) {
+            ([], []) => Ok(rows.to_vec()),
+            _ => {
+                let (row, got) = (4 * N, bytes.len());
+                let reason = format!("must have a multiple of {row} bytes, got {got}");
+                Err(FieldError::new(at.clone(), reason))
+            }
+        }
+    }
+
+    fn vectors(&self, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
+        Ok(self.floats(at)?.into_iter().map(Vec3::from_array).collect())
+    }
+}
+
+fn whole(number: usize) -> Whole {
+    Whole(u32::try_from(number).unwrap_or(u32::MAX))
+}
+
+fn wholes(joints: &[Option<JointId>]) -> Vec<Option<Whole>> {
+    joints.iter().map(|joint| joint.map(|joint| whole(joint.index()))).collect()
+}
+
+impl MeshSkinFields {
+    pub fn new(skin: &MeshSkin) -> Self {
+        let file = skin.file();
+        let packed = skin.in_file().filter(|_| file.is_none());
+        Self {
+            file: file.map(|file| portable(&file.path)),
+            checksum: file.map(|file| Whole(file.checksum)),
+            skeleton: file.map(|file| file.skeleton.clone()),
+            joints: wholes(skin.joints()),
+            packed: packed.map(|mesh| JsonObject(FileMeshFields::new(mesh))),
+        }
+    }
+
+    /// Converts the fields to a skin of `skeleton`. `at` is their path. The file of a skin that has one
+    /// is still to be read.
+    pub fn skin(self, skeleton: &Skeleton, at: &JsonPath) -> Result<MeshSkin, FieldError> {
+        let count = skeleton.joints().len();
+        let at_joint = |index| at.clone().key("joints").index(index);
+        let joints = self.joints.into_iter().enumerate().map(|(index, number)| {
+            let number = number.map(|number| joint(at_joint(index), number, count));
+            Ok(number.transpose()?.map(JointId::new))
+        });
+        let joints: Vec<Option<JointId>> = joints.collect::<Result<_, FieldError>>()?;
+        match (self.file, self.packed) {
+            (Some(path), None) => {
+                let file = SkinFile {
+                    path: PathBuf::from(path),
+                    checksum: self.checksum.map_or(0, |checksum| checksum.0),
+                    skeleton: self.skeleton.unwrap_or_default(),
+                };
+                let missing = SkinFileError::Missing(file.path.clone());
+                Ok(MeshSkin::without_mesh(file, joints, missing))
+            }
+            (None, Some(JsonObject(packed))) => {
+                let mesh = packed.mesh(&at.clone().key("packed"))?;
+                if mesh.parents.len() != joints.len() {
+                    let (expected, got) = (mesh.parents.len(), joints.len());
+                    let reason = format!("must have {expected} entries, as `parents`, got {got}");
+                    return Err(FieldError::new(at.clone().key("joints"), reason));
+                }
+                Ok(MeshSkin::new(mesh.into(), None, joints, skeleton))
+            }
+            _ => Err(FieldError::new(at.clone(), "must have either `file` or `packed`")),
+        }
+    }
+}
+
+/// A path with `/` between its parts, as on all systems.
+fn portable(path: &std::path::Path) -> String {
+    let text = path.to_string_lossy();
+    if path.is_relative() { text.replace('\\', "/") } else { text.into_owned() }
+}
+
+impl FileMeshFields {
+    fn new(mesh: &FileMesh) -> Self {
+        let FileMesh { mesh, parents, parts } = mesh;
+        let triangles = mesh.mesh();
+        let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
+        let coordinates = &triangles.texture_coordinates;
+        let weights = || mesh.weights().iter();
+        Self {
+            parents: wholes(parents),
+            inverse_binds: Bytes::of_floats(
+                mesh.inverse_binds().iter().flat_map(Affine3A::to_cols_array),
+            ),
+            positions: points(&triangles.positions),
+            normals: points(&triangles.normals),
+            texture_coordinates: (!coordinates.is_empty())
+                .then(|| Bytes::of_floats(coordinates.iter().flat_map(Vec2::to_array))),
+            triangles: Bytes::new(
+                triangles.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()),
+            ),
+            vertex_joints: Bytes::new(
+                weights().flat_map(VertexWeights::joints).flat_map(u16::to_le_bytes),
+            ),
+            vertex_weights: Bytes::of_floats(weights().flat_map(VertexWeights::weights)),
+            parts: parts.iter().map(SkinPartFields::new).map(JsonObject).collect(),
+        }
+    }
+
+    fn mesh(self, at: &JsonPath) -> Result<FileMesh, FieldError> {
+        let at = |key: &str| at.clone().key(key);
+        let mut parents = Vec::with_capacity(self.parents.len());
+        for (index, parent) in self.parents.into_iter().enumerate() {
+            let at = at("parents").index(index);
+            let parent = parent.map(|parent| joint(at, parent, index)).transpose()?;
+            parents.push(parent.map(JointId::new));
+        }
+        let coordinates = self.texture_coordinates;
+        let coordinates =
+            coordinates.map(|bytes| bytes.floats(&at("texture_coordinates"))).transpose()?;
+        let mesh = TriangleMesh {
+            positions: self.positions.vectors(&at("positions"))?,
+            normals: self.normals.vectors(&at("normals"))?,
+            texture_coordinates: coordinates
+                .unwrap_or_default()
+                .into_iter()
+                .map(Vec2::from_array)
+                .collect(),
+            triangles: triangles(&self.triangles.decoded(&at("triangles"))?),
+        };
+        let joints = self.vertex_joints.decoded(&at("vertex_joints"))?;
+        let (joints, _) = joints.as_chunks::<8>();
+        let joints = joints.iter().map(|bytes| {
+            std::array::from_fn(|index| {
+                u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]])
+            })
+        });
+        let weights = joints.zip(self.vertex_weights.floats(&at("vertex_weights"))?);
+        let weights = weights.map(|(joints, weights)| VertexWeights::listed(joints, weights));
+        let binds: Vec<[f32; 12]> = self.inverse_binds.floats(&at("inverse_binds"))?;
+        if binds.len() != parents.len() {
+            let (expected, got) = (parents.len(), binds.len());
+            let reason = format!("must have {expected} transforms, as `parents`, got {got}");
+            return Err(FieldError::new(at("inverse_binds"), reason));
+        }
+        let binds = binds.iter().map(Affine3A::from_cols_array).collect();
+        let mesh = SkinnedMesh::new(mesh, weights.collect(), binds)
+            .map_err(|error| FieldError::new(at("positions"), error.to_string()))?;
+        let parts = self.parts.into_iter().enumerate();
+        let parts = parts.map(|(index, JsonObject(part))| part.part(&at("parts").index(index)));
+        Ok(FileMesh { mesh, parents, parts: parts.collect::<Result<_, _>>()? })
+    }
+}
+
+fn triangles(bytes: &[u8]) -> Vec<[u32; 3]> {
+    let (corners, _) = bytes.as_chunks();
+    let corners: Vec<u32> = corners.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+    corners.as_chunks().0.to_vec()
+}
+
+impl SkinPartFields {
+    fn new(part: &SkinPart) -> Self {
+        let texture = part.texture.as_ref();
+        Self {
+            triangles: whole(part.triangles),
+            colour: JsonNumbers(part.colour),
+            texture: texture.map(|texture| Bytes::new(SkinTexture::clone(texture).file)),
+        }
+    }
+
+    fn part(self, at: &JsonPath) -> Result<SkinPart, FieldError> {
+        let JsonNumbers(colour) = self.colour;
+        for (channel, value) in colour.into_iter().enumerate() {
+            fraction(at.clone().key("colour").index(channel), value)?;
+        }
+        let at = at.clone().key("texture");
+        let read = |bytes: Bytes| {
+            decoded(bytes.decoded(&at)?).map_err(|reason| FieldError::new(at.clone(), reason))
+        };
+        let texture = self.texture.map(read).transpose()?;
+        let triangles = self.triangles.0 as usize;
+        Ok(SkinPart { triangles, colour, texture: texture.map(Into::into) })
+    }
+}

@@ -1,0 +1,129 @@
+use super::buffers::{GltfBuffers, is_file, read_uri};
+use super::file::{GltfFile, GltfImage, GltfMaterial, GltfRoughness, GltfTextureUse, index_rule};
+use super::rows::view_bytes;
+use crate::io::error::OpenError;
+use crate::io::field_error::{FieldError, FieldWarnings};
+use crate::io::gltf::colour::srgb;
+use crate::io::json_path::JsonPath;
+use crate::io::source::Source;
+use crate::io::texture::decoded;
+use crate::io::value::{JsonNumbers, JsonObject};
+use crate::kinematics::Shared;
+use crate::rig::SkinTexture;
+
+/// What a skin takes of a material.
+#[derive(Clone)]
+pub struct PartMaterial {
+    /// Colour as sRGB channels from 0 to 1.
+    pub colour: [f32; 3],
+    pub texture: Option<Shared<SkinTexture>>,
+}
+
+impl PartMaterial {
+    /// White, for primitives without a material.
+    pub const WHITE: Self = Self { colour: [1.0; 3], texture: None };
+
+    /// Reads the base colour of a material. A texture that cannot be read is left out, with a warning.
+    pub fn new(
+        source: &Source,
+        file: &GltfFile,
+        buffers: &GltfBuffers<'_>,
+        material: &GltfMaterial,
+        checksum: &mut crc32fast::Hasher,
+        warnings: &mut FieldWarnings,
+    ) -> Self {
+        let Some(JsonObject(GltfRoughness { factor, texture, .. })) = &material.roughness else {
+            return Self::WHITE;
+        };
+        let colour = factor
+            .as_ref()
+            .map_or([1.0; 3], |JsonNumbers([red, green, blue, _])| [*red, *green, *blue].map(srgb));
+        let texture = texture.as_ref().and_then(|JsonObject(used)| {
+            let read = image(file, used).and_then(|(index, image)| {
+                let bytes = image_bytes(source, file, buffers, (index, image))?;
+                if image.uri.as_deref().is_some_and(is_file) {
+                    checksum.update(&bytes);
+                }
+                decoded(bytes).map_err(|reason| FieldError::new(at_image(index), reason))
+            });
+            read.map_err(|error| warnings.push(error.field, format!("not read: {}", error.reason)))
+                .ok()
+        });
+        Self { colour, texture: texture.map(Shared::from) }
+    }
+}
+
+impl GltfMaterial {
+    fn texture_use(&self) -> Option<&GltfTextureUse> {
+        let JsonObject(GltfRoughness { texture, .. }) = self.roughness.as_ref()?;
+        texture.as_ref().map(|JsonObject(texture)| texture)
+    }
+
+    /// Number of the set of texture coordinates that the base colour takes.
+    pub fn coordinates(&self) -> u32 {
+        self.texture_use().and_then(|used| used.coordinates).map_or(0, |set| set.0)
+    }
+
+    /// Buffer view of the base colour's image, if it is in one.
+    pub fn image_view(&self, file: &GltfFile) -> Option<usize> {
+        let (_, image) = image(file, self.texture_use()?).ok()?;
+        Some(image.view?.0 as usize)
+    }
+
+    /// Names of the channels that are not read.
+    pub fn unread(&self) -> impl Iterator<Item = String> {
+        let roughness = self.roughness.as_ref().map(|JsonObject(roughness)| roughness);
+        let of_roughness = roughness.and_then(|it| it.roughness_texture.as_ref());
+        let glow = self.emissive.is_some_and(|it| it.0 != glam::Vec3::ZERO);
+        let alpha = self.alpha_mode.as_deref().unwrap_or("OPAQUE");
+        let channels = [
+            ("normal textures", self.normal.is_some()),
+            ("occlusion textures", self.occlusion.is_some()),
+            ("emission", glow || self.emissive_texture.is_some()),
+            ("metallic and roughness textures", of_roughness.is_some()),
+            ("transparency", alpha != "OPAQUE"),
+        ];
+        let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());
+        let of_texture = self.texture_use().into_iter().flat_map(|used| used.extensions.keys());
+        named.chain(self.extensions.keys().chain(of_texture).cloned())
+    }
+}
+
+fn at_image(index: usize) -> JsonPath {
+    JsonPath::root().key("images").index(index)
+}
+
+/// The image of a texture, with its index.
+fn image<'a>(
+    file: &'a GltfFile,
+    used: &GltfTextureUse,
+) -> Result<(usize, &'a GltfImage), FieldError> {
+    let index = used.index.0 as usize;
+    let at = JsonPath::root().key("textures").index(index);
+    let Some(texture) = file.textures.0.get(index) else {
+        return Err(FieldError::new(at, index_rule("textures", file.textures.0.len(), index)));
+    };
+    let Some(source) = texture.source else {
+        return Err(FieldError::new(at, "must have an image in PNG or JPEG as its source"));
+    };
+    let image = source.0 as usize;
+    let found = file.images.0.get(image).ok_or_else(|| {
+        FieldError::new(at.key("source"), index_rule("images", file.images.0.len(), image))
+    })?;
+    Ok((image, found))
+}
+
+fn image_bytes(
+    source: &Source,
+    file: &GltfFile,
+    buffers: &GltfBuffers<'_>,
+    (index, image): (usize, &GltfImage),
+) -> Result<Vec<u8>, FieldError> {
+    let at = at_image(index);
+    match (&image.uri, image.view) {
+        (Some(uri), _) => read_uri(source, uri, OpenError::MAX_BYTES as usize)
+            .map_err(|reason| FieldError::new(at.key("uri"), reason)),
+        (None, Some(view)) => Ok(view_bytes(file, buffers, view.0 as usize, &at)?.to_vec()),
+        (None, None) => Err(FieldError::new(at, "must have a uri or a buffer view")),
+    }
+}

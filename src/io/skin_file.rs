@@ -1,0 +1,100 @@
+//! The files that documents take the meshes of their skins from.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::error::OpenError;
+use super::field_error::FieldWarnings;
+use super::file_format::FileFormat;
+use super::json_path::JsonPath;
+use super::source::Source;
+use super::{gltf, js3d};
+use crate::document::{Document, Skin};
+use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinSource};
+
+/// Takes the mesh of a skin from the file at `path` as it is now: from the skeleton of the same name, or
+/// from the file's only one.
+///
+/// # Errors
+///
+/// [`SkinFileError`] if the file cannot be read, has no such mesh, or one for another number of joints.
+pub fn relocated_skin(
+    path: &Path,
+    skeleton_name: &str,
+    joints: &[Option<JointId>],
+    skeleton: &Skeleton,
+) -> Result<MeshSkin, SkinFileError> {
+    let read = read(path, Some(skeleton_name));
+    let read = match read {
+        Err(OpenError::NoSkeleton { names, .. }) if names.len() == 1 => self::read(path, None),
+        read => read,
+    };
+    let read = read.map_err(|error| match error {
+        OpenError::Read { source, .. } if source.kind() == ErrorKind::NotFound => {
+            SkinFileError::Missing(path.to_owned())
+        }
+        error => SkinFileError::Invalid(error.to_string()),
+    })?;
+    let invalid =
+        |reason: String| Err(SkinFileError::Invalid(format!("{} {reason}", path.display())));
+    let Some((mesh, file)) = read else {
+        return invalid(format!("has no mesh on the skeleton {skeleton_name:?}"));
+    };
+    let (expected, got) = (joints.len(), mesh.parents.len());
+    if expected != got {
+        return invalid(format!("must have a skeleton of {expected} joints, got {got}"));
+    }
+    Ok(MeshSkin::new(mesh, Some(file), joints.to_vec(), skeleton))
+}
+
+type FileSkin = (crate::kinematics::Shared<crate::rig::FileMesh>, SkinFile);
+
+/// The mesh on a skeleton of a file; `None` if it has none.
+fn read(path: &Path, skeleton: Option<&str>) -> Result<Option<FileSkin>, OpenError> {
+    let source = Source::open(path)?;
+    let opened = match FileFormat::detect(&source)? {
+        FileFormat::Gltf => gltf::read(&source, skeleton)?,
+        FileFormat::Scene => js3d::read(&source, skeleton)?,
+        FileFormat::Document | FileFormat::Motion => return Ok(None),
+    };
+    Ok(opened.document.skeleton_rig.skin.and_then(|skin| match skin.source {
+        SkinSource::Mesh(mesh) => Some((mesh.in_file()?.clone(), mesh.file()?.clone())),
+        SkinSource::Bones(_) => None,
+    }))
+}
+
+/// Reads the file that the skin of a document refers to, from the folder of the document if its path is
+/// relative. Warns if that is impossible or the file has changed; the skin then has no mesh.
+pub fn load_skin(document: &mut Document, folder: Option<&Path>, warnings: &mut FieldWarnings) {
+    let rig = &mut document.skeleton_rig;
+    let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut rig.skin else { return };
+    let Some(file) = skin.file() else { return };
+    let path = folder.map_or_else(|| file.path.clone(), |folder| folder.join(&file.path));
+    let located = SkinFile { path, ..file.clone() };
+    let read = relocated_skin(&located.path, &located.skeleton, skin.joints(), &rig.skeleton);
+    let is_unchanged =
+        |read: &MeshSkin| read.file().is_some_and(|file| file.checksum == located.checksum);
+    *skin = match read {
+        Ok(read) if is_unchanged(&read) => read,
+        other => {
+            let error = other.err().unwrap_or(SkinFileError::Changed(located.path.clone()));
+            let at = JsonPath::root().key("skin").key("mesh").key("file");
+            warnings.push(at, error.to_string());
+            MeshSkin::without_mesh(located, skin.joints().to_vec(), error)
+        }
+    };
+}
+
+/// The document with the path of its skin's file relative to `folder`, if that is possible.
+pub fn with_relative_skin(document: &Document, folder: &Path) -> Document {
+    let mut document = document.clone();
+    if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.skeleton_rig.skin {
+        let relative = |file: &SkinFile| -> PathBuf {
+            let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+            pathdiff::diff_paths(&file.path, folder).unwrap_or_else(|| file.path.clone())
+        };
+        *skin = skin.with_path(relative);
+    }
+    document
+}

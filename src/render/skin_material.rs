@@ -1,0 +1,181 @@
+use core::ops::Range;
+
+use glam::Vec4;
+use wgpu::util::DeviceExt as _;
+
+use super::Gpu;
+use crate::rig::SkinPart;
+
+/// What the materials of skins have in common on the device.
+#[derive(Debug)]
+pub(super) struct SkinMaterials {
+    pub layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    /// One white pixel, for parts without a texture.
+    white: wgpu::TextureView,
+}
+
+/// The triangles of a part of a skin, with its material on the device.
+#[derive(Debug)]
+pub(super) struct SkinMaterial {
+    /// Indices of the corners.
+    pub corners: Range<u32>,
+    pub group: wgpu::BindGroup,
+}
+
+impl SkinMaterials {
+    pub fn new(gpu: &Gpu) -> Self {
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("skin material"),
+            entries: &[entry(0, uniform), entry(1, texture), entry(2, sampler)],
+        });
+        Self {
+            layout,
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("skin texture"),
+                address_mode_u: wgpu::AddressMode::Repeat,
+                address_mode_v: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            }),
+            white: texture_view(gpu, [1, 1], &[[255; 4]]),
+        }
+    }
+
+    /// The materials of consecutive parts of a mesh with `triangles` triangles.
+    pub fn of_parts(&self, gpu: &Gpu, parts: &[SkinPart], triangles: usize) -> Vec<SkinMaterial> {
+        let mut end = 0;
+        let material = |part: &SkinPart| {
+            let start = end;
+            end = (start + part.triangles).min(triangles);
+            SkinMaterial { corners: 3 * start as u32..3 * end as u32, group: self.group(gpu, part) }
+        };
+        parts.iter().map(material).collect()
+    }
+
+    fn group(&self, gpu: &Gpu, part: &SkinPart) -> wgpu::BindGroup {
+        let [red, green, blue] = part.colour;
+        let colour = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("skin colour"),
+            contents: bytemuck::bytes_of(&Vec4::new(red, green, blue, 1.0)),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let texture = part.texture.as_ref();
+        let own = texture.map(|texture| texture_view(gpu, texture.size, &texture.pixels));
+        let view = own.as_ref().unwrap_or(&self.white);
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("skin material"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, colour.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(view)),
+                entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
+            ],
+        })
+    }
+}
+
+/// A texture with all its smaller levels. An image that is too large for the device is halved until it fits.
+fn texture_view(gpu: &Gpu, size: [u32; 2], pixels: &[[u8; 4]]) -> wgpu::TextureView {
+    let most = gpu.device.limits().max_texture_dimension_2d;
+    let mut level = Level { size, pixels: pixels.to_vec() };
+    while level.size.iter().any(|side| *side > most) {
+        level = level.half();
+    }
+    let [width, height] = level.size;
+    let levels = width.max(height).ilog2() + 1;
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("skin texture"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        // Not decoded to linear light: the shader multiplies colours as sRGB.
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for mip_level in 0..levels {
+        if mip_level > 0 {
+            level = level.half();
+        }
+        let [width, height] = level.size;
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &texture,
+                mip_level,
+                origin: wgpu::Origin3d::ZERO,
+                aspect: wgpu::TextureAspect::All,
+            },
+            level.pixels.as_flattened(),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * width),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// An image at some resolution.
+struct Level {
+    size: [u32; 2],
+    pixels: Vec<[u8; 4]>,
+}
+
+impl Level {
+    /// The image at half the resolution: each pixel is the mean of four.
+    fn half(&self) -> Self {
+        let [width, height] = self.size;
+        let size = self.size.map(|side| (side / 2).max(1));
+        let pixel = |x: u32, y: u32| {
+            let at = y.min(height - 1) as usize * width as usize + x.min(width - 1) as usize;
+            self.pixels.get(at).copied().unwrap_or([255; 4])
+        };
+        let mean = |x: u32, y: u32| -> [u8; 4] {
+            let four = [pixel(x, y), pixel(x + 1, y), pixel(x, y + 1), pixel(x + 1, y + 1)];
+            core::array::from_fn(|channel| {
+                let sum: u32 = four.iter().map(|pixel| u32::from(pixel[channel])).sum();
+                ((sum + 2) / 4) as u8
+            })
+        };
+        let rows = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (2 * x, 2 * y)));
+        Self { size, pixels: rows.map(|(x, y)| mean(x, y)).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_has_the_means_of_four_pixels_and_at_least_one_pixel() {
+        let pixels: Vec<[u8; 4]> = (0..6).map(|at| [10 * at; 4]).collect();
+        let half = Level { size: [3, 2], pixels }.half();
+        assert_eq!((half.size, &half.pixels[..]), ([1, 1], &[[20; 4]][..]));
+        let last = half.half();
+        assert_eq!((last.size, &last.pixels[..]), ([1, 1], &[[20; 4]][..]));
+    }
+}

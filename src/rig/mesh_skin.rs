@@ -1,0 +1,128 @@
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::attached_mesh::AttachedMesh;
+use super::file_mesh::FileMesh;
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
+
+/// A skin whose mesh comes from a file of another program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshSkin {
+    /// The file that documents refer to; `None` if they contain the mesh.
+    file: Option<SkinFile>,
+    /// For each joint of the file the joint of the skeleton; `None` if that joint was removed.
+    joints: Vec<Option<JointId>>,
+    mesh: Result<LoadedMesh, SkinFileError>,
+}
+
+/// The file of a mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SkinFile {
+    /// Path of the file.
+    pub path: PathBuf,
+    /// CRC-32 of what was read of the file and of the files that it names.
+    pub checksum: u32,
+    /// Name of the skeleton in the file.
+    pub skeleton: String,
+}
+
+/// The reason why a skin has no mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SkinFileError {
+    /// There is no such file.
+    #[error("the skin's file {0} is missing: locate it, or remove the skin")]
+    Missing(PathBuf),
+    /// The file has changed since the document was saved.
+    #[error(
+        "the skin's file {0} has changed since the document was saved: locate it to take it as it is"
+    )]
+    Changed(PathBuf),
+    /// The file cannot be read, or has no such skin.
+    #[error("the skin cannot be read: {0}")]
+    Invalid(String),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct LoadedMesh {
+    in_file: Shared<FileMesh>,
+    attached: Shared<AttachedMesh>,
+}
+
+impl MeshSkin {
+    /// Attaches a mesh to a skeleton. `joints` has for each joint of the file the joint of the skeleton; the
+    /// weights of joints without one go to their nearest ancestor that has one. Without `file`, documents
+    /// contain the mesh.
+    pub fn new(
+        mesh: Shared<FileMesh>,
+        file: Option<SkinFile>,
+        joints: Vec<Option<JointId>>,
+        skeleton: &Skeleton,
+    ) -> Self {
+        let mesh = LoadedMesh::new(mesh, &joints, skeleton);
+        Self { file, joints, mesh: Ok(mesh) }
+    }
+
+    /// A skin whose file cannot be read.
+    pub fn without_mesh(
+        file: SkinFile,
+        joints: Vec<Option<JointId>>,
+        error: SkinFileError,
+    ) -> Self {
+        Self { file: Some(file), joints, mesh: Err(error) }
+    }
+
+    /// The file that documents refer to; `None` if they contain the mesh.
+    pub fn file(&self) -> Option<&SkinFile> {
+        self.file.as_ref()
+    }
+
+    /// For each joint of the file the joint of the skeleton; `None` if that joint was removed.
+    pub fn joints(&self) -> &[Option<JointId>] {
+        &self.joints
+    }
+
+    /// The mesh as the file has it; `None` if the file could not be read.
+    pub fn in_file(&self) -> Option<&Shared<FileMesh>> {
+        self.mesh.as_ref().ok().map(|mesh| &mesh.in_file)
+    }
+
+    /// The mesh on the joints of the skeleton.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinFileError`] if the file could not be read.
+    pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinFileError> {
+        self.mesh.as_ref().map(|mesh| &mesh.attached).map_err(Clone::clone)
+    }
+
+    /// The same skin that documents contain, instead of referring to a file; `None` without a mesh.
+    pub fn packed(&self) -> Option<Self> {
+        self.mesh.is_ok().then(|| Self { file: None, ..self.clone() })
+    }
+
+    /// The same skin with another path of its file.
+    #[must_use]
+    pub fn with_path(&self, path: impl FnOnce(&SkinFile) -> PathBuf) -> Self {
+        let file = self.file.as_ref().map(|file| SkinFile { path: path(file), ..file.clone() });
+        Self { file, ..self.clone() }
+    }
+
+    /// The skin for a skeleton with other joint indices.
+    pub(super) fn remapped(&self, remap: &JointRemap, skeleton: &Skeleton) -> Self {
+        let joints: Vec<_> =
+            self.joints.iter().map(|joint| joint.and_then(|joint| remap.get(joint))).collect();
+        let mesh = self.mesh.as_ref().map_err(Clone::clone);
+        let mesh = mesh.map(|mesh| LoadedMesh::new(mesh.in_file.clone(), &joints, skeleton));
+        Self { file: self.file.clone(), joints, mesh }
+    }
+}
+
+impl LoadedMesh {
+    fn new(in_file: Shared<FileMesh>, joints: &[Option<JointId>], skeleton: &Skeleton) -> Self {
+        let FileMesh { mesh, parents, parts } = &*in_file;
+        let attached = AttachedMesh::new(mesh.renumbered(joints, parents), parts.clone(), skeleton);
+        Self { attached: attached.into(), in_file }
+    }
+}
