@@ -3,6 +3,8 @@ use std::collections::HashSet;
 use ik_arm::document::Document;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
+use ik_arm::kinematics::skin::Skinning;
+use ik_arm::rig::SkinSource;
 
 /// Checks the content of a file, or that its error is readable.
 pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
@@ -40,6 +42,7 @@ fn check(opened: &Opened) {
     assert_eq!(names.len(), skeletons.len(), "{skeletons:?}");
 
     check_skeleton(document, order);
+    check_skin(document);
     check_poses(document);
     is_read_as_it_is_written(document);
 }
@@ -55,6 +58,28 @@ fn check_skeleton(document: &Document, order: &[JointId]) {
     let aimed: HashSet<_> = rig.targets.iter().map(|target| target.joint).collect();
     assert_eq!(aimed.len(), rig.targets.len());
     assert!(aimed.into_iter().all(|joint| joint.index() < joints.len()));
+}
+
+/// The vertices of a skin follow joints of the skeleton with the sum 1, in every pose.
+fn check_skin(document: &Document) {
+    let rig = &document.skeleton_rig;
+    let Some(skin) = &rig.skin else { return };
+    // A mesh from bones takes too long for a fuzzer.
+    let SkinSource::Mesh(skin) = &skin.source else { return };
+    let Ok(attached) = skin.mesh() else { return };
+    let mesh = &attached.mesh;
+    let joints = rig.skeleton.joints().len().max(1);
+    for weights in mesh.weights() {
+        let sum: f32 = weights.iter().map(|(_, weight)| weight).sum();
+        assert!((sum - 1.0).abs() < 1e-4, "{weights:?}");
+        assert!(weights.iter().all(|(joint, _)| joint.index() < joints), "{weights:?}");
+    }
+    let listed: usize = attached.parts.iter().map(|part| part.triangles).sum();
+    assert!(listed >= mesh.mesh().triangles.len());
+    for skinning in Skinning::ALL {
+        let posed = mesh.posed(&mesh.pose(&rig.skeleton), skinning);
+        assert_eq!(posed.positions.len(), mesh.weights().len());
+    }
 }
 
 fn check_poses(document: &Document) {

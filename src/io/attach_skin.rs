@@ -1,8 +1,8 @@
-use crate::document::{Document, Overlay, Skin};
+use crate::document::{Camera, Document, Overlay, Skin};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinPart, SkinSource};
 
-/// Gives the skeleton of a document the mesh of a file, and shows it instead of the bones. `joints` has for
+/// Gives the skeleton of a document the mesh of a file, and shows all of it instead of the bones. `joints` has for
 /// each joint of the mesh the joint of the skeleton. Without `file`, the document contains the mesh when it is
 /// saved. A mesh without colours gets the colour of skins from bones.
 pub fn attach_skin(
@@ -17,5 +17,6 @@ pub fn attach_skin(
     let skin = Skin::new(SkinSource::Mesh(skin));
     let colour = if has_colours { skin.colour } else { Skin::DEFAULT_COLOUR };
     document.skeleton_rig.skin = Some(Skin { colour, ..skin });
+    document.camera = Camera::framing_skeleton(&document.skeleton_rig);
     document.display = document.display.with(Overlay::Skin, true).with(Overlay::Bones, false);
 }

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::skin_part::SkinPart;
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::skin::SkinnedMesh;
 
 /// A skinned mesh on the joints of a skeleton, with its materials and its thickness around each bone.
@@ -14,6 +14,9 @@ pub struct AttachedMesh {
     /// For each joint the mean distance from its bone of the vertices that follow it most, in skeleton
     /// units; 0 for a joint without vertices.
     pub radii: Vec<f32>,
+    /// For each joint the lowest and the highest corner of a box, in the joint's own space, around the vertices
+    /// that follow it most; `None` for a joint without vertices.
+    pub boxes: Vec<Option<[Vec3; 2]>>,
 }
 
 impl AttachedMesh {
@@ -26,18 +29,36 @@ impl AttachedMesh {
             parts.push(SkinPart { triangles: rest, colour: [1.0; 3], texture: None });
         }
         let mut sums = vec![(0.0_f32, 0_u32); skeleton.joints().len()];
+        let mut boxes = vec![None; sums.len()];
         for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
             let joint = weights.first();
             if let (Some(bone), Some(bind)) =
                 (skeleton.joint(joint), mesh.inverse_binds().get(joint.index()))
             {
+                let at = bind.transform_point3(*position);
                 let (sum, count) = &mut sums[joint.index()];
-                *sum += distance_from_bone(bind.transform_point3(*position), bone.axis);
+                *sum += distance_from_bone(at, bone.axis);
                 *count += 1;
+                let [low, high] = boxes[joint.index()].get_or_insert([at, at]);
+                (*low, *high) = (low.min(at), high.max(at));
             }
         }
         let mean = |(sum, count): (f32, u32)| if count > 0 { sum / count as f32 } else { 0.0 };
-        Self { mesh, parts, radii: sums.into_iter().map(mean).collect() }
+        Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes }
+    }
+}
+
+impl AttachedMesh {
+    /// The corners of boxes in the world that contain nearly all of the mesh in a pose.
+    pub fn corners(&self, pose: &SkeletonPose) -> impl Iterator<Item = Vec3> {
+        let corners = move |(joint, bounds): (usize, &Option<[Vec3; 2]>)| {
+            let ends = (*bounds)?;
+            let to_world = pose.full(JointId::new(joint));
+            let end = move |corner: usize, axis: usize| ends[corner >> axis & 1][axis];
+            let corner = move |at: usize| Vec3::from_array([end(at, 0), end(at, 1), end(at, 2)]);
+            Some((0..8).map(move |at| to_world.transform_point3(corner(at))))
+        };
+        self.boxes.iter().enumerate().filter_map(corners).flatten()
     }
 }
 

@@ -203,8 +203,8 @@ impl SkeletonRig {
         if cell.is_normal() { cell } else { 1.0 }
     }
 
-    /// Centre and radius of a bounding sphere of a pose, the targets at a time in seconds and the
-    /// followed path, in the world. The radius is at least a quarter of the reach.
+    /// Centre and radius of a bounding sphere of a pose, the targets at a time in seconds, the
+    /// followed path and a skin from a file, in the world. The radius is at least a quarter of the reach.
     pub fn bounds(&self, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
         self.bounds_with_reach(self.reach(), pose, time)
     }
@@ -222,8 +222,11 @@ impl SkeletonRig {
         };
         let targets = self.targets.iter().map(place);
         let path = self.path_points();
-        let (centre, radius) =
-            bounding_sphere(pose.points().chain(targets).chain(path)).unwrap_or_default();
+        // A skin from bones is about as large as the bones, and may not have been made yet.
+        let skin = self.skin.as_ref().and_then(Skin::file_mesh);
+        let skin = skin.into_iter().flat_map(|mesh| mesh.corners(pose));
+        let points = pose.points().chain(targets).chain(path).chain(skin);
+        let (centre, radius) = bounding_sphere(points).unwrap_or_default();
         (centre, radius.max(0.25 * reach))
     }
 

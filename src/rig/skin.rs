@@ -78,6 +78,14 @@ impl Skin {
         }
     }
 
+    /// The mesh, if it is from a file.
+    pub(super) fn file_mesh(&self) -> Option<&AttachedMesh> {
+        match &self.source {
+            SkinSource::Bones(_) => None,
+            SkinSource::Mesh(mesh) => mesh.mesh().ok().map(|mesh| &**mesh),
+        }
+    }
+
     /// Whether the mesh of the skin is from a file, and follows the same joints as `mesh`.
     pub fn has_joints_of(&self, mesh: &MeshSkin) -> bool {
         matches!(&self.source, SkinSource::Mesh(own) if own.joints() == mesh.joints())

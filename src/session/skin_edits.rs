@@ -1,5 +1,6 @@
 use std::path::Path;
 
+use super::edit_action::EditAction;
 use super::path_dialog::PathDialog;
 use super::session::Session;
 use super::skin_areas::SkinAreas;
@@ -82,7 +83,8 @@ impl Session {
         match (read, self.skeleton_rig().skin.clone()) {
             (Ok(mesh), Some(skin)) if skin.has_joints_of(&mesh) => {
                 self.commit_edit();
-                self.set_skin(Some(Skin { source: SkinSource::Mesh(mesh), ..skin }));
+                let skin = Skin { source: SkinSource::Mesh(mesh), ..skin };
+                self.apply_edit(EditAction::SetSkin(Some(skin)));
                 self.say(format!("The skin comes from {}", path.display()));
             }
             (Ok(_), _) => self.fail("the skin has changed since its file was chosen"),

@@ -3,11 +3,14 @@
 use egui::accesskit::Role;
 use glam::Vec3;
 use ik_arm::document::{Overlay, Skin};
-use ik_arm::io::Example;
+use ik_arm::io::{self, Example, Progress};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
-use ik_arm::session::{EditAction, FileAction, PlaybackAction, SelectAction};
+use ik_arm::session::{
+    Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, SelectAction,
+    TransactionAction,
+};
 
 use crate::bench::Bench;
 
@@ -151,4 +154,74 @@ fn the_candy_wrapper_plots_the_area_of_its_middle() {
         100.0 * spread
     );
     assert!(bench.shows(Role::Image, &said), "{said}");
+}
+
+/// A folder with `figure.glb`, and a bench that shows a document that refers to it.
+fn with_file() -> (tempfile::TempDir, Bench) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("figure.glb");
+    let human =
+        Example::find("two-targets").expect("an example").open().expect("it opens").document;
+    let bytes = io::glb(&human, None, &Progress::default()).expect("an export");
+    std::fs::write(&path, bytes).expect("a file");
+    let document = Box::new(io::open(&path, None).expect("it opens").document);
+    (folder, Bench::after([FileAction::Opened { document, file: None }]))
+}
+
+#[test]
+fn a_mesh_of_a_file_is_named_and_packed_into_the_document_in_one_step() {
+    let (folder, mut bench) = with_file();
+    bench.reveal(Role::Button, "Pack skin into file");
+    assert!(bench.says("figure.glb"));
+    bench.click(Role::Button, "Pack skin into file");
+    assert!(bench.says("in this document"));
+    assert!(!bench.shows(Role::Button, "Pack skin into file"));
+    drop(folder);
+    let text = io::to_json(bench.session().document()).expect("a text");
+    let read = io::parse("x.json", &text, None).expect("it opens").document;
+    assert!(read.skeleton_rig.skin.expect("a skin").mesh().is_ok());
+    bench.choose(&["Edit", "Undo Pack skin into file"]);
+    assert!(bench.shows(Role::Button, "Pack skin into file"));
+}
+
+#[test]
+fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
+    let (folder, bench) = with_file();
+    let scene = folder.path().join("scene.json");
+    let (old, new) = (folder.path().join("figure.glb"), folder.path().join("moved.glb"));
+    io::save(bench.session().document(), &scene).expect("saved");
+    std::fs::rename(&old, &new).expect("moved");
+    let document = Box::new(io::open(&scene, None).expect("it opens").document);
+    let mut bench = Bench::after([FileAction::Opened { document, file: Some(scene) }]);
+    bench.reveal(Role::Button, "Locate…");
+    let missing =
+        format!("the skin's file {} is missing: locate it, or remove the skin", old.display());
+    assert!(bench.says(&missing));
+    bench.click(Role::Button, "Locate…");
+    assert!(matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::LocateSkin { .. }))));
+    assert!(bench.says("File with the mesh: .glb, .gltf or .js3d"));
+
+    // What the window does with the path of the dialog.
+    let locate = |bench: &mut Bench, path: &std::path::Path| {
+        let effect = bench.tell(FileAction::LocateSkin(path.to_owned()));
+        assert_eq!(effect, Some(Effect::LocateSkin(path.to_owned())));
+        let rig = bench.session().skeleton_rig();
+        let SkinSource::Mesh(skin) = &rig.skin.as_ref().expect("a skin").source else {
+            panic!("the mesh is from a file");
+        };
+        let name = &skin.file().expect("a file").skeleton;
+        let read = Box::new(io::relocated_skin(path, name, skin.joints(), &rig.skeleton));
+        bench.tell(FileAction::SkinLocated { path: path.to_owned(), read });
+    };
+    locate(&mut bench, &old);
+    assert!(matches!(
+        bench.session().dialog(),
+        Some(Dialog::Path(PathDialog::LocateSkin { problem: Some(_), .. }))
+    ));
+    locate(&mut bench, &new);
+    assert!(bench.session().dialog().is_none());
+    assert!(skin(&bench).expect("a skin").mesh().is_ok());
+    assert_eq!(bench.session().undo_label(), Some("Change skin"));
+    bench.apply([TransactionAction::Undo]);
+    assert!(skin(&bench).expect("a skin").mesh().is_err());
 }

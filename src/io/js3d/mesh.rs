@@ -152,7 +152,8 @@ impl HalfEdges {
             let added = edges.iter().zip(&corners).map(|(edge, corner)| {
                 let normal = self.normals.get(*edge).copied().unwrap_or_default();
                 let normal = normal.try_normalize().unwrap_or(flat);
-                let coordinates = self.coordinates.get(*edge).copied().unwrap_or_default();
+                let coordinates = self.coordinates.get(*edge).copied();
+                let coordinates = coordinates.filter(|at| at.is_finite()).unwrap_or_default();
                 // Scotty3D has the origin at the lower left.
                 let coordinates = Vec2::new(coordinates.x, 1.0 - coordinates.y);
                 let bits = normal.to_array().into_iter().chain(coordinates.to_array());

@@ -33,8 +33,10 @@ pub enum SkinError {
         /// The joint that does not exist.
         got: JointId,
     },
-    /// A position or normal is not finite.
-    #[error("positions and normals must be finite, got {got} at vertex {vertex}")]
+    /// A position, a normal or a texture coordinate is not finite.
+    #[error(
+        "positions, normals and texture coordinates must be finite, got {got} at vertex {vertex}"
+    )]
     NotFinite {
         /// Index of the vertex.
         vertex: usize,

@@ -58,6 +58,11 @@ impl SkinnedMesh {
                 return Err(SkinError::NotFinite { vertex, got: vectors[vertex] });
             }
         }
+        let coordinates = &mesh.texture_coordinates;
+        if let Some(vertex) = coordinates.iter().position(|vector| !vector.is_finite()) {
+            let got = coordinates[vertex].extend(0.0);
+            return Err(SkinError::NotFinite { vertex, got });
+        }
         if let Some(joint) = inverse_binds.iter().position(|bind| !bind.is_finite()) {
             return Err(SkinError::Bind { joint: JointId::new(joint) });
         }

@@ -144,7 +144,10 @@ fn vectors(rows: &AccessorRows<'_>) -> Vec<Vec3> {
 }
 
 fn coordinates(rows: &AccessorRows<'_>) -> Vec<Vec2> {
-    let vector = |row| Vec2::from_array(rows.row::<2>(row).map(|number| number as f32));
+    let vector = |row| {
+        let vector = Vec2::from_array(rows.row::<2>(row).map(|number| number as f32));
+        if vector.is_finite() { vector } else { Vec2::ZERO }
+    };
     (0..rows.len()).map(vector).collect()
 }
 

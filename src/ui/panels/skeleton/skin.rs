@@ -5,7 +5,7 @@ use egui::Ui;
 use super::choice::Choice;
 use crate::document::{Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
-use crate::rig::{BoneSkin, MeshSkin, SkinSource};
+use crate::rig::{BoneSkin, MeshSkin, SkinMeshError, SkinSource};
 use crate::session::{Actions, EditAction, FileAction, PathDialog, Session, TransactionAction};
 use crate::ui::panels::overlays;
 use crate::ui::style;
@@ -138,11 +138,15 @@ fn file(ui: &mut Ui, mesh: &MeshSkin, actions: &mut Actions) {
         let path = file.path.display().to_string();
         ui.add(egui::Label::new(&*name).truncate()).on_hover_text(path);
     });
+    let problem = mesh.mesh().err();
+    if let Some(problem) = &problem {
+        widgets::error_label(ui, &problem.to_string());
+    }
     let path = file.path.display().to_string();
     if widgets::button(ui, "Locate…", "Take the mesh from another file", None) {
         actions.push(FileAction::AskPath(PathDialog::LocateSkin { path, problem: None }));
     }
-    let why_not = mesh.mesh().is_err().then_some("Locate the mesh first");
+    let why_not = problem.map(|_| "Locate the mesh first");
     let tooltip = "Keep the mesh in the document, so that it needs no other file";
     if widgets::button(ui, "Pack skin into file", tooltip, why_not) {
         actions.push(EditAction::PackSkin);
@@ -182,7 +186,7 @@ fn summary(ui: &mut Ui, skin: &Skin) {
             let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
             ui.weak(format!("{vertices} vertices, {triangles} triangles"));
         }
-        Some(Err(error)) => widgets::error_label(ui, &error.to_string()),
-        None => {}
+        Some(Err(SkinMeshError::Shape(error))) => widgets::error_label(ui, &error.to_string()),
+        Some(Err(SkinMeshError::File(_))) | None => {}
     }
 }
