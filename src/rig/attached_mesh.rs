@@ -28,7 +28,7 @@ impl AttachedMesh {
         if rest > 0 {
             parts.push(SkinPart { triangles: rest, colour: [1.0; 3], texture: None });
         }
-        let mut sums = vec![(0.0_f32, 0_u32); skeleton.joints().len()];
+        let mut sums = vec![(0.0_f64, 0_u32); skeleton.joints().len()];
         let mut boxes = vec![None; sums.len()];
         for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
             let joint = weights.first();
@@ -36,14 +36,19 @@ impl AttachedMesh {
                 (skeleton.joint(joint), mesh.inverse_binds().get(joint.index()))
             {
                 let at = bind.transform_point3(*position);
+                let distance = distance_from_bone(at, bone.axis);
+                // Numbers near the limit of f32 overflow.
+                if !distance.is_finite() {
+                    continue;
+                }
                 let (sum, count) = &mut sums[joint.index()];
-                *sum += distance_from_bone(at, bone.axis);
+                *sum += f64::from(distance);
                 *count += 1;
                 let [low, high] = boxes[joint.index()].get_or_insert([at, at]);
                 (*low, *high) = (low.min(at), high.max(at));
             }
         }
-        let mean = |(sum, count): (f32, u32)| if count > 0 { sum / count as f32 } else { 0.0 };
+        let mean = |(sum, count): (f64, u32)| (sum / f64::from(count.max(1))) as f32;
         Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, IVec3};
 
 use super::field::{Field, FieldScratch};
+use super::parallel;
 
 /// Distances at the corners of a cell; corner c has the coordinates of its bits: 1 for x, 2 for y, 4 for z.
 #[derive(Clone, Copy, Debug)]
@@ -19,9 +20,7 @@ pub struct Cell {
 /// The cells of a grid that the surface passes through, found by an octree of cubes whose centre is nearer
 /// to the surface than their corners are.
 pub struct Grid {
-    origin: DVec3,
-    /// Size of a cell.
-    pub cell: f64,
+    lattice: Lattice,
     /// The cells, in the order of the octree.
     pub cells: Vec<Cell>,
     /// Indices in `cells` by coordinates.
@@ -30,10 +29,32 @@ pub struct Grid {
     pub blocks: Vec<Field>,
 }
 
+/// Where the corners of cells are.
+#[derive(Clone, Copy)]
+struct Lattice {
+    origin: DVec3,
+    /// Size of a cell.
+    cell: f64,
+}
+
+/// A cube that the surface may pass through, with the field near it.
+struct Cube {
+    field: Field,
+    low: IVec3,
+}
+
+/// The cells of a block.
+struct Block {
+    field: Field,
+    cells: Vec<(IVec3, [f64; 8])>,
+}
+
 /// Upper bound of the change of the distance per unit of the way.
 const STEEPEST: f64 = 1.1;
 /// Cells along the edge of a block.
 const BLOCK: i32 = 4;
+/// Cubes along the edge of the grid that are searched at the same time.
+const BRANCHES: i32 = 8;
 /// Distance around a block, in cells, in which the field near the block is exact.
 pub const MARGIN: f64 = 1.0;
 
@@ -47,23 +68,57 @@ impl Grid {
         // Not on the bones, where symmetric bodies would have distances of exactly 0.
         let shift = DVec3::new(0.317, 0.229, 0.411) * cell;
         let origin = low.midpoint(high) - 0.5 * f64::from(blocks * BLOCK) * cell + shift;
+        let lattice = Lattice { origin, cell };
+        let all = blocks * BLOCK;
+        let large = (all / BRANCHES).max(BLOCK);
+        let mut branches = Vec::new();
+        lattice.visit(field, IVec3::ZERO, all, large, &mut branches);
+        let of_branch = |branch: &Cube| {
+            let mut cubes = Vec::new();
+            lattice.visit(&branch.field, branch.low, large, BLOCK, &mut cubes);
+            cubes.into_iter().map(|cube| lattice.block(cube)).collect::<Vec<Block>>()
+        };
         let mut grid =
-            Self { origin, cell, cells: Vec::new(), index: HashMap::new(), blocks: Vec::new() };
-        grid.visit(field, IVec3::ZERO, blocks * BLOCK);
+            Self { lattice, cells: Vec::new(), index: HashMap::new(), blocks: Vec::new() };
+        for block in parallel::map(&branches, of_branch).into_iter().flatten() {
+            grid.add(block);
+        }
         grid
+    }
+
+    fn add(&mut self, Block { field, cells }: Block) {
+        let block = self.blocks.len() as u32;
+        for (at, corners) in cells {
+            self.index.insert(at, self.cells.len() as u32);
+            self.cells.push(Cell { at, corners, block });
+        }
+        self.blocks.push(field);
+    }
+
+    /// Size of a cell.
+    pub fn cell(&self) -> f64 {
+        self.lattice.cell
     }
 
     /// Position of a corner of cells.
     pub fn corner(&self, corner: IVec3) -> DVec3 {
-        self.origin + corner.as_dvec3() * self.cell
+        self.lattice.corner(corner)
     }
 
     /// Index of the cell at some coordinates; `None` if the surface does not pass through it.
     pub fn index_of(&self, at: IVec3) -> Option<usize> {
         self.index.get(&at).map(|index| *index as usize)
     }
+}
 
-    fn visit(&mut self, field: &Field, low: IVec3, cells: i32) {
+impl Lattice {
+    fn corner(self, corner: IVec3) -> DVec3 {
+        self.origin + corner.as_dvec3() * self.cell
+    }
+
+    /// Adds the cubes of `least` cells along the edge that the surface may pass through, of those in the cube of
+    /// `cells` cells at `low`.
+    fn visit(self, field: &Field, low: IVec3, cells: i32, least: i32, found: &mut Vec<Cube>) {
         let half = 0.5 * f64::from(cells) * self.cell;
         let centre = self.corner(low) + half;
         let radius = half * 3.0_f64.sqrt();
@@ -71,29 +126,28 @@ impl Grid {
         if near.distance(centre, &mut FieldScratch::default()).abs() > STEEPEST * radius {
             return;
         }
-        if cells == BLOCK {
-            self.sample(near, low);
+        if cells == least {
+            found.push(Cube { field: near, low });
             return;
         }
         let step = cells / 2;
         for child in 0..8 {
-            self.visit(&near, low + corner_offset(child) * step, step);
+            self.visit(&near, low + corner_offset(child) * step, step, least, found);
         }
     }
 
-    /// Adds the cells of a block that the surface passes through.
-    fn sample(&mut self, field: Field, low: IVec3) {
+    /// The cells of a block that the surface passes through.
+    fn block(self, Cube { field, low }: Cube) -> Block {
         let mut corners = BlockCorners::default();
-        let block = self.blocks.len() as u32;
-        let (origin, size) = (self.origin, self.cell);
+        let mut cells = Vec::new();
         let mut distance = |at: IVec3| {
-            let point = origin + (low + at).as_dvec3() * size;
+            let point = self.corner(low + at);
             corners.distance(at, |scratch| field.distance(point, scratch))
         };
         for octant in 0..8 {
             // The middle of an octant of 2×2×2 cells is √3 cells away from its farthest corners.
             let first = corner_offset(octant) * (BLOCK / 2);
-            if distance(first + 1).abs() > STEEPEST * 3.0_f64.sqrt() * size {
+            if distance(first + 1).abs() > STEEPEST * 3.0_f64.sqrt() * self.cell {
                 continue;
             }
             for cell in 0..8 {
@@ -102,13 +156,11 @@ impl Grid {
                     [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| distance(at + corner_offset(corner)));
                 let inside = corners.iter().filter(|distance| **distance < 0.0).count();
                 if (1..8).contains(&inside) {
-                    let at = low + at;
-                    self.index.insert(at, self.cells.len() as u32);
-                    self.cells.push(Cell { at, corners, block });
+                    cells.push((low + at, corners));
                 }
             }
         }
-        self.blocks.push(field);
+        Block { field, cells }
     }
 }
 

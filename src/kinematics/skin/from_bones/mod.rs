@@ -9,6 +9,7 @@ mod body;
 mod error;
 mod field;
 mod grid;
+mod parallel;
 mod patches;
 mod projection;
 mod round_cone;
@@ -18,6 +19,8 @@ mod weights;
 
 pub use error::SkinShapeError;
 pub use shape::{Blob, SkinShape};
+
+use core::ops::Range;
 
 use glam::{DVec3, Vec3};
 
@@ -95,12 +98,11 @@ fn add(
     let normals = projection::relax(&mut net, &grid, ROUNDS);
     let field = |vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
     let by_distance = Weights::new(body, skeleton);
-    let mut own: Vec<VertexWeights> = net
-        .vertices
-        .iter()
-        .enumerate()
-        .map(|(vertex, at)| by_distance.at(*at, field(vertex).parts()))
-        .collect();
+    let of_range = |range: &Range<usize>| {
+        let at = |vertex: usize| by_distance.at(net.vertices[vertex], field(vertex).parts());
+        range.clone().map(at).collect::<Vec<VertexWeights>>()
+    };
+    let mut own = parallel::map(&parallel::ranges(net.vertices.len()), of_range).concat();
     let triangles: Vec<[u32; 3]> =
         net.quads.iter().flat_map(|quad| halves(&net.vertices, *quad)).collect();
     weights::smooth(&mut own, &edges(&triangles));

@@ -1,9 +1,12 @@
 //! Vertices moved onto the surface of a field.
 
+use core::ops::Range;
+
 use glam::DVec3;
 
 use super::field::{Field, FieldScratch};
 use super::grid::{Grid, MARGIN};
+use super::parallel;
 use super::round_cone::Sighting;
 use super::surface_nets::SurfaceNet;
 
@@ -14,44 +17,55 @@ const TOLERANCE: f64 = 2e-4;
 /// surface, and back onto it. A vertex stays near the cell that it was made in, where the field of its block
 /// is exact. Returns the unit normals of the vertices.
 pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) -> Vec<DVec3> {
-    let mut scratch = FieldScratch::default();
     let directed =
         net.quads.iter().flat_map(|[a, b, c, d]| [[*a, *b], [*b, *c], [*c, *d], [*d, *a]]);
     let edges: Vec<[u32; 2]> = directed.collect();
-    let starts = net.vertices.clone();
-    let nearest = |field: &Field, point: DVec3, scratch: &mut FieldScratch| {
-        let seen = field.sighting(point, scratch);
-        (point - newton_step(&seen), seen.gradient.normalize_or(DVec3::X))
-    };
-    let block = |net: &SurfaceNet, vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
-    let mut normals = Vec::with_capacity(net.vertices.len());
-    for (vertex, start) in starts.iter().enumerate() {
-        let (point, normal) = nearest(block(net, vertex), *start, &mut scratch);
-        net.vertices[vertex] = point;
-        normals.push(normal);
-    }
+    let blocks = &net.blocks;
+    let field = |vertex: usize| &grid.blocks[blocks[vertex] as usize];
+    let starts = &net.vertices;
+    let mut points = for_each_vertex(starts.len(), |vertex, scratch| {
+        nearest(field(vertex), starts[vertex], scratch)
+    });
     for _ in 0..rounds {
         // Each edge belongs to two quads, once in each direction.
-        let mut sums = vec![(DVec3::ZERO, 0.0); net.vertices.len()];
+        let mut sums = vec![(DVec3::ZERO, 0.0); points.len()];
         for [from, to] in &edges {
             let (sum, count) = &mut sums[*from as usize];
-            *sum += net.vertices[*to as usize];
+            *sum += points[*to as usize].0;
             *count += 1.0;
         }
-        for (vertex, (sum, count)) in sums.into_iter().enumerate() {
-            let here = net.vertices[vertex];
-            let moved = here + 0.5 * (sum / count - here).reject_from(normals[vertex]);
-            let (moved, normal) = nearest(block(net, vertex), moved, &mut scratch);
-            if moved.distance(starts[vertex]) <= MARGIN * grid.cell {
-                (net.vertices[vertex], normals[vertex]) = (moved, normal);
-            }
-        }
+        points = for_each_vertex(sums.len(), |vertex, scratch| {
+            let ((sum, count), (here, normal)) = (sums[vertex], points[vertex]);
+            let moved = here + 0.5 * (sum / count - here).reject_from(normal);
+            let (moved, normal_there) = nearest(field(vertex), moved, scratch);
+            let is_near = moved.distance(starts[vertex]) <= MARGIN * grid.cell();
+            if is_near { (moved, normal_there) } else { (here, normal) }
+        });
     }
-    for (vertex, normal) in normals.iter_mut().enumerate() {
-        let field = block(net, vertex);
-        (net.vertices[vertex], *normal) = onto_surface(field, net.vertices[vertex], &mut scratch);
-    }
+    let points = for_each_vertex(points.len(), |vertex, scratch| {
+        onto_surface(field(vertex), points[vertex].0, scratch)
+    });
+    let (vertices, normals) = points.into_iter().unzip();
+    net.vertices = vertices;
     normals
+}
+
+/// Computes something for each vertex, on all cores.
+fn for_each_vertex<T: Send + Clone>(
+    count: usize,
+    compute: impl Fn(usize, &mut FieldScratch) -> T + Sync + Send,
+) -> Vec<T> {
+    let of_range = |range: &Range<usize>| {
+        let mut scratch = FieldScratch::default();
+        range.clone().map(|vertex| compute(vertex, &mut scratch)).collect::<Vec<T>>()
+    };
+    parallel::map(&parallel::ranges(count), of_range).concat()
+}
+
+/// One Newton step towards the surface, and the normal at its start.
+fn nearest(field: &Field, point: DVec3, scratch: &mut FieldScratch) -> (DVec3, DVec3) {
+    let seen = field.sighting(point, scratch);
+    (point - newton_step(&seen), seen.gradient.normalize_or(DVec3::X))
 }
 
 /// The step of Newton's method towards the surface, backwards.

@@ -52,7 +52,7 @@ fn details(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let all = [Overlay::Wireframe, Overlay::SkinWeights, Overlay::CompareSkinning];
     let is_shown = session.shown().display.shows(Overlay::Skin);
     let why_not = (!is_shown).then_some("Show the skin first");
-    overlays::check_boxes(ui, session, all.len(), &all, why_not, actions);
+    overlays::check_boxes(ui, session, 2, &all, why_not, actions);
     if is_shown && session.shown().display.shows(Overlay::SkinWeights) {
         match session.selected().and_then(|joint| session.skeleton_rig().skeleton.joint(joint)) {
             Some(joint) => legend(ui, &joint.name),
@@ -143,14 +143,16 @@ fn file(ui: &mut Ui, mesh: &MeshSkin, actions: &mut Actions) {
         widgets::error_label(ui, &problem.to_string());
     }
     let path = file.path.display().to_string();
-    if widgets::button(ui, "Locate…", "Take the mesh from another file", None) {
-        actions.push(FileAction::AskPath(PathDialog::LocateSkin { path, problem: None }));
-    }
-    let why_not = problem.map(|_| "Locate the mesh first");
-    let tooltip = "Keep the mesh in the document, so that it needs no other file";
-    if widgets::button(ui, "Pack skin into file", tooltip, why_not) {
-        actions.push(EditAction::PackSkin);
-    }
+    ui.horizontal_wrapped(|ui| {
+        if widgets::button(ui, "Locate…", "Take the mesh from another file", None) {
+            actions.push(FileAction::AskPath(PathDialog::LocateSkin { path, problem: None }));
+        }
+        let why_not = problem.map(|_| "Locate the mesh first");
+        let tooltip = "Keep the mesh in the document, so that it needs no other file";
+        if widgets::button(ui, "Pack skin into file", tooltip, why_not) {
+            actions.push(EditAction::PackSkin);
+        }
+    });
 }
 
 fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
