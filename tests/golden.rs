@@ -189,6 +189,7 @@ fn figures_and_an_arm_whose_hands_and_feet_stay() {
     for name in ["walk", "wheel", "table"] {
         check(name, &example(name), Theme::Dark);
     }
+    check("walk-light", &example("walk"), Theme::Light);
 }
 
 #[test]
