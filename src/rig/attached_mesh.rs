@@ -36,7 +36,7 @@ impl AttachedMesh {
                 (skeleton.joint(joint), mesh.inverse_binds().get(joint.index()))
             {
                 let at = bind.transform_point3(*position);
-                let distance = distance_from_bone(at, bone.axis);
+                let distance = bone.distance(at);
                 // Numbers near the limit of f32 overflow.
                 if !distance.is_finite() {
                     continue;
@@ -65,11 +65,4 @@ impl AttachedMesh {
         };
         self.boxes.iter().enumerate().filter_map(corners).flatten()
     }
-}
-
-/// Distance of a point in joint space from the bone along `axis`.
-fn distance_from_bone(point: Vec3, axis: Vec3) -> f32 {
-    let along = point.dot(axis) / axis.length_squared();
-    let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
-    point.distance(axis * along)
 }

@@ -58,7 +58,7 @@ pub struct Js3dTransform {
 #[derive(Deserialize)]
 pub struct Js3dSkinnedMesh {
     mesh: Option<Js3dMeshField>,
-    pub skeleton: Option<JsonObject<Js3dSkeleton>>,
+    skeleton: Option<JsonObject<Js3dSkeleton>>,
 }
 
 /// A mesh, or anything else that is not read.

@@ -4,11 +4,10 @@ use std::collections::HashMap;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::file::{Js3dMesh, Js3dSkeleton};
+use super::file::Js3dMesh;
 use crate::io::base64;
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
-use crate::io::value::{JsonNumber, JsonObject};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::FileMesh;
@@ -21,7 +20,6 @@ use crate::rig::FileMesh;
 /// nearest bone, with a warning.
 pub fn read(
     mesh: &Js3dMesh,
-    bones: &Js3dSkeleton,
     skeleton: &Skeleton,
     order: &[JointId],
     at: &JsonPath,
@@ -35,7 +33,7 @@ pub fn read(
     let edges = HalfEdges::new(mesh, at)?;
     let positions = points(&mesh.positions, &at.clone().key("vertex_positions"))?;
     let listed = listed_weights(mesh, positions.len(), order, at)?;
-    let by_distance = BoneDistances::new(bones, skeleton, order);
+    let by_distance = BoneDistances::new(skeleton);
     let mut loose = 0;
     let weights: Vec<VertexWeights> = positions
         .iter()
@@ -59,11 +57,9 @@ pub fn read(
             format!("{loose} of {all} vertices have no weights; they follow the nearest bone");
         warnings.push(at.clone(), reason);
     }
-    let pose = skeleton.bind_pose_in_skeleton();
-    let binds = skeleton.ids().map(|joint| pose.full(joint).inverse()).collect();
     let (mesh, of_vertex) = edges.mesh(&positions);
     let weights = of_vertex.into_iter().map(|vertex| weights[vertex]).collect();
-    let mesh = SkinnedMesh::new(mesh, weights, binds)
+    let mesh = SkinnedMesh::new(mesh, weights, by_distance.to_joints)
         .map_err(|error| FieldError::new(at.clone(), error.to_string()))?;
     let parents = skeleton.joints().iter().map(|joint| joint.parent).collect();
     Ok(FileMesh { mesh, parents, parts: Vec::new() })
@@ -236,50 +232,33 @@ fn listed_weights(
 }
 
 /// Bones in the bind pose, for weights by distance.
-struct BoneDistances(Vec<PlacedBone>);
-
-struct PlacedBone {
-    joint: JointId,
-    /// From skeleton space to the joint's own.
-    to_joint: Affine3A,
-    axis: Vec3,
-    radius: f32,
+struct BoneDistances<'a> {
+    skeleton: &'a Skeleton,
+    /// From skeleton space to the joints' own spaces.
+    to_joints: Vec<Affine3A>,
 }
 
-impl PlacedBone {
-    fn distance(&self, point: Vec3) -> f32 {
-        let point = self.to_joint.transform_point3(point);
-        let along = point.dot(self.axis) / self.axis.length_squared();
-        let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
-        point.distance(self.axis * along)
-    }
-}
-
-impl BoneDistances {
-    fn new(bones: &Js3dSkeleton, skeleton: &Skeleton, order: &[JointId]) -> Self {
+impl<'a> BoneDistances<'a> {
+    fn new(skeleton: &'a Skeleton) -> Self {
         let pose = skeleton.bind_pose_in_skeleton();
-        let bone = |(JsonObject(bone), joint): (&JsonObject<super::file::Js3dBone>, &JointId)| {
-            let JsonNumber(radius) = bone.radius.unwrap_or_default();
-            PlacedBone {
-                joint: *joint,
-                to_joint: pose.full(*joint).inverse(),
-                axis: bone.extent.0,
-                radius,
-            }
-        };
-        Self(bones.bones.iter().zip(order).map(bone).collect())
+        let to_joints = skeleton.ids().map(|joint| pose.full(joint).inverse()).collect();
+        Self { skeleton, to_joints }
     }
 
     fn weights(&self, point: Vec3) -> Vec<(JointId, f32)> {
-        let weight = |bone: &PlacedBone| (bone.joint, 1.0 - bone.distance(point) / bone.radius);
-        self.0.iter().map(weight).filter(|(_, weight)| *weight > 0.0).collect()
+        let weight =
+            |joint| (joint, 1.0 - self.distance(joint, point) / self.skeleton[joint].radius);
+        self.skeleton.ids().map(weight).filter(|(_, weight)| *weight > 0.0).collect()
     }
 
     fn nearest(&self, point: Vec3) -> JointId {
-        let by_distance = |one: &&PlacedBone, other: &&PlacedBone| {
-            one.distance(point).total_cmp(&other.distance(point))
-        };
-        self.0.iter().min_by(by_distance).map(|bone| bone.joint).unwrap_or_default()
+        let distance = |joint: &JointId| self.distance(*joint, point);
+        let nearest = self.skeleton.ids().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.unwrap_or_default()
+    }
+
+    fn distance(&self, joint: JointId, point: Vec3) -> f32 {
+        self.skeleton[joint].distance(self.to_joints[joint.index()].transform_point3(point))
     }
 }
 

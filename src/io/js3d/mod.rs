@@ -77,11 +77,9 @@ fn add_skin(
 ) {
     let mut meshes = scene.skinned_meshes.0.iter().filter(|(other, _)| other == name);
     let Some((_, skinned)) = meshes.next() else { return };
-    let (Some(mesh), Some(JsonObject(bones))) = (skinned.mesh(), &skinned.skeleton) else {
-        return;
-    };
+    let Some(mesh) = skinned.mesh() else { return };
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("mesh");
-    match mesh::read(mesh, bones, document.skeleton(), order, &at, warnings) {
+    match mesh::read(mesh, document.skeleton(), order, &at, warnings) {
         Ok(mesh) => {
             let checksum = source.checksum().finalize();
             let skeleton = name.to_owned();

@@ -48,6 +48,13 @@ impl Joint {
         }
     }
 
+    /// Distance of a point in the joint's own space from its bone.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let along = point.dot(self.axis) / self.axis.length_squared();
+        let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
+        point.distance(self.axis * along)
+    }
+
     /// The rotation R, in the space of the joint's base.
     pub fn local_rotation(&self) -> Mat3A {
         self.rotation_by(self.rotation)
