@@ -12,7 +12,7 @@ struct Look {
 
 // Material of a part. Colours multiply as sRGB: nearly a power of linear light, it gives nearly the same
 // products.
-@group(2) @binding(0) var<uniform> part_colour: vec4f;
+@group(2) @binding(0) var<uniform> part_colour: vec4f; // w is 1 with a texture, else 0
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;
 
@@ -39,8 +39,10 @@ fn vertex(v: Vertex) -> Surface {
 
 @fragment
 fn fragment(s: Surface) -> @location(0) vec4f {
-    let of_texture = textureSample(part_texture, part_sampler, s.coordinates).rgb;
-    let own = look.colour.rgb * part_colour.rgb * of_texture;
+    var own = look.colour.rgb * part_colour.rgb;
+    if part_colour.w > 0.0 {
+        own *= textureSample(part_texture, part_sampler, s.coordinates).rgb;
+    }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
     let colour = lit(mix(own, of_weight, look.has_weights), normalize(s.normal));
     return vec4f(in_scene(colour, s.world, s.position.xy), look.colour.a);

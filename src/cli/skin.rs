@@ -16,9 +16,9 @@ use crate::rig::{BoneSkin, SkinMeshError, SkinSource};
 #[derive(clap::Args)]
 #[command(
     after_help = r#"The skin is a closed mesh around the bones in the bind pose, as thick as the joints' radii. The
-document holds its settings; the mesh is made again when the document is opened. Settings that are
-not given stay as they are in FILE, also blobs, which only a document can have. The numbers of
-vertices and triangles are listed on stderr."#
+document holds its settings; the mesh is made again when the document is opened. It replaces the
+mesh of a figure from another program. Settings that are not given stay as they are in FILE, also
+blobs, which only a document can have. The numbers of vertices and triangles are listed on stderr."#
 )]
 pub struct SkinArgs {
     /// File with a skeleton: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -

@@ -74,9 +74,10 @@ impl SkinMaterials {
 
     fn group(&self, gpu: &Gpu, part: &SkinPart) -> wgpu::BindGroup {
         let [red, green, blue] = part.colour;
+        let has_texture = if part.texture.is_some() { 1.0 } else { 0.0 };
         let colour = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("skin colour"),
-            contents: bytemuck::bytes_of(&Vec4::new(red, green, blue, 1.0)),
+            contents: bytemuck::bytes_of(&Vec4::new(red, green, blue, has_texture)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let texture = part.texture.as_ref();
