@@ -65,7 +65,7 @@ pub struct Js3dSkinnedMesh {
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Js3dMeshField {
-    HalfEdges(Js3dMesh),
+    HalfEdges(Box<Js3dMesh>),
     Other(Unread),
 }
 

@@ -193,13 +193,16 @@ fn newell(corners: impl Iterator<Item = Vec3> + Clone) -> Vec3 {
     sum.normalize_or(Vec3::Y)
 }
 
+/// The joints that a vertex follows, with their weights.
+type BoneWeights = Vec<(JointId, f32)>;
+
 /// The weights of the file by vertex, each with the joint of its bone; `None` if it has none at all.
 fn listed_weights(
     mesh: &Js3dMesh,
     vertices: usize,
     order: &[JointId],
     at: &JsonPath,
-) -> Result<Option<Vec<Vec<(JointId, f32)>>>, FieldError> {
+) -> Result<Option<Vec<BoneWeights>>, FieldError> {
     let ends = wholes(&mesh.weight_ends, &at.clone().key("vertex_bone_weight_ends"))?;
     let at_bones = at.clone().key("bone_weight_bones");
     let bones = wholes(&mesh.weight_bones, &at_bones)?;
@@ -245,7 +248,7 @@ impl<'a> BoneDistances<'a> {
         Self { skeleton, to_joints }
     }
 
-    fn weights(&self, point: Vec3) -> Vec<(JointId, f32)> {
+    fn weights(&self, point: Vec3) -> BoneWeights {
         let weight =
             |joint| (joint, 1.0 - self.distance(joint, point) / self.skeleton[joint].radius);
         self.skeleton.ids().map(weight).filter(|(_, weight)| *weight > 0.0).collect()

@@ -218,8 +218,7 @@ impl MeshImport<'_> {
             return Err(FieldError::new(at_accessor(accessor).key("count"), reason));
         }
         for (row, joint) in self.joints.order.iter().enumerate() {
-            attached[*joint] =
-                attached[*joint] * DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
+            attached[*joint] *= DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
         }
         Ok(attached)
     }
