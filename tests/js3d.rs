@@ -599,7 +599,7 @@ impl HalfEdgeBox {
             "vertex_halfedges": wholes(&(0..8).map(of_vertex).collect::<Vec<_>>()),
             "vertex_positions": floats("vec3", &positions),
             "face_halfedges": wholes(&faces),
-            "face_boundaries": format!("bool:{}", base64(&[0])),
+            "face_boundaries": format!("bool:{}", base64(&[0b0000_0010])),
         })
     }
 
@@ -715,4 +715,17 @@ fn damaged_half_edges_leave_the_skin_out_with_the_reason() {
         mesh["halfedge_nexts"] = wholes(&nexts).into();
         HalfEdgeBox::scene(&mesh);
     }
+}
+
+#[test]
+fn faces_that_bound_a_hole_are_left_out() {
+    let mut mesh = HalfEdgeBox::new().json();
+    // The second of six faces, then the mark of the end.
+    mesh["face_boundaries"] = format!("bool:{}", base64(&[0b0100_0010])).into();
+    let opened = HalfEdgeBox::scene(&mesh);
+    let skin = opened.document.skeleton_rig.skin.as_ref().expect("a skin");
+    let mesh = skin.mesh().expect("a mesh").mesh.mesh();
+    assert_eq!(mesh.triangles.len(), 10);
+    // The second face is that of z = 0.5.
+    assert!(mesh.normals.iter().all(|normal| normal.z < 0.5), "{:?}", mesh.normals);
 }

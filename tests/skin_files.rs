@@ -259,7 +259,7 @@ fn damaged_packed_meshes_name_the_field() {
             "",
             "skin.mesh.packed.inverse_binds: must have 3 transforms, as `parents`, got 0",
         ),
-        ("/skin/mesh/packed/parts/0/texture", "AAAA", "skin.mesh.packed.parts[0].texture: "),
+        ("/skin/mesh/packed/textures/0", "AAAA", "skin.mesh.packed.textures[0]: "),
         ("/skin/mesh/packed/normals", "?", "skin.mesh.packed.normals: data must be base64"),
     ] {
         let error = refused(pointer, value.into());
@@ -269,4 +269,56 @@ fn damaged_packed_meshes_name_the_field() {
     assert!(error.contains("skin.mesh.joints[1]: must be a joint from 0 to 2, got 9"), "{error}");
     let error = refused("/skin/mesh/packed", serde_json::Value::Null);
     assert!(error.contains("skin.mesh: must have either `file` or `packed`"), "{error}");
+}
+
+#[test]
+fn the_path_to_the_file_leads_through_parent_folders_and_links() {
+    let project = Project::new();
+    let document = project.open().document;
+    fs::create_dir(project.path("scenes")).expect("a folder");
+    let mut saved = vec![project.path("models/../scenes/one.json")];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(project.path("scenes"), project.path("models/link"))
+            .expect("a link");
+        saved.push(project.path("models/link/two.json"));
+    }
+    for path in saved {
+        io::save(&document, &path).expect("saved");
+        let text = fs::read_to_string(&path).expect("a text");
+        assert!(text.contains("\"file\": \"../models/figure.glb\""), "{}", path.display());
+        let name = path.file_name().expect("a name");
+        let opened = io::open(&project.path("scenes").join(name), None).expect("it opens");
+        assert_eq!(warnings(&opened), [""; 0]);
+    }
+}
+
+#[test]
+fn parts_share_a_texture_also_in_files() {
+    let mut document = figure(2, 9);
+    let SkinSource::Mesh(skin) = &document.skeleton_rig.skin.as_ref().expect("a skin").source
+    else {
+        panic!("the mesh is from a file")
+    };
+    let mut mesh = FileMesh::clone(skin.in_file().expect("a mesh"));
+    mesh.parts[1].texture = mesh.parts[0].texture.clone();
+    let skin = MeshSkin::new(mesh.into(), None, skin.joints().to_vec(), document.skeleton());
+    document.skeleton_rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
+    let text = io::to_json(&document).expect("a text");
+    let read = io::parse("x.json", &text, None).expect("it opens").document;
+    assert_eq!(read, document);
+    let textures: Vec<_> =
+        attached(&read).parts.iter().filter_map(|part| part.texture.as_ref()).collect();
+    assert!(textures.len() == 2 && textures[0].is_same(textures[1]));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_document_cannot_make_the_program_read_a_device() {
+    let project = Project::new();
+    let text = fs::read_to_string(project.path("scene.json")).expect("a text");
+    fs::write(project.path("scene.json"), text.replace("models/figure.glb", "/dev/zero"))
+        .expect("a file");
+    let opened = project.open();
+    assert!(warnings(&opened)[0].contains("/dev/zero has no mesh"), "{:?}", warnings(&opened));
 }

@@ -121,9 +121,10 @@ pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProx
     let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &rig.skin else { return };
     let (skin, skeleton) = (skin.clone(), rig.skeleton.clone());
     thread::spawn(move || {
-        let name = skin.file().map_or("", |file| &file.skeleton);
+        let before = skin.file().cloned();
+        let name = before.as_ref().map_or("", |file| &file.skeleton);
         let read = Box::new(io::relocated_skin(&path, name, skin.joints(), &skeleton));
-        send(&proxy, UserEvent::SkinLocated { path, read });
+        send(&proxy, UserEvent::SkinLocated { path, before, read });
     });
 }
 

@@ -211,8 +211,8 @@ impl ApplicationHandler<UserEvent> for App {
                     self.session.apply(action);
                 }
             }
-            UserEvent::SkinLocated { path, read } => {
-                self.session.apply(FileAction::SkinLocated { path, read });
+            UserEvent::SkinLocated { path, before, read } => {
+                self.session.apply(FileAction::SkinLocated { path, before, read });
             }
             UserEvent::Chosen(dialog, choice) => {
                 let action = background::path_action(dialog, choice);

@@ -4,7 +4,7 @@ use winit::event_loop::EventLoopProxy;
 
 use crate::document::Baked;
 use crate::io::{OpenError, Opened};
-use crate::rig::{MeshSkin, SkinFileError};
+use crate::rig::{MeshSkin, SkinFile, SkinFileError};
 use crate::session::{BakeJob, PathDialog};
 
 /// Events that do not come from the window.
@@ -27,7 +27,11 @@ pub enum UserEvent {
     /// A file was read; `has_chosen_skeleton` if the user chose one of its skeletons.
     Opened { path: PathBuf, has_chosen_skeleton: bool, read: Box<Result<Opened, OpenError>> },
     /// The file of a skin was read.
-    SkinLocated { path: PathBuf, read: Box<Result<MeshSkin, SkinFileError>> },
+    SkinLocated {
+        path: PathBuf,
+        before: Option<SkinFile>,
+        read: Box<Result<MeshSkin, SkinFileError>>,
+    },
 }
 
 /// Answer to a request for a path.

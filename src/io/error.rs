@@ -79,6 +79,16 @@ pub enum SaveError {
     /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The document, with its packed mesh, is larger than [`OpenError::MAX_BYTES`].
+    #[error(
+        "the document cannot be written: it would have {got} MB, and at most {} MB can be opened again; \
+         keep the mesh of its skin in a file of its own",
+        OpenError::MAX_BYTES >> 20
+    )]
+    TooLarge {
+        /// Size in MB.
+        got: u64,
+    },
     /// The document cannot be serialized as JSON.
     #[error("the document cannot be written: {0}")]
     Value(#[from] serde_json::Error),

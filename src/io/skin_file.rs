@@ -52,6 +52,10 @@ type FileSkin = (crate::kinematics::Shared<crate::rig::FileMesh>, SkinFile);
 
 /// The mesh on a skeleton of a file; `None` if it has none.
 fn read(path: &Path, skeleton: Option<&str>) -> Result<Option<FileSkin>, OpenError> {
+    // Reading a device or a pipe would never end.
+    if path.metadata().is_ok_and(|file| !file.is_file()) {
+        return Ok(None);
+    }
     let source = Source::open(path)?;
     let opened = match FileFormat::detect(&source)? {
         FileFormat::Gltf => gltf::read(&source, skeleton)?,
@@ -86,14 +90,17 @@ pub fn load_skin(document: &mut Document, folder: Option<&Path>, warnings: &mut 
     };
 }
 
-/// The document with the path of its skin's file relative to `folder`, if that is possible.
+/// The document with the path of its skin's file relative to `folder`, if both exist and that is possible;
+/// otherwise absolute.
 pub fn with_relative_skin(document: &Document, folder: &Path) -> Document {
     let mut document = document.clone();
     if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.skeleton_rig.skin {
-        let relative = |file: &SkinFile| -> PathBuf {
-            let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-            pathdiff::diff_paths(&file.path, folder).unwrap_or_else(|| file.path.clone())
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        // Without links and `..`, whose folders would be others from the document's own folder.
+        let relative = |file: &SkinFile| -> Option<PathBuf> {
+            pathdiff::diff_paths(file.path.canonicalize().ok()?, folder.canonicalize().ok()?)
         };
+        let relative = |file: &SkinFile| relative(file).unwrap_or_else(|| file.path.clone());
         *skin = skin.with_path(relative);
     }
     document

@@ -4,7 +4,8 @@ use glam::Vec4;
 use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
-use crate::rig::SkinPart;
+use crate::kinematics::Shared;
+use crate::rig::{SkinPart, SkinTexture};
 
 /// What the materials of skins have in common on the device.
 #[derive(Debug)]
@@ -64,15 +65,26 @@ impl SkinMaterials {
     /// The materials of consecutive parts of a mesh with `triangles` triangles.
     pub fn of_parts(&self, gpu: &Gpu, parts: &[SkinPart], triangles: usize) -> Vec<SkinMaterial> {
         let mut end = 0;
-        let material = |part: &SkinPart| {
+        let mut views: Vec<(&Shared<SkinTexture>, wgpu::TextureView)> = Vec::new();
+        let mut materials = Vec::with_capacity(parts.len());
+        for part in parts {
             let start = end;
             end = (start + part.triangles).min(triangles);
-            SkinMaterial { corners: 3 * start as u32..3 * end as u32, group: self.group(gpu, part) }
-        };
-        parts.iter().map(material).collect()
+            let view = part.texture.as_ref().map(|texture| {
+                let known = views.iter().position(|(other, _)| other.is_same(texture));
+                known.unwrap_or_else(|| {
+                    views.push((texture, texture_view(gpu, texture.size, &texture.pixels)));
+                    views.len() - 1
+                })
+            });
+            let view = view.map_or(&self.white, |view| &views[view].1);
+            let corners = 3 * start as u32..3 * end as u32;
+            materials.push(SkinMaterial { corners, group: self.group(gpu, part, view) });
+        }
+        materials
     }
 
-    fn group(&self, gpu: &Gpu, part: &SkinPart) -> wgpu::BindGroup {
+    fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
         let [red, green, blue] = part.colour;
         let has_texture = if part.texture.is_some() { 1.0 } else { 0.0 };
         let colour = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -80,9 +92,6 @@ impl SkinMaterials {
             contents: bytemuck::bytes_of(&Vec4::new(red, green, blue, has_texture)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let texture = part.texture.as_ref();
-        let own = texture.map(|texture| texture_view(gpu, texture.size, &texture.pixels));
-        let view = own.as_ref().unwrap_or(&self.white);
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("skin material"),

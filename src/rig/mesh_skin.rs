@@ -109,13 +109,19 @@ impl MeshSkin {
         Self { file, ..self.clone() }
     }
 
+    /// The same skin, measured on another pose of its skeleton.
+    #[must_use]
+    pub fn attached_to(&self, skeleton: &Skeleton) -> Self {
+        let mesh = self.mesh.as_ref().map_err(Clone::clone);
+        let mesh = mesh.map(|mesh| LoadedMesh::new(mesh.in_file.clone(), &self.joints, skeleton));
+        Self { mesh, ..self.clone() }
+    }
+
     /// The skin for a skeleton with other joint indices.
     pub(super) fn remapped(&self, remap: &JointRemap, skeleton: &Skeleton) -> Self {
         let joints: Vec<_> =
             self.joints.iter().map(|joint| joint.and_then(|joint| remap.get(joint))).collect();
-        let mesh = self.mesh.as_ref().map_err(Clone::clone);
-        let mesh = mesh.map(|mesh| LoadedMesh::new(mesh.in_file.clone(), &joints, skeleton));
-        Self { file: self.file.clone(), joints, mesh }
+        Self { joints, ..self.clone() }.attached_to(skeleton)
     }
 }
 

@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use super::attached_mesh::AttachedMesh;
 use super::bone_skin::BoneSkin;
-use super::mesh_skin::{MeshSkin, SkinFileError};
+use super::mesh_skin::{MeshSkin, SkinFile, SkinFileError};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointRemap, Skeleton};
 use crate::kinematics::skin::{SkinShapeError, Skinning};
@@ -86,9 +86,10 @@ impl Skin {
         }
     }
 
-    /// Whether the mesh of the skin is from a file, and follows the same joints as `mesh`.
-    pub fn has_joints_of(&self, mesh: &MeshSkin) -> bool {
-        matches!(&self.source, SkinSource::Mesh(own) if own.joints() == mesh.joints())
+    /// Whether the mesh of the skin is from the file `before`, and follows the same joints as `mesh`.
+    pub fn can_become(&self, mesh: &MeshSkin, before: Option<&SkinFile>) -> bool {
+        let SkinSource::Mesh(own) = &self.source else { return false };
+        own.joints() == mesh.joints() && own.file() == before
     }
 
     /// The skin with its mesh made again, if it is made from bones and the bind pose or the shape have

@@ -179,7 +179,9 @@ impl Session {
                 self.shell.set_choosing(false);
                 return Some(Effect::LocateSkin(path));
             }
-            FileAction::SkinLocated { path, read } => self.take_located_skin(&path, *read),
+            FileAction::SkinLocated { path, before, read } => {
+                self.take_located_skin(&path, before.as_ref(), *read);
+            }
             FileAction::Save => {
                 self.files.take_after_save();
                 return Some(self.save());

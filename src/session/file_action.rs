@@ -4,7 +4,7 @@ use super::export::{Export, ExportJob};
 use super::path_dialog::PathDialog;
 use crate::document::Document;
 use crate::io::Example;
-use crate::rig::{MeshSkin, SkinFileError};
+use crate::rig::{MeshSkin, SkinFile, SkinFileError};
 
 /// Opens, saves, exports and quits.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +45,8 @@ pub enum FileAction {
     SkinLocated {
         /// The file.
         path: PathBuf,
+        /// The file that the skin had when this one was chosen.
+        before: Option<SkinFile>,
         /// The skin with the mesh of the file.
         read: Box<Result<MeshSkin, SkinFileError>>,
     },

@@ -7,7 +7,7 @@ use super::skin_areas::SkinAreas;
 use crate::document::{Document, Overlay, Ray, Skin};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::SkinShapeError;
-use crate::rig::{MeshSkin, SkinFileError, SkinMeshError, SkinSource};
+use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
 
 /// Edits of the skin, and what the mouse points at on it.
 impl Session {
@@ -78,11 +78,18 @@ impl Session {
         }
     }
 
-    /// Replaces the mesh of the skin by that of a file. If the file cannot be read, asks for another one.
-    pub(super) fn take_located_skin(&mut self, path: &Path, read: Result<MeshSkin, SkinFileError>) {
+    /// Replaces the mesh of the skin by that of a file, unless the skin is no longer that of the file `before`.
+    /// If the file cannot be read, asks for another one.
+    pub(super) fn take_located_skin(
+        &mut self,
+        path: &Path,
+        before: Option<&SkinFile>,
+        read: Result<MeshSkin, SkinFileError>,
+    ) {
         match (read, self.skeleton_rig().skin.clone()) {
-            (Ok(mesh), Some(skin)) if skin.has_joints_of(&mesh) => {
+            (Ok(mesh), Some(skin)) if skin.can_become(&mesh, before) => {
                 self.commit_edit();
+                let mesh = mesh.attached_to(self.skeleton());
                 let skin = Skin { source: SkinSource::Mesh(mesh), ..skin };
                 self.apply_edit(EditAction::SetSkin(Some(skin)));
                 self.say(format!("The skin comes from {}", path.display()));

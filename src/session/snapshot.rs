@@ -5,6 +5,7 @@ use glam::Vec3;
 use crate::document::{Channel, Document};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Joint;
+use crate::rig::SkinSource;
 
 /// Unkeyed edits: values of keyed channels that differ from their keys, until the time changes.
 pub(super) type Overrides = BTreeMap<Channel, Vec3>;
@@ -83,9 +84,21 @@ impl Snapshot {
         let other = other.map(|other| &other.document);
         size_of::<Self>()
             + self.unshared_joint_bytes(other)
+            + self.unshared_mesh_bytes(other)
             + size_of_val(&*self.document.skeleton_rig.targets)
             + self.overrides.len() * size_of::<(Channel, Vec3)>()
             + self.document.keys.unshared_bytes(other.map(|other| &other.keys))
+    }
+
+    /// Bytes of the mesh of a skin from a file. That of a skin from bones is made again when it is needed.
+    fn unshared_mesh_bytes(&self, other: Option<&Document>) -> usize {
+        let mesh = |document: &Document| match &document.skeleton_rig.skin.as_ref()?.source {
+            SkinSource::Mesh(mesh) => mesh.mesh().ok().cloned(),
+            SkinSource::Bones(_) => None,
+        };
+        let Some(own) = mesh(&self.document) else { return 0 };
+        let is_shared = other.and_then(mesh).is_some_and(|theirs| own.is_same(&theirs));
+        if is_shared { 0 } else { own.mesh.bytes() }
     }
 
     fn unshared_joint_bytes(&self, other: Option<&Document>) -> usize {

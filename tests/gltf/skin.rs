@@ -659,3 +659,25 @@ fn a_skin_of_a_file_is_shown_instead_of_the_bones_and_blended_linearly() {
     let SkinSource::Mesh(mesh) = &skin(&opened).source else { panic!("from a file") };
     assert!(mesh.file().is_none(), "a text without a path can only be packed");
 }
+
+#[test]
+fn triangles_of_a_mirrored_node_are_turned_around() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    text.json["nodes"][4]["scale"] = json!([-1, 1, 1]);
+    let opened = opened(&text);
+    let mesh = attached(&opened).mesh.mesh();
+    assert_eq!(mesh.positions, strip.positions, "the place of the node makes no difference");
+    let turned: Vec<[u32; 3]> = strip.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    assert_eq!(mesh.triangles, turned);
+}
+
+#[test]
+fn meshes_beyond_the_limits_are_refused_before_they_are_read() {
+    let mut text = Strip::new().text();
+    let first = primitive(&mut text).clone();
+    text.json["meshes"][0]["primitives"] = json!(vec![first; 10_001]);
+    let opened = opened(&text);
+    let said = warnings(&opened).remove(0);
+    assert!(said.contains("a skin must have at most 10000 primitives, got 10001"), "{said}");
+}

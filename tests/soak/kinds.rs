@@ -213,7 +213,7 @@ kinds! {
         Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file() };
         NotOpened: Look 1, |v| FileAction::NotOpened { path: v.path(), why: v.name() };
         LocateSkin: Look 1, |v| FileAction::LocateSkin(v.path());
-        SkinLocated: Build 1, |v| FileAction::SkinLocated { path: v.path(), read: Box::new(v.located_skin()) };
+        SkinLocated: Build 1, |v| FileAction::SkinLocated { path: v.path(), before: v.skin_file(), read: Box::new(v.located_skin()) };
         Save: Look 1, |_| FileAction::Save;
         SaveAs: Look 1, |v| FileAction::SaveAs(v.path());
         Saved: Files 4, |v| FileAction::Saved(v.path());

@@ -209,9 +209,10 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
         let SkinSource::Mesh(skin) = &rig.skin.as_ref().expect("a skin").source else {
             panic!("the mesh is from a file");
         };
+        let before = skin.file().cloned();
         let name = &skin.file().expect("a file").skeleton;
         let read = Box::new(io::relocated_skin(path, name, skin.joints(), &rig.skeleton));
-        bench.tell(FileAction::SkinLocated { path: path.to_owned(), read });
+        bench.tell(FileAction::SkinLocated { path: path.to_owned(), before, read });
     };
     locate(&mut bench, &old);
     assert!(matches!(

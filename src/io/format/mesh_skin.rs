@@ -12,6 +12,7 @@ use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::texture::decoded;
 use crate::io::value::{JsonNumbers, JsonObject, Whole};
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture};
@@ -42,15 +43,18 @@ struct FileMeshFields {
     vertex_joints: Bytes,
     vertex_weights: Bytes,
     parts: Vec<JsonObject<SkinPartFields>>,
+    /// PNG or JPEG files.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    textures: Vec<Bytes>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct SkinPartFields {
     triangles: Whole,
     colour: JsonNumbers<3>,
-    /// A PNG or JPEG file.
+    /// Index in the list of textures.
     #[serde(skip_serializing_if = "Option::is_none")]
-    texture: Option<Bytes>,
+    texture: Option<Whole>,
 }
 
 /// Bytes in base64.
@@ -160,6 +164,12 @@ impl FileMeshFields {
         let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
         let coordinates = &triangles.texture_coordinates;
         let weights = || mesh.weights().iter();
+        let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();
+        for texture in parts.iter().filter_map(|part| part.texture.as_ref()) {
+            if !textures.iter().any(|known| known.is_same(texture)) {
+                textures.push(texture);
+            }
+        }
         Self {
             parents: wholes(parents),
             inverse_binds: Bytes::of_floats(
@@ -176,7 +186,11 @@ impl FileMeshFields {
                 weights().flat_map(VertexWeights::joints).flat_map(u16::to_le_bytes),
             ),
             vertex_weights: Bytes::of_floats(weights().flat_map(VertexWeights::weights)),
-            parts: parts.iter().map(SkinPartFields::new).map(JsonObject).collect(),
+            parts: parts
+                .iter()
+                .map(|part| JsonObject(SkinPartFields::new(part, &textures)))
+                .collect(),
+            textures: textures.iter().map(|texture| Bytes(base64::encode(&texture.file))).collect(),
         }
     }
 
@@ -219,8 +233,10 @@ impl FileMeshFields {
         let binds = binds.iter().map(Affine3A::from_cols_array).collect();
         let mesh = SkinnedMesh::new(mesh, weights.collect(), binds)
             .map_err(|error| FieldError::new(at("positions"), error.to_string()))?;
+        let textures = textures(self.textures, &at("textures"))?;
         let parts = self.parts.into_iter().enumerate();
-        let parts = parts.map(|(index, JsonObject(part))| part.part(&at("parts").index(index)));
+        let parts =
+            parts.map(|(index, JsonObject(part))| part.part(&textures, &at("parts").index(index)));
         Ok(FileMesh { mesh, parents, parts: parts.collect::<Result<_, _>>()? })
     }
 }
@@ -231,27 +247,43 @@ fn triangles(bytes: &[u8]) -> Vec<[u32; 3]> {
     corners.as_chunks().0.to_vec()
 }
 
+/// Decodes the textures of a mesh.
+fn textures(files: Vec<Bytes>, at: &JsonPath) -> Result<Vec<Shared<SkinTexture>>, FieldError> {
+    const MOST_PIXELS: usize = 1 << 27;
+    let mut rest = MOST_PIXELS;
+    let texture = |(index, bytes): (usize, Bytes)| {
+        let at = at.clone().index(index);
+        let texture = decoded(bytes.decoded(&at)?, rest);
+        let texture = texture.map_err(|reason| FieldError::new(at, reason))?;
+        rest -= texture.pixels.len();
+        Ok(texture.into())
+    };
+    files.into_iter().enumerate().map(texture).collect()
+}
+
 impl SkinPartFields {
-    fn new(part: &SkinPart) -> Self {
-        let texture = part.texture.as_ref();
+    fn new(part: &SkinPart, textures: &[&Shared<SkinTexture>]) -> Self {
+        let index = |texture| textures.iter().position(|known| known.is_same(texture));
         Self {
             triangles: whole(part.triangles),
             colour: JsonNumbers(part.colour),
-            texture: texture.map(|texture| Bytes::new(SkinTexture::clone(texture).file)),
+            texture: part.texture.as_ref().and_then(index).map(whole),
         }
     }
 
-    fn part(self, at: &JsonPath) -> Result<SkinPart, FieldError> {
+    fn part(self, textures: &[Shared<SkinTexture>], at: &JsonPath) -> Result<SkinPart, FieldError> {
         let JsonNumbers(colour) = self.colour;
         for (channel, value) in colour.into_iter().enumerate() {
             fraction(at.clone().key("colour").index(channel), value)?;
         }
-        let at = at.clone().key("texture");
-        let read = |bytes: Bytes| {
-            decoded(bytes.decoded(&at)?).map_err(|reason| FieldError::new(at.clone(), reason))
+        let texture = |Whole(index): Whole| {
+            textures.get(index as usize).cloned().ok_or_else(|| {
+                let count = textures.len();
+                let reason = format!("must be below {count}, the number of textures, got {index}");
+                FieldError::new(at.clone().key("texture"), reason)
+            })
         };
-        let texture = self.texture.map(read).transpose()?;
-        let triangles = self.triangles.0 as usize;
-        Ok(SkinPart { triangles, colour, texture: texture.map(Into::into) })
+        let texture = self.texture.map(texture).transpose()?;
+        Ok(SkinPart { triangles: self.triangles.0 as usize, colour, texture })
     }
 }

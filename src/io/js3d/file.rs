@@ -99,7 +99,8 @@ pub struct Js3dMesh {
     /// For each face a half-edge around it.
     #[serde(default, rename = "face_halfedges")]
     pub faces: String,
-    /// For each face a bit, from the lowest of a byte to the highest: 1 for a hole.
+    /// For each face a bit, from the highest of a byte to the lowest: 1 for a hole. A bit 1 follows the last
+    /// face.
     #[serde(default, rename = "face_boundaries")]
     pub boundaries: String,
 }

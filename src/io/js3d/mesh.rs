@@ -33,6 +33,11 @@ pub fn read(
     let edges = HalfEdges::new(mesh, at)?;
     let positions = points(&mesh.positions, &at.clone().key("vertex_positions"))?;
     let listed = listed_weights(mesh, positions.len(), order, at)?;
+    if positions.len() > SkinnedMesh::MOST_VERTICES {
+        let (most, got) = (SkinnedMesh::MOST_VERTICES, positions.len());
+        let reason = format!("must have at most {most} entries, got {got}");
+        return Err(FieldError::new(at.clone().key("vertex_positions"), reason));
+    }
     let by_distance = BoneDistances::new(skeleton);
     let mut loose = 0;
     let weights: Vec<VertexWeights> = positions
@@ -97,7 +102,7 @@ impl HalfEdges {
         }
         let holes = bytes(&mesh.boundaries, "bool", &at("face_boundaries"))?;
         let is_hole =
-            |face: usize| holes.get(face / 8).is_some_and(|byte| byte >> (face % 8) & 1 == 1);
+            |face: usize| holes.get(face / 8).is_some_and(|byte| byte >> (7 - face % 8) & 1 == 1);
         let mut face = 0..;
         faces.retain(|_| face.next().is_some_and(|face| !is_hole(face)));
         let positions = points(&mesh.positions, &at("vertex_positions"))?.len();

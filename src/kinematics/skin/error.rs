@@ -13,6 +13,16 @@ pub enum SkinError {
         /// Length of the list.
         got: usize,
     },
+    /// There are too many vertices or triangles.
+    #[error("a skin must have at most {most} {list}, got {got}")]
+    TooMany {
+        /// What there are too many of.
+        list: &'static str,
+        /// The greatest number.
+        most: usize,
+        /// The number.
+        got: usize,
+    },
     /// A triangle has a vertex that does not exist.
     #[error("triangle {triangle} must have vertices below {vertices}, got {got}")]
     Triangle {

@@ -16,18 +16,31 @@ pub struct SkinnedMesh {
 }
 
 impl SkinnedMesh {
+    /// Maximum number of vertices: graphics devices of any kind can hold as many.
+    pub const MOST_VERTICES: usize = 2_500_000;
+    /// Maximum number of triangles.
+    pub const MOST_TRIANGLES: usize = 5_000_000;
+
     /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹ from
     /// mesh space to the joint's own space.
     ///
     /// # Errors
     ///
-    /// [`SkinError`] if the lists do not fit each other or a number is not finite.
+    /// [`SkinError`] if the lists do not fit each other or are too long, or a number is not finite.
     pub fn new(
         mesh: TriangleMesh,
         weights: Vec<VertexWeights>,
         inverse_binds: Vec<Affine3A>,
     ) -> Result<Self, SkinError> {
         let vertices = mesh.positions.len();
+        for (list, most, got) in [
+            ("vertices", Self::MOST_VERTICES, vertices),
+            ("triangles", Self::MOST_TRIANGLES, mesh.triangles.len()),
+        ] {
+            if got > most {
+                return Err(SkinError::TooMany { list, most, got });
+            }
+        }
         let coordinates = match mesh.texture_coordinates.len() {
             0 => vertices,
             some => some,

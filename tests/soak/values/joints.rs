@@ -102,6 +102,14 @@ impl Values<'_> {
         MeshSkin::new(mesh.into(), None, joints, &skeleton)
     }
 
+    /// The file of the skin, if it has one.
+    pub fn skin_file(&mut self) -> Option<SkinFile> {
+        match &self.session.skeleton_rig().skin.as_ref()?.source {
+            SkinSource::Mesh(mesh) => mesh.file().cloned(),
+            SkinSource::Bones(_) => None,
+        }
+    }
+
     pub fn located_skin(&mut self) -> Result<MeshSkin, SkinFileError> {
         let skin = self.mesh_skin();
         skin.mesh().map(|_| skin.clone())

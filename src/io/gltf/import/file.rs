@@ -88,6 +88,8 @@ pub struct GltfMaterial {
     pub emissive_texture: Option<IgnoredAny>,
     #[serde(rename = "emissiveFactor")]
     pub emissive: Option<JsonPoint>,
+    #[serde(rename = "doubleSided")]
+    pub double_sided: Option<bool>,
     #[serde(rename = "alphaMode")]
     pub alpha_mode: Option<String>,
     #[serde(default)]

@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use super::buffers::{GltfBuffers, is_file, read_uri};
 use super::file::{GltfFile, GltfImage, GltfMaterial, GltfRoughness, GltfTextureUse, index_rule};
 use super::rows::view_bytes;
@@ -22,34 +24,72 @@ pub struct PartMaterial {
 impl PartMaterial {
     /// White, for primitives without a material.
     pub const WHITE: Self = Self { colour: [1.0; 3], texture: None };
+}
+
+/// Where the images of materials are.
+pub struct MaterialSource<'a> {
+    pub source: &'a Source,
+    pub file: &'a GltfFile,
+    pub buffers: &'a GltfBuffers<'a>,
+}
+
+/// The images of a skin that are decoded already, by their index; `None` for one that cannot be decoded.
+#[derive(Default)]
+pub struct ImageCache {
+    images: BTreeMap<usize, Option<Shared<SkinTexture>>>,
+    pixels: usize,
+}
+
+impl ImageCache {
+    /// Maximum number of pixels of all images of a skin.
+    const MOST_PIXELS: usize = 1 << 27;
 
     /// Reads the base colour of a material. A texture that cannot be read is left out, with a warning.
-    pub fn new(
-        source: &Source,
-        file: &GltfFile,
-        buffers: &GltfBuffers<'_>,
+    pub fn material(
+        &mut self,
+        from: &MaterialSource<'_>,
         material: &GltfMaterial,
         checksum: &mut crc32fast::Hasher,
         warnings: &mut FieldWarnings,
-    ) -> Self {
+    ) -> PartMaterial {
         let Some(JsonObject(GltfRoughness { factor, texture, .. })) = &material.roughness else {
-            return Self::WHITE;
+            return PartMaterial::WHITE;
         };
         let colour = factor
             .as_ref()
             .map_or([1.0; 3], |JsonNumbers([red, green, blue, _])| [*red, *green, *blue].map(srgb));
         let texture = texture.as_ref().and_then(|JsonObject(used)| {
-            let read = image(file, used).and_then(|(index, image)| {
-                let bytes = image_bytes(source, file, buffers, (index, image))?;
-                if image.uri.as_deref().is_some_and(is_file) {
-                    checksum.update(&bytes);
-                }
-                decoded(bytes).map_err(|reason| FieldError::new(at_image(index), reason))
-            });
-            read.map_err(|error| warnings.push(error.field, format!("not read: {}", error.reason)))
+            let texture = self.texture(from, used, checksum);
+            texture
+                .map_err(|error| warnings.push(error.field, format!("not read: {}", error.reason)))
                 .ok()
+                .flatten()
         });
-        Self { colour, texture: texture.map(Shared::from) }
+        PartMaterial { colour, texture }
+    }
+
+    /// The image of a texture; `None` if it has failed before.
+    fn texture(
+        &mut self,
+        from: &MaterialSource<'_>,
+        used: &GltfTextureUse,
+        checksum: &mut crc32fast::Hasher,
+    ) -> Result<Option<Shared<SkinTexture>>, FieldError> {
+        let (index, image) = image(from.file, used)?;
+        if let Some(known) = self.images.get(&index) {
+            return Ok(known.clone());
+        }
+        self.images.insert(index, None);
+        let bytes = image_bytes(from, (index, image))?;
+        if image.uri.as_deref().is_some_and(is_file) {
+            checksum.update(&bytes);
+        }
+        let error = |reason| FieldError::new(at_image(index), reason);
+        let texture = decoded(bytes, Self::MOST_PIXELS - self.pixels).map_err(error)?;
+        self.pixels += texture.pixels.len();
+        let texture = Some(Shared::from(texture));
+        self.images.insert(index, texture.clone());
+        Ok(texture)
     }
 }
 
@@ -82,6 +122,7 @@ impl GltfMaterial {
             ("emission", glow || self.emissive_texture.is_some()),
             ("metallic and roughness textures", of_roughness.is_some()),
             ("transparency", alpha != "OPAQUE"),
+            ("back faces of double-sided materials", self.double_sided.unwrap_or(false)),
         ];
         let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());
         let of_texture = self.texture_use().into_iter().flat_map(|used| used.extensions.keys());
@@ -114,11 +155,10 @@ fn image<'a>(
 }
 
 fn image_bytes(
-    source: &Source,
-    file: &GltfFile,
-    buffers: &GltfBuffers<'_>,
+    from: &MaterialSource<'_>,
     (index, image): (usize, &GltfImage),
 ) -> Result<Vec<u8>, FieldError> {
+    let MaterialSource { source, file, buffers } = *from;
     let at = at_image(index);
     match (&image.uri, image.view) {
         (Some(uri), _) => read_uri(source, uri, OpenError::MAX_BYTES as usize)

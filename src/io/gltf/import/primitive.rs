@@ -21,6 +21,9 @@ pub struct PrimitiveMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Maximum number of sets of four joints for each vertex.
+const MOST_SETS: usize = 16;
+
 /// How corners make triangles.
 #[derive(Clone, Copy)]
 enum Mode {
@@ -71,7 +74,7 @@ impl GltfPrimitive {
 
     /// Accessors of the sets of joints, each with that of their weights.
     fn weights(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..).map_while(|set| {
+        (0..MOST_SETS).map_while(|set| {
             let joints = self.attribute(&format!("JOINTS_{set}"))?;
             Some((joints, self.attribute(&format!("WEIGHTS_{set}"))?))
         })

@@ -11,7 +11,7 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
 use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, index_rule};
-use super::material::PartMaterial;
+use super::material::{ImageCache, MaterialSource, PartMaterial};
 use super::motion::JointPlacement;
 use super::nodes::{NodeTree, at_node};
 use super::primitive::PrimitiveMesh;
@@ -20,12 +20,13 @@ use super::skins::{SkinJoints, at_skin};
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
+use crate::io::value::Whole;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{FileMesh, SkinPart};
 
-/// Maximum number of vertices of all meshes of a skin.
-const MOST_VERTICES: usize = 4_000_000;
+/// Maximum number of primitives of all meshes of a skin.
+const MOST_PARTS: usize = 10_000;
 
 /// A skin of a file, with the joints that it becomes.
 pub struct MeshImport<'a> {
@@ -77,6 +78,7 @@ impl MeshImport<'_> {
         if meshes.iter().all(|mesh| mesh.surfaces().next().is_none()) {
             return Ok(None);
         }
+        self.check_size(&meshes)?;
         let needed = self.buffers(&meshes)?;
         let buffers = GltfBuffers::read(source, file, &needed)?;
         let mut checksum = source.checksum();
@@ -90,6 +92,7 @@ impl MeshImport<'_> {
         let attached = self.attached(&worlds, &buffers)?;
         let mut builder = MeshBuilder::default();
         let mut materials = BTreeMap::new();
+        let mut images = ImageCache::default();
         for mesh in &meshes {
             let rigid =
                 mesh.joint.map(|joint| (joint, attached[joint].inverse() * worlds[mesh.node]));
@@ -105,15 +108,20 @@ impl MeshImport<'_> {
                 let read = PrimitiveMesh::new(file, &buffers, primitive, set, count, &at)?;
                 let look = material.map(|(index, material)| {
                     let new = || {
-                        PartMaterial::new(source, file, &buffers, material, &mut checksum, warnings)
+                        images.material(
+                            &MaterialSource { source, file, buffers: &buffers },
+                            material,
+                            &mut checksum,
+                            warnings,
+                        )
                     };
                     materials.entry(index).or_insert_with(new).clone()
                 });
-                builder.add(read, rigid, look.unwrap_or(PartMaterial::WHITE), joints);
-                if builder.mesh.positions.len() > MOST_VERTICES {
-                    let reason = format!("must have at most {MOST_VERTICES} vertices in all");
-                    return Err(FieldError::new(at, reason));
-                }
+                // The corners of a mesh on a mirrored node are in reverse order.
+                let mirrors = rigid.map_or(worlds[mesh.node], |(_, to_mesh)| to_mesh);
+                let is_mirrored = mirrors.matrix3.determinant() < 0.0;
+                let look = look.unwrap_or(PartMaterial::WHITE);
+                builder.add(read, rigid, is_mirrored, look, joints);
             }
         }
         self.warn_of_unread(&meshes, &builder, warnings);
@@ -125,6 +133,33 @@ impl MeshImport<'_> {
             .map_err(|error| FieldError::new(at_skin(self.index), error.to_string()))?;
         let parents = joints.parents.iter().map(|parent| parent.map(JointId::new)).collect();
         Ok(Some((FileMesh { mesh, parents, parts }, checksum.finalize())))
+    }
+
+    /// Checks the numbers of vertices, corners and primitives before anything of them is read.
+    fn check_size(&self, meshes: &[UsedMesh<'_>]) -> Result<(), FieldError> {
+        const MOST_CORNERS: usize = 3 * SkinnedMesh::MOST_TRIANGLES;
+        let count = |accessor: Option<&Whole>| {
+            let accessor = accessor.and_then(|it| self.file.accessors.0.get(it.0 as usize));
+            accessor.map_or(0, |accessor| accessor.count.0 as usize)
+        };
+        let (mut parts, mut vertices, mut corners) = (0, 0_usize, 0_usize);
+        for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
+            parts += 1;
+            vertices = vertices.saturating_add(count(primitive.attributes.get("POSITION")));
+            corners = corners.saturating_add(count(primitive.indices.as_ref()));
+            for (what, most, got) in [
+                ("primitives", MOST_PARTS, parts),
+                ("vertices", SkinnedMesh::MOST_VERTICES, vertices),
+                ("corners of triangles", MOST_CORNERS, corners),
+            ] {
+                if got > most {
+                    let reason =
+                        format!("a skin must have at most {most} {what}, got {got} or more");
+                    return Err(FieldError::new(at, reason));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The meshes of the nodes with the skin, and those of nodes below its joints.
@@ -290,6 +325,7 @@ impl MeshBuilder {
         &mut self,
         primitive: PrimitiveMesh,
         rigid: Option<(usize, DAffine3)>,
+        is_mirrored: bool,
         PartMaterial { colour, texture }: PartMaterial,
         joints: &SkinJoints,
     ) {
@@ -304,9 +340,9 @@ impl MeshBuilder {
                 *position = to_mesh.transform_point3(position.as_dvec3()).as_vec3();
                 *normal = (of_normals * normal.as_dvec3()).as_vec3();
             }
-            if to_mesh.matrix3.determinant() < 0.0 {
-                triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
-            }
+        }
+        if is_mirrored {
+            triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
         let first = self.mesh.positions.len();
         self.parts.push(SkinPart { triangles: triangles.len(), colour, texture });
