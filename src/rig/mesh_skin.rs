@@ -7,7 +7,7 @@ use super::file_mesh::FileMesh;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
 
-/// A skin whose mesh comes from a file of another program.
+/// A skin whose mesh was imported: it is read from its file, or saved in the document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSkin {
     /// The file that documents refer to; `None` if they contain the mesh.
@@ -36,7 +36,7 @@ pub enum SkinFileError {
     Missing(PathBuf),
     /// The file has changed since the document was saved.
     #[error(
-        "the skin's file {0} has changed since the document was saved: locate it to take it as it is"
+        "the skin's file {0} has changed since the document was saved: locate it to use its new version"
     )]
     Changed(PathBuf),
     /// The file cannot be read, or has no such skin.
@@ -97,12 +97,12 @@ impl MeshSkin {
         self.mesh.as_ref().map(|mesh| &mesh.attached).map_err(Clone::clone)
     }
 
-    /// The same skin that documents contain, instead of referring to a file; `None` without a mesh.
+    /// A copy whose mesh is saved in the document, not in a file of its own; `None` without a mesh.
     pub fn packed(&self) -> Option<Self> {
         self.mesh.is_ok().then(|| Self { file: None, ..self.clone() })
     }
 
-    /// The same skin with another path of its file.
+    /// A copy that refers to its file by another path.
     #[must_use]
     pub fn with_path(&self, path: impl FnOnce(&SkinFile) -> PathBuf) -> Self {
         let file = self.file.as_ref().map(|file| SkinFile { path: path(file), ..file.clone() });

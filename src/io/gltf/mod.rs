@@ -11,7 +11,7 @@
 //!                      +y along the bone, x as near to the joint's own x as possible, or
 //!                      for a bone along that to its z
 //!     └ NAME_tip       at the tip of a bone that has no children or whose length changes
-//! Limbs                the skinned mesh: a cone for each bone, balls at joints
+//! Limbs                the mesh: the skin, or without one a cone for each bone and balls at joints
 //! ```
 //!
 //! Nodes are in the bind pose: the skeleton before any rotation, the arm straight along the Root's
@@ -27,8 +27,8 @@
 //!
 //! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:
 //! triangles, normals, weights, and base colours with their textures. Other meshes and channels of
-//! materials, morph targets and cameras are not read, with one remark; a mesh that cannot be read is
-//! left out, with another.
+//! materials and morph targets are not read, with one warning. If a mesh is damaged or compressed, the
+//! whole skin is left out, with a warning.
 //!
 //! # Source
 //!

@@ -8,18 +8,18 @@
 //! - **Linear**: v' = Σ w_i J_i v, normals by the cofactors of Σ w_i J_i. Between two joints that are
 //!   twisted by 180° against each other the mesh collapses to a point (the candy wrapper).
 //! - **Dual quaternions**: J_i = q̂_i·S_i with a rigid motion q̂_i and a scale S_i. The scales are blended
-//!   linearly first: v_s = Σ w_i S_i v. The rigid motions are then blended as unit dual quaternions with
-//!   the signs of the heaviest joint's hemisphere. Keeps the volume under twist and bulges a little at
+//!   linearly first: v_s = Σ w_i S_i v. The rigid motions are then blended as unit dual quaternions, each
+//!   negated first if it points away from the heaviest joint's. Keeps the volume under twist and bulges a little at
 //!   bends.
 //! - **Spread twist**: the roll τ of each joint about its bone is spread along the bone: a vertex at the
 //!   fraction t of the bone gets t·τ, as from the twist joints of a rig. Blends linearly after that.
 //!
 //! [`SkinnedMesh::from_bones`] makes a skin for any skeleton from the radii of its joints.
 //!
-//! # Units
+//! # Spaces
 //!
-//! Positions are in mesh space, which for skins from bones is skeleton space in the bind pose. Deformed
-//! positions are in the world.
+//! Vertices are stored in mesh space; for a skin from bones, that is skeleton space in the bind pose. v' is
+//! in skeleton space; the skeleton's own transform then brings it to the world.
 //!
 //! # Sources
 //!
