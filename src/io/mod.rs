@@ -25,6 +25,7 @@ mod js3d;
 mod json_path;
 mod json_style;
 mod line;
+mod little_endian;
 mod motion;
 mod obj;
 mod open;

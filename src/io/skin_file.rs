@@ -10,8 +10,9 @@ use super::json_path::JsonPath;
 use super::source::Source;
 use super::{gltf, js3d};
 use crate::document::{Document, Skin};
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinSource};
+use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinSource};
 
 /// Takes the mesh of a skin from the file at `path` as it is now: from the skeleton of the same name, or
 /// from the file's only one.
@@ -48,10 +49,11 @@ pub fn relocated_skin(
     Ok(MeshSkin::new(mesh, Some(file), joints.to_vec(), skeleton))
 }
 
-type FileSkin = (crate::kinematics::Shared<crate::rig::FileMesh>, SkinFile);
-
 /// The mesh on a skeleton of a file; `None` if it has none.
-fn read(path: &Path, skeleton: Option<&str>) -> Result<Option<FileSkin>, OpenError> {
+fn read(
+    path: &Path,
+    skeleton: Option<&str>,
+) -> Result<Option<(Shared<FileMesh>, SkinFile)>, OpenError> {
     // Reading a device or a pipe would never end.
     if path.metadata().is_ok_and(|file| !file.is_file()) {
         return Ok(None);

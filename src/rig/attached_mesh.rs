@@ -11,11 +11,11 @@ pub struct AttachedMesh {
     pub mesh: SkinnedMesh,
     /// The parts of the mesh in the order of its triangles, one after the other.
     pub parts: Vec<SkinPart>,
-    /// For each joint the mean distance from its bone of the vertices that follow it most, in skeleton
-    /// units; 0 for a joint without vertices.
+    /// For each joint, how thick the mesh is around its bone: the mean distance from the bone to the vertices
+    /// whose greatest weight is this joint's, in skeleton units; 0 for a joint without such vertices.
     pub radii: Vec<f32>,
-    /// For each joint the lowest and the highest corner of a box, in the joint's own space, around the vertices
-    /// that follow it most; `None` for a joint without vertices.
+    /// For each joint, the box around those vertices in the joint's own space in the bind pose: its lowest and its
+    /// highest corner; `None` for a joint without such vertices.
     pub boxes: Vec<Option<[Vec3; 2]>>,
 }
 
@@ -51,9 +51,7 @@ impl AttachedMesh {
         let mean = |(sum, count): (f64, u32)| (sum / f64::from(count.max(1))) as f32;
         Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes }
     }
-}
 
-impl AttachedMesh {
     /// The corners of boxes in the world that contain nearly all of the mesh in a pose.
     pub fn corners(&self, pose: &SkeletonPose) -> impl Iterator<Item = Vec3> {
         let corners = move |(joint, bounds): (usize, &Option<[Vec3; 2]>)| {

@@ -10,7 +10,8 @@ use super::check::{fraction, joint};
 use crate::io::base64;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::texture::decoded;
+use crate::io::little_endian;
+use crate::io::texture::TextureDecoder;
 use crate::io::value::{JsonNumbers, JsonObject, Whole};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -78,17 +79,12 @@ impl Bytes {
     /// Rows of `N` floats.
     fn floats<const N: usize>(&self, at: &JsonPath) -> Result<Vec<[f32; N]>, FieldError> {
         let bytes = self.decoded(at)?;
-        let (floats, rest) = bytes.as_chunks();
-        let floats: Vec<f32> = floats.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-        let (rows, beyond) = floats.as_chunks();
-        match (rest, beyond) {
-            ([], []) => Ok(rows.to_vec()),
-            _ => {
-                let (row, got) = (4 * N, bytes.len());
-                let reason = format!("must have a multiple of {row} bytes, got {got}");
-                Err(FieldError::new(at.clone(), reason))
-            }
+        let (row, got) = (4 * N, bytes.len());
+        if got % row != 0 {
+            let reason = format!("must have a multiple of {row} bytes, got {got}");
+            return Err(FieldError::new(at.clone(), reason));
         }
+        Ok(little_endian::floats(&bytes).as_chunks().0.to_vec())
     }
 
     fn vectors(&self, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
@@ -213,7 +209,10 @@ impl FileMeshFields {
                 .into_iter()
                 .map(Vec2::from_array)
                 .collect(),
-            triangles: triangles(&self.triangles.decoded(&at("triangles"))?),
+            triangles: little_endian::wholes(&self.triangles.decoded(&at("triangles"))?)
+                .as_chunks()
+                .0
+                .to_vec(),
         };
         let joints = self.vertex_joints.decoded(&at("vertex_joints"))?;
         let (joints, _) = joints.as_chunks::<8>();
@@ -241,22 +240,13 @@ impl FileMeshFields {
     }
 }
 
-fn triangles(bytes: &[u8]) -> Vec<[u32; 3]> {
-    let (corners, _) = bytes.as_chunks();
-    let corners: Vec<u32> = corners.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
-    corners.as_chunks().0.to_vec()
-}
-
 /// Decodes the textures of a mesh.
 fn textures(files: Vec<Bytes>, at: &JsonPath) -> Result<Vec<Shared<SkinTexture>>, FieldError> {
-    const MOST_PIXELS: usize = 1 << 27;
-    let mut rest = MOST_PIXELS;
+    let mut decoder = TextureDecoder::default();
     let texture = |(index, bytes): (usize, Bytes)| {
         let at = at.clone().index(index);
-        let texture = decoded(bytes.decoded(&at)?, rest);
-        let texture = texture.map_err(|reason| FieldError::new(at, reason))?;
-        rest -= texture.pixels.len();
-        Ok(texture.into())
+        let texture = decoder.decode(bytes.decoded(&at)?);
+        Ok(texture.map_err(|reason| FieldError::new(at, reason))?.into())
     };
     files.into_iter().enumerate().map(texture).collect()
 }

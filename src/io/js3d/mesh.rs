@@ -8,6 +8,7 @@ use super::file::Js3dMesh;
 use crate::io::base64;
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
+use crate::io::little_endian;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::FileMesh;
@@ -30,8 +31,8 @@ pub fn read(
         let reason = format!("must be {FORMAT:?}, got {:?}", mesh.format);
         return Err(FieldError::new(at.clone().key("FORMAT"), reason));
     }
-    let edges = HalfEdges::new(mesh, at)?;
     let positions = points(&mesh.positions, &at.clone().key("vertex_positions"))?;
+    let edges = HalfEdges::new(mesh, positions.len(), at)?;
     let listed = listed_weights(mesh, positions.len(), order, at)?;
     if positions.len() > SkinnedMesh::MOST_VERTICES {
         let (most, got) = (SkinnedMesh::MOST_VERTICES, positions.len());
@@ -82,7 +83,7 @@ struct HalfEdges {
 }
 
 impl HalfEdges {
-    fn new(mesh: &Js3dMesh, at: &JsonPath) -> Result<Self, FieldError> {
+    fn new(mesh: &Js3dMesh, positions: usize, at: &JsonPath) -> Result<Self, FieldError> {
         let at = |key: &str| at.clone().key(key);
         let nexts = wholes(&mesh.nexts, &at("halfedge_nexts"))?;
         let count = nexts.len();
@@ -105,7 +106,6 @@ impl HalfEdges {
             |face: usize| holes.get(face / 8).is_some_and(|byte| byte >> (7 - face % 8) & 1 == 1);
         let mut face = 0..;
         faces.retain(|_| face.next().is_some_and(|face| !is_hole(face)));
-        let positions = points(&mesh.positions, &at("vertex_positions"))?.len();
         if positions != starts.len() {
             let reason = format!(
                 "must have {} entries like vertex_halfedges, got {positions}",
@@ -288,10 +288,7 @@ fn rows<const N: usize>(
     kind: &str,
     at: &JsonPath,
 ) -> Result<Vec<[f32; N]>, FieldError> {
-    let bytes = bytes(text, kind, at)?;
-    let numbers: Vec<f32> =
-        bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-    Ok(numbers.as_chunks().0.to_vec())
+    Ok(little_endian::floats(&bytes(text, kind, at)?).as_chunks().0.to_vec())
 }
 
 fn points(text: &str, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
@@ -299,6 +296,6 @@ fn points(text: &str, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
 }
 
 fn wholes(text: &str, at: &JsonPath) -> Result<Vec<usize>, FieldError> {
-    let bytes = bytes(text, "uint32", at)?;
-    Ok(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes) as usize).collect())
+    let numbers = little_endian::wholes(&bytes(text, "uint32", at)?);
+    Ok(numbers.into_iter().map(|number| number as usize).collect())
 }

@@ -8,7 +8,7 @@ use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::gltf::colour::srgb;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
-use crate::io::texture::decoded;
+use crate::io::texture::TextureDecoder;
 use crate::io::value::{JsonNumbers, JsonObject};
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
@@ -37,13 +37,10 @@ pub struct MaterialSource<'a> {
 #[derive(Default)]
 pub struct ImageCache {
     images: BTreeMap<usize, Option<Shared<SkinTexture>>>,
-    pixels: usize,
+    decoder: TextureDecoder,
 }
 
 impl ImageCache {
-    /// Maximum number of pixels of all images of a skin.
-    const MOST_PIXELS: usize = 1 << 27;
-
     /// Reads the base colour of a material. A texture that cannot be read is left out, with a warning.
     pub fn material(
         &mut self,
@@ -85,9 +82,7 @@ impl ImageCache {
             checksum.update(&bytes);
         }
         let error = |reason| FieldError::new(at_image(index), reason);
-        let texture = decoded(bytes, Self::MOST_PIXELS - self.pixels).map_err(error)?;
-        self.pixels += texture.pixels.len();
-        let texture = Some(Shared::from(texture));
+        let texture = Some(Shared::from(self.decoder.decode(bytes).map_err(error)?));
         self.images.insert(index, texture.clone());
         Ok(texture)
     }

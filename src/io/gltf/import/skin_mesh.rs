@@ -1,9 +1,10 @@
 //! The mesh of a skin: all surfaces that follow its joints.
 //!
-//! In the file's bind pose, the node of joint i has the transform N_i in the world, and its inverse bind matrix
-//! IBM_i maps the mesh to the node's own space; so the joint places the mesh by A_i = N_i·IBM_i. The skeleton's
-//! own joint i is at X_i there, and its inverse bind transform is B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without
-//! a skin follows the nearest joint j above rigidly: with the node at N, its vertices become A_j⁻¹·N·v.
+//! As the file's nodes stand, the node of joint i has the transform N_i in the world, and its inverse bind matrix
+//! IBM_i maps the mesh to the node's own space; so the joint places the mesh by A_i = N_i·IBM_i. The skeleton that
+//! is read has its joint i at the same place, but not turned: X_i is the translation to N_i's origin. The inverse
+//! bind transform of the skeleton's joint is therefore B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without a skin follows
+//! the nearest joint j above it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
 
 use std::collections::{BTreeMap, BTreeSet};
 
