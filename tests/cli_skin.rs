@@ -51,7 +51,7 @@ fn skin(file: &Path, out: &Path, arguments: &[&str]) -> Output {
 fn a_document_gets_a_skin_around_its_bones() {
     let desk = Desk::new();
     let (file, out) = (desk.example("ten-joints"), desk.path("out.json"));
-    let arguments = ["--detail", "1.5", "--thickness", "0.8", "--blend", "spread-twist"];
+    let arguments = ["--detail", "1.5", "--thickness", "0.8", "--skinning", "spread-twist"];
     let output = skin(&file, &out, &arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let document = io::open(&out, None).expect("opens").document;

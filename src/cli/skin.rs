@@ -31,8 +31,8 @@ pub struct SkinArgs {
     /// Skeleton to take, if the file has several [default: the first]
     #[arg(long, value_name = "NAME")]
     skeleton: Option<String>,
-    /// Cells of the grid on the smallest radius, 1.2 to 16: twice the detail gives four times the
-    /// vertices [default: 2]
+    /// How finely the mesh is made: the smallest radius is N cells of the grid, 1.2 to 16; twice the
+    /// detail gives four times the vertices [default: 2]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     detail: Option<NumberArgument>,
     /// Factor of all radii, above 0 [default: 1]
@@ -40,8 +40,8 @@ pub struct SkinArgs {
     thickness: Option<NumberArgument>,
     /// How a vertex between joints follows them: linear, dual-quaternion or spread-twist [default:
     /// dual-quaternion]
-    #[arg(long, value_name = "WAY")]
-    blend: Option<Skinning>,
+    #[arg(long, visible_alias = "blend", value_name = "WAY")]
+    skinning: Option<Skinning>,
 }
 
 /// Reasons why no file is written.
@@ -110,7 +110,7 @@ impl SkinArgs {
         shape.detail = self.detail.map_or(shape.detail, |detail| detail.0);
         shape.thickness = self.thickness.map_or(shape.thickness, |thickness| thickness.0);
         let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
-        let skinning = self.blend.unwrap_or(old.skinning);
+        let skinning = self.skinning.unwrap_or(old.skinning);
         Skin { source, skinning, ..old }
     }
 }
