@@ -24,7 +24,9 @@ pub enum ArgumentError {
     Time,
     #[error("limb length must be finite and above 0, got {0}")]
     Length(f32),
-    #[error("guides must be some of cursor, pointer, inner, outer, or none alone, got {0:?}")]
+    #[error(
+        "guides must be some of cursor, pointer, inner, outer, circle, or none alone, got {0:?}"
+    )]
     Guide(String),
 }
 
@@ -138,6 +140,7 @@ impl FromStr for GuidesArgument {
             "pointer" => Ok(Overlay::Pointer),
             "inner" => Ok(Overlay::InnerLimit),
             "outer" => Ok(Overlay::OuterLimit),
+            "circle" => Ok(Overlay::ElbowCircle),
             _ => Err(ArgumentError::Guide(name.to_owned())),
         };
         text.split(',').map(guide).collect::<Result<_, _>>().map(Self)

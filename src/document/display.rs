@@ -24,6 +24,8 @@ pub enum Overlay {
     InnerLimit,
     /// The sphere around the shoulder that the hand cannot leave.
     OuterLimit,
+    /// The circle on which the elbow of the arm can be while the hand stays.
+    ElbowCircle,
     /// The grid on the plane z = 0.
     GridXy,
     /// The grid on the plane y = 0.
@@ -71,6 +73,7 @@ impl Overlay {
             Self::Pointer => "pointer",
             Self::InnerLimit => "inner_limit",
             Self::OuterLimit => "outer_limit",
+            Self::ElbowCircle => "elbow_circle",
             Self::GridXy => "grid_xy",
             Self::GridXz => "grid_xz",
             Self::GridYz => "grid_yz",
@@ -103,8 +106,9 @@ impl Overlay {
         of_arm.chain(Self::SKELETON).chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
-    /// Guides of the arm: Cursor, Pointer and limits.
-    pub const GUIDES: [Self; 4] = [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit];
+    /// Guides of the arm: Cursor, Pointer, limits and the circle of elbows.
+    pub const GUIDES: [Self; 5] =
+        [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit, Self::ElbowCircle];
 
     /// Overlays of the arm besides [`Self::GUIDES`].
     pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];

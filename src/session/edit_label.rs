@@ -102,6 +102,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Pointer => "Toggle Pointer",
         Overlay::InnerLimit => "Toggle Inner Limit",
         Overlay::OuterLimit => "Toggle Outer Limit",
+        Overlay::ElbowCircle => "Toggle elbow circle",
         Overlay::GridXy => "Toggle XY grid",
         Overlay::GridXz => "Toggle XZ grid",
         Overlay::GridYz => "Toggle YZ grid",

@@ -73,6 +73,7 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         }
         (_, Overlay::InnerLimit) => ("Inner limit", "Show the sphere that the hand cannot enter"),
         (_, Overlay::OuterLimit) => ("Outer limit", "Show the sphere that the hand cannot leave"),
+        (_, Overlay::ElbowCircle) => ("Elbow circle", "Show all places where the elbow could be"),
         (_, Overlay::FkPose) => {
             ("FK pose", "Show the pose of the joint angles alone; shown anyway while blended")
         }

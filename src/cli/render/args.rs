@@ -48,7 +48,7 @@ pub struct RenderArgs {
     /// Length of the lower limb
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "300")]
     pub lower: LengthArgument,
-    /// Guides to show: any of cursor, pointer, inner, outer; or none [default: the file's, else
+    /// Guides to show: any of cursor, pointer, inner, outer, circle; or none [default: the file's, else
     /// cursor,pointer]
     #[arg(long, value_name = "LIST")]
     pub guides: Option<GuidesArgument>,

@@ -3,6 +3,7 @@
 mod arm;
 mod axes;
 mod drawn_skeleton;
+mod elbow_circle;
 mod globe;
 mod hand;
 mod motion;
@@ -78,7 +79,11 @@ impl SceneBuilder {
         }
         match document.rig {
             RigKind::Arm => {
-                arm::add(scene, &document.arm, &document.arm.pose(), display);
+                let pose = document.arm.pose();
+                arm::add(scene, &document.arm, &pose, display);
+                if display.shows(Overlay::ElbowCircle) {
+                    elbow_circle::add(scene, &document.arm, &pose);
+                }
                 if display.shows(Overlay::TwistReferences) {
                     references::add(scene, &document.arm, overlays.transported);
                 }
