@@ -54,7 +54,7 @@ fn every_argument_changes_the_picture() {
         ["--upper", "350"],
         ["--lower", "120.5"],
         ["--guides", "none"],
-        ["--guides", "cursor,pointer,inner,outer"],
+        ["--guides", "cursor,pointer,inner,outer,circle"],
         ["--view", "front"],
         ["--view", "right"],
         ["--view", "top"],
@@ -95,8 +95,8 @@ fn an_invalid_argument_is_a_usage_error_that_states_the_rule() {
         (["--twist", "inf"], "number"),
         (["--upper", "0"], "above 0"),
         (["--lower", "-3"], "above 0"),
-        (["--guides", "cursor,elbow"], "cursor, pointer, inner, outer"),
-        (["--guides", ""], "cursor, pointer, inner, outer"),
+        (["--guides", "cursor,elbow"], "cursor, pointer, inner, outer, circle"),
+        (["--guides", ""], "cursor, pointer, inner, outer, circle"),
         (["--view", "left"], "perspective"),
         (["--theme", "blue"], "dark"),
         (["--frames", "5"], "--timings"),
@@ -188,12 +188,24 @@ fn without_a_graphics_adapter_it_says_what_to_install() {
 #[test]
 #[cfg(target_os = "linux")]
 fn without_a_display_it_points_to_render() {
-    for arguments in [&[][..], &["gui"]] {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bent = file(&folder, "bent.js3d", BONE);
+    for arguments in [&[][..], &["gui"], &["gui", &bent], &[&bent], &[&bent, "--skeleton", "bent"]]
+    {
         let output = ik_arm(arguments);
         assert_eq!(output.status.code(), Some(1));
         assert!(complaint(&output).contains("ik-arm render"), "{}", complaint(&output));
         assert!(!complaint(&output).contains(".cargo"), "{}", complaint(&output));
     }
+}
+
+#[test]
+fn a_file_in_place_of_a_command_must_be_there() {
+    let output = ik_arm(&["solv"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(complaint(&output).contains("solv"), "{}", complaint(&output));
+    let output = ik_arm(&["render", "human.json", "solve"]);
+    assert_eq!(output.status.code(), Some(2));
 }
 
 // Files

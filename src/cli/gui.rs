@@ -7,7 +7,7 @@ use super::open;
 use super::report::fail;
 use crate::app;
 
-#[derive(clap::Args, Default)]
+#[derive(clap::Args)]
 pub struct GuiArgs {
     /// File to open: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf
     #[arg(value_name = "FILE")]

@@ -31,10 +31,12 @@ use solve::SolveArgs;
 ///
 /// Opens the window if no command is given.
 #[derive(Parser)]
-#[command(name = "ik-arm", version)]
+#[command(name = "ik-arm", version, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    #[command(flatten)]
+    window: GuiArgs,
 }
 
 #[derive(Subcommand)]
@@ -62,7 +64,7 @@ pub fn run() -> ExitCode {
     // rfd logs an error where the system has no file dialog; the program's own dialog asks instead.
     let filter = env_logger::Env::default().default_filter_or("error,rfd=off");
     env_logger::Builder::from_env(filter).init();
-    let command = Cli::parse().command;
+    let Cli { command, window } = Cli::parse();
     if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
         quiet::restart_without_device_select();
     }
@@ -75,6 +77,6 @@ pub fn run() -> ExitCode {
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Gui(args)) => gui::run(&args),
-        None => gui::run(&GuiArgs::default()),
+        None => gui::run(&window),
     }
 }
