@@ -9,7 +9,7 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # Points between which the mouse drags the hand, in screen pixels.
-hand_path=("720 318" "815 204" "688 157" "624 268" "767 244")
+hand_path=("733 376" "853 240" "700 183" "623 317" "795 288")
 
 picture=$target/demo.png
 

@@ -8,7 +8,7 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # Closed curve of the hand on screen: centre and radii, in pixels.
-middle=(720 318)
+middle=(733 376)
 across=90
 up=75
 steps=72

@@ -10,11 +10,13 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # Positions in the newly opened window, in pixels.
+open_timeline=("1225 755")
+# Positions while the timeline is open.
 hand_path=("720 318" "815 204" "688 157" "624 268" "720 318")
-spin_slider=("85 253" "170 253")
+spin_slider=("85 221" "170 221")
 beside_the_arm=("400 540" "520 500")
-middle_of_the_ruler=("730 665")
-to_the_start=("20 636")
+middle_of_the_ruler=("730 640")
+to_the_start=("20 755")
 nowhere=("640 12")
 
 # From the second quarter of the time to the last, memory may grow by 2 % or by this many KiB (one
@@ -122,6 +124,7 @@ click() {
 
 # Keys the hand and a raised hand half a timeline later.
 key_a_motion() {
+    click "${open_timeline[0]}"
     place "${beside_the_arm[0]}"
     xdotool click 1
     press shift+k

@@ -72,7 +72,11 @@ impl AppWindow {
         let window = Arc::new(event_loop.create_window(attributes(event_loop, settings.window))?);
         let ctx = egui::Context::default();
         style::install(&ctx);
-        ctx.data_mut(|data| *data = settings.layout);
+        ctx.data_mut(|data| {
+            *data = settings.layout;
+            // A start must not open scrolled away.
+            data.remove_by_type::<egui::containers::scroll_area::State>();
+        });
         let display = event_loop.owned_display_handle();
         let graphics = Graphics::new(display, &window, &ctx, proxy.clone())?;
         let mut egui = egui_winit::State::new(

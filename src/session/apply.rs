@@ -1,5 +1,6 @@
 use super::action::Action;
 use super::effect::Effect;
+use super::panel_tab::PanelTab;
 use super::session::Session;
 
 impl Session {
@@ -7,7 +8,16 @@ impl Session {
     /// action changes nothing and is reported by [`Session::message`]; an action that would lose
     /// unsaved changes opens a dialog first.
     pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
-        match action.into() {
+        let compared = self.compares_skinning();
+        let effect = self.apply_to_part(action.into());
+        if self.compares_skinning() && !compared {
+            self.show_tab(PanelTab::Skin);
+        }
+        effect
+    }
+
+    fn apply_to_part(&mut self, action: Action) -> Option<Effect> {
+        match action {
             Action::Edit(action) => self.apply_edit(action),
             Action::Transaction(action) => self.apply_transaction(action),
             Action::Select(action) => return self.apply_selection(action),

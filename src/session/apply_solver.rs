@@ -1,4 +1,5 @@
 use super::comparison::Comparison;
+use super::panel_tab::PanelTab;
 use super::session::Session;
 use super::shown_iteration::ShownIteration;
 use super::solver_action::SolverAction;
@@ -34,7 +35,13 @@ impl Session {
         self.solvers.shown_iteration()
     }
 
+    /// Applies an action. The page on the right that shows what was started comes to the front.
     pub(super) fn apply_solver(&mut self, action: SolverAction) {
+        match action {
+            SolverAction::Run(true) | SolverAction::Step => self.show_tab(PanelTab::Solver),
+            SolverAction::Compare => self.show_tab(PanelTab::Race),
+            SolverAction::Run(false) | SolverAction::Reset | SolverAction::Show(_) => {}
+        }
         match action {
             SolverAction::Run(true) => self.solve(Solvers::start),
             SolverAction::Run(false) => self.solvers.pause(),

@@ -64,7 +64,10 @@ impl Session {
     pub(super) fn apply_transaction(&mut self, action: TransactionAction) {
         match action {
             TransactionAction::Begin => self.begin_edit(None),
-            TransactionAction::Commit => self.commit_edit(),
+            TransactionAction::Commit => {
+                self.preferences.has_dragged_hand |= self.drag().is_some_and(moves_hand);
+                self.commit_edit();
+            }
             TransactionAction::Cancel => self.cancel_edit(),
             TransactionAction::Undo => self.undo(),
             TransactionAction::Redo => self.redo(),
@@ -244,4 +247,10 @@ impl Session {
             (_, DragKind::Turn(_)) => {}
         }
     }
+}
+
+/// Whether a drag has moved the hand of the arm.
+fn moves_hand(drag: &Drag) -> bool {
+    let is_hand = matches!(drag.grip(), Grip::Hand(_));
+    is_hand && drag.point().is_some_and(|point| point.moved() != Vec3::ZERO)
 }

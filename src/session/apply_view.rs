@@ -1,7 +1,8 @@
+use super::panel_tab::PanelTab;
 use super::session::{ASPECT, Session};
 use super::view_action::ViewAction;
 use super::view_drag::ViewDrag;
-use crate::document::{Camera, RigKind};
+use crate::document::{Camera, Overlay, RigKind};
 use crate::rig::Crowd;
 
 /// Camera, crowd and panels.
@@ -67,6 +68,27 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
+    /// The page of the panel on the right.
+    pub fn tab(&self) -> PanelTab {
+        match self.rig() {
+            RigKind::Arm => self.preferences.arm_tab,
+            RigKind::Skeleton => self.preferences.skeleton_tab,
+        }
+    }
+
+    /// Whether the skin is shown for each way of blending joints.
+    pub fn compares_skinning(&self) -> bool {
+        let display = self.shown().display;
+        let is_shown = display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning);
+        is_shown && self.rig() == RigKind::Skeleton
+    }
+
+    /// Whether the timeline is open above the transport bar: by choice, else if the document has keys.
+    pub fn shows_timeline(&self) -> bool {
+        let has_keys = || !self.document().keys.is_empty();
+        self.preferences.timeline_open.unwrap_or_else(has_keys)
+    }
+
     pub(super) fn apply_view(&mut self, action: ViewAction) {
         match action {
             ViewAction::SetCamera(camera) => {
@@ -106,8 +128,20 @@ impl Session {
             }
             ViewAction::ResetTransport => self.reset_transport(),
             ViewAction::ShowExplain(shown) => self.preferences.explain = shown,
-            ViewAction::ShowTimeline(shown) => self.preferences.timeline = shown,
+            ViewAction::ShowTab(tab) => self.show_tab(tab),
+            ViewAction::ShowTimeline(shown) => self.preferences.timeline_open = Some(shown),
             ViewAction::ShowGraphEditor(shown) => self.preferences.curves = shown,
+        }
+    }
+
+    pub(super) fn show_tab(&mut self, tab: PanelTab) {
+        let rig = self.rig();
+        if !PanelTab::of(rig).contains(&tab) {
+            return;
+        }
+        match rig {
+            RigKind::Arm => self.preferences.arm_tab = tab,
+            RigKind::Skeleton => self.preferences.skeleton_tab = tab,
         }
     }
 

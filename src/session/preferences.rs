@@ -1,5 +1,6 @@
 use serde::{Deserialize, Serialize};
 
+use super::panel_tab::PanelTab;
 use crate::document::Theme;
 
 /// Settings of the user, kept from one start of the program to the next.
@@ -10,12 +11,18 @@ pub struct Preferences {
     pub theme: Theme,
     /// Mouse buttons that move the camera.
     pub navigation: Navigation,
-    /// Whether the panel "Explain" is open.
+    /// Whether the panel on the right is open.
     pub explain: bool,
-    /// Whether the timeline is open.
-    pub timeline: bool,
+    /// The page of that panel for the arm.
+    pub arm_tab: PanelTab,
+    /// The page of that panel for the skeleton.
+    pub skeleton_tab: PanelTab,
+    /// Whether the timeline is open above the transport bar; `None`: while the document has keys.
+    pub timeline_open: Option<bool>,
     /// Whether the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
+    /// Whether the hand of the arm was ever dragged, so that no hint is needed.
+    pub has_dragged_hand: bool,
 }
 
 /// Mouse buttons that move the camera, as in other programs.
@@ -39,8 +46,11 @@ impl Default for Preferences {
             theme: Theme::default(),
             navigation: Navigation::default(),
             explain: true,
-            timeline: true,
+            arm_tab: PanelTab::Triangle,
+            skeleton_tab: PanelTab::Solver,
+            timeline_open: None,
             curves: false,
+            has_dragged_hand: false,
         }
     }
 }

@@ -1,5 +1,6 @@
 use glam::Vec2;
 
+use super::panel_tab::PanelTab;
 use super::view_drag::CameraMotion;
 use crate::document::Camera;
 use crate::rig::Processor;
@@ -36,7 +37,9 @@ pub enum ViewAction {
     ResetTransport,
     /// Opens or closes the panel on the right.
     ShowExplain(bool),
-    /// Opens or closes the timeline.
+    /// Shows a page of the panel on the right, if the shown rig has it.
+    ShowTab(PanelTab),
+    /// Opens or closes the timeline above the transport bar.
     ShowTimeline(bool),
     /// Shows keys in the graph editor (true) or in the dope sheet (false).
     ShowGraphEditor(bool),

@@ -2,9 +2,8 @@
 
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
-use super::panels::{crowd, explain, left, solver};
+use super::panels::{crowd, left, right};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport};
-use crate::document::RigKind;
 use crate::session::{Actions, Session};
 
 /// Shows all panels and returns the rectangle of the viewport in points. `picture` is the texture
@@ -18,12 +17,13 @@ pub fn show(
 ) -> Rect {
     keyboard::global(ui, session, actions);
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
-    Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, machine, actions));
-    if session.preferences().timeline {
-        Panel::bottom("timeline")
+    Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, actions));
+    Panel::bottom("transport").show(ui, |ui| timeline::transport(ui, session, actions));
+    if session.shows_timeline() {
+        Panel::bottom("keys")
             .resizable(true)
-            .default_size(152.0)
-            .size_range(120.0..=360.0)
+            .default_size(120.0)
+            .size_range(88.0..=328.0)
             .show(ui, |ui| timeline::ui(ui, session, actions));
     }
     Panel::left("controls")
@@ -32,13 +32,11 @@ pub fn show(
         .size_range(232.0..=420.0)
         .show(ui, |ui| left::ui(ui, session, actions));
     if session.preferences().explain {
-        Panel::right("explain").resizable(true).default_size(272.0).size_range(232.0..=460.0).show(
-            ui,
-            |ui| match session.rig() {
-                RigKind::Arm => explain::ui(ui, session, actions),
-                RigKind::Skeleton => solver::ui(ui, session, actions),
-            },
-        );
+        Panel::right("explain")
+            .resizable(true)
+            .default_size(272.0)
+            .size_range(232.0..=460.0)
+            .show(ui, |ui| right::ui(ui, session, actions));
     }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;

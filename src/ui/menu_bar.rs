@@ -209,14 +209,10 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         actions.push(ViewAction::ShowCrowd(crowd));
     }
     let mut explain = session.preferences().explain;
-    let name = match session.rig() {
-        RigKind::Arm => "Explain panel",
-        RigKind::Skeleton => "Solver panel",
-    };
-    if ui.checkbox(&mut explain, name).changed() {
+    if ui.checkbox(&mut explain, "Explain panel").changed() {
         actions.push(ViewAction::ShowExplain(explain));
     }
-    let mut timeline = session.preferences().timeline;
+    let mut timeline = session.shows_timeline();
     if ui.checkbox(&mut timeline, "Timeline").changed() {
         actions.push(ViewAction::ShowTimeline(timeline));
     }

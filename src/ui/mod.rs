@@ -10,6 +10,7 @@ mod labels;
 mod layout;
 mod machine;
 mod menu_bar;
+mod mouse_hints;
 mod panels;
 mod pose_summary;
 mod status_bar;

@@ -1,19 +1,21 @@
 //! The status bar: the offset and shortcuts of a drag, the current message, or a description of the
-//! pose.
+//! pose; and what the mouse buttons do.
 
-use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
+use egui::{Align, Label, Layout, ProgressBar, Ui};
 
-use super::machine::Machine;
-use super::pose_summary;
 use super::widgets::{self, format};
+use super::{mouse_hints, pose_summary};
 use crate::document::RigKind;
 use crate::session::{Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, TurnDrag};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.horizontal(|ui| {
         ui.set_height(24.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add(Label::new(RichText::new(describe_machine(machine)).weak()).selectable(false));
+            // The keys of a drag need the whole line.
+            if session.drag().is_none() {
+                mouse_hints::ui(ui, session);
+            }
             if let Some(job) = session.export_job() {
                 show_job(ui, job, actions);
             }
@@ -113,13 +115,5 @@ fn typed(typed: &str) -> String {
     match typed {
         "" => String::new(),
         typed => format!(" · typed {typed}"),
-    }
-}
-
-fn describe_machine(machine: &Machine) -> String {
-    let adapter = machine.adapter.split(" (").next().unwrap_or_default();
-    match machine.times.last() {
-        Some(frame) => format!("{adapter} · {:.0} ms", frame.total().as_secs_f64() * 1e3),
-        None => adapter.to_owned(),
     }
 }

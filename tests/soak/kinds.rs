@@ -3,8 +3,8 @@
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmJoint, BakeAction, EditAction, FileAction, Navigation, PlaybackAction, PoseMode,
-    SelectAction, ShellAction, SolverAction, TransactionAction, ViewAction,
+    Action, ArmJoint, BakeAction, EditAction, FileAction, Navigation, PanelTab, PlaybackAction,
+    PoseMode, SelectAction, ShellAction, SolverAction, TransactionAction, ViewAction,
 };
 
 use crate::values::Values;
@@ -171,6 +171,10 @@ kinds! {
         Drop: Look 1, |_| ViewAction::Drop;
         Cancel: Look 1, |_| ViewAction::Cancel;
         ShowExplain: Look 1, |v| ViewAction::ShowExplain(v.coin());
+        ShowTab: Look 1, |v| {
+            let tabs = [RigKind::Arm, RigKind::Skeleton].map(PanelTab::of).concat();
+            ViewAction::ShowTab(v.one_of(&tabs))
+        };
         ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
         ShowCrowd: Look 1, |v| ViewAction::ShowCrowd(v.coin());
         SetCrowdSize: Look 1, |v| ViewAction::SetCrowdSize(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));

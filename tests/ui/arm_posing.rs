@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, EditAction, Grip, PoseMode, ShellAction, TransactionAction, ViewAction,
+    Action, EditAction, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, bits};
@@ -25,6 +25,13 @@ fn pick(bench: &mut Bench, list: &str, item: &str) {
     bench.click(Role::Button, item);
 }
 
+/// With the sections of the angles unfolded.
+fn posing(actions: impl IntoIterator<Item = impl Into<Action>>) -> Bench {
+    let mut bench = Bench::after(actions);
+    bench.toggle(&["FK and IK", "Lengths", "Root"]);
+    bench
+}
+
 fn pole_place(bench: &Bench) -> Pos2 {
     let arm = bench.session().arm();
     bench.on_screen(arm.root + arm.pole)
@@ -32,7 +39,7 @@ fn pole_place(bench: &Bench) -> Pos2 {
 
 #[test]
 fn switching_between_fk_and_ik_keeps_the_pose() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
+    let mut bench = posing([EditAction::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
     let pose = *bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
     bench.click(Role::Button, "FK");
@@ -58,7 +65,7 @@ fn switching_between_fk_and_ik_keeps_the_pose() {
 
 #[test]
 fn ik_settings_are_disabled_in_fk() {
-    let mut bench = Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+    let mut bench = posing([EditAction::SwitchPoseMode(PoseMode::Angles)]);
     let before = bench.hand();
     let rail = bench.rect(Role::Slider, "Hand x");
     bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
@@ -71,7 +78,7 @@ fn ik_settings_are_disabled_in_fk() {
 #[test]
 fn between_fk_and_ik_the_arm_is_between_its_poses() {
     let mut bench =
-        Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles), EditAction::SetBend(0.5)]);
+        posing([EditAction::SwitchPoseMode(PoseMode::Angles), EditAction::SetBend(0.5)]);
     let angles = bench.session().pose().elbow_angle();
     bench.enter("IK influence", "1");
     let hand = bench.session().pose().elbow_angle();
@@ -200,6 +207,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
 #[test]
 fn the_four_twist_references_are_compared() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
+    bench.show_tab(PanelTab::Twist);
     for name in ["Stereographic", "Transport", "Holonomy (elbow turn after a closed loop)"] {
         assert!(bench.says(name), "{name}");
     }
@@ -249,7 +257,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
 
 #[test]
 fn every_control_of_the_posing_has_a_tooltip() {
-    let mut bench = Bench::after([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
+    let mut bench = posing([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
     for (role, name) in [
         (Role::Button, "IK"),
         (Role::Button, "FK"),
@@ -283,7 +291,7 @@ fn k_keys_the_channels_of_the_pose_mode() {
 fn the_panels_in_pole_and_fk_mode_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-        let mut bench = Bench::after([
+        let mut bench = posing([
             Action::from(ShellAction::SetTheme(theme)),
             EditAction::SetTwistReference(TwistReferenceKind::Pole).into(),
         ]);

@@ -10,7 +10,9 @@ use egui::{
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
-use ik_arm::session::{Action, Actions, Effect, Preferences, Session, ShellAction};
+use ik_arm::session::{
+    Action, Actions, Effect, PanelTab, Preferences, Session, ShellAction, ViewAction,
+};
 use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
@@ -45,16 +47,25 @@ impl Bench {
         Self::of_size(LARGE)
     }
 
-    /// Without the timeline.
+    /// With the timeline closed.
     pub fn of_size(size: Vec2) -> Self {
-        Self::liking(size, Preferences { timeline: false, ..Preferences::default() })
+        Self::liking(size, Preferences { timeline_open: Some(false), ..Preferences::default() })
     }
 
+    /// With the timeline open.
     pub fn with_timeline(size: Vec2) -> Self {
-        Self::liking(size, Preferences::default())
+        Self::liking(size, Preferences { timeline_open: Some(true), ..Preferences::default() })
     }
 
+    /// With the sections unfolded whose settings many tests use.
     pub fn liking(size: Vec2, preferences: Preferences) -> Self {
+        let mut bench = Self::first(size, preferences);
+        bench.toggle(&["Lengths", "Root"]);
+        bench
+    }
+
+    /// As at the first start of the program.
+    pub fn first(size: Vec2, preferences: Preferences) -> Self {
         let app = App {
             session: Session::new(preferences),
             machine: Machine {
@@ -337,6 +348,19 @@ impl Bench {
     pub fn click(&mut self, role: Role, name: &str) {
         self.click_at(self.rect(role, name).center());
         self.settle();
+    }
+
+    /// Folds or unfolds sections of a panel.
+    pub fn toggle(&mut self, sections: &[&str]) {
+        for section in sections {
+            self.node(Role::DisclosureTriangle, section).click_accesskit();
+            self.settle();
+        }
+    }
+
+    /// Shows a page of the panel on the right.
+    pub fn show_tab(&mut self, tab: PanelTab) {
+        self.apply([ViewAction::ShowTab(tab)]);
     }
 
     /// Opens menus and chooses the last.

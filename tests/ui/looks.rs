@@ -38,6 +38,7 @@ fn every_control_has_a_tooltip_that_can_be_read() {
         for name in SLIDERS {
             assert!(has_tooltip(&mut bench, Role::Slider, name), "{name}");
         }
+        bench.toggle(&["Display", "Lengths", "Root"]);
         for (name, _) in CHECKBOXES {
             assert!(has_tooltip(&mut bench, Role::CheckBox, name), "{name}");
         }

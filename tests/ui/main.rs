@@ -28,6 +28,7 @@ mod skeleton_view;
 mod skin;
 mod sliders;
 mod snake;
+mod start;
 mod statistics;
 mod targets;
 mod timeline;

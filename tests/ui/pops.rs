@@ -6,20 +6,23 @@ use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options}
 use glam::Vec3;
 use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{Action, EditAction, FileAction, Preferences, TransactionAction, ViewAction};
+use ik_arm::session::{
+    Action, EditAction, FileAction, PanelTab, Preferences, TransactionAction, ViewAction,
+};
 use image::{RgbaImage, imageops};
 
 use crate::bench::Bench;
 
 const LEFT: PointerButton = PointerButton::Primary;
-/// High enough for all of the right panel, and wide enough for all that the hand can reach.
+/// Large enough for all that the hand can reach.
 const HUGE: Vec2 = vec2(2000.0, 1640.0);
-const HIGH: Vec2 = vec2(900.0, 1720.0);
+const HIGH: Vec2 = vec2(900.0, 800.0);
 
 /// Looks at all that the hand can reach from the front: there the hand is dragged in x and y.
 fn from_the_front() -> Bench {
-    let preferences = Preferences { timeline: false, ..Preferences::default() };
+    let preferences = Preferences { timeline_open: Some(false), ..Preferences::default() };
     let mut bench = Bench::liking(HUGE, preferences);
+    bench.show_tab(PanelTab::Pops);
     let all = bench.session().framing_all();
     bench.apply([ViewAction::SetCamera(all.along(AxisView::Front))]);
     bench
@@ -54,8 +57,8 @@ fn softened(softness: f32) -> SoftReach {
 #[test]
 fn without_data_the_section_says_what_to_do() {
     let bench = from_the_front();
-    assert!(bench.says("Drag the hand or press play"));
-    assert!(bench.shows(Role::Image, "Pops: none"));
+    assert!(bench.says("Drag the hand, or play the timeline"));
+    assert!(!bench.shows(Role::Image, "Pops: none"), "an empty plot is not shown");
 }
 
 #[test]
@@ -138,6 +141,7 @@ fn the_same_fix_is_offered_once() {
 #[test]
 fn other_input_changes_are_distinguished_from_pops() {
     let mut bench = from_the_front();
+    slide(&mut bench, Vec3::new(250.0, 100.0, 20.0), Vec3::new(260.0, 120.0, 20.0));
     bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
     assert!(bench.says("Dotted lines, not pops: lengths, Socket twist changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
@@ -149,7 +153,7 @@ fn opening_another_document_clears_the_pops() {
     over_the_top(&mut bench);
     let document = Box::new(Document::default());
     bench.apply([FileAction::Discard(Box::new(FileAction::Opened { document, file: None }))]);
-    assert!(bench.says("Drag the hand or press play"));
+    assert!(bench.says("Drag the hand, or play the timeline"));
 }
 
 /// Drags as a slider would.
@@ -161,20 +165,21 @@ fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
     bench.apply(way.chain([TransactionAction::Commit.into()]));
 }
 
-/// The two sections as they are painted, and nothing around them.
-fn sections(bench: &mut Bench) -> RgbaImage {
-    let first = bench.rect(Role::Label, "Hand distance / Cursor distance");
-    let [left, top] = [first.left() - 10.0, first.top() - 30.0].map(|at| at as u32);
+/// A page of the panel on the right as it is painted, and nothing around it.
+fn page(bench: &mut Bench, tab: PanelTab) -> RgbaImage {
+    bench.show_tab(tab);
+    let first = bench.rect(Role::Tab, "Triangle");
+    let [left, top] = [first.left() - 8.0, first.top() - 4.0].map(|at| at as u32);
     let picture = bench.harness.render().expect("a picture");
-    let (width, height) = (picture.width() - left, picture.height() - top - 40);
-    imageops::crop_imm(&picture, left, top, width, height).to_image()
+    imageops::crop_imm(&picture, left, top, picture.width() - left, 420).to_image()
 }
 
 #[test]
 fn pops_and_the_reach_curve_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for theme in [Theme::Dark, Theme::Light] {
-        let preferences = Preferences { timeline: false, theme, ..Preferences::default() };
+        let preferences =
+            Preferences { timeline_open: Some(false), theme, ..Preferences::default() };
         let mut bench = Bench::liking(HIGH, preferences);
         slide(&mut bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0));
         bench.apply([
@@ -188,7 +193,9 @@ fn pops_and_the_reach_curve_look_as_they_did() {
             .threshold(2.0)
             .max_failed_pixels(600)
             .output_path("tests/ui/snapshots");
-        let name = format!("pops_{}", format!("{theme:?}").to_lowercase());
-        results.add(try_image_snapshot_options(&sections(&mut bench), name, &options));
+        for (tab, name) in [(PanelTab::Pops, "pops"), (PanelTab::Reach, "reach_curve")] {
+            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
+            results.add(try_image_snapshot_options(&page(&mut bench, tab), name, &options));
+        }
     }
 }

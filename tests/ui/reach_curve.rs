@@ -5,13 +5,14 @@ use egui::{Rect, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{EditAction, PoseMode, Preferences};
+use ik_arm::session::{EditAction, PanelTab, PoseMode, Preferences};
 
 use crate::bench::Bench;
 
 fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
-    let preferences = Preferences { timeline: false, ..Preferences::default() };
+    let preferences = Preferences { timeline_open: Some(false), ..Preferences::default() };
     let mut bench = Bench::liking(vec2(1280.0, 1500.0), preferences);
+    bench.show_tab(PanelTab::Reach);
     let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("a softening");
     bench.apply([EditAction::SetSoftReach(soft_reach), EditAction::SetHand(Vec3::X * asked)]);
     bench
@@ -53,11 +54,12 @@ fn status_bar_and_reach_meter_state_the_limits_of_the_hand() {
         (1.5, 90.0, PoseMode::Angles, "of 100–500", "from 100.0 to 500.0"),
     ] {
         let soft_reach = SoftReach::new(0.0, stretch, degrees.to_radians()).expect("soft limits");
-        let bench = Bench::after([
+        let mut bench = Bench::after([
             EditAction::SetHand(Vec3::X * 400.0),
             EditAction::SetSoftReach(soft_reach),
             EditAction::SwitchPoseMode(mode),
         ]);
+        bench.show_tab(PanelTab::Reach);
         assert!(bench.says(rounded), "{rounded}");
         let meter = format!("the hand reaches {exact}");
         assert!(bench.harness.query_by_label_contains(&meter).is_some(), "{meter}");

@@ -9,7 +9,9 @@ use glam::Vec3;
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
-use ik_arm::session::{Action, EditAction, Effect, FileAction, SelectAction, SolverAction};
+use ik_arm::session::{
+    Action, EditAction, Effect, FileAction, PanelTab, SelectAction, SolverAction,
+};
 
 use crate::bench::{Bench, SMALL};
 
@@ -286,6 +288,7 @@ fn a_long_name_does_not_widen_the_panel() {
 #[test]
 fn a_race_shows_the_result_of_every_solver() {
     let mut bench = tree();
+    bench.show_tab(PanelTab::Race);
     bench.apply_moving([SolverAction::Compare]);
     bench.wait(4.0);
     assert!(bench.says("FABRIK: converged after"));

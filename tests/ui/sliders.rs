@@ -168,6 +168,7 @@ fn a_double_click_on_rail_or_label_resets() {
         for on_label in [false, true] {
             let mut bench = Bench::after(awkward());
             let before = *bench.session().arm();
+            bench.reveal(Role::Slider, slider);
             let rail = bench.rect(Role::Slider, slider);
             let label = pos2(rail.left() - 30.0, rail.center().y);
             bench.double_click_at(if on_label { label } else { on_rail(&bench, slider, 0.3) });

@@ -476,8 +476,8 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
     let mut bench = Bench::with_timeline(SMALL);
     let low = bench.viewport().bottom();
     bench.choose(&["View", "Timeline"]);
-    assert!(!bench.shows(Role::Slider, "Timeline ruler"));
-    assert!(bench.viewport().bottom() > low + 100.0);
+    assert!(!bench.shows(Role::Button, "Key all"));
+    assert!(bench.viewport().bottom() > low + 80.0);
     bench.key(Key::Escape);
     bench.settle();
     bench.choose(&["View", "Timeline"]);

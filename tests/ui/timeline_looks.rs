@@ -77,7 +77,7 @@ fn the_timeline_looks_as_it_did() {
     }
 }
 
-const CONTROLS: [(Role, &str); 17] = [
+const CONTROLS: [(Role, &str); 18] = [
     (Role::Button, "To start"),
     (Role::Button, "Previous key"),
     (Role::Button, "Play"),
@@ -94,6 +94,7 @@ const CONTROLS: [(Role, &str); 17] = [
     (Role::SpinButton, "Start"),
     (Role::SpinButton, "End"),
     (Role::Button, "Graph editor"),
+    (Role::Button, "Hide timeline"),
     (Role::Slider, "Timeline ruler"),
 ];
 

@@ -19,9 +19,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         widgets::section(ui, "Guides", |ui| {
             overlays::check_boxes(ui, session, 2, guides(session), None, actions);
         });
+        if session.rig() == RigKind::Arm {
+            arm::more(ui, session, actions);
+        }
         let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
         let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
-        widgets::section(ui, "Display", |ui| {
+        widgets::folded_section(ui, "Display", |ui| {
             overlays::check_boxes(ui, session, 3, &surroundings, None, actions);
         });
         resets(ui, session, actions);

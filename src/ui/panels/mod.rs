@@ -2,9 +2,10 @@
 
 mod arm;
 pub(in crate::ui) mod crowd;
-pub(in crate::ui) mod explain;
+mod explain;
 pub(in crate::ui) mod left;
 mod overlays;
+pub(in crate::ui) mod right;
 mod skeleton;
-pub(in crate::ui) mod solver;
+mod solver;
 pub(in crate::ui) mod statistics;

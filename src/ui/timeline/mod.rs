@@ -1,4 +1,4 @@
-//! The timeline: transport bar, ruler, and dope sheet or graph editor.
+//! The transport bar, and above it the timeline: ruler, and dope sheet or graph editor.
 
 mod areas;
 mod context_menu;
@@ -23,8 +23,16 @@ use crate::session::{Actions, Session};
 
 pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
 
+/// Shows the transport bar, with a ruler of its own while the timeline is closed.
+pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    match session.shows_timeline() {
+        true => transport_bar::whole(ui, session, actions),
+        false => transport_bar::slim(ui, session, actions),
+    }
+}
+
+/// Shows the timeline.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    transport_bar::ui(ui, session, actions);
     let areas = TimelineAreas::new(ui.available_rect_before_wrap());
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;

@@ -45,7 +45,7 @@ impl TimeScale {
         Self { seen, from, to }
     }
 
-    #[cfg(test)]
+    /// The scale that shows a range of times, in seconds.
     pub fn showing(seen: Rangef, from: f64, to: f64) -> Self {
         Self { seen, from, to }
     }

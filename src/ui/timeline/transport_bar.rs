@@ -1,8 +1,10 @@
-//! The transport bar: playback, time, keying, speed, frame rate and range.
+//! The transport bar: playback and time; while the timeline is open also keying, speed, frame rate and
+//! range, while it is closed a ruler.
 
-use egui::{ComboBox, RichText, Ui};
+use egui::{ComboBox, Rect, RichText, Ui, vec2};
 
-use super::keyboard;
+use super::time_scale::TimeScale;
+use super::{areas, keyboard, ruler};
 use crate::document::Timeline;
 use crate::session::{Action, Actions, EditAction, PlaybackAction, Session, ViewAction};
 use crate::ui::style;
@@ -11,51 +13,112 @@ use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 /// Width of the bar in points up to which numbers have no labels.
 const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
+/// Space between groups where numbers have no labels.
+const NARROW_GAP: f32 = 2.0;
+const HEIGHT: f32 = 28.0;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let roomy = ui.available_width() > ROOMY;
+/// Shows the bar of the closed timeline.
+pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    /// Width in points of the button at the right end.
+    const OPEN: f32 = 84.0;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.set_height(28.0);
-        buttons(ui, session, actions);
+        ui.set_height(HEIGHT);
+        to_start(ui, session, actions);
+        play(ui, session, actions);
+        to_end(ui, session, actions);
+        repeat(ui, session, actions);
         ui.add_space(GAP);
-        time(ui, session, roomy, actions);
+        seconds(ui, session, actions);
         ui.add_space(GAP);
-        keying(ui, session, actions);
-        ui.add_space(GAP);
-        pace(ui, session, roomy, actions);
-        ui.add_space(GAP);
-        ends(ui, session, roomy, actions);
-        ui.add_space(GAP);
-        curves(ui, session, actions);
+        let size = vec2((ui.available_width() - OPEN).max(0.0), areas::RULER);
+        let (_, rect) = ui.allocate_space(size);
+        rail(ui, session, rect, actions);
+        let tooltip = "Show keys over time";
+        if widgets::button(ui, "Timeline", tooltip, None) {
+            actions.push(ViewAction::ShowTimeline(true));
+        }
     });
 }
 
+/// Shows the whole range of the timeline as a ruler, with the playhead.
+fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
+    let timeline = session.document().timeline;
+    let scale = TimeScale::showing(rect.x_range(), timeline.start, timeline.end);
+    ruler::ground(ui, scale, timeline, rect);
+    ruler::ui(ui, session, scale, rect, actions);
+    ruler::playhead(ui, session, scale, rect, rect.bottom());
+    keyboard::focused(ui, session, actions);
+}
+
+/// Shows the bar of the open timeline.
+pub(in crate::ui) fn whole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let roomy = ui.available_width() > ROOMY;
+    let gap = if roomy { GAP } else { NARROW_GAP };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.set_height(HEIGHT);
+        buttons(ui, session, actions);
+        ui.add_space(gap);
+        time(ui, session, roomy, actions);
+        ui.add_space(gap);
+        keying(ui, session, actions);
+        ui.add_space(gap);
+        pace(ui, session, roomy, actions);
+        ui.add_space(gap);
+        ends(ui, session, roomy, actions);
+        ui.add_space(gap);
+        curves(ui, session, actions);
+        let hide = icon_button(Icon::Fold, "Hide timeline", "Hide the keys", None);
+        if hide.show(ui) {
+            actions.push(ViewAction::ShowTimeline(false));
+        }
+    });
+}
+
+fn icon_button<'a>(
+    icon: Icon,
+    name: &'a str,
+    tooltip: &'a str,
+    disabled: Option<&'a str>,
+) -> IconButton<'a> {
+    IconButton { icon, name, tooltip, on: None, disabled }
+}
+
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let Timeline { start, end, .. } = session.document().timeline;
-    let button =
-        |icon, name, tooltip, disabled| IconButton { icon, name, tooltip, on: None, disabled };
-    let tooltip = "Go to the start (Home in the timeline)";
-    if button(Icon::Start, "To start", tooltip, None).show(ui) {
-        actions.push(PlaybackAction::SetTime(start));
-    }
+    to_start(ui, session, actions);
     let before = keyboard::key_before(session);
     let tooltip = "Go to the previous key (up arrow in the timeline)";
     let why = before.is_none().then_some("No key before the playhead");
-    if button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
+    if icon_button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
         actions.extend(before.map(PlaybackAction::SetTime));
     }
     play(ui, session, actions);
     let after = keyboard::key_after(session);
     let tooltip = "Go to the next key (down arrow in the timeline)";
     let why = after.is_none().then_some("No key after the playhead");
-    if button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
+    if icon_button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
         actions.extend(after.map(PlaybackAction::SetTime));
     }
-    let tooltip = "Go to the end (End in the timeline)";
-    if button(Icon::End, "To end", tooltip, None).show(ui) {
-        actions.push(PlaybackAction::SetTime(end));
+    to_end(ui, session, actions);
+    repeat(ui, session, actions);
+}
+
+fn to_start(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let tooltip = "Go to the start (Home in the timeline)";
+    if icon_button(Icon::Start, "To start", tooltip, None).show(ui) {
+        actions.push(PlaybackAction::SetTime(session.document().timeline.start));
     }
+}
+
+fn to_end(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let tooltip = "Go to the end (End in the timeline)";
+    if icon_button(Icon::End, "To end", tooltip, None).show(ui) {
+        actions.push(PlaybackAction::SetTime(session.document().timeline.end));
+    }
+}
+
+fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let looping = session.is_looping();
     let tooltip = "Repeat from the start when playback reaches the end";
     let on = Some(looping);
@@ -123,6 +186,22 @@ impl TimeField<'_> {
 }
 
 fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
+    seconds(ui, session, actions);
+    let rate = f64::from(session.document().timeline.frame_rate);
+    let frame = TimeField {
+        name: "Frame",
+        label: "Frame",
+        value: (session.time() * rate).round() + 0.0,
+        unit: " f",
+        speed: 0.25,
+        width: 74.0,
+        digits: 0,
+        tooltip: "Set the time in frames: drag or type",
+    };
+    frame.show_free(ui, roomy, actions, |frame| PlaybackAction::SetTime(frame.round() / rate));
+}
+
+fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
     let rate = f64::from(timeline.frame_rate);
     let is_dragged = ui.input(|input| input.pointer.any_down());
@@ -138,18 +217,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         digits: 2,
         tooltip: "Set the time in seconds (left and right arrow in the timeline)",
     };
-    seconds.show_free(ui, roomy, actions, set);
-    let frame = TimeField {
-        name: "Frame",
-        label: "Frame",
-        value: (session.time() * rate).round() + 0.0,
-        unit: " f",
-        speed: 0.25,
-        width: 74.0,
-        digits: 0,
-        tooltip: "Set the time in frames: drag or type",
-    };
-    frame.show_free(ui, roomy, actions, |frame| PlaybackAction::SetTime(frame.round() / rate));
+    seconds.show_free(ui, false, actions, set);
 }
 
 fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -1,5 +1,6 @@
 //! The viewport: gizmos, selection, orbit, pan and zoom.
 
+mod drag_hint;
 mod navigation;
 pub(in crate::ui) mod projection;
 
@@ -18,7 +19,7 @@ use crate::session::{
 };
 use crate::ui::gizmo::{Gizmo, view_axes};
 use crate::ui::keyboard::{self, focus};
-use crate::ui::{commands, pose_summary};
+use crate::ui::{commands, mouse_hints, pose_summary};
 use navigation::{motion, show_cursor, wheel};
 
 pub(in crate::ui) fn ui(
@@ -47,6 +48,8 @@ pub(in crate::ui) fn ui(
     let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
     let over = response.contains_pointer() && !on_view_axes;
     let pointed = mouse.filter(|_| over).and_then(|at| gizmo.at(at));
+    mouse_hints::set_pointed(ui, pointed);
+    drag_hint::ui(ui, session, &screen);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {

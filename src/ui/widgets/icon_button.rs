@@ -12,6 +12,7 @@ pub(in crate::ui) enum Icon {
     PreviousKey,
     NextKey,
     Loop,
+    Fold,
 }
 
 /// An icon button; `disabled` is the reason shown while the button is disabled, `None` otherwise.
@@ -85,6 +86,7 @@ impl Icon {
                 shape(&[(-1.5 * side, 0.0), (-8.0 * side, -5.0), (-8.0 * side, 5.0)]);
                 painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
             }
+            Self::Fold => shape(&[(-5.5, -3.0), (5.5, -3.0), (0.0, 4.0)]),
             Self::Loop => {
                 let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());
                 let ends = (0.35 * core::f32::consts::PI, 1.85 * core::f32::consts::PI);

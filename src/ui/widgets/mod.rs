@@ -16,6 +16,7 @@ mod segments;
 mod slider;
 mod soft_reach_sliders;
 pub(in crate::ui) mod symbol;
+mod tabs;
 
 pub(in crate::ui) use angle_slider::{angle_slider, euler_sliders};
 pub(in crate::ui) use button::button;
@@ -30,3 +31,4 @@ pub(in crate::ui) use section::{folded_section, named_section, pair, section, se
 pub(in crate::ui) use segments::{Segment, segments};
 pub(in crate::ui) use slider::Slider;
 pub(in crate::ui) use soft_reach_sliders::soft_reach_sliders;
+pub(in crate::ui) use tabs::{Tab, tabs};

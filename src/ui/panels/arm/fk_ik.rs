@@ -10,8 +10,16 @@ use crate::ui::widgets::{self, Slider, angle_slider};
 /// Width in points of each of the two buttons.
 const WIDTH: f32 = 33.0;
 
+/// Shows the switch between IK and FK and, if FK has a part in the pose, the joint angles.
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    switch(ui, session, actions);
+    if session.arm().influence < 1.0 {
+        angles(ui, session, actions);
+    }
+}
+
 /// Shows buttons for IK and FK, and the slider that blends between them.
-pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let influence = session.arm().influence;
     let modes = [
         (PoseMode::Hand, "IK", 1.0, "Pose by IK (hand → joint angles)"),
@@ -42,7 +50,7 @@ pub(in crate::ui) fn switch(ui: &mut Ui, session: &Session, actions: &mut Action
 }
 
 /// Shows sliders of the three shoulder angles and the elbow bend, and a button that sets all to 0.
-pub(in crate::ui) fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let fk = session.arm().fk;
     let shoulder = [
         (1, "Shoulder yaw", "Turn the Upper limb about the vertical, first"),

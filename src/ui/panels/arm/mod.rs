@@ -21,12 +21,8 @@ const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 const PINNED: &str = "Pinned to world";
 
+/// Shows what poses the arm by IK: the hand and the Socket twist.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    fk_ik::switch(ui, session, actions);
-    ui.add_space(2.0);
-    if session.arm().influence < 1.0 {
-        widgets::section(ui, "Joint angles", |ui| fk_ik::angles(ui, session, actions));
-    }
     let mut aside = Actions::new();
     let pinned = |ui: &mut Ui| pin(ui, session, &mut aside);
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, session, actions));
@@ -35,8 +31,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         socket_twist::ui(ui, session, actions);
     });
     actions.extend(aside);
-    widgets::section(ui, "Root", |ui| root(ui, session, actions));
-    widgets::section(ui, "Lengths", |ui| lengths(ui, session, actions));
+}
+
+/// Shows all other settings of the arm, folded at first.
+pub(in crate::ui) fn more(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    widgets::folded_section(ui, "Root", |ui| root(ui, session, actions));
+    widgets::folded_section(ui, "Lengths", |ui| lengths(ui, session, actions));
+    widgets::folded_section(ui, "FK and IK", |ui| fk_ik::ui(ui, session, actions));
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits::ui(ui, session, actions));
     widgets::folded_section(ui, "Hand orientation", |ui| {
         hand_orientation::ui(ui, session, actions);

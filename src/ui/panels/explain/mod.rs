@@ -6,7 +6,7 @@ mod reach_meter;
 mod triangle;
 mod twist_references;
 
-use egui::{Align, Color32, Grid, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Color32, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::Arm;
 use crate::session::{Actions, Session};
@@ -24,20 +24,45 @@ struct FormulaRow {
     colour: Option<Color32>,
 }
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.add_space(6.0);
-        widgets::section(ui, "Triangle", |ui| {
-            triangle::ui(ui, session.arm(), session.pose());
-            sentence(ui, session);
-        });
-        widgets::section(ui, "Reach", |ui| reach_meter::ui(ui, session));
-        widgets::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
-        widgets::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
-        widgets::section(ui, "Twist references", |ui| twist_references::ui(ui, session, actions));
-        widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
-        widgets::section(ui, "Pops", |ui| pops::ui(ui, session, actions));
-    });
+/// The triangle of the arm, a sentence on its pose, and its angles and lengths.
+pub(in crate::ui) fn triangle(ui: &mut Ui, session: &Session) {
+    triangle::ui(ui, session.arm(), session.pose());
+    sentence(ui, session);
+    widgets::section(ui, "Pointer", |ui| table(ui, "pointer", &pointer(session)));
+    widgets::section(ui, "Elbow triangle", |ui| table(ui, "triangle", &elbow(ui, session)));
+}
+
+/// The twist references compared.
+pub(in crate::ui) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    twist_references::ui(ui, session, actions);
+}
+
+/// The distances that the hand can have, and those that it has.
+pub(in crate::ui) fn reach(ui: &mut Ui, session: &Session) {
+    reach_meter::ui(ui, session);
+    sentence(ui, session);
+    widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
+}
+
+/// The elbow's jumps with their causes and fixes.
+pub(in crate::ui) fn pops(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    pops::ui(ui, session, actions);
+}
+
+/// Why the arm has no solver that iterates.
+pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
+    let arm = session.arm();
+    let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(|it| arm.format_length(it));
+    let distance = arm.format_length(session.pose().distance);
+    ui.label(format!(
+        "Two limbs need no iterations. Their lengths {upper} and {lower} and the distance {distance} from \
+         shoulder to hand are the three sides of a triangle, and three sides fix all its angles."
+    ));
+    ui.add_space(4.0);
+    ui.label(
+        "A longer chain has many poses with its tip at the target. A solver finds one of them step by \
+         step: show a skeleton to watch that.",
+    );
 }
 
 fn sentence(ui: &mut Ui, session: &Session) {

@@ -21,14 +21,16 @@ const SHOWN: (f64, f64) = (0.05, 100.0);
 const LISTED: usize = 3;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let is_step = |sample: &PopSample| matches!(sample.kind, PopSampleKind::Step(_));
+    if !session.pops().samples().any(is_step) {
+        ui.label("Drag the hand, or play the timeline: this page then shows where the elbow jumped, and why.");
+        return;
+    }
     let spikes = session.pops().spikes();
-    ui.weak("Elbow speed / Cursor speed");
+    ui.weak("Elbow speed / Cursor speed, over the steps of the motion");
     show(ui, session.pops(), &spikes);
     if spikes.is_empty() {
-        ui.label(match session.pops().samples().len() {
-            0 => "Drag the hand or press play to record elbow pops.",
-            _ => "No pops: the elbow moves smoothly.",
-        });
+        ui.label("No pops: the elbow moves smoothly.");
     }
     let mut offered: Vec<PopFix> = Vec::new();
     for spike in spikes.iter().rev().take(LISTED) {

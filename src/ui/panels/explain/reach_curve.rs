@@ -112,7 +112,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
         .label_formatter(|_| None)
         .show_grid(false)
         .custom_x_axes(vec![plot::axis(ui, AxisHints::new_x(), length)])
-        .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), length)])
+        .custom_y_axes(vec![plot::axis(ui, AxisHints::new_y(), length).min_thickness(34.0)])
         .x_grid_spacer(move |_| plot::marks(&ticks))
         .y_grid_spacer(move |_| plot::marks(&limits))
         .show(ui, |plot| {

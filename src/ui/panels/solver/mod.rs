@@ -6,37 +6,56 @@ mod convergence;
 mod iteration;
 mod skin_areas;
 
-use egui::{Align, Button, ComboBox, Layout, RichText, ScrollArea, Ui};
+use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::document::Overlay;
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
 use crate::ui::labels;
 use crate::ui::widgets::{self, NumberField, format};
 use can_solve::why_not;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.add_space(6.0);
-        let display = session.shown().display;
-        if display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning) {
-            widgets::section(ui, "Skin", |ui| skin_areas::ui(ui, session));
-        }
-        widgets::section(ui, "Solver", |ui| {
-            method(ui, session, actions);
-            settings(ui, session, actions);
-            buttons(ui, session, actions);
-            // The comparison shows its own table.
-            if session.comparison().is_none() {
-                report(ui, session);
-            }
-        });
-        widgets::section(ui, "Convergence", |ui| {
-            convergence::ui(ui, session);
-            iteration::ui(ui, session, actions);
-        });
-        widgets::section(ui, "Race", |ui| comparison::ui(ui, session, actions));
+/// The method and its settings, a run of it, and the iterations of that run.
+pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    method(ui, session, actions);
+    settings(ui, session, actions);
+    buttons(ui, session, actions);
+    // The comparison shows its own table.
+    if session.comparison().is_none() {
+        report(ui, session);
+    }
+    widgets::section(ui, "Convergence", |ui| {
+        iterations(
+            ui,
+            session,
+            "Press Run to see how the error falls, iteration by iteration.",
+            actions,
+        );
     });
+}
+
+/// All solvers on the same targets.
+pub(in crate::ui) fn race(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    comparison::ui(ui, session, actions);
+    let empty =
+        "The race runs every solver from the same pose, each as a thin figure in its colour.";
+    ui.add_space(4.0);
+    iterations(ui, session, empty, actions);
+}
+
+/// The cross-section of the skin for each way of blending joints.
+pub(in crate::ui) fn skin(ui: &mut Ui, session: &Session) {
+    skin_areas::ui(ui, session);
+}
+
+/// Shows the errors of the shown runs and the slider through their iterations; without a run, `empty`.
+fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions) {
+    let Some(shown) = session.shown_iteration() else {
+        ui.label(empty);
+        return;
+    };
+    ui.weak("Error over iterations; dashed: tolerance");
+    convergence::ui(ui, session);
+    iteration::ui(ui, session, shown, actions);
 }
 
 fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
