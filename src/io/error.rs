@@ -127,7 +127,7 @@ fn list(names: &[String]) -> String {
 
 /// Replaces the middle of a long message by `…`.
 pub(crate) fn shortened(message: String) -> String {
-    const START: usize = 200;
+    const START: usize = 260;
     const END: usize = 120;
     let count = message.chars().count();
     if count <= START + END {

@@ -98,6 +98,7 @@ fn everything_that_can_be_acted_on_has_a_name() {
 #[test]
 fn tab_goes_through_the_controls_in_reading_order_and_back() {
     let mut bench = Bench::new();
+    bench.toggle(&["Display"]);
     let numbers = SLIDERS.map(|name| format!("{name} value"));
     let mut expected = Vec::new();
     for (slider, number) in SLIDERS.into_iter().zip(&numbers) {
@@ -163,6 +164,7 @@ fn the_viewport_is_an_image_that_says_how_far_the_arm_reaches() {
 #[test]
 fn at_960_by_600_the_panel_scrolls_to_what_the_keyboard_reaches() {
     let mut bench = Bench::of_size(SMALL);
+    bench.toggle(&["Display"]);
     bench.node(Role::Button, "Reset all").scroll_to_me();
     bench.settle();
     let last = bench.rect(Role::Button, "Reset all");

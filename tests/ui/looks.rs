@@ -105,7 +105,7 @@ fn nothing_moves_when_a_number_changes_its_width() {
     let mut bench = Bench::new();
     let places = |bench: &Bench| {
         let controls = SLIDERS.map(|name| bench.rect(Role::Slider, name));
-        (controls, bench.viewport(), bench.rect(Role::CheckBox, "Shadow"))
+        (controls, bench.viewport(), bench.rect(Role::CheckBox, "Elbow circle"))
     };
     let before = places(&bench);
     for hand in [Vec3::ZERO, Vec3::splat(-123_456.8), Vec3::new(1.0, 480.0, 3.0)] {
