@@ -15,6 +15,11 @@ fn ring(screen: &RgbImage, at: Pos2) -> usize {
     pixels.filter(|(x, y, colour)| is_near(*x, *y) && is_bright(colour)).count()
 }
 
+/// Distances in points from the middle of the hips and of the head beyond their outlines: inside, the skin
+/// has one colour.
+const HIPS: f32 = 70.0;
+const HEAD: f32 = 45.0;
+
 #[test]
 #[ignore = "needs a display of its own"]
 fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
@@ -67,8 +72,8 @@ fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
     program.drag(places.pelvis, to);
     program.mouse_to(places.empty);
     program.wait_until("the pelvis and the head move", |now| {
-        changed(&first, now, places.pelvis, 20.0) > 150
-            && changed(&first, now, places.head, 20.0) > 150
+        changed(&first, now, places.pelvis, HIPS) > 150
+            && changed(&first, now, places.head, HEAD) > 150
     });
     let dragged = program.at_rest();
     for wrist in places.wrists {
@@ -82,7 +87,7 @@ fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
     }
 
     program.key("ctrl+z");
-    program.wait_until("the drag is undone", |now| changed(&first, now, places.head, 20.0) < 20);
+    program.wait_until("the drag is undone", |now| changed(&first, now, places.head, HEAD) < 20);
     program.key("ctrl+q");
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
     assert_eq!(program.errors(), "", "it has nothing to complain about");
