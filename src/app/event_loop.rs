@@ -14,14 +14,18 @@ use super::settings::Settings;
 use super::user_event::UserEvent;
 use super::window::{AppWindow, Repaint};
 use crate::document::Document;
-use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction};
+use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
 
 /// Opens the window, with a document and its file if given, and returns when the window is closed.
+/// Begins the tour at `tour_step`, counted from 0, if given.
 ///
 /// # Errors
 ///
 /// If there is no display or no graphics device, or the device is lost for good.
-pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError> {
+pub fn run(
+    document: Option<(Document, Option<PathBuf>)>,
+    tour_step: Option<usize>,
+) -> Result<(), AppError> {
     let started = Instant::now();
     let event_loop =
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
@@ -37,6 +41,9 @@ pub fn run(document: Option<(Document, Option<PathBuf>)>) -> Result<(), AppError
     if let Some(RecoveredFile { backup, .. }) = &recovered {
         let (document, file) = (Box::new(backup.document.clone()), backup.file.clone());
         session.apply(ShellAction::OpenDialog(Dialog::Recover { document, file }));
+    }
+    if let Some(step) = tour_step {
+        session.apply(TourAction::Enter(step));
     }
     let mut app = App {
         started,
@@ -80,7 +87,7 @@ impl App {
         if window.frames() == 1 {
             log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
         }
-        let backup = self.recovery.update(&self.session, &self.proxy);
+        let backup = self.recovery.update(self.session.own(), &self.proxy);
         self.remove_settled_recovery();
         let again = match drawn {
             Repaint::Quit => return event_loop.exit(),
@@ -97,7 +104,7 @@ impl App {
     /// Ends the program after the graphics device is lost for good; unsaved changes are kept for
     /// the next start.
     fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
-        let recovery = match self.recovery.leave(&self.session) {
+        let recovery = match self.recovery.leave(self.session.own()) {
             Ok(None) => "All changes are saved".to_owned(),
             Ok(Some(path)) => format!(
                 "Unsaved changes are in {}\nik-arm offers to open them at its next start",
@@ -113,6 +120,7 @@ impl App {
     /// Cancels an export, saves the settings and drops the graphics.
     fn close(&mut self) {
         self.session.apply(FileAction::CancelExport);
+        self.session.apply(TourAction::Leave);
         if let AppState::Active(window) = &mut self.state {
             window.await_export();
             log::info!("{} frames drawn", window.frames());
@@ -125,7 +133,8 @@ impl App {
     /// has no unsaved changes without a backup.
     fn remove_settled_recovery(&mut self) {
         let is_settled = self.session.has_settled_recovery();
-        let is_safe = !self.session.is_unsaved() || self.recovery.has(self.session.revision());
+        let own = self.session.own();
+        let is_safe = !own.is_unsaved() || self.recovery.has(own.revision());
         if is_settled
             && is_safe
             && let Some(RecoveredFile { path, .. }) = self.recovered.take()

@@ -1,14 +1,20 @@
 use std::path::Path;
 
+use crate::session::Session;
+
 /// Name of the program, as in the window's title.
 pub const TITLE: &str = "ik-arm";
 
-/// Title of the window: the file's name, an asterisk for unsaved changes, and the program.
-pub fn title(file: Option<&Path>, is_unsaved: bool) -> String {
-    let unsaved = if is_unsaved { "*" } else { "" };
-    match file.and_then(Path::file_name) {
+/// Title of the window: the file's name, an asterisk for unsaved changes, and the program; during the
+/// tour, the step.
+pub fn title(session: &Session) -> String {
+    if let Some(tour) = session.tour() {
+        return format!("Tour, step {} – {TITLE}", tour.number() + 1);
+    }
+    let unsaved = if session.is_unsaved() { "*" } else { "" };
+    match session.file().and_then(Path::file_name) {
         Some(name) => format!("{}{unsaved} – {TITLE}", name.to_string_lossy()),
-        None if is_unsaved => format!("untitled* – {TITLE}"),
+        None if session.is_unsaved() => format!("untitled* – {TITLE}"),
         None => TITLE.to_owned(),
     }
 }

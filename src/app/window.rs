@@ -336,7 +336,7 @@ impl AppWindow {
     }
 
     fn update_title(&mut self, session: &Session) {
-        let title = title(session.file(), session.is_unsaved());
+        let title = title(session);
         if title != self.title {
             self.window.set_title(&title);
             self.title = title;

@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::value_parser;
+
 use super::open;
 use super::report::fail;
 use crate::app;
+use crate::session::TourStep;
 
 #[derive(clap::Args)]
 pub struct GuiArgs {
@@ -15,6 +18,14 @@ pub struct GuiArgs {
     /// Skeleton to open, if the file has several [default: the first]
     #[arg(long, value_name = "NAME", requires = "file")]
     skeleton: Option<String>,
+    /// Begin the tour at this step [default: 1]
+    #[arg(long, value_name = "STEP", num_args = 0..=1, default_missing_value = "1",
+        value_parser = value_parser!(u16).range(1..=steps()))]
+    tour: Option<u16>,
+}
+
+fn steps() -> i64 {
+    TourStep::all().len() as i64
 }
 
 pub fn run(args: &GuiArgs) -> ExitCode {
@@ -29,7 +40,7 @@ pub fn run(args: &GuiArgs) -> ExitCode {
             Err(error) => return fail(&error),
         }
     }
-    match app::run(document) {
+    match app::run(document, args.tour.map(|step| usize::from(step) - 1)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),
     }

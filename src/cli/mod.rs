@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod skin;
 mod solve;
+mod tour;
 
 use std::process::ExitCode;
 
@@ -55,6 +56,8 @@ enum Command {
     Skin(SkinArgs),
     /// List the built-in example scenes, or print one
     Examples(ExamplesArgs),
+    /// Print the text of the tour that the window gives
+    Tour,
     /// Open the window (also without a command)
     Gui(GuiArgs),
 }
@@ -76,6 +79,7 @@ pub fn run() -> ExitCode {
         Some(Command::Bake(args)) => bake::run(&args),
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
+        Some(Command::Tour) => tour::run(),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&window),
     }

@@ -22,7 +22,7 @@ pub struct Example {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Introduction to what the program can do.
-    Tour,
+    Basics,
     /// One example for each case that is hard for IK.
     HardCases,
 }
@@ -39,28 +39,28 @@ impl Example {
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 22] = [
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "arm",
             title: "Arm",
             sentence: "The arm of the paper, two limbs in closed form.",
             text: include_str!("../../assets/arm.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "two-targets",
             title: "Two targets on a Y",
             sentence: "A tree with two branches, each with a target of its own.",
             text: include_str!("../../assets/two-targets.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "human",
             title: "Human",
             sentence: "A figure whose hands and feet stay at their targets while its pelvis is dragged.",
             text: include_str!("../../assets/human.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "walk",
             title: "Walk",
             sentence: "A figure that walks: its feet stand at their targets while the pelvis moves \
@@ -68,14 +68,14 @@ impl Example {
             text: include_str!("../../assets/walk.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "wheel",
             title: "Two hands on a wheel",
             sentence: "A figure whose hands hold a wheel that turns: their targets are on the wheel.",
             text: include_str!("../../assets/wheel.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "candy-wrapper",
             title: "Candy wrapper",
             sentence: "A forearm that is twisted by 180°, with its skin blended in three ways; press \
@@ -83,28 +83,28 @@ impl Example {
             text: include_str!("../../assets/candy-wrapper.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "table",
             title: "Table",
             sentence: "An arm whose hand rests on a table while its shoulder moves.",
             text: include_str!("../../assets/table.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "snake",
             title: "Snake",
             sentence: "24 joints that follow their head around in waves.",
             text: include_str!("../../assets/snake.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "ten-joints",
             title: "Ten-joint chain",
             sentence: "A chain with one target, to watch the solvers at work.",
             text: include_str!("../../assets/ten-joints.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "keyframes",
             title: "Keyframes",
             sentence: "An arm whose hand goes along a spline through six keys; press Space to \
@@ -112,7 +112,7 @@ impl Example {
             text: include_str!("../../assets/keyframes.json"),
         },
         Self {
-            group: Group::Tour,
+            group: Group::Basics,
             name: "degenerate",
             title: "Degenerate cases",
             sentence: "Cases that break careless solvers: a bone without length, a target at the \

@@ -5,6 +5,7 @@ use super::playback_action::PlaybackAction;
 use super::select_action::SelectAction;
 use super::shell_action::ShellAction;
 use super::solver_action::SolverAction;
+use super::tour::TourAction;
 use super::transaction_action::TransactionAction;
 use super::view_action::ViewAction;
 
@@ -31,6 +32,8 @@ pub enum Action {
     File(FileAction),
     /// Changes dialogs, messages or preferences.
     Shell(ShellAction),
+    /// Moves through the tour.
+    Tour(TourAction),
 }
 
 macro_rules! from_payload {
@@ -53,6 +56,7 @@ from_payload! {
     Bake(BakeAction),
     File(FileAction),
     Shell(ShellAction),
+    Tour(TourAction),
 }
 
 /// Actions in the order in which they are applied.

@@ -13,6 +13,7 @@ impl Session {
         if self.compares_skinning() && !compared {
             self.show_tab(PanelTab::Skin);
         }
+        self.watch_tour();
         effect
     }
 
@@ -27,6 +28,7 @@ impl Session {
             Action::Bake(action) => return self.apply_bake(action),
             Action::File(action) => return self.apply_file(action),
             Action::Shell(action) => return self.apply_shell(action),
+            Action::Tour(action) => self.apply_tour(action),
         }
         None
     }

@@ -109,6 +109,9 @@ impl Session {
 
     /// Applies an action; asks first if the action would lose unsaved changes or end an export.
     pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
+        if !self.prepare_tour(&action) {
+            return None;
+        }
         if action == FileAction::Quit && self.is_exporting() {
             self.shell.open_dialog(Dialog::Exporting);
             return None;

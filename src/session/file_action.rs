@@ -97,6 +97,28 @@ pub enum FileAction {
 }
 
 impl FileAction {
+    /// Whether the action saves the document.
+    pub(super) fn saves_document(&self) -> bool {
+        let asks = |dialog: &PathDialog| matches!(dialog, PathDialog::SaveAs { .. });
+        match self {
+            Self::Save | Self::SaveAs(_) | Self::SaveAnd(_) => true,
+            Self::AskPath(dialog) => asks(dialog),
+            _ => false,
+        }
+    }
+
+    /// Whether the action changes, replaces or closes the open document.
+    pub(super) fn concerns_document(&self) -> bool {
+        let reads = matches!(
+            self,
+            Self::Opened { .. }
+                | Self::NotOpened { .. }
+                | Self::LocateSkin(_)
+                | Self::SkinLocated { .. }
+        );
+        reads || self.leaves_document()
+    }
+
     /// Whether the action replaces or closes the open document.
     pub(super) fn leaves_document(&self) -> bool {
         matches!(

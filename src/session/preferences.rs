@@ -23,6 +23,8 @@ pub struct Preferences {
     pub curves: bool,
     /// Whether the hand of the arm was ever dragged, so that no hint is needed.
     pub has_dragged_hand: bool,
+    /// Whether the tour is offered at the start.
+    pub offers_tour: bool,
 }
 
 /// Mouse buttons that move the camera, as in other programs.
@@ -51,6 +53,7 @@ impl Default for Preferences {
             timeline_open: None,
             curves: false,
             has_dragged_hand: false,
+            offers_tour: true,
         }
     }
 }

@@ -7,6 +7,7 @@ use super::preferences::Preferences;
 use super::selection::Selection;
 use super::shell::Shell;
 use super::solvers::Solvers;
+use super::tour::TourState;
 use super::transport::TransportPath;
 use super::view::View;
 use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
@@ -33,6 +34,10 @@ pub struct Session {
     pub(super) files: Files,
     pub(super) shell: Shell,
     pub(super) preferences: Preferences,
+    /// Where the user is in the tour; `None` outside of it.
+    pub(super) tour: Option<TourState>,
+    /// During the tour, the session with the user's own document.
+    pub(super) own: Option<Box<Session>>,
 }
 
 impl Default for Session {
@@ -61,6 +66,8 @@ impl Session {
             files: Files::default(),
             shell: Shell::default(),
             preferences,
+            tour: None,
+            own: None,
         }
     }
 

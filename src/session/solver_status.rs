@@ -68,15 +68,22 @@ impl Session {
         rig.solver.tolerance.unwrap_or_else(|| 1e-4 * rig.reach())
     }
 
+    /// The enabled target of the evaluated pose that is farthest from its tip: its index in
+    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets), and the distance in world units.
+    pub fn farthest_target(&self) -> Option<(usize, f32)> {
+        let targets = self.skeleton_rig().targets.iter().zip(&self.evaluated_skeleton().targets);
+        let enabled = targets.enumerate().filter(|(_, (target, _))| target.enabled);
+        let distances = enabled.map(|(index, (_, TargetReport { error, .. }))| (index, *error));
+        distances.max_by(|(_, one), (_, other)| one.total_cmp(other))
+    }
+
     /// State and residual of the shown iterate of the solver run, or of the evaluated pose; `None`
     /// without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
         if let Some(run) = self.solver_run() {
             return Some(SolverStatus::of_run(run));
         }
-        let targets = self.skeleton_rig().targets.iter().zip(&self.evaluated_skeleton().targets);
-        let enabled = targets.filter(|(target, _)| target.enabled).map(|(_, report)| report);
-        let error = enabled.map(|TargetReport { error, .. }| *error).reduce(f32::max)?;
+        let (_, error) = self.farthest_target()?;
         let state = match error <= self.solver_tolerance() {
             true => SolverState::Reached,
             false => SolverState::NotReached,

@@ -119,18 +119,6 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
     }
 }
 
-/// Name of a solver.
-pub(in crate::ui) fn method(method: Method) -> &'static str {
-    match method {
-        Method::TransposeFixed => "Jacobian transpose, fixed step",
-        Method::Transpose => "Jacobian transpose",
-        Method::DampedLeastSquares => "Damped least squares",
-        Method::Ccd => "Cyclic coordinate descent",
-        Method::Fabrik => "FABRIK",
-        Method::TwoBone => "Two-bone",
-    }
-}
-
 /// Tooltip of a solver.
 pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
     match method {

@@ -3,7 +3,7 @@
 use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
 
 use super::panels::{crowd, left, right};
-use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, viewport};
+use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, tour, viewport};
 use crate::session::{Actions, Session};
 
 /// Shows all panels and returns the rectangle of the viewport in points. `picture` is the texture
@@ -16,6 +16,7 @@ pub fn show(
     actions: &mut Actions,
 ) -> Rect {
     keyboard::global(ui, session, actions);
+    tour::open_section(ui, session);
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
     Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, actions));
     Panel::bottom("transport").show(ui, |ui| timeline::transport(ui, session, actions));
@@ -38,8 +39,17 @@ pub fn show(
             .size_range(232.0..=460.0)
             .show(ui, |ui| right::ui(ui, session, actions));
     }
+    if let Some(step) = session.tour() {
+        let height = tour::height(ui.available_width());
+        Panel::bottom("tour").exact_size(height).show(ui, |ui| {
+            tour::card(ui, session, step, actions);
+        });
+    }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    if session.preferences().offers_tour && session.tour().is_none() {
+        tour::offer(ui, viewport, actions);
+    }
     crowd::ui(ui, viewport, session, machine, actions);
     dialogs::ui(ui, session, machine, viewport, actions);
     keyboard::focus::remember(ui);

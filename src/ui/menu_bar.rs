@@ -6,7 +6,7 @@ use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group};
 use crate::session::{
-    Action, Actions, Dialog, EditAction, FileAction, Navigation, Session, ShellAction,
+    Action, Actions, Dialog, EditAction, FileAction, Navigation, Session, ShellAction, TourAction,
     TransactionAction, ViewAction,
 };
 
@@ -25,7 +25,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                     influence => format!("Arm · {:.0} % IK, rest FK", influence * 100.0),
                 },
                 RigKind::Skeleton => {
-                    format!("Skeleton · {}", labels::method(session.skeleton_rig().solver.method))
+                    format!("Skeleton · {}", session.skeleton_rig().solver.method.title())
                 }
             };
             ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
@@ -227,7 +227,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn examples(ui: &mut Ui, actions: &mut Actions) {
-    examples_of(Group::Tour, ui, actions);
+    examples_of(Group::Basics, ui, actions);
     ui.separator();
     ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
 }
@@ -241,6 +241,9 @@ fn examples_of(group: Group, ui: &mut Ui, actions: &mut Actions) {
 }
 
 fn help(ui: &mut Ui, actions: &mut Actions) {
+    if item(ui, "Tour", "") {
+        actions.push(TourAction::Enter(0));
+    }
     if item(ui, "Shortcuts", "F1") {
         actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
     }

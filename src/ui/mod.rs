@@ -16,6 +16,7 @@ mod pose_summary;
 mod status_bar;
 pub mod style;
 mod timeline;
+mod tour;
 mod viewport;
 mod widgets;
 

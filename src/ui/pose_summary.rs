@@ -5,7 +5,6 @@ use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
 use crate::session::{Session, ShownIteration};
-use crate::ui::labels;
 use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
 /// One sentence about the reach of the arm.
@@ -98,7 +97,7 @@ fn describe_solver(session: &Session) -> Option<String> {
     Some(match session.solver_run() {
         Some(run) => {
             let state = session.solver_status()?.state;
-            format!("{}: {iteration}, {state}", labels::method(run.method()))
+            format!("{}: {iteration}, {state}", run.method().title())
         }
         None => format!("Race of all solvers: {iteration}"),
     })

@@ -37,6 +37,18 @@ impl Method {
         Self::TwoBone,
     ];
 
+    /// Name on screen.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::TransposeFixed => "Jacobian transpose, fixed step",
+            Self::Transpose => "Jacobian transpose",
+            Self::DampedLeastSquares => "Damped least squares",
+            Self::Ccd => "Cyclic coordinate descent",
+            Self::Fabrik => "FABRIK",
+            Self::TwoBone => "Two-bone",
+        }
+    }
+
     /// Name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {

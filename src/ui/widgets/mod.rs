@@ -19,7 +19,7 @@ pub(in crate::ui) mod symbol;
 mod tabs;
 
 pub(in crate::ui) use angle_slider::{angle_slider, euler_sliders};
-pub(in crate::ui) use button::button;
+pub(in crate::ui) use button::{button, primary_button};
 pub(in crate::ui) use colour_bar::colour_bar;
 pub(in crate::ui) use error_label::error_label;
 pub(in crate::ui) use field::NumberField;
@@ -27,7 +27,9 @@ pub(in crate::ui) use icon_button::{Icon, IconButton, diamond};
 pub(in crate::ui) use key_button::KeyButton;
 pub(in crate::ui) use number::DragNumber;
 pub(in crate::ui) use point::{AXES, PointSliders};
-pub(in crate::ui) use section::{folded_section, named_section, pair, section, section_with};
+pub(in crate::ui) use section::{
+    folded_section, named_section, open_section, pair, section, section_with,
+};
 pub(in crate::ui) use segments::{Segment, segments};
 pub(in crate::ui) use slider::Slider;
 pub(in crate::ui) use soft_reach_sliders::soft_reach_sliders;

@@ -2,11 +2,21 @@
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align, CollapsingHeader, FontId, InnerResponse, Label, Layout, Rect, Ui, UiBuilder, WidgetText,
+    Align, CollapsingHeader, FontId, Id, InnerResponse, Label, Layout, Rect, Ui, UiBuilder,
+    WidgetText,
 };
 
 /// Space below a section, in points.
 const SPACE: f32 = 1.0;
+
+/// Unfolds the section that is identified by `id` in the next frame, and scrolls to it.
+pub(in crate::ui) fn open_section(ui: &Ui, id: Option<&str>) {
+    ui.data_mut(|data| data.insert_temp(section_to_open(), id.map(ToOwned::to_owned)));
+}
+
+fn section_to_open() -> Id {
+    Id::unique("section to open")
+}
 
 /// Shows a foldable section, open at first. Whether it is folded is kept across restarts.
 pub(in crate::ui) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
@@ -51,8 +61,13 @@ fn show_section(
     contents: impl FnOnce(&mut Ui),
 ) -> Rect {
     let heading = cut(ui, title);
+    let is_asked = ui.data(|data| data.get_temp(section_to_open())) == Some(Some(id.to_owned()));
     let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
-    let shown = header.show_unindented(ui, contents);
+    let shown = header.open(is_asked.then_some(true)).show_unindented(ui, contents);
+    if is_asked {
+        let end = shown.body_returned.map_or(shown.header_response.rect, |()| ui.min_rect());
+        ui.scroll_to_rect(shown.header_response.rect.union(end), None);
+    }
     ui.add_space(SPACE);
     shown.header_response.rect
 }

@@ -7,8 +7,8 @@ use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInf
 use super::can_solve::why_not;
 use crate::kinematics::chain_ik::{Method, Report, Status};
 use crate::session::{Actions, ComparedSolver, Session, SolverAction};
+use crate::ui::style;
 use crate::ui::widgets::{self, format};
-use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.comparison() else {
@@ -50,7 +50,7 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         }
         response.on_hover_text(said);
         let label = ui.label(short_name(solver.method));
-        label.on_hover_text(format!("{}. {}", labels::method(solver.method), status(solver)));
+        label.on_hover_text(format!("{}. {}", solver.method.title(), status(solver)));
     });
     let texts = match &solver.run {
         Ok(run) => {

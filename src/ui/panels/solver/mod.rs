@@ -61,12 +61,12 @@ fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions
 fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     let combo = ComboBox::from_id_salt("method")
-        .selected_text(labels::method(options.method))
+        .selected_text(options.method.title())
         .width(ui.available_width() - 12.0)
         .truncate();
     let response = combo.show_ui(ui, |ui| {
         for method in Method::ALL {
-            let item = ui.selectable_label(method == options.method, labels::method(method));
+            let item = ui.selectable_label(method == options.method, method.title());
             if item.on_hover_text(labels::method_tooltip(method)).clicked() {
                 actions.push(EditAction::SetSolver(SolverOptions { method, ..options }));
             }

@@ -1,0 +1,72 @@
+use super::step::TourStep;
+use crate::document::Document;
+
+/// Where the user is in the tour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TourState {
+    number: usize,
+    /// The document with which the step began.
+    start: Document,
+    guess: Option<usize>,
+    shows_result: bool,
+    /// For each step, whether the user has done its task.
+    done: Vec<bool>,
+}
+
+impl TourState {
+    /// A step of a tour in which the tasks of some steps were `done`.
+    pub(super) fn new(number: usize, start: Document, mut done: Vec<bool>) -> Self {
+        done.resize(TourStep::all().len(), false);
+        Self { number, start, guess: None, shows_result: false, done }
+    }
+
+    /// Number of the step, counted from 0.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// The step.
+    pub fn step(&self) -> &'static TourStep {
+        &TourStep::all()[self.number]
+    }
+
+    /// The document with which the step began.
+    pub(super) fn start(&self) -> &Document {
+        &self.start
+    }
+
+    /// The chosen answer to the step's question; `None` before it was chosen.
+    pub fn guess(&self) -> Option<usize> {
+        self.guess
+    }
+
+    /// Whether the result of the step is shown: its task was done, by the user or in a demonstration.
+    pub fn shows_result(&self) -> bool {
+        self.shows_result
+    }
+
+    /// Whether the user has done the task of a step, counted from 0.
+    pub fn is_done(&self, number: usize) -> bool {
+        self.done.get(number).copied().unwrap_or(false)
+    }
+
+    /// For each step, whether the user has done its task.
+    pub(super) fn done(self) -> Vec<bool> {
+        self.done
+    }
+
+    pub(super) fn choose(&mut self, answer: usize) {
+        if answer < self.step().guess.answers.len() {
+            self.guess = Some(answer);
+        }
+    }
+
+    pub(super) fn show_result(&mut self) {
+        self.shows_result = true;
+    }
+
+    pub(super) fn finish(&mut self) {
+        self.shows_result = true;
+        self.done[self.number] = true;
+    }
+}

@@ -1,0 +1,161 @@
+//! The card of a step: what there is to see, a question, a task, and at last the result.
+
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Align, FontId, Id, Label, Layout, RichText, ScrollArea, Ui};
+
+use super::progress::progress;
+use crate::session::{Actions, Session, TourAction, TourState, TourStep, filled};
+use crate::ui::style;
+use crate::ui::widgets;
+
+/// Width from which a card is wide, in points.
+const WIDE: f32 = 560.0;
+/// Width of the text, which long lines would make hard to read.
+const TEXT_WIDTH: f32 = 720.0;
+
+/// Height of the card in a window in which it has a width. It is the same for all steps, so that the
+/// view does not change its size.
+pub(in crate::ui) fn height(width: f32) -> f32 {
+    if width < WIDE { 236.0 } else { 184.0 }
+}
+
+/// Unfolds the section of the left panel that a step needs, once, when the step begins.
+pub(in crate::ui) fn open_section(ui: &Ui, session: &Session) {
+    let shown = Id::unique("step of the tour");
+    let now = session.tour().map(TourState::number);
+    let before: Option<usize> = ui.data(|data| data.get_temp(shown)).flatten();
+    if now == before {
+        return widgets::open_section(ui, None);
+    }
+    ui.data_mut(|data| data.insert_temp(shown, now));
+    let section = session.tour().and_then(|tour| tour.step().section.as_deref());
+    widgets::open_section(ui, section);
+    // The sections below take their places in the next frame.
+    ui.ctx().request_repaint();
+}
+
+/// Shows the card of the step.
+pub(in crate::ui) fn card(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions) {
+    ui.add_space(4.0);
+    header(ui, tour, actions);
+    ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
+        ui.add_space(6.0);
+        ui.horizontal(|ui| footer(ui, tour, actions));
+        ui.with_layout(Layout::top_down(Align::Min), |ui| body(ui, session, tour, actions));
+    });
+}
+
+fn header(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(&tour.step().title).strong().size(16.0));
+        let (number, all) = (tour.number() + 1, TourStep::all().len());
+        ui.label(RichText::new(format!("{number} of {all}")).weak());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let leave = ui.small_button("Leave");
+            if leave.on_hover_text("End the tour and put your document back").clicked() {
+                actions.push(TourAction::Leave);
+            }
+        });
+    });
+}
+
+fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
+    let (number, last) = (tour.number(), TourStep::all().len() - 1);
+    let back = ui.add_enabled(number > 0, egui::Button::new("Back"));
+    let back = back.on_hover_text("Go to the step before");
+    if back.on_disabled_hover_text("This is the first step").clicked() {
+        actions.push(TourAction::Enter(number - 1));
+    }
+    ui.add_space(4.0);
+    ui.scope(|ui| progress(ui, tour, actions));
+    ui.add_space(4.0);
+    let (name, tooltip, action) = match number == last {
+        true => ("Finish", "End the tour and put your document back", TourAction::Leave),
+        false => ("Next", "Go to the next step", TourAction::Enter(number + 1)),
+    };
+    let next = match tour.shows_result() {
+        true => widgets::primary_button(ui, name),
+        false => ui.button(name),
+    };
+    if next.on_hover_text(tooltip).clicked() {
+        actions.push(action);
+    }
+}
+
+fn body(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions) {
+    let step = tour.step();
+    ScrollArea::vertical().id_salt(tour.number()).auto_shrink([false, false]).show(ui, |ui| {
+        ui.set_max_width(ui.available_width().min(TEXT_WIDTH));
+        ui.spacing_mut().item_spacing.y = 4.0;
+        if tour.shows_result() {
+            return result(ui, session, tour);
+        }
+        paragraph(ui, &filled(&step.text, session));
+        ui.add_space(2.0);
+        match tour.guess() {
+            None => question(ui, step, actions),
+            Some(_) => task(ui, session, step, actions),
+        }
+    });
+}
+
+fn question(ui: &mut Ui, step: &TourStep, actions: &mut Actions) {
+    caption(ui, "Guess first");
+    paragraph(ui, &step.guess.question);
+    ui.horizontal_wrapped(|ui| {
+        for (number, answer) in step.guess.answers.iter().enumerate() {
+            if ui.button(answer).on_hover_text("Guess this, then try it").clicked() {
+                actions.push(TourAction::Guess(number));
+            }
+        }
+    });
+}
+
+fn task(ui: &mut Ui, session: &Session, step: &TourStep, actions: &mut Actions) {
+    caption(ui, "Now try it");
+    paragraph(ui, &filled(&step.task, session));
+    ui.horizontal_wrapped(|ui| {
+        let demonstrate = ui.small_button("Do it for me");
+        if demonstrate.on_hover_text("Show the result without the mouse").clicked() {
+            actions.push(TourAction::Demonstrate);
+        }
+        let colour = ui.visuals().weak_text_color();
+        let keys = format!("Without a mouse: {}", step.keyboard);
+        ui.add(Label::new(layout(ui, &keys, 12.0, colour)).selectable(false));
+    });
+}
+
+fn result(ui: &mut Ui, session: &Session, tour: &TourState) {
+    let step = tour.step();
+    caption(ui, "What happened");
+    paragraph(ui, &filled(&step.result, session));
+    if let Some(answer) = tour.guess().and_then(|guess| step.guess.answers.get(guess)) {
+        ui.label(RichText::new(format!("You guessed: {answer}")).weak());
+    }
+}
+
+fn caption(ui: &mut Ui, text: &str) {
+    let colour = style::accent(ui);
+    ui.add(Label::new(RichText::new(text).color(colour).strong().size(12.0)).selectable(false));
+}
+
+fn paragraph(ui: &mut Ui, text: &str) {
+    let colour = ui.visuals().text_color();
+    let label = Label::new(layout(ui, text, 13.5, colour)).selectable(false);
+    ui.add(label.wrap());
+}
+
+/// Lays out text in which the parts between asterisks stand out.
+fn layout(ui: &Ui, text: &str, size: f32, colour: egui::Color32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    for (number, part) in text.split('*').enumerate() {
+        let color = if number % 2 == 1 { ui.visuals().strong_text_color() } else { colour };
+        let font_id = FontId::proportional(size);
+        let underline = match number % 2 {
+            1 => egui::Stroke::new(1.0, ui.visuals().weak_text_color()),
+            _ => egui::Stroke::NONE,
+        };
+        job.append(part, 0.0, TextFormat { font_id, color, underline, ..Default::default() });
+    }
+    job
+}
