@@ -505,7 +505,7 @@ fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
         let again = open(&io::to_json(&opened.document).expect("written"));
         assert_eq!(again.document, opened.document, "{}", example.name);
         let folder = match example.group {
-            Group::Tour => "assets",
+            Group::Basics => "assets",
             Group::HardCases => "assets/hard",
         };
         let path = format!("{}/{folder}/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);

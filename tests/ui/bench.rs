@@ -57,9 +57,9 @@ impl Bench {
         Self::liking(size, Preferences { timeline_open: Some(true), ..Preferences::default() })
     }
 
-    /// With the sections unfolded whose settings many tests use.
+    /// With the sections unfolded whose settings many tests use, and without the offer of the tour.
     pub fn liking(size: Vec2, preferences: Preferences) -> Self {
-        let mut bench = Self::first(size, preferences);
+        let mut bench = Self::first(size, Preferences { offers_tour: false, ..preferences });
         bench.toggle(&["Lengths", "Root"]);
         bench
     }

@@ -34,5 +34,6 @@ mod targets;
 mod timeline;
 mod timeline_keys;
 mod timeline_looks;
+mod tour;
 mod view;
 mod view_keys;

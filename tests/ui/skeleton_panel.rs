@@ -588,7 +588,7 @@ fn of_several_skeletons_one_is_chosen() {
 #[test]
 fn every_example_of_the_tour_opens_from_its_menu() {
     let mut bench = Bench::new();
-    for example in Example::of(Group::Tour) {
+    for example in Example::of(Group::Basics) {
         bench.choose(&["Examples", example.title]);
         let opened = example.open().expect("it opens").document;
         assert_eq!(bench.session().document(), &opened, "{}", example.title);

@@ -62,10 +62,9 @@ impl Session {
         *self = Self { files, playback, ..Self::with_document(preferences, document) };
         self.refresh();
         self.reset_transport();
-        if let Some(tab) = step.tab {
-            self.preferences.explain = true;
-            self.show_tab(tab);
-        }
+        self.preferences.explain = step.tab.is_some();
+        self.preferences.timeline_open = Some(false);
+        step.tab.into_iter().for_each(|tab| self.show_tab(tab));
         let joints = self.skeleton().iter();
         let selected = joints.filter(|(_, joint)| Some(&joint.name) == step.select.as_ref());
         self.select(selected.map(|(id, _)| id).collect());

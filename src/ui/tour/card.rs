@@ -16,7 +16,7 @@ const TEXT_WIDTH: f32 = 720.0;
 /// Height of the card in a window in which it has a width. It is the same for all steps, so that the
 /// view does not change its size.
 pub(in crate::ui) fn height(width: f32) -> f32 {
-    if width < WIDE { 236.0 } else { 184.0 }
+    if width < WIDE { 244.0 } else { 196.0 }
 }
 
 /// Unfolds the section of the left panel that a step needs, once, when the step begins.
@@ -91,7 +91,7 @@ fn body(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions)
             return result(ui, session, tour);
         }
         paragraph(ui, &filled(&step.text, session));
-        ui.add_space(2.0);
+        ui.add_space(4.0);
         match tour.guess() {
             None => question(ui, step, actions),
             Some(_) => task(ui, session, step, actions),

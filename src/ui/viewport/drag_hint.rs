@@ -14,7 +14,8 @@ const OFFSET: egui::Vec2 = vec2(44.0, -78.0);
 pub(in crate::ui) fn ui(ui: &Ui, session: &Session, screen: &ScreenProjection) {
     let (arm, preferences) = (session.arm(), session.preferences());
     let is_arm = session.rig() == RigKind::Arm && session.crowd().is_none();
-    let is_needed = is_arm && arm.uses_ik() && !preferences.has_dragged_hand;
+    let is_needed =
+        session.tour().is_none() && is_arm && arm.uses_ik() && !preferences.has_dragged_hand;
     if !is_needed || session.drag().is_some() {
         return;
     }
