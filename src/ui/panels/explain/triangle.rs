@@ -13,9 +13,10 @@ use crate::kinematics::two_bone::TwoBonePose;
 use crate::ui::style;
 use crate::ui::widgets::symbol;
 
-const HEIGHT: f32 = 170.0;
-const MARGIN: f32 = 26.0;
-const SIZE: f32 = 14.0;
+const HEIGHT: f32 = 184.0;
+/// Room for labels at the sides, and above and below.
+const MARGINS: Vec2 = vec2(44.0, 34.0);
+const SIZE: f32 = 13.0;
 /// Radius of the arc of θ_e, in points.
 const ARC: f32 = 18.0;
 
@@ -24,7 +25,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, arm: &Arm, pose: &TwoBonePose) {
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| {
         let text = format!(
-            "Triangle: d 1 {}, d 2 {}, D {}, theta e {:.1} degrees",
+            "Triangle: upper limb {}, lower limb {}, distance {}, angle at the shoulder {:.1} degrees",
             arm.format_length(arm.bones.upper() * pose.stretch),
             arm.format_length(arm.bones.lower() * pose.stretch),
             arm.format_length(pose.distance),
@@ -56,7 +57,7 @@ struct TriangleDrawing {
 impl TriangleDrawing {
     fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
-        let inside = rect.shrink(MARGIN);
+        let inside = rect.shrink2(MARGINS);
         // All poses of an arm have the same scale, so that the triangle grows with D; only a
         // triangle that would not fit has a smaller scale.
         let widest = (right - left).max(arm.bones.outer_limit() * 0.7);
@@ -105,26 +106,29 @@ impl TriangleDrawing {
     /// Writes each label at the first of its positions that is clear of lines and other labels. Labels
     /// without such a position are left out, except those of the sides.
     fn write(&self, painter: &Painter, ui: &Ui) {
-        let mut labels = Labels { painter, ui, lines: self.lines(), written: Vec::new() };
+        let room = painter.clip_rect().shrink(3.0);
+        let mut labels = Labels { painter, ui, room, lines: self.lines(), written: Vec::new() };
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
-        let along = |from: Pos2, to: Pos2| [0.5, 0.35, 0.65].map(|part| from + (to - from) * part);
-        let beside = |from: Pos2, to: Pos2, distance: f32| {
-            let direction = (to - from).normalized();
-            along(from, to).map(|at| at + distance * vec2(direction.y, -direction.x))
-        };
-        labels.write_always("d_1", self.upper, beside(shoulder, elbow, 12.0));
-        labels.write_always("d_2", self.lower, beside(elbow, hand, 12.0));
-        labels.write_always("D", self.text, beside(hand, shoulder, 13.0));
+        labels.write_always("Upper d_1", self.upper, &beside(shoulder, elbow));
+        labels.write_always("Lower d_2", self.lower, &beside(elbow, hand));
+        labels.write_always("Distance D", self.text, &beside(hand, shoulder));
         let angle = self.angle.min(TAU / 4.0);
-        let in_angle = [31.0, 38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
-            let at = |part: f32| shoulder + radius * Vec2::angled(-part * angle);
-            [0.5, 0.65, 0.8, 0.35].map(at)
+        let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
+            [0.5, 0.65, 0.8, 0.35].map(|part| Place {
+                at: shoulder + radius * Vec2::angled(-part * angle),
+                away: Vec2::ZERO,
+            })
         });
-        let [below, ..] = beside(hand, shoulder, 13.0).map(|at| pos2(shoulder.x + ARC + 8.0, at.y));
-        labels.write("θ_e", self.accent, in_angle.chain([below]));
-        let heights = beside(elbow, foot, 12.0).into_iter().chain(beside(elbow, foot, -12.0));
-        labels.write("o_e", self.weak, heights);
-        labels.write("h_e", self.weak, along(foot, shoulder).map(|at| at + vec2(0.0, 13.0)));
+        let below = vec2(0.0, 1.0);
+        let beneath = Place { at: shoulder + below * 6.0, away: below };
+        let in_angle: Vec<_> = in_angle.chain([beneath]).collect();
+        labels.write("Angle θ_e", self.accent, &in_angle);
+        let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
+        labels.write("Out o_e", self.weak, &heights);
+        let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
+        let lengths =
+            [4.0, 18.0].map(|down| lengths.map(|at| Place { at: at + below * down, away: below }));
+        labels.write("Along h_e", self.weak, &lengths.concat());
     }
 
     fn lines(&self) -> [[Pos2; 2]; 4] {
@@ -133,30 +137,61 @@ impl TriangleDrawing {
     }
 }
 
+/// A place for a label: beside a point, on the side in the direction `away`; centred on it for 0.
+#[derive(Clone, Copy)]
+struct Place {
+    at: Pos2,
+    away: Vec2,
+}
+
+impl Place {
+    fn rect(self, size: Vec2) -> Rect {
+        let extent = self.away.x.abs() * size.x + self.away.y.abs() * size.y;
+        Rect::from_center_size(self.at + self.away * extent * 0.5, size)
+    }
+}
+
+/// Places to the left of a line, seen from its first point: near its middle first.
+fn beside(from: Pos2, to: Pos2) -> Vec<Place> {
+    const GAP: f32 = 6.0;
+    let along = (to - from).normalized();
+    let away = vec2(along.y, -along.x);
+    let parts = [0.5, 0.35, 0.65, 0.2, 0.8];
+    parts.map(|part| Place { at: from + (to - from) * part + away * GAP, away }).to_vec()
+}
+
 /// Labels of a drawing, beside its lines.
 struct Labels<'a> {
     painter: &'a Painter,
     ui: &'a Ui,
+    /// The rectangle that labels stay in.
+    room: Rect,
     lines: [[Pos2; 2]; 4],
     written: Vec<Rect>,
 }
 
 impl Labels<'_> {
-    /// Writes a label at the first clear position, if there is one.
-    fn write(&mut self, text: &str, colour: Color32, positions: impl IntoIterator<Item = Pos2>) {
+    /// Writes a label at the first clear place, if there is one.
+    fn write(&mut self, text: &str, colour: Color32, places: &[Place]) {
         let galley = self.galley(text, colour);
-        let mut rects = positions.into_iter().map(|at| Rect::from_center_size(at, galley.size()));
-        if let Some(rect) = rects.find(|rect| self.is_clear(*rect)) {
+        let rects = places.iter().map(|place| place.rect(galley.size()));
+        if let Some(rect) = rects.into_iter().find(|rect| self.is_clear(*rect)) {
             self.paint(rect, galley, colour);
         }
     }
 
-    /// Writes a label at the first clear position, or else at the first one.
-    fn write_always(&mut self, text: &str, colour: Color32, positions: [Pos2; 3]) {
+    /// Writes a label at the first clear place, or else at the first one, moved into the room.
+    fn write_always(&mut self, text: &str, colour: Color32, places: &[Place]) {
         let galley = self.galley(text, colour);
-        let rects = positions.map(|at| Rect::from_center_size(at, galley.size()));
-        let rect = rects.into_iter().find(|rect| self.is_clear(*rect)).unwrap_or(rects[0]);
+        let mut rects = places.iter().map(|place| place.rect(galley.size()));
+        let Some(first) = rects.clone().next() else { return };
+        let rect = rects.find(|rect| self.is_clear(*rect)).unwrap_or_else(|| self.moved_in(first));
         self.paint(rect, galley, colour);
+    }
+
+    fn moved_in(&self, rect: Rect) -> Rect {
+        let inwards = (self.room.min - rect.min).max(Vec2::ZERO);
+        rect.translate(inwards + (self.room.max - rect.max).min(Vec2::ZERO))
     }
 
     fn galley(&self, text: &str, colour: Color32) -> Arc<Galley> {
@@ -175,7 +210,8 @@ impl Labels<'_> {
             (0..=STEPS)
                 .any(|step| rect.contains(*from + (*to - *from) * (step as f32 / STEPS as f32)))
         };
-        !self.lines.iter().any(is_crossed)
+        self.room.contains_rect(rect)
+            && !self.lines.iter().any(is_crossed)
             && !self.written.iter().any(|other| other.intersects(rect))
     }
 }

@@ -1,6 +1,9 @@
 //! The outliner: the tree of joints, their selection, and buttons that edit the tree.
 
-use egui::{Align2, Key, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, Color32, Key, Painter, Pos2, Response, RichText, Role, ScrollArea, Sense, TextStyle,
+    Ui, WidgetInfo, pos2, vec2,
+};
 
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, EditAction, SelectAction, Session};
@@ -61,6 +64,8 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
     if rows.is_empty() {
         ui.weak("No joints. Add a root to start.");
+    } else {
+        legend(ui);
     }
 }
 
@@ -127,18 +132,19 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     }
     let at = pos2(rect.left() + indent + 8.0, rect.center().y);
     let palette = style::palette(ui);
-    let dot = match joint.locked {
-        true => palette.joint,
-        false => palette.upper.mixed(palette.accent, row.influence),
-    };
-    painter.circle_filled(at, 3.0, style::colour(dot));
+    match joint.locked {
+        true => locked_dot(painter, at, style::colour(palette.joint)),
+        false => {
+            let colour = palette.upper.mixed(palette.accent, row.influence);
+            free_dot(painter, at, style::colour(colour));
+        }
+    }
     let text = if selected { visuals.strong_text_color() } else { visuals.text_color() };
     painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
     if let Some(enabled) = row.target {
         let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
         let centre = pos2(rect.left() + indent + width + 30.0, rect.center().y);
-        painter.circle_stroke(centre, 4.5, (1.5, colour));
-        painter.circle_filled(centre, 1.5, colour);
+        target_mark(painter, centre, colour);
     }
     reveal(ui, session, row, &response);
     let mut said = vec![joint.name.clone()];
@@ -152,6 +158,41 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         said.push("has a target".to_owned());
     }
     response.on_hover_text(said.join(", "))
+}
+
+fn free_dot(painter: &Painter, at: Pos2, colour: Color32) {
+    painter.circle_filled(at, 3.0, colour);
+}
+
+fn locked_dot(painter: &Painter, at: Pos2, colour: Color32) {
+    painter.circle_stroke(at, 2.5, (1.2, colour));
+}
+
+fn target_mark(painter: &Painter, at: Pos2, colour: Color32) {
+    painter.circle_stroke(at, 4.5, (1.5, colour));
+    painter.circle_filled(at, 1.5, colour);
+}
+
+/// Says what the marks of the rows mean.
+fn legend(ui: &mut Ui) {
+    let palette = style::palette(ui);
+    let [free, posed, locked] = [palette.upper, palette.accent, palette.joint].map(style::colour);
+    type Mark = fn(&Painter, Pos2, Color32);
+    let marks: [(Mark, Color32, &str); 4] = [
+        (free_dot, free, "by angles"),
+        (free_dot, posed, "by a target"),
+        (locked_dot, locked, "locked"),
+        (target_mark, posed, "target"),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
+        for (mark, colour, meaning) in marks {
+            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::hover());
+            mark(ui.painter(), rect.center(), colour);
+            ui.label(RichText::new(meaning).weak().size(11.5));
+            ui.add_space(5.0);
+        }
+    });
 }
 
 /// Scrolls to the row when its joint becomes selected, and moves the keyboard focus to the row if

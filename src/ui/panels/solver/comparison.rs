@@ -2,7 +2,9 @@
 
 use core::time::Duration;
 
-use egui::{Align, Grid, Layout, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Color32, Grid, Layout, Rect, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2,
+};
 
 use super::can_solve::why_not;
 use crate::kinematics::chain_ik::{Method, Report, Status};
@@ -33,6 +35,28 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             ui.end_row();
         }
     });
+    legend(ui);
+}
+
+/// Says what a filled and a hollow square mean.
+fn legend(ui: &mut Ui) {
+    let colour = ui.visuals().weak_text_color();
+    ui.horizontal(|ui| {
+        for (is_filled, meaning) in [(true, "converged"), (false, "running or not converged")] {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+            square(ui, rect, colour, is_filled);
+            ui.weak(meaning);
+            ui.add_space(6.0);
+        }
+    });
+}
+
+fn square(ui: &Ui, rect: Rect, colour: Color32, is_filled: bool) {
+    match is_filled {
+        true => ui.painter().rect_filled(rect, 2.0, colour),
+        false => ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside),
+    };
 }
 
 fn show(ui: &mut Ui, solver: &ComparedSolver) {
@@ -42,12 +66,8 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
         let said = format!("{}: {}", short_name(solver.method), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-        // The square of a solver is filled only if the solver has converged.
-        if solver.run.as_ref().is_ok_and(|run| run.report().converged()) {
-            ui.painter().rect_filled(rect, 2.0, colour);
-        } else {
-            ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside);
-        }
+        let has_converged = solver.run.as_ref().is_ok_and(|run| run.report().converged());
+        square(ui, rect, colour, has_converged);
         response.on_hover_text(said);
         let label = ui.label(short_name(solver.method));
         label.on_hover_text(format!("{}. {}", solver.method.title(), status(solver)));

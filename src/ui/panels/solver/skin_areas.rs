@@ -17,7 +17,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
         return;
     };
     let name = session.skeleton_rig().skeleton.joint(areas.joint).map_or("–", |it| &it.name);
-    ui.weak(format!("Cross-section of the skin at the base of {name}, against the bind pose"));
+    ui.weak(format!(
+        "Up: cross-section of the skin at the base of {name}, against the bind pose · to the right: time"
+    ));
     curves(ui, session, areas);
     values(ui, session, areas);
 }
