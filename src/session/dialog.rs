@@ -14,6 +14,8 @@ pub enum Dialog {
     About,
     /// Keyboard and mouse shortcuts.
     Shortcuts,
+    /// Terms of the user interface and their meanings.
+    Glossary,
     /// Frame times; not modal.
     Statistics,
     /// Offers to open the document that an earlier run of the program left unsaved.

@@ -244,6 +244,9 @@ fn help(ui: &mut Ui, actions: &mut Actions) {
     if item(ui, "Tour", "") {
         actions.push(TourAction::Enter(0));
     }
+    if item(ui, "Glossary", "") {
+        actions.push(ShellAction::OpenDialog(Dialog::Glossary));
+    }
     if item(ui, "Shortcuts", "F1") {
         actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
     }

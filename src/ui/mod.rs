@@ -4,6 +4,7 @@ mod commands;
 mod dialogs;
 mod frame_times;
 mod gizmo;
+mod glossary;
 mod input_parts;
 mod keyboard;
 mod labels;

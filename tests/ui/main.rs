@@ -13,6 +13,7 @@ mod dialogs;
 mod export;
 mod first_click;
 mod gallery;
+mod glossary;
 mod hand;
 mod hand_keys;
 mod history;

@@ -14,6 +14,7 @@ use std::mem::discriminant;
 use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
 
 use crate::session::{Actions, Dialog, PathDialog, Session, ShellAction};
+use crate::ui::glossary;
 use crate::ui::machine::Machine;
 use crate::ui::panels::statistics;
 use first_button::first_button;
@@ -34,6 +35,7 @@ pub(in crate::ui) fn ui(
     let title = match dialog {
         Dialog::About => "About ik-arm",
         Dialog::Shortcuts => "Shortcuts",
+        Dialog::Glossary => "Glossary",
         Dialog::Statistics => "Statistics",
         Dialog::Recover { .. } => "Recover unsaved changes?",
         Dialog::Unsaved { .. } => "Save changes?",
@@ -56,6 +58,10 @@ pub(in crate::ui) fn ui(
     modal(ui, title, |ui| match dialog {
         Dialog::About => about(ui, machine, actions),
         Dialog::Shortcuts => shortcuts(ui, session, actions),
+        Dialog::Glossary => {
+            glossary::dialog(ui, actions);
+            close(ui, actions);
+        }
         Dialog::Recover { document, file } => {
             unsaved::recover(ui, document, file.as_deref(), actions);
         }

@@ -42,6 +42,7 @@ impl PointSliders<'_> {
                 name: &format!("{} {}", self.name, AXES[axis]),
                 label,
                 colour: Some(style::colour(colours[axis])),
+                term: None,
                 tooltip: self.tooltip,
                 value: self.value[axis],
                 range: (-self.range, self.range),

@@ -6,6 +6,9 @@ use egui::{
     WidgetText,
 };
 
+use crate::session::Actions;
+use crate::ui::glossary;
+
 /// Space below a section, in points.
 const SPACE: f32 = 1.0;
 
@@ -91,5 +94,20 @@ pub(in crate::ui) fn pair<T>(
     ui.horizontal(|ui| {
         ui.add(Label::new(name).selectable(false));
         ui.with_layout(Layout::right_to_left(Align::Center), contents).inner
+    })
+}
+
+/// Shows a row like [`pair`], whose name is a term of the glossary.
+pub(in crate::ui) fn term_pair<T>(
+    ui: &mut Ui,
+    name: &str,
+    term: &str,
+    actions: &mut Actions,
+    contents: impl FnOnce(&mut Ui, &mut Actions) -> T,
+) -> InnerResponse<T> {
+    ui.horizontal(|ui| {
+        glossary::term_label(ui, name, term, actions);
+        let right = Layout::right_to_left(Align::Center);
+        ui.with_layout(right, |ui| contents(ui, actions)).inner
     })
 }

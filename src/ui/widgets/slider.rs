@@ -11,6 +11,7 @@ use super::number::DragNumber;
 use super::symbol;
 use crate::document::Channel;
 use crate::session::{Action, Actions, Session, TransactionAction};
+use crate::ui::glossary;
 use crate::ui::keyboard::focus;
 use crate::ui::style;
 
@@ -26,6 +27,8 @@ pub(in crate::ui) struct Slider<'a> {
     pub label: &'a str,
     pub colour: Option<Color32>,
     pub tooltip: &'a str,
+    /// Term of the glossary that the label names; `None` for other labels.
+    pub term: Option<&'a str>,
     pub value: f32,
     pub range: (f32, f32),
     pub default: f32,
@@ -61,7 +64,7 @@ impl Slider<'_> {
         set: impl Fn(f32) -> A,
     ) {
         let label = |ui: &mut Ui, actions: &mut Actions| {
-            if self.label(ui).double_clicked() {
+            if self.label(ui, actions) {
                 actions.push(set(self.default));
             }
         };
@@ -99,17 +102,24 @@ impl Slider<'_> {
         }
     }
 
-    fn label(&self, ui: &mut Ui) -> Response {
+    /// Shows the label and returns whether it was double-clicked.
+    fn label(&self, ui: &mut Ui, actions: &mut Actions) -> bool {
         let (rect, response) = ui.allocate_exact_size(vec2(LABEL_WIDTH, HEIGHT), Sense::CLICK);
         let colour = self.colour.unwrap_or(ui.visuals().text_color());
         let size = TextStyle::Body.resolve(ui.style()).size;
         let text = ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(self.label, size, colour)));
         let at = Align2::LEFT_CENTER.anchor_size(rect.left_center(), text.size()).min;
+        let text_width = text.size().x;
         ui.painter().galley(at, text, colour);
         response.widget_info(|| {
             WidgetInfo::labeled(egui::Role::Label, true, symbol::spoken(self.label))
         });
-        response.on_hover_text(self.tooltip)
+        let is_reset = response.double_clicked();
+        match self.term {
+            Some(term) => glossary::term(ui, response, text_width, term, actions),
+            None => drop(response.on_hover_text(self.tooltip)),
+        }
+        is_reset
     }
 
     fn rail(&self, ui: &mut Ui) -> Response {

@@ -37,6 +37,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
     let slider = Slider {
         name: &format!("{prefix}Softness"),
         label: "Softness",
+        term: Some("Softness"),
         tooltip: "Slow the hand near its limits so that the elbow does not snap",
         value: softness,
         range: (0.0, MOST_SOFT),
@@ -48,6 +49,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
     let slider = Slider {
         name: &format!("{prefix}Stretch"),
         label: "Stretch",
+        term: Some("Stretch"),
         tooltip: "Let the limbs stretch up to this factor",
         value: stretch,
         range: (1.0, MOST_STRETCHED),
@@ -58,7 +60,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
     slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
     let name = format!("{prefix}Minimum elbow angle");
     let slider = Slider {
-        label: "Min. φ",
+        label: "Min. angle",
         range: (0.0, 179.0),
         ..angle_slider(&name, "Keep the elbow open by at least this angle", angle)
     };

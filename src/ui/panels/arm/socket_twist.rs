@@ -2,13 +2,13 @@
 
 use core::f32::consts::TAU;
 
-use egui::{ComboBox, Label, RichText, Ui};
+use egui::{ComboBox, Ui};
 
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Actions, EditAction, Session};
-use crate::ui::labels;
 use crate::ui::widgets::{PointSliders, Slider};
+use crate::ui::{glossary, labels};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
@@ -16,6 +16,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         name: "Socket twist",
         label: "Twist",
         tooltip: "Turn the elbow about the Pointer; the hand stays",
+        term: Some("Socket twist"),
         value: arm.twist.to_degrees(),
         range: (0.0, TAU.to_degrees()),
         default: 0.0,
@@ -50,7 +51,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Act
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Twist reference"));
     response.on_hover_text(format!("Twist reference: {}", labels::twist_reference(chosen)));
     if ui.available_width() > TITLES {
-        ui.add(Label::new(RichText::new("reference").weak()).selectable(false));
+        glossary::term_label(ui, "reference", "Twist reference", actions);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::kinematics::twist::TransportedFrame;
 use crate::scene::Palette;
 use crate::session::{Actions, EditAction, Session, ViewAction};
 use crate::ui::widgets;
-use crate::ui::{labels, style};
+use crate::ui::{glossary, labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
@@ -15,7 +15,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.weak("Not used in FK: switch to IK to compare references.");
         return;
     }
-    table(ui, arm, session.transport_path().transported());
+    table(ui, arm, session.transport_path().transported(), actions);
     ui.add_space(4.0);
     transport_path(ui, session, actions);
     let display = session.shown().display;
@@ -53,16 +53,14 @@ fn legend(ui: &mut Ui) {
     widgets::colour_bar(ui, summary, colour, &marks);
 }
 
-fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
+fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame, actions: &mut Actions) {
     let own = arm.solve().pose;
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
-        ui.label(RichText::new("Twist reference").weak());
-        for heading in ["Elbow", "Gain"] {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.label(RichText::new(heading).weak());
-            });
-        }
+        glossary::term_label(ui, "Twist reference", "Twist reference", actions);
+        let right = Layout::right_to_left(Align::Center);
+        ui.with_layout(right, |ui| ui.label(RichText::new("Elbow").weak()));
+        ui.with_layout(right, |ui| glossary::term_label(ui, "Gain", "Gain", actions));
         ui.end_row();
         for twist_reference in TwistReferenceKind::ALL {
             let colour = match twist_reference == arm.twist_reference {
@@ -88,8 +86,7 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame) {
 }
 
 fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    ui.label("Holonomy (elbow turn after a closed loop)");
-    widgets::pair(ui, "", |ui| {
+    widgets::term_pair(ui, "Holonomy", "Holonomy", actions, |ui, actions| {
         if widgets::button(ui, "Reset", "Restart the loop from the current pose", None) {
             actions.push(ViewAction::ResetTransport);
         }

@@ -55,6 +55,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
             name: &format!("Rotation {label}"),
             label: &format!("Rotate {label}"),
             colour: Some(style::colour(colours[axis])),
+            term: None,
             tooltip: &format!("Rotate about {label} (Euler order x, y, z)"),
             value: shown[axis].to_degrees(),
             range,

@@ -21,7 +21,7 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
     buttons(ui, session, actions);
     // The comparison shows its own table.
     if session.comparison().is_none() {
-        report(ui, session);
+        report(ui, session, actions);
     }
     widgets::section(ui, "Convergence", |ui| {
         iterations(
@@ -108,7 +108,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     tolerance(ui, session, actions);
     match options.method {
         Method::DampedLeastSquares => {
-            widgets::pair(ui, "Damping λ", |ui| {
+            widgets::term_pair(ui, "Damping λ", "Damping", actions, |ui, actions| {
                 let tooltip = "Set the damping λ, in chain lengths: more is stabler, slower";
                 let value = options.damping;
                 NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }
@@ -156,7 +156,7 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
-    widgets::pair(ui, "Tolerance", |ui| {
+    widgets::term_pair(ui, "Tolerance", "Tolerance", actions, |ui, actions| {
         let auto = session.solver_tolerance();
         if let Some(tolerance) = options.tolerance {
             let tooltip = "Set the distance at which a tip has converged";
@@ -206,7 +206,7 @@ fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool 
 
 /// Shows the report on the shown iterate or the evaluated pose, at constant height so that nothing
 /// below moves.
-fn report(ui: &mut Ui, session: &Session) {
+fn report(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let status = session.solver_status();
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
@@ -219,7 +219,7 @@ fn report(ui: &mut Ui, session: &Session) {
         };
         ui.label(shown).on_hover_text("The pose that error and status describe")
     });
-    widgets::pair(ui, "Error", |ui| {
+    widgets::term_pair(ui, "Error", "Error", actions, |ui, _| {
         value(ui, status.map_or_else(none, |status| format::short(status.error)))
             .on_hover_text("Largest distance from a tip to its target")
     });

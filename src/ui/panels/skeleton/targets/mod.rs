@@ -91,6 +91,7 @@ fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actio
     let slider = Slider {
         name: "Target influence",
         label: "Influence",
+        term: Some("IK influence"),
         tooltip: "Blend from the FK pose (0) to the target (1)",
         value: target.influence,
         range: (0.0, 1.0),
