@@ -42,6 +42,13 @@ impl Session {
         Some(Effect::Bake(settings))
     }
 
+    /// Cancels a running bake and closes its dialog.
+    pub(super) fn cancel_bake(&mut self) {
+        if matches!(self.shell.dialog(), Some(Dialog::Bake { .. })) {
+            self.close_dialog();
+        }
+    }
+
     fn is_baking(&self, job: &BakeJob) -> bool {
         matches!(self.shell.dialog(), Some(Dialog::Bake { job: Some(own), .. }) if own == job)
     }

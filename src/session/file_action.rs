@@ -113,6 +113,9 @@ impl FileAction {
             self,
             Self::Opened { .. }
                 | Self::NotOpened { .. }
+                | Self::Saved(_)
+                | Self::NotSaved { .. }
+                | Self::Discard(_)
                 | Self::LocateSkin(_)
                 | Self::SkinLocated { .. }
         );

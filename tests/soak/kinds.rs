@@ -4,7 +4,7 @@ use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
     Action, ArmJoint, BakeAction, EditAction, FileAction, Navigation, PanelTab, PlaybackAction,
-    PoseMode, SelectAction, ShellAction, SolverAction, TransactionAction, ViewAction,
+    PoseMode, SelectAction, ShellAction, SolverAction, TourAction, TransactionAction, ViewAction,
 };
 
 use crate::values::Values;
@@ -238,6 +238,13 @@ kinds! {
         Report: Look 1, |v| ShellAction::Report(v.name());
         Fail: Look 1, |v| ShellAction::Fail(v.name());
         CopyPose: Look 1, |_| ShellAction::CopyPose;
+    }
+    Tour(TourAction) {
+        Enter: Files 1, |v| TourAction::Enter(v.random.below(14));
+        Guess: Look 1, |v| TourAction::Guess(v.random.below(5));
+        Demonstrate: Edit 1, |_| TourAction::Demonstrate;
+        Leave: Files 2, |_| TourAction::Leave;
+        Decline: Look 1, |_| TourAction::Decline;
     }
 }
 

@@ -67,7 +67,7 @@ impl Run {
         for index in 0..self.actions {
             let action = made.next(&watch.session);
             let care = self.every.care(&mut cares);
-            let began = watch.began.clone();
+            let began = watch.expected.began.clone();
             recent.push((action.clone(), care));
             match watch.apply(&action, care) {
                 Ok(is_done) => {
@@ -77,7 +77,7 @@ impl Run {
                 }
                 Err(broken) => self.fail(index, &broken.0, &began, &recent),
             }
-            if watch.age == 0 {
+            if watch.expected.age == 0 {
                 recent.clear();
             }
             if self.is_told && (index + 1) % 50_000 == 0 {

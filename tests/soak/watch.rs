@@ -6,7 +6,9 @@ use std::hash::{Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ik_arm::document::Document;
-use ik_arm::session::{Action, Dialog, EditAction, FileAction, Session, TransactionAction};
+use ik_arm::session::{
+    Action, Dialog, EditAction, FileAction, Session, TourAction, TransactionAction,
+};
 
 use crate::kinds::{KINDS, Sort, kind};
 use crate::past::is_same;
@@ -29,6 +31,13 @@ impl Care {
 
 pub struct Watch {
     pub session: Session,
+    pub expected: Expected,
+    /// During the tour, what is expected of the user's own document.
+    own: Option<Expected>,
+}
+
+/// What is expected of a document and its history.
+pub struct Expected {
     /// First document of the history.
     pub began: Document,
     /// Number of actions since.
@@ -43,14 +52,10 @@ pub struct Watch {
     steps: Option<usize>,
 }
 
-impl Watch {
-    /// Number of actions whose steps the history always keeps.
-    const WHOLE: usize = 450;
-
-    pub fn new(document: Document) -> Self {
-        let session = Session::with_document(Default::default(), document.clone());
+impl Expected {
+    /// Of a document that was just opened.
+    fn of(document: Document) -> Self {
         Self {
-            session,
             began: document.clone(),
             age: 0,
             saved: Some(document),
@@ -58,6 +63,16 @@ impl Watch {
             revisions: HashMap::new(),
             steps: None,
         }
+    }
+}
+
+impl Watch {
+    /// Number of actions whose steps the history always keeps.
+    const WHOLE: usize = 450;
+
+    pub fn new(document: Document) -> Self {
+        let session = Session::with_document(Default::default(), document.clone());
+        Self { session, expected: Expected::of(document), own: None }
     }
 
     /// Whether the action was applied instead of asked about.
@@ -70,9 +85,18 @@ impl Watch {
     }
 
     fn watched(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
-        let before = Before::new(&self.session, care.step);
+        let mut before = Before::new(&self.session, care.step);
+        let own = Before::new(self.session.own(), care.step);
         self.session.apply(action.clone());
-        self.age += 1;
+        if self.follow_tour(action, &own)? {
+            sound::document(self.session.document())?;
+            return Ok(true);
+        }
+        if self.own.is_none() {
+            // An action that leaves the tour acts on the user's own document.
+            before = own;
+        }
+        self.expected.age += 1;
         let waits = match action {
             Action::File(action) => Some(Dialog::Unsaved { then: Box::new(action.clone()) }),
             _ => None,
@@ -100,6 +124,28 @@ impl Watch {
         Ok(is_done)
     }
 
+    /// Follows the beginning, the steps and the end of the tour; `own` is the user's own document before
+    /// the action. Returns whether the action has begun a step.
+    fn follow_tour(&mut self, action: &Action, own: &Before) -> Result<bool, Broken> {
+        let is_begun = matches!(action, Action::Tour(TourAction::Enter(_)));
+        if self.session.tour().is_some() {
+            hold!(
+                is_same(self.session.own().document(), &own.document),
+                "the tour leaves the own document alone"
+            );
+        }
+        if is_begun {
+            let of_step = Expected::of(self.session.document().clone());
+            let before = std::mem::replace(&mut self.expected, of_step);
+            self.own.get_or_insert(before);
+        } else if self.session.tour().is_none()
+            && let Some(own) = self.own.take()
+        {
+            self.expected = Expected { before_edit: None, steps: None, ..own };
+        }
+        Ok(is_begun)
+    }
+
     /// Follows saving and opening. Returns whether another document was opened.
     fn follow(&mut self, action: &Action, before: &Before) -> bool {
         let session = &self.session;
@@ -118,13 +164,13 @@ impl Watch {
             && session.revision() != before.revision
             && !session.is_editing();
         if let Action::File(FileAction::Saved(_)) = action {
-            self.saved = Some(before.document.clone());
+            self.expected.saved = Some(before.document.clone());
         }
         if is_replaced {
-            self.began = session.document().clone();
-            self.saved = (!session.is_unsaved()).then(|| self.began.clone());
-            self.age = 0;
-            self.revisions.clear();
+            self.expected.began = session.document().clone();
+            self.expected.saved = (!session.is_unsaved()).then(|| self.expected.began.clone());
+            self.expected.age = 0;
+            self.expected.revisions.clear();
         }
         is_replaced
     }
@@ -150,13 +196,17 @@ impl Watch {
             Action::Transaction(TransactionAction::Cancel)
                 | Action::Transaction(TransactionAction::Undo)
         );
-        if let Some(before) = self.before_edit.as_ref().filter(|_| takes_back && !is_replaced) {
+        if let Some(before) =
+            self.expected.before_edit.as_ref().filter(|_| takes_back && !is_replaced)
+        {
             hold!(is_same(document, before), "a cancelled transaction leaves no trace");
             let same = past::saved(document)? == past::saved(before)?;
             hold!(same, "a cancelled transaction leaves no trace in a file");
         }
-        self.before_edit = match self.session.is_editing() {
-            true => Some(self.before_edit.take().unwrap_or_else(|| before.document.clone())),
+        self.expected.before_edit = match self.session.is_editing() {
+            true => {
+                Some(self.expected.before_edit.take().unwrap_or_else(|| before.document.clone()))
+            }
             false => None,
         };
         Ok(())
@@ -166,6 +216,7 @@ impl Watch {
         let session = &self.session;
         if !session.is_unsaved() {
             let is_saved = self
+                .expected
                 .saved
                 .as_ref()
                 .is_some_and(|it| past::has_same_content(it, session.document()));
@@ -184,7 +235,7 @@ impl Watch {
         let mut hasher = DefaultHasher::new();
         past::saved(self.session.document())?.hash(&mut hasher);
         let (revision, hash) = (self.session.revision(), hasher.finish());
-        let known = *self.revisions.entry(revision).or_insert(hash);
+        let known = *self.expected.revisions.entry(revision).or_insert(hash);
         hold!(known == hash, "revision {revision} is one document");
         Ok(())
     }
@@ -227,13 +278,13 @@ impl Watch {
         is_replaced: bool,
         is_due: bool,
     ) -> Result<(), Broken> {
-        let last = self.steps.take();
+        let last = self.expected.steps.take();
         if !is_due {
             return Ok(());
         }
-        let began = (self.age < Self::WHOLE).then_some(&self.began);
+        let began = (self.expected.age < Self::WHOLE).then_some(&self.expected.began);
         let steps = past::walk(&self.session, began)?;
-        self.steps = Some(steps);
+        self.expected.steps = Some(steps);
         let Some(last) = last.filter(|_| !is_replaced) else { return Ok(()) };
         // Unkeyed edits of keyed channels are no steps at another time.
         let is_elsewhen = before.time != self.session.time();

@@ -3,6 +3,7 @@ use super::predicates;
 use super::step::TourStep;
 use super::tour_action::TourAction;
 use super::tour_state::TourState;
+use crate::session::action::Action;
 use crate::session::file_action::FileAction;
 use crate::session::playback_action::PlaybackAction;
 use crate::session::preferences::Preferences;
@@ -35,9 +36,14 @@ impl Session {
         if let Some(tour) = &mut self.tour {
             tour.show_result();
             let goal = tour.step().goal;
-            for action in demonstration::actions(goal, self) {
-                self.apply(action);
-            }
+            let actions = demonstration::actions(goal, self);
+            let (edits, others): (Vec<_>, Vec<_>) =
+                actions.into_iter().partition(|action| matches!(action, Action::Edit(_)));
+            // One undo step, and for the page Pops one drag.
+            self.begin_edit(None);
+            edits.into_iter().for_each(|edit| drop(self.apply(edit)));
+            self.commit_edit();
+            others.into_iter().for_each(|action| drop(self.apply(action)));
         }
     }
 
@@ -55,6 +61,7 @@ impl Session {
             Err(error) => return self.fail(error.to_string()),
         };
         let done = self.tour.take().map(TourState::done).unwrap_or_default();
+        self.cancel_bake();
         let own = self.own.take().unwrap_or_else(|| Box::new(self.paused()));
         let preferences = Preferences { offers_tour: false, ..self.preferences };
         let playback = self.playback.restarted(&document.timeline);
@@ -84,6 +91,7 @@ impl Session {
     /// kept as they are now.
     pub(in crate::session) fn leave_tour(&mut self) {
         let Some(own) = self.own.take() else { return };
+        self.cancel_bake();
         let Preferences { theme, navigation, offers_tour, has_dragged_hand, .. } = self.preferences;
         let preferences =
             Preferences { theme, navigation, offers_tour, has_dragged_hand, ..own.preferences };

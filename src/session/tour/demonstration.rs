@@ -13,7 +13,6 @@ use crate::session::playback_action::PlaybackAction;
 use crate::session::pose_mode::PoseMode;
 use crate::session::session::Session;
 use crate::session::solver_action::SolverAction;
-use crate::session::transaction_action::TransactionAction;
 
 pub(super) fn actions(goal: Goal, session: &Session) -> Vec<Action> {
     let arm = session.arm();
@@ -22,7 +21,7 @@ pub(super) fn actions(goal: Goal, session: &Session) -> Vec<Action> {
         Goal::PassOverTheShoulder => {
             const STEPS: u16 = 72;
             let part = |step| 1.0 - 2.0 * f32::from(step) / f32::from(STEPS);
-            drag((0..=STEPS).map(|step| cursor.with_x(cursor.x * part(step))))
+            moves((0..=STEPS).map(|step| cursor.with_x(cursor.x * part(step))))
         }
         Goal::MoveTheHandByFk => vec![
             EditAction::SwitchPoseMode(PoseMode::Angles).into(),
@@ -46,7 +45,7 @@ pub(super) fn actions(goal: Goal, session: &Session) -> Vec<Action> {
         }
         Goal::ChooseTransport => {
             let transport = EditAction::SetTwistReference(TwistReferenceKind::Transport);
-            core::iter::once(transport.into()).chain(drag(round_trip(cursor))).collect()
+            core::iter::once(transport.into()).chain(moves(round_trip(cursor))).collect()
         }
         Goal::MoveTheShoulderAndKeepTheHand => vec![
             EditAction::PinHand(true).into(),
@@ -64,11 +63,9 @@ pub(super) fn actions(goal: Goal, session: &Session) -> Vec<Action> {
     }
 }
 
-/// A drag of the hand through points in Root space.
-fn drag(points: impl Iterator<Item = Vec3>) -> Vec<Action> {
-    let moves = points.map(|point| EditAction::SetHand(point).into());
-    let begin = core::iter::once(TransactionAction::Begin.into());
-    begin.chain(moves).chain([TransactionAction::Commit.into()]).collect()
+/// Moves of the hand through points in Root space.
+fn moves(points: impl Iterator<Item = Vec3>) -> Vec<Action> {
+    points.map(|point| EditAction::SetHand(point).into()).collect()
 }
 
 /// A cone of directions around the middle of `from` and +y, once around and back.

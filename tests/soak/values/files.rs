@@ -94,6 +94,7 @@ impl Values<'_> {
     pub fn dialog(&mut self) -> Dialog {
         match self.random.below(14) {
             0 => Dialog::About,
+            1 if self.coin() => Dialog::Glossary,
             1 => Dialog::Shortcuts,
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
             3 => Dialog::Unsaved { then: Box::new(FileAction::Quit) },
