@@ -208,7 +208,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
 fn the_four_twist_references_are_compared() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
     bench.show_tab(PanelTab::Twist);
-    for name in ["Stereographic", "Transport", "Holonomy (elbow turn after a closed loop)"] {
+    for name in ["Stereographic", "Transport", "Holonomy"] {
         assert!(bench.says(name), "{name}");
     }
     assert!(bench.says("300.00"), "the gain of the limb's, straight above");

@@ -541,6 +541,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     bench.click(Role::Button, "Add target");
     bench.click(Role::Button, "Free");
     assert_eq!(bench.session().skeleton_rig().solver.root, Root::Free);
+    bench.reveal(Role::Slider, "Target x");
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(4.0);

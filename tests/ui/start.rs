@@ -130,7 +130,7 @@ fn a_page_that_is_no_longer_there_gives_way_to_the_first() {
     let candy = Example::find("candy-wrapper").expect("an example");
     bench.apply([FileAction::OpenExample(candy)]);
     bench.click(Role::Tab, "Skin");
-    assert!(bench.says("Cross-section of the skin"));
+    assert!(bench.says("cross-section of the skin"));
     let human = Example::find("human").expect("an example");
     bench.apply([FileAction::OpenExample(human)]);
     assert!(!bench.shows(Role::Tab, "Skin"));

@@ -27,7 +27,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         return;
     }
     let spikes = session.pops().spikes();
-    ui.weak("Up: elbow speed / Cursor speed · to the right: steps");
+    ui.weak("Up: elbow speed / Cursor speed · across: steps");
     show(ui, session.pops(), &spikes);
     if spikes.is_empty() {
         ui.label("No pops: the elbow moves smoothly.");

@@ -23,7 +23,7 @@ const EXAMPLE_STRETCH: f32 = 1.5;
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let arm = session.arm();
     let curves = ReachCurve::all(ui, arm);
-    ui.weak("Up: hand distance · to the right: Cursor distance");
+    ui.weak("Up: hand distance · across: Cursor distance");
     let shown = show(ui, arm, &curves);
     let said = reading(arm, arm.cursor_in_root().length());
     let name = format!("Reach curve: {said}");

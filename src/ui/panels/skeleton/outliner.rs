@@ -180,7 +180,7 @@ fn legend(ui: &mut Ui) {
     type Mark = fn(&Painter, Pos2, Color32);
     let marks: [(Mark, Color32, &str); 4] = [
         (free_dot, free, "by angles"),
-        (free_dot, posed, "by a target"),
+        (free_dot, posed, "by target"),
         (locked_dot, locked, "locked"),
         (target_mark, posed, "target"),
     ];
@@ -189,8 +189,8 @@ fn legend(ui: &mut Ui) {
         for (mark, colour, meaning) in marks {
             let (rect, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::hover());
             mark(ui.painter(), rect.center(), colour);
-            ui.label(RichText::new(meaning).weak().size(11.5));
-            ui.add_space(5.0);
+            ui.label(RichText::new(meaning).weak().size(11.0));
+            ui.add_space(2.0);
         }
     });
 }

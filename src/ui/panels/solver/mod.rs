@@ -53,7 +53,7 @@ fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions
         ui.label(empty);
         return;
     };
-    ui.weak("Up: error · to the right: iteration · dashed: tolerance");
+    ui.weak("Up: error · across: iterations · dashed: tolerance");
     convergence::ui(ui, session);
     iteration::ui(ui, session, shown, actions);
 }

@@ -18,7 +18,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     };
     let name = session.skeleton_rig().skeleton.joint(areas.joint).map_or("–", |it| &it.name);
     ui.weak(format!(
-        "Up: cross-section of the skin at the base of {name}, against the bind pose · to the right: time"
+        "Up: cross-section of the skin at the base of {name}, against the bind pose · across: time"
     ));
     curves(ui, session, areas);
     values(ui, session, areas);
