@@ -9,7 +9,7 @@ use super::file_action::FileAction;
 use super::path_dialog::PathDialog;
 use super::session::{ASPECT, Session};
 use crate::document::{Document, RigKind};
-use crate::io::Example;
+use crate::io::{Example, new_document};
 use crate::kinematics::skeleton::JointId;
 
 /// Opening, saving and exporting files.
@@ -212,6 +212,7 @@ impl Session {
                 self.files.settle_recovery();
             }
             FileAction::OpenExample(example) => self.open_example(example),
+            FileAction::New => self.replace_document(new_document(), None),
             FileAction::NewSkeleton => self.new_skeleton(),
             FileAction::Quit => return Some(Effect::Quit),
         }

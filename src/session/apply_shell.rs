@@ -122,6 +122,7 @@ impl Session {
             ShellAction::CloseDialog => self.close_dialog(),
             ShellAction::Report(message) => self.say(message),
             ShellAction::Fail(why) => self.fail(why),
+            ShellAction::ClearMessage => self.shell.clear_message(),
             ShellAction::CopyPose => {
                 self.say("Pose copied as a line for ik-arm solve");
                 return Some(Effect::CopyText(pose_line::of(self.arm())));

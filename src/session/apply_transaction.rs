@@ -7,6 +7,7 @@ use super::point_drag::{Constraint, PointDrag};
 use super::session::Session;
 use super::snapshot::Snapshot;
 use super::transaction_action::TransactionAction;
+use super::tree_change::TreeChange;
 use crate::document::{Arm, Channel, Document, Ray};
 
 /// Minimum distance between waypoints of a dragged head, in cells of the grid.
@@ -122,8 +123,12 @@ impl Session {
     }
 
     fn restore(&mut self, state: &Snapshot) {
-        if self.editing.restore(state, self.time()) {
-            self.selection.forget_joints();
+        match self.editing.restore(state, self.time()) {
+            TreeChange::Kept => {}
+            TreeChange::Shortened { parent } => {
+                self.selection.shorten(self.document().skeleton().joints().len(), parent);
+            }
+            TreeChange::Rebuilt => self.selection.forget_joints(),
         }
         self.refresh();
         self.forget_trail();

@@ -6,8 +6,8 @@ use super::history::History;
 use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
 use super::transaction::Transaction;
+use super::tree_change::TreeChange;
 use crate::document::{Arm, Camera, Channel, Document, FollowPath, TwistReferenceKind};
-use crate::kinematics::skeleton::Skeleton;
 
 /// The document, its values at the playhead, the open transaction and the history.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +164,8 @@ impl Editing {
             return None;
         }
         let [joints_before, joints] = [&self.shown, &after].map(|it| it.skeleton().joints().len());
-        let is_rebuilt = is_rebuilt(self.shown.skeleton(), after.skeleton());
+        let change = TreeChange::between(self.shown.skeleton(), after.skeleton());
+        let is_rebuilt = change != TreeChange::Kept;
         let has_other_joints = is_rebuilt || joints != joints_before;
         let mut has_overridden = false;
         if is_rebuilt {
@@ -322,15 +323,15 @@ impl Editing {
         self.history.push(label, before);
     }
 
-    /// Restores a state; returns whether joints were removed, renumbered or reattached.
-    pub fn restore(&mut self, state: &Snapshot, time: f64) -> bool {
+    /// Restores a state; returns how the tree of joints has changed.
+    pub fn restore(&mut self, state: &Snapshot, time: f64) -> TreeChange {
         let document = state.document(&self.document);
-        let is_rebuilt = is_rebuilt(self.document.skeleton(), document.skeleton());
+        let change = TreeChange::between(self.document.skeleton(), document.skeleton());
         self.document = document;
         self.overrides = state.overrides_at(time);
         self.revision = state.revision;
         self.content = state.content;
-        is_rebuilt
+        change
     }
 
     /// Labels the open transaction; returns whether one is open.
@@ -389,11 +390,4 @@ fn is_start_of_body(document: &Document, channel: Channel) -> bool {
     rig.follow_path == Some(FollowPath::Head)
         && !document.keys.has(channel)
         && rig.path_joints().any(|of_chain| of_chain == joint)
-}
-
-/// Whether joints were removed, renumbered or attached to other parents.
-fn is_rebuilt(before: &Skeleton, after: &Skeleton) -> bool {
-    let [before, after] = [before, after].map(Skeleton::joints);
-    let keep_their_parents = before.iter().zip(after).all(|(a, b)| a.parent == b.parent);
-    !keep_their_parents || after.len() < before.len()
 }

@@ -78,6 +78,8 @@ pub enum FileAction {
     DeclineRecovery,
     /// Opens an example.
     OpenExample(Example),
+    /// Opens a new document, which shows the arm.
+    New,
     /// Opens a new document with a skeleton of one root joint.
     NewSkeleton,
     /// Saves a picture of the viewport to a path.
@@ -128,6 +130,7 @@ impl FileAction {
             self,
             Self::Open { .. }
                 | Self::OpenExample(_)
+                | Self::New
                 | Self::NewSkeleton
                 | Self::Recover { .. }
                 | Self::Quit

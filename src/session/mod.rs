@@ -69,6 +69,7 @@ mod trail;
 mod transaction;
 mod transaction_action;
 mod transport;
+mod tree_change;
 mod turn_drag;
 mod view;
 mod view_action;

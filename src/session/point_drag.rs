@@ -142,6 +142,11 @@ impl PointDrag {
         !self.typed.is_empty() || self.precision.is_some() || self.now.ray != self.pressed
     }
 
+    /// The point in world space; always finite.
+    pub fn at(&self) -> Vec3 {
+        (self.origin + self.last).clamp(Vec3::MIN, Vec3::MAX)
+    }
+
     /// Offset of the point from its position at the press; always finite.
     pub fn moved(&self) -> Vec3 {
         (self.last - self.start).clamp(Vec3::MIN, Vec3::MAX)

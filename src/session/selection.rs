@@ -98,6 +98,17 @@ impl Selection {
         self.clipboard = copies.collect();
     }
 
+    /// Deselects the joints from the index `count` on; if no joint is left, selects `parent`.
+    pub fn shorten(&mut self, count: usize, parent: Option<JointId>) {
+        let had_joints = !self.joints.is_empty();
+        self.retain_joints(count);
+        if had_joints && self.joints.is_empty() {
+            self.joints.extend(parent);
+        }
+        let is_there = |joint: JointId| joint.index() < count;
+        self.clipboard.retain(|(channel, ..)| channel.joint().is_none_or(is_there));
+    }
+
     /// Clears the selection and removes the copied keys of joints, because their joint indices are
     /// no longer valid.
     pub fn forget_joints(&mut self) {

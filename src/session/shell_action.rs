@@ -13,6 +13,8 @@ pub enum ShellAction {
     Report(String),
     /// Shows an error.
     Fail(String),
+    /// Removes the message, whose moment is over.
+    ClearMessage,
     /// Copies the arm's pose to the clipboard, as a line for `ik-arm solve`.
     CopyPose,
     /// Sets the theme.

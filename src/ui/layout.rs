@@ -6,6 +6,9 @@ use super::panels::{crowd, left, right};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, tour, viewport};
 use crate::session::{Actions, Session};
 
+/// Least height of the view beside an open timeline, in points.
+const VIEW_HEIGHT: f32 = 360.0;
+
 /// Shows all panels and returns the rectangle of the viewport in points. `picture` is the texture
 /// into which the scene is rendered; `None` while there is no graphics device.
 pub fn show(
@@ -15,16 +18,19 @@ pub fn show(
     picture: Option<TextureId>,
     actions: &mut Actions,
 ) -> Rect {
+    keyboard::focus::begin(ui);
     keyboard::global(ui, session, actions);
     tour::open_section(ui, session);
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
     Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, actions));
     Panel::bottom("transport").show(ui, |ui| timeline::transport(ui, session, actions));
     if session.shows_timeline() {
+        // In a low window the timeline gives way to the view.
+        let most = (ui.available_height() - VIEW_HEIGHT).clamp(88.0, 328.0);
         Panel::bottom("keys")
             .resizable(true)
             .default_size(120.0)
-            .size_range(88.0..=328.0)
+            .size_range(88.0..=most)
             .show(ui, |ui| timeline::ui(ui, session, actions));
     }
     Panel::left("controls")
@@ -52,6 +58,6 @@ pub fn show(
     }
     crowd::ui(ui, viewport, session, machine, actions);
     dialogs::ui(ui, session, machine, viewport, actions);
-    keyboard::focus::remember(ui);
+    keyboard::focus::end(ui);
     viewport
 }

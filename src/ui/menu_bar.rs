@@ -29,8 +29,28 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 }
             };
             ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
+            ui.separator();
+            document_name(ui, session);
         });
     });
+}
+
+/// Shows the name of the document, with an asterisk while it has unsaved changes.
+fn document_name(ui: &mut Ui, session: &Session) {
+    let (name, tooltip) = match session.file() {
+        _ if session.tour().is_some() => {
+            ("Tour".to_owned(), "Your own document is kept".to_owned())
+        }
+        Some(path) => {
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+            (name, path.display().to_string())
+        }
+        None => ("untitled".to_owned(), "This document has no file yet (Ctrl+S)".to_owned()),
+    };
+    let is_unsaved = session.tour().is_none() && session.is_unsaved();
+    let (mark, told) = if is_unsaved { ("*", "\nIt has unsaved changes") } else { ("", "") };
+    let name = Label::new(format!("{name}{mark}")).truncate().selectable(false);
+    ui.add(name).on_hover_text(format!("{tooltip}{told}"));
 }
 
 fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
@@ -39,7 +59,10 @@ fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
 }
 
 fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if item(ui, "New skeleton", "") {
+    if item(ui, "New", "Ctrl+N") {
+        actions.push(FileAction::New);
+    }
+    if item(ui, "New skeleton", "Ctrl+Shift+N") {
         actions.push(FileAction::NewSkeleton);
     }
     if item(ui, "Open…", "Ctrl+O") {

@@ -1,14 +1,30 @@
 //! The status bar: the offset and shortcuts of a drag, the current message, or a description of the
 //! pose; and what the mouse buttons do.
 
-use egui::{Align, Label, Layout, ProgressBar, Ui};
+use std::time::Duration;
+
+use egui::{Align, Id, Label, Layout, ProgressBar, Ui};
 
 use super::widgets::{self, format};
 use super::{mouse_hints, pose_summary};
 use crate::document::RigKind;
-use crate::session::{Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, TurnDrag};
+use crate::session::{
+    Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction, TurnDrag,
+};
+
+/// Seconds for which a message stays, and for which an error does.
+const MESSAGE_SECONDS: f64 = 12.0;
+const ERROR_SECONDS: f64 = 30.0;
+
+/// A message with the time at which it was first shown, in seconds.
+#[derive(Clone, Default, PartialEq)]
+struct ShownMessage {
+    text: String,
+    since: f64,
+}
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    expire(ui, session, actions);
     ui.horizontal(|ui| {
         ui.set_height(24.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -32,9 +48,29 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
 }
 
+/// Removes the message once its time is over.
+fn expire(ui: &Ui, session: &Session, actions: &mut Actions) {
+    let (id, now) = (Id::unique("shown message"), ui.input(|input| input.time));
+    let Some(text) = session.message() else {
+        return ui.data_mut(|data| data.remove::<ShownMessage>(id));
+    };
+    let shown: ShownMessage = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    if shown.text != text {
+        let shown = ShownMessage { text: text.to_owned(), since: now };
+        ui.data_mut(|data| data.insert_temp(id, shown));
+        return expire(ui, session, actions);
+    }
+    let stays = if session.has_failed() { ERROR_SECONDS } else { MESSAGE_SECONDS };
+    let left = shown.since + stays - now;
+    match left > 0.0 {
+        true => ui.ctx().request_repaint_after(Duration::from_secs_f64(left)),
+        false => actions.push(ShellAction::ClearMessage),
+    }
+}
+
 /// Shows the progress of an export, and a button that cancels it.
 fn show_job(ui: &mut Ui, job: &ExportJob, actions: &mut Actions) {
-    ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+    ui.ctx().request_repaint_after(Duration::from_millis(100));
     if ui.small_button("Cancel").on_hover_text("Cancel the export; no file is written").clicked() {
         actions.push(FileAction::CancelExport);
     }

@@ -63,6 +63,8 @@ pub fn install(ctx: &Context) {
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(egui_theme(theme), |style| {
             style.visuals = visuals(theme);
+            // The edges between panels are hit 4 points to each side.
+            style.interaction.resize_grab_radius_side = 4.0;
             let spacing = &mut style.spacing;
             spacing.item_spacing = vec2(8.0, 6.0);
             spacing.button_padding = vec2(8.0, 4.0);

@@ -227,6 +227,7 @@ kinds! {
         Recover: Files 1, |v| FileAction::Recover { document: Box::new(v.document()), file: v.file() };
         DeclineRecovery: Look 1, |_| FileAction::DeclineRecovery;
         OpenExample: Files 1, |v| FileAction::OpenExample(v.example());
+        New: Files 1, |_| FileAction::New;
         NewSkeleton: Files 1, |_| FileAction::NewSkeleton;
         Quit: Look 2, |_| FileAction::Quit;
     }
@@ -237,6 +238,7 @@ kinds! {
         CloseDialog: Look 1, |_| ShellAction::CloseDialog;
         Report: Look 1, |v| ShellAction::Report(v.name());
         Fail: Look 1, |v| ShellAction::Fail(v.name());
+        ClearMessage: Look 1, |_| ShellAction::ClearMessage;
         CopyPose: Look 1, |_| ShellAction::CopyPose;
     }
     Tour(TourAction) {

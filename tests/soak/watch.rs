@@ -153,6 +153,7 @@ impl Watch {
             action,
             Action::File(FileAction::Opened { .. })
                 | Action::File(FileAction::OpenExample(_))
+                | Action::File(FileAction::New)
                 | Action::File(FileAction::NewSkeleton)
                 | Action::File(FileAction::Recover { .. })
                 | Action::File(FileAction::Discard(_))

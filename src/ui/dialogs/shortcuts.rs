@@ -62,6 +62,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
             "Document",
             &[
                 ("Undo, redo", "Ctrl+Z, Ctrl+Shift+Z"),
+                ("New, new skeleton", "Ctrl+N, Ctrl+Shift+N"),
                 ("Open, save, save as", "Ctrl+O, Ctrl+S, Ctrl+Shift+S"),
                 ("Export, save a picture", "Ctrl+E, Ctrl+P"),
             ],

@@ -1,6 +1,7 @@
 //! Handles in the viewport: their positions on screen, hit tests and painting.
 
 mod arm;
+mod locked_axis;
 mod rotate;
 mod shape;
 mod skeleton;
@@ -16,6 +17,8 @@ use crate::session::{Grip, Session};
 use crate::ui::viewport::projection::ScreenProjection;
 use arm::ArmGizmo;
 use skeleton::SkeletonGizmo;
+
+pub(in crate::ui) use locked_axis::locked_axis;
 
 pub(in crate::ui) enum Gizmo {
     Arm(ArmGizmo),

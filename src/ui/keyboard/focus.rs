@@ -1,6 +1,6 @@
 //! Keyboard focus.
 
-use egui::{Id, Ui};
+use egui::{Event, Id, Key, Response, Ui};
 
 /// Marks a widget that makes no use of Space, so that Space plays or pauses while it has the focus.
 #[derive(Clone, Copy, Default)]
@@ -20,13 +20,81 @@ pub(in crate::ui) fn leaves_space(ui: &Ui) -> bool {
 #[derive(Clone, Copy, Default)]
 struct TextFocus(bool);
 
-/// Stores for the next frame whether a text field has the keyboard focus, because Esc removes the
+/// Ends a frame: moves the focus from number to number, and stores for the next frame whether a text
+/// field has the keyboard focus, because Esc removes the
 /// focus before the next frame runs the panels.
-pub(in crate::ui) fn remember(ui: &Ui) {
+pub(in crate::ui) fn end(ui: &Ui) {
+    follow_numbers(ui);
     let typing = TextFocus(ui.text_edit_focused());
     ui.data_mut(|data| data.insert_temp(egui::Id::NULL, typing));
 }
 
 pub(in crate::ui) fn was_typing(ui: &Ui) -> bool {
     ui.data(|data| data.get_temp::<TextFocus>(egui::Id::NULL)).is_some_and(|typing| typing.0)
+}
+
+/// The numbers of a frame in the order in which they were shown.
+#[derive(Clone, Default)]
+struct Numbers(Vec<Id>);
+
+/// Marks a number into which the user has typed.
+#[derive(Clone, Copy, Default)]
+struct IsTyped;
+
+/// The number that the user has left with Tab after typing into it.
+#[derive(Clone, Copy)]
+struct LeftByTab {
+    number: Id,
+    /// Whether Shift was held, so that the number before is next.
+    backwards: bool,
+}
+
+fn numbers() -> Id {
+    Id::unique("numbers of the frame")
+}
+
+/// Begins a frame.
+pub(in crate::ui) fn begin(ui: &Ui) {
+    ui.data_mut(|data| data.insert_temp(numbers(), Numbers::default()));
+}
+
+/// Lists a number, so that Tab leads from it to the next number once the user has typed into it. From
+/// other widgets, and from numbers without typing, Tab leads to the next widget of any kind.
+pub(in crate::ui) fn list_number(ui: &Ui, number: &Response) {
+    if number.enabled() {
+        ui.data_mut(|data| data.get_temp_mut_or_default::<Numbers>(numbers()).0.push(number.id));
+    }
+    let is_stroke = |event: &Event| match event {
+        Event::Text(_) | Event::Paste(_) => true,
+        Event::Key { key: Key::Backspace | Key::Delete, pressed, .. } => *pressed,
+        _ => false,
+    };
+    if number.has_focus() && ui.input(|input| input.events.iter().any(is_stroke)) {
+        ui.data_mut(|data| data.insert_temp(number.id, IsTyped));
+    }
+    if !number.lost_focus() {
+        return;
+    }
+    let was_typed = ui.data_mut(|data| data.remove_temp::<IsTyped>(number.id)).is_some();
+    if was_typed && ui.input(|input| input.key_pressed(Key::Tab)) {
+        let backwards = ui.input(|input| input.modifiers.shift);
+        let left = Some(LeftByTab { number: number.id, backwards });
+        ui.data_mut(|data| data.insert_temp(numbers(), left));
+    }
+}
+
+/// Moves the focus from the number that was left with Tab to the next one.
+fn follow_numbers(ui: &Ui) {
+    let Some(left) = ui.data_mut(|data| data.remove_temp::<Option<LeftByTab>>(numbers()).flatten())
+    else {
+        return;
+    };
+    let all = ui.data(|data| data.get_temp::<Numbers>(numbers())).unwrap_or_default().0;
+    let step = if left.backwards { -1 } else { 1 };
+    let next = all.iter().position(|id| *id == left.number);
+    let next = next.and_then(|at| at.checked_add_signed(step)).and_then(|at| all.get(at));
+    if let Some(next) = next {
+        ui.memory_mut(|memory| memory.request_focus(*next));
+        ui.ctx().request_repaint();
+    }
 }

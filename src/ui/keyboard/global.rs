@@ -33,6 +33,11 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
             actions.push(TransactionAction::Undo);
         }
     }
+    if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::N) {
+        actions.push(FileAction::NewSkeleton);
+    } else if pressed(Modifiers::COMMAND, Key::N) {
+        actions.push(FileAction::New);
+    }
     if pressed(Modifiers::COMMAND, Key::O) {
         actions.push(commands::open());
     }

@@ -17,7 +17,7 @@ use crate::session::{
     Action, Actions, ArmJoint, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction,
     SelectAction, Session, TransactionAction, ViewAction,
 };
-use crate::ui::gizmo::{Gizmo, view_axes};
+use crate::ui::gizmo::{Gizmo, locked_axis, view_axes};
 use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, mouse_hints, pose_summary};
 use navigation::{motion, show_cursor, wheel};
@@ -50,6 +50,7 @@ pub(in crate::ui) fn ui(
     let pointed = mouse.filter(|_| over).and_then(|at| gizmo.at(at));
     mouse_hints::set_pointed(ui, pointed);
     drag_hint::ui(ui, session, &screen);
+    locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {

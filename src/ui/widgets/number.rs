@@ -1,11 +1,16 @@
-//! A number to drag or type.
+//! A number to drag or type, also as an expression.
+
+use std::cell::Cell;
 
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
-use crate::session::{Action, Actions, TransactionAction};
+use crate::session::{Action, Actions, ShellAction, TransactionAction};
+use crate::ui::keyboard::focus;
 
 const HEIGHT: f32 = 22.0;
+const NOT_UNDERSTOOD: &str =
+    "the value must be a number or an expression such as 2*50 or (100+23)/2; it is unchanged";
 
 /// A number to drag or type.
 pub(in crate::ui) struct DragNumber<'a, N = f32> {
@@ -31,11 +36,16 @@ impl<N: Numeric> DragNumber<'_, N> {
         set: impl Fn(N) -> A,
     ) -> Response {
         let mut value = self.value;
+        let refused = Cell::new(false);
         let number = DragValue::new(&mut value)
             .speed(self.speed)
             .suffix(self.unit)
             .custom_formatter(|value, _| (self.format)(value))
-            .custom_parser(|text| self.parse(text))
+            .custom_parser(|text| {
+                let parsed = self.parse(text);
+                refused.set(parsed.is_none());
+                parsed
+            })
             .clip_text(true)
             .update_while_editing(false);
         let size = vec2(self.width, HEIGHT);
@@ -47,6 +57,7 @@ impl<N: Numeric> DragNumber<'_, N> {
         });
         let response = row.inner;
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
+        focus::list_number(ui, &response);
         if response.drag_started() {
             actions.push(TransactionAction::Begin);
         }
@@ -57,6 +68,9 @@ impl<N: Numeric> DragNumber<'_, N> {
             ui.request_repaint();
         }
         let dropped = response.dragged() && !response.drag_started() && !is_editing;
+        if refused.get() && response.lost_focus() && !ui.input(|it| it.key_pressed(Key::Escape)) {
+            actions.push(ShellAction::Fail(NOT_UNDERSTOOD.to_owned()));
+        }
         if response.changed() && was_left {
             ui.request_repaint();
         } else if response.changed() && !dropped {
@@ -68,8 +82,8 @@ impl<N: Numeric> DragNumber<'_, N> {
         response
     }
 
-    /// Parses text with or without the unit; `None` if it is not a finite number. Unchanged text
-    /// returns the value itself, with the digits that are not shown.
+    /// Evaluates text with or without the unit, such as `2*50`; `None` if the result is not a finite
+    /// number. Unchanged text returns the value itself, with the digits that are not shown.
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
         let text = text.replace('\u{2212}', "-");
@@ -77,7 +91,8 @@ impl<N: Numeric> DragNumber<'_, N> {
         if text == (self.format)(value) {
             return Some(value);
         }
-        text.parse().ok().filter(|value: &f64| value.is_finite())
+        let number = text.parse().ok().or_else(|| exmex::eval_str::<f64>(&text).ok());
+        number.filter(|value| value.is_finite())
     }
 }
 
