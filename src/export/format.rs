@@ -63,6 +63,11 @@ impl Format {
         matches!(self, Self::Png | Self::Obj)
     }
 
+    /// Whether a file of the format holds the frames of a motion rather than a single moment.
+    pub fn has_frames(self) -> bool {
+        !matches!(self, Self::Png | Self::Obj)
+    }
+
     /// Whether the format consists of pictures.
     pub fn is_picture(self) -> bool {
         matches!(self, Self::Png | Self::PngSequence | Self::Apng)

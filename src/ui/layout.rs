@@ -38,7 +38,7 @@ pub fn show(
         .default_size(272.0)
         .size_range(232.0..=420.0)
         .show(ui, |ui| left::ui(ui, session, actions));
-    if session.preferences().explain {
+    if session.preferences().explain && right::has_room(ui) {
         Panel::right("explain")
             .resizable(true)
             .default_size(272.0)

@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
+use super::panels::right;
 use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group};
@@ -232,7 +233,9 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         actions.push(ViewAction::ShowCrowd(crowd));
     }
     let mut explain = session.preferences().explain;
-    if ui.checkbox(&mut explain, "Explain panel").changed() {
+    let panel = egui::Checkbox::new(&mut explain, "Explain panel");
+    let panel = ui.add_enabled(right::has_room(ui), panel);
+    if panel.on_disabled_hover_text("Make the window wider: it has no room").changed() {
         actions.push(ViewAction::ShowExplain(explain));
     }
     let mut timeline = session.shows_timeline();

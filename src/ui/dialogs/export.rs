@@ -91,10 +91,13 @@ pub(in crate::ui) fn ui(
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
-        let name = ui.label("Frames per second");
-        ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::MAX_FRAME_RATE))
-            .labelled_by(name.id);
-        ui.end_row();
+        if chosen.is_some_and(Format::has_frames) {
+            let name = ui.label("Frames per second");
+            ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::MAX_FRAME_RATE))
+                .labelled_by(name.id);
+            ui.end_row();
+            length(ui, session, export.frame_rate, chosen);
+        }
         if chosen.is_some_and(Format::is_picture) {
             let name = ui.label("Size in pixels");
             ui.horizontal(|ui| {
@@ -121,19 +124,6 @@ pub(in crate::ui) fn ui(
             .show(ui, session, actions, |metres| EditAction::SetMetres(Some(metres)));
             ui.end_row();
         }
-        ui.label("Length");
-        let timeline = session.document().timeline;
-        let document = session.document();
-        let rate = Some(export.frame_rate);
-        let frames = match chosen {
-            Some(format) if format.is_picture() => ExportFrames::of_picture(document, rate),
-            _ => ExportFrames::of_pose(document, rate),
-        };
-        ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
-            true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
-            false => "One frame, no motion".to_owned(),
-        });
-        ui.end_row();
         if changed != *export {
             actions.push(change(changed));
         }
@@ -150,6 +140,22 @@ pub(in crate::ui) fn ui(
     );
     ui.add_space(4.0);
     buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
+}
+
+/// Shows the length of the motion, if there is any.
+fn length(ui: &mut Ui, session: &Session, frame_rate: u32, format: Option<Format>) {
+    ui.label("Length");
+    let document = session.document();
+    let timeline = document.timeline;
+    let frames = match format {
+        Some(format) if format.is_picture() => ExportFrames::of_picture(document, Some(frame_rate)),
+        _ => ExportFrames::of_pose(document, Some(frame_rate)),
+    };
+    ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
+        true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
+        false => "One frame, no motion".to_owned(),
+    });
+    ui.end_row();
 }
 
 fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {

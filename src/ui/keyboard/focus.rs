@@ -1,5 +1,7 @@
 //! Keyboard focus.
 
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Event, Id, Key, Response, Ui};
 
 /// Marks a widget that makes no use of Space, so that Space plays or pauses while it has the focus.
@@ -21,8 +23,7 @@ pub(in crate::ui) fn leaves_space(ui: &Ui) -> bool {
 struct TextFocus(bool);
 
 /// Ends a frame: moves the focus from number to number, and stores for the next frame whether a text
-/// field has the keyboard focus, because Esc removes the
-/// focus before the next frame runs the panels.
+/// field has the keyboard focus, because Esc removes the focus before the next frame runs the panels.
 pub(in crate::ui) fn end(ui: &Ui) {
     follow_numbers(ui);
     let typing = TextFocus(ui.text_edit_focused());
@@ -53,9 +54,29 @@ fn numbers() -> Id {
     Id::unique("numbers of the frame")
 }
 
+/// The number that gets the focus.
+#[derive(Clone, Copy)]
+struct NextNumber(Id);
+
 /// Begins a frame.
 pub(in crate::ui) fn begin(ui: &Ui) {
     ui.data_mut(|data| data.insert_temp(numbers(), Numbers::default()));
+    // For Shift+Tab, egui sets the focus only now.
+    let next = ui.data_mut(|data| data.remove_temp::<Option<NextNumber>>(numbers()).flatten());
+    if let Some(NextNumber(number)) = next {
+        edit(ui, number);
+    }
+}
+
+/// Gives the focus to a number and selects its text.
+fn edit(ui: &Ui, number: Id) {
+    /// More letters than a number has.
+    const ALL: usize = 64;
+    ui.memory_mut(|memory| memory.request_focus(number));
+    let mut text = TextEditState::load(ui.ctx(), number).unwrap_or_default();
+    let all = CCursorRange::two(CCursor::new(0), CCursor::new(ALL));
+    text.cursor.set_char_range(Some(all));
+    text.store(ui.ctx(), number);
 }
 
 /// Lists a number, so that Tab leads from it to the next number once the user has typed into it. From
@@ -72,14 +93,14 @@ pub(in crate::ui) fn list_number(ui: &Ui, number: &Response) {
     if number.has_focus() && ui.input(|input| input.events.iter().any(is_stroke)) {
         ui.data_mut(|data| data.insert_temp(number.id, IsTyped));
     }
-    if !number.lost_focus() {
-        return;
-    }
-    let was_typed = ui.data_mut(|data| data.remove_temp::<IsTyped>(number.id)).is_some();
-    if was_typed && ui.input(|input| input.key_pressed(Key::Tab)) {
+    let is_typed = ui.data(|data| data.get_temp::<IsTyped>(number.id)).is_some();
+    if is_typed && ui.input(|input| input.key_pressed(Key::Tab)) {
         let backwards = ui.input(|input| input.modifiers.shift);
         let left = Some(LeftByTab { number: number.id, backwards });
         ui.data_mut(|data| data.insert_temp(numbers(), left));
+    }
+    if !number.has_focus() {
+        ui.data_mut(|data| data.remove::<IsTyped>(number.id));
     }
 }
 
@@ -95,6 +116,7 @@ fn follow_numbers(ui: &Ui) {
     let next = next.and_then(|at| at.checked_add_signed(step)).and_then(|at| all.get(at));
     if let Some(next) = next {
         ui.memory_mut(|memory| memory.request_focus(*next));
+        ui.data_mut(|data| data.insert_temp(numbers(), Some(NextNumber(*next))));
         ui.ctx().request_repaint();
     }
 }

@@ -7,6 +7,14 @@ use crate::document::RigKind;
 use crate::session::{Actions, PanelTab, Session, ViewAction};
 use crate::ui::widgets::{self, Tab};
 
+/// Least width of the window with this panel, in points.
+const WINDOW_WIDTH: f32 = 760.0;
+
+/// Whether the window is wide enough for the panel: in a narrow one, it gives way to the view.
+pub(in crate::ui) fn has_room(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() >= WINDOW_WIDTH
+}
+
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let shown = shown(session);
     ui.add_space(4.0);

@@ -22,6 +22,9 @@ use crate::ui::keyboard::{self, focus};
 use crate::ui::{commands, mouse_hints, pose_summary};
 use navigation::{motion, show_cursor, wheel};
 
+/// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside it.
+const PANEL_EDGE: f32 = 4.0;
+
 pub(in crate::ui) fn ui(
     ui: &mut Ui,
     session: &Session,
@@ -29,7 +32,9 @@ pub(in crate::ui) fn ui(
     actions: &mut Actions,
 ) -> Rect {
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
-    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    // The edges are those of the resizable panels beside the view.
+    let inside = rect.shrink(PANEL_EDGE);
+    let response = ui.allocate_rect(inside, Sense::click_and_drag());
     response.widget_info(|| {
         let text = format!("Viewport. {}", pose_summary::summary(session));
         WidgetInfo::labeled(Role::Image, true, text)

@@ -67,10 +67,11 @@ impl<N: Numeric> DragNumber<'_, N> {
             ui.data_mut(|data| data.insert_temp(response.id, LeftByEscape));
             ui.request_repaint();
         }
-        let dropped = response.dragged() && !response.drag_started() && !is_editing;
-        if refused.get() && response.lost_focus() && !ui.input(|it| it.key_pressed(Key::Escape)) {
+        let is_escape = was_left || ui.input(|input| input.key_pressed(Key::Escape));
+        if refused.get() && response.lost_focus() && !is_escape {
             actions.push(ShellAction::Fail(NOT_UNDERSTOOD.to_owned()));
         }
+        let dropped = response.dragged() && !response.drag_started() && !is_editing;
         if response.changed() && was_left {
             ui.request_repaint();
         } else if response.changed() && !dropped {
@@ -92,7 +93,7 @@ impl<N: Numeric> DragNumber<'_, N> {
             return Some(value);
         }
         let number = text.parse().ok().or_else(|| exmex::eval_str::<f64>(&text).ok());
-        number.filter(|value| value.is_finite())
+        number.filter(|value| (*value as f32).is_finite())
     }
 }
 

@@ -44,7 +44,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         labels: AXES,
         value: rig.skeleton.transform().translation.into(),
         default: Vec3::ZERO,
-        range: 0.5 * rig.reach(),
+        range: 0.3 * rig.reach(),
         step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the skeleton in world space; targets stay",
         disabled: None,
