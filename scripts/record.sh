@@ -22,12 +22,22 @@ main() {
     cargo build --release --locked
     trap clean_up EXIT
     open_window
+    press_just_play_and_elbow_circle
     rm -rf "$frames"
     mkdir -p "$frames"
     drag_around
     close_window
     join_frames
     printf 'The film is %s\n' "$film"
+}
+
+press_just_play_and_elbow_circle() {
+    local place
+    for place in '439 697' '16 336'; do
+        # shellcheck disable=SC2086 # two numbers
+        xdotool mousemove $place click 1
+        wait_for_rest
+    done
 }
 
 # One picture per step, taken when the window is at rest, so that the film is smooth on a slow machine.

@@ -20,6 +20,7 @@ clean_up() {
     fi
 }
 
+# open_window [ARGUMENTS OF THE PROGRAM]
 open_window() {
     local window empty
     start_virtual_display
@@ -28,7 +29,7 @@ open_window() {
     # Saved settings could move the arm or the panels.
     settings=$(mktemp -d)
     XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
-        "$program" &
+        "$program" "$@" &
     program_pid=$!
     window=$(wait_for_window)
     # There is no window manager to give it the keyboard focus.
@@ -71,7 +72,7 @@ wait_for_rest() {
 
 wait_for_window() {
     local window deadline=$((SECONDS + 60))
-    until window=$(xdotool search --onlyvisible --name '^ik-arm' 2>/dev/null); do
+    until window=$(xdotool search --onlyvisible --pid "$program_pid" 2>/dev/null); do
         if ! kill -0 "$program_pid" 2>/dev/null || ((SECONDS > deadline)); then
             printf 'The window of ik-arm does not appear.\n' >&2
             return 1

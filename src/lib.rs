@@ -26,13 +26,13 @@
 //! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets and its skin; crowds of arms | |
 //! | `document` | saved state: both rigs, keys, timeline, camera, display; bakes | `document` |
 //! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | `document` |
-//! | `session` | the open document and state that is not saved; actions, undo and redo | `document` |
+//! | `session` | the open document and state that is not saved; actions, undo and redo; the tour | `document` |
 //! | `scene` | what to draw, as plain lists | `document` |
 //! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
 //! | `export` | files for other programs: motion, tables, meshes, pictures | `render` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
 //! | `app` | window, surface and frame loop (winit) | `app` |
-//! | `cli` | commands: solve, pose, render, export, bake, skin, examples, gui | `app` |
+//! | `cli` | commands: solve, pose, render, export, bake, skin, examples, tour, gui | `app` |
 //!
 //! # One frame
 //!

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Takes the pictures of docs/guide.md and docs/kinematics.md from the program itself: docs/pictures.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=scripts/setup.sh
+source scripts/setup.sh
+# shellcheck source=scripts/window.sh
+source scripts/window.sh
+
+pictures=docs/pictures
+
+main() {
+    set_up virtual-display
+    cargo build --release --locked
+    trap clean_up EXIT
+    mkdir -p "$pictures"
+    picture_of_window start
+    picture_of_window tour gui --tour 4
+    picture_of_window twist gui --tour 8
+    picture_of_window race gui --tour 11
+    picture_of_window figure gui --tour 12
+    "$program" examples keyframes -o "$settings/keyframes.json"
+    picture_of_window timeline "$settings/keyframes.json"
+    picture_of_scene circle elbow-circle
+    picture_of_scene limits limits
+    picture_of_scene globe globe
+    printf 'The pictures are in %s\n' "$pictures"
+}
+
+# picture_of_window NAME [ARGUMENTS OF THE PROGRAM]
+picture_of_window() {
+    local name=$1
+    shift
+    open_window "$@"
+    case $name in
+        race) press 1065 75 ;; # Race all solvers
+        tour) press 480 660 ;; # an answer
+    esac
+    import -window root "$pictures/$name.full.png"
+    close_window
+    stop_virtual_display
+    shrink "$name"
+}
+
+press() {
+    xdotool mousemove "$1" "$2" click 1
+    wait_for_rest
+    xdotool mousemove 700 400
+    wait_for_rest
+}
+
+# picture_of_scene NAME SCENE
+picture_of_scene() {
+    "$program" render "assets/tour/$2.json" --size 1280x800 -o "$pictures/$1.full.png"
+    shrink "$1"
+}
+
+# Colours of a palette make the files a third as large.
+shrink() {
+    convert "$pictures/$1.full.png" -resize 960x -colors 128 -strip "$pictures/$1.png"
+    rm "$pictures/$1.full.png"
+}
+
+main "$@"
