@@ -12,6 +12,7 @@ use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
     FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinSource, TargetKind, TargetSpace,
 };
@@ -130,7 +131,9 @@ examples! {
     ];
     DeleteKeys: [EditAction::DeleteKeys(vec![(KEYED, 0.0)])];
     ClearChannels: [EditAction::ClearChannels(vec![KEYED])];
-    MoveKeys: [EditAction::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5 }];
+    MoveKeys: [EditAction::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5, raise: Vec3::ONE }];
+    SetInterpolation: [EditAction::SetInterpolation(vec![(KEYED, 0.0)], Interpolation::Linear)];
+    SetSlopes: [EditAction::SetSlopes(vec![(KEYED, 0.0)], Some(Slopes { arriving: Vec3::X, leaving: Vec3::Y }))];
     PasteKeys: [EditAction::PasteKeys];
     Bake: [EditAction::Bake(baked())];
     SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25 })];

@@ -178,7 +178,7 @@ fn keying() -> impl Strategy<Value = Action> {
         1 => vec(key.clone(), 1..3).prop_map(EditAction::DeleteKeys).prop_map(Action::from),
         1 => vec(channels(), 1..3).prop_map(EditAction::ClearChannels).prop_map(Action::from),
         1 => (vec(key.clone(), 1..3), -2.0..2.0_f64)
-            .prop_map(|(keys, by)| Action::from(EditAction::MoveKeys { keys, by })),
+            .prop_map(|(keys, by)| Action::from(EditAction::MoveKeys { keys, by, raise: Vec3::ZERO })),
         1 => vec(key, 1..3).prop_map(SelectAction::Keys).prop_map(Action::from),
         1 => Just(Action::from(SelectAction::CopyKeys)),
         1 => Just(Action::from(EditAction::PasteKeys)),
@@ -483,7 +483,7 @@ fn many_keys_move_at_once() {
     }
     session.apply(FileAction::Opened { document: Box::new(document), file: None });
     let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
-    session.apply(EditAction::MoveKeys { keys, by: 1.0 });
+    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
     assert_eq!((track.len(), track[0].time), (50_000, 1.0));
 }

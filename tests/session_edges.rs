@@ -126,7 +126,7 @@ fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
     session.apply(TransactionAction::Begin);
     session.apply(EditAction::DeleteJoints(vec![JointId::new(1)]));
     let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(JointId::new(1)), 0.0)];
-    session.apply(EditAction::MoveKeys { keys, by: 1.0 });
+    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
     assert_eq!(left, [(Channel::Hand, 1.0)]);
@@ -138,11 +138,15 @@ fn keys_made_while_others_move_stay() {
     session.apply(EditAction::Key(vec![Channel::Hand]));
     session.apply(TransactionAction::Begin);
     let keys = vec![(Channel::Hand, 0.0)];
-    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 1.0 });
-    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 2.0 });
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
     assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
     session.apply(EditAction::Key(vec![Channel::Root]));
-    session.apply(EditAction::MoveKeys { keys: vec![(Channel::Hand, 2.0)], by: 1.0 });
+    session.apply(EditAction::MoveKeys {
+        keys: vec![(Channel::Hand, 2.0)],
+        by: 1.0,
+        raise: Vec3::ZERO,
+    });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
     assert_eq!(left, [(Channel::Hand, 3.0), (Channel::Root, 0.0)]);

@@ -9,7 +9,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 fn spline(knots: &[(f64, f32)]) -> Spline<f32> {
-    knots.iter().map(|&(time, value)| Knot { time, value }).collect()
+    knots.iter().map(|&(time, value)| Knot::new(time, value)).collect()
 }
 
 fn at(spline: &Spline<f32>, time: f64) -> f32 {
@@ -106,7 +106,7 @@ proptest! {
     fn vectors_are_three_numbers(knots in knots(), time in -5.0..30.0_f64) {
         let points: Spline<Vec3> = knots
             .iter()
-            .map(|&(time, x)| Knot { time, value: Vec3::new(x, -x, 2.0 * x) })
+            .map(|&(time, x)| Knot::new(time, Vec3::new(x, -x, 2.0 * x)))
             .collect();
         let (point, x) = (points.at(time).expect("knots"), at(&spline(&knots), time));
         prop_assert!((point - Vec3::new(x, -x, 2.0 * x)).abs().max_element() < 1e-3);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::channel::{Channel, Quantity};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::JointRemap;
-use crate::kinematics::spline::Spline;
+use crate::kinematics::spline::{Knot, Spline};
 
 /// The keys of a document: for every keyed channel a track, the spline through its keys.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,6 +68,20 @@ impl Keys {
         if time.is_finite() && value.is_finite() {
             self.tracks.make_mut().entry(channel).or_default().make_mut().insert(time, value);
         }
+    }
+
+    /// Adds a key with its interpolation and slopes, or replaces the channel's key at its time. Does
+    /// nothing if the time, the value or a slope is not finite.
+    pub fn insert_key(&mut self, channel: Channel, key: Knot<Vec3>) {
+        let slopes = key.slopes.iter().flat_map(|it| [it.arriving, it.leaving]);
+        if key.time.is_finite() && slopes.chain([key.value]).all(Vec3::is_finite) {
+            self.tracks.make_mut().entry(channel).or_default().make_mut().insert_knot(key);
+        }
+    }
+
+    /// The key of a channel at a time in seconds; `None` if there is none.
+    pub fn key(&self, channel: Channel, time: f64) -> Option<Knot<Vec3>> {
+        self.track(channel)?.knot(time).copied()
     }
 
     /// Replaces all keys of a channel by those of a track.

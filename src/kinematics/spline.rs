@@ -7,6 +7,9 @@
 //! p(t) = (2s³ − 3s² + 1) p₁ + (s³ − 2s² + s) h m₁ + (3s² − 2s³) p₂ + (s³ − s²) h m₂
 //! ```
 //!
+//! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can be a
+//! straight line or a step instead.
+//!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
 //! first knot and after the last, the curve is constant. It is C¹ at interior knots.
 //!
@@ -23,13 +26,64 @@
 
 use core::ops::{Add, Mul, RangeInclusive, Sub};
 
-/// A value at a time.
+/// A value at a time, with the shape of the curve there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot<V> {
     /// Time in seconds; finite.
     pub time: f64,
     /// Value at this time.
     pub value: V,
+    /// Curve from this knot to the next one.
+    pub interpolation: Interpolation,
+    /// Slopes of smooth curves at this knot; `None` for the Catmull–Rom tangent on both sides.
+    pub slopes: Option<Slopes<V>>,
+}
+
+/// The curve from a knot to the next one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Interpolation {
+    /// A cubic polynomial with the slopes of both knots.
+    #[default]
+    Smooth,
+    /// A straight line.
+    Linear,
+    /// The value of the knot, until the next one.
+    Step,
+}
+
+/// Slopes of a curve at a knot, per second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes<V> {
+    /// Slope with which the curve arrives from the knot before.
+    pub arriving: V,
+    /// Slope with which the curve leaves to the knot after.
+    pub leaving: V,
+}
+
+impl Interpolation {
+    /// All kinds, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Smooth, Self::Linear, Self::Step];
+
+    /// Name on screen.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Smooth => "Smooth",
+            Self::Linear => "Linear",
+            Self::Step => "Step",
+        }
+    }
+}
+
+impl<V> Knot<V> {
+    /// A knot with a smooth curve and Catmull–Rom tangents.
+    pub fn new(time: f64, value: V) -> Self {
+        Self { time, value, interpolation: Interpolation::Smooth, slopes: None }
+    }
 }
 
 /// A cubic spline through knots sorted by time, with at most one knot per time; constant before the
@@ -62,8 +116,8 @@ impl<V> Default for Spline<V> {
 impl<V: Copy> FromIterator<Knot<V>> for Spline<V> {
     fn from_iter<T: IntoIterator<Item = Knot<V>>>(knots: T) -> Self {
         let mut spline = Self::default();
-        for Knot { time, value } in knots {
-            spline.insert(time, value);
+        for knot in knots {
+            spline.insert_knot(knot);
         }
         spline
     }
@@ -80,14 +134,21 @@ impl<V: Copy> Spline<V> {
         self.knots.is_empty()
     }
 
-    /// Inserts a knot, or replaces the knot at this time. Does nothing if the time is not finite.
+    /// Inserts a knot, or sets the value of the knot at this time, which keeps its interpolation and
+    /// slopes. Does nothing if the time is not finite.
     pub fn insert(&mut self, time: f64, value: V) {
-        if !time.is_finite() {
+        let knot = self.knot(time).copied().unwrap_or(Knot::new(time, value));
+        self.insert_knot(Knot { value, ..knot });
+    }
+
+    /// Inserts a knot, or replaces the knot at its time. Does nothing if the time is not finite.
+    pub fn insert_knot(&mut self, knot: Knot<V>) {
+        if !knot.time.is_finite() {
             return;
         }
         // Adding 0 makes −0 and 0 the same time.
-        let knot = Knot { time: time + 0.0, value };
-        match self.search(time) {
+        let knot = Knot { time: knot.time + 0.0, ..knot };
+        match self.search(knot.time) {
             Ok(index) => self.knots[index] = knot,
             Err(index) => self.knots.insert(index, knot),
         }
@@ -102,7 +163,12 @@ impl<V: Copy> Spline<V> {
 
     /// Value of the knot at exactly this time; `None` if there is no such knot.
     pub fn get(&self, time: f64) -> Option<V> {
-        Some(self.knots[self.search(time).ok()?].value)
+        self.knot(time).map(|knot| knot.value)
+    }
+
+    /// The knot at exactly this time; `None` if there is no such knot.
+    pub fn knot(&self, time: f64) -> Option<&Knot<V>> {
+        Some(&self.knots[self.search(time).ok()?])
     }
 
     /// Value of the last knot at or before a time, for values that do not blend. Before the first
@@ -128,6 +194,15 @@ where
     /// Interpolated value at a time (see the module); `None` without knots.
     pub fn at(&self, time: f64) -> Option<V> {
         interpolated(&self.knots, time)
+    }
+
+    /// Slopes of smooth curves at the knot at exactly this time, per second: its own, or else the
+    /// Catmull–Rom tangent. `None` if there is no such knot.
+    pub fn slopes(&self, time: f64) -> Option<Slopes<V>> {
+        let index = self.search(time).ok()?;
+        let automatic = tangent(&self.knots, index, 1.0);
+        let automatic = Slopes { arriving: automatic, leaving: automatic };
+        Some(self.knots[index].slopes.unwrap_or(automatic))
     }
 
     /// Value at a time of the spline through only those knots whose times are in a range; `None` if
@@ -158,20 +233,29 @@ where
     }
     let span = to.time - from.time;
     let s = (time - from.time) / span;
-    let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
-    let (leaving, arriving) = (turn(knots, after - 1, span), turn(knots, after, span));
-    Some(from.value * a + leaving * b + to.value * c + arriving * d)
+    Some(match from.interpolation {
+        Interpolation::Step => from.value,
+        Interpolation::Linear => from.value * (1.0 - s) as f32 + to.value * s as f32,
+        Interpolation::Smooth => {
+            let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
+            let leaving = from.slopes.map(|slopes| slopes.leaving * span as f32);
+            let leaving = leaving.unwrap_or_else(|| tangent(knots, after - 1, span));
+            let arriving = to.slopes.map(|slopes| slopes.arriving * span as f32);
+            let arriving = arriving.unwrap_or_else(|| tangent(knots, after, span));
+            from.value * a + leaving * b + to.value * c + arriving * d
+        }
+    })
 }
 
-/// h·m at a knot: the rate of change m there, times the time span h.
-fn turn<V>(knots: &[Knot<V>], knot: usize, span: f64) -> V
+/// h·m at a knot: the Catmull–Rom tangent m there, times the time span h.
+fn tangent<V>(knots: &[Knot<V>], knot: usize, span: f64) -> V
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
 {
     let here = knots[knot];
-    let mirrored = |of: Knot<V>| Knot {
-        time: here.time - (of.time - here.time),
-        value: here.value - (of.value - here.value),
+    let mirrored = |of: Knot<V>| {
+        let time = here.time - (of.time - here.time);
+        Knot::new(time, here.value - (of.value - here.value))
     };
     let before = knot.checked_sub(1).map(|before| knots[before]);
     let after = knots.get(knot + 1).copied();

@@ -121,7 +121,11 @@ impl Session {
             EditAction::Key(channels) => self.key(&channels),
             EditAction::DeleteKeys(keys) => self.delete_keys(&keys),
             EditAction::ClearChannels(channels) => self.clear_channels(&channels),
-            EditAction::MoveKeys { keys, by } => self.move_keys(&keys, by),
+            EditAction::MoveKeys { keys, by, raise } => self.move_keys(&keys, by, raise),
+            EditAction::SetInterpolation(keys, interpolation) => {
+                self.set_interpolation(&keys, interpolation);
+            }
+            EditAction::SetSlopes(keys, slopes) => self.set_slopes(&keys, slopes),
             EditAction::PasteKeys => self.paste_keys(),
             EditAction::Bake(baked) => self.replace_by_bake(&baked),
             EditAction::SetTimeline(timeline) => self.set_timeline(timeline),

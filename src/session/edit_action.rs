@@ -9,6 +9,7 @@ use crate::document::{
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{JointId, Limit};
 use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::spline::{Interpolation, Slopes};
 use crate::rig::TargetSpace;
 
 /// A change of the document. Outside a transaction, each change is one undo step with its own
@@ -180,13 +181,19 @@ pub enum EditAction {
     DeleteKeys(Vec<Key>),
     /// Deletes all keys of channels.
     ClearChannels(Vec<Channel>),
-    /// Moves keys in time.
+    /// Moves keys in time and in value.
     MoveKeys {
         /// The keys to move, each with the time that it had before the transaction.
         keys: Vec<Key>,
         /// Shift in seconds; positive is later.
         by: f64,
+        /// Change of the values. The result is kept within the values that a channel can have.
+        raise: Vec3,
     },
+    /// Sets the curve from each key to the next one of its channel.
+    SetInterpolation(Vec<Key>, Interpolation),
+    /// Sets the slopes of smooth curves at keys, per second; `None` for Catmull–Rom tangents.
+    SetSlopes(Vec<Key>, Option<Slopes<Vec3>>),
     /// Pastes the copied keys at the playhead.
     PasteKeys,
     /// Replaces the motion by targets and path by the keys of a bake.

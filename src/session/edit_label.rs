@@ -69,6 +69,8 @@ impl EditAction {
             },
             Self::DeleteKeys(_) | Self::ClearChannels(_) => "Delete keys",
             Self::MoveKeys { .. } => "Move keys",
+            Self::SetInterpolation(..) => "Set interpolation",
+            Self::SetSlopes(..) => "Set tangents",
             Self::PasteKeys => "Paste keys",
             Self::Bake(_) => "Bake to keys",
             Self::SetTimeline(_) => "Change timeline",

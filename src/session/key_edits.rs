@@ -6,8 +6,9 @@ use super::effect::Effect;
 use super::key::Key;
 use super::selection::Clipboard;
 use super::session::Session;
-use crate::document::{Channel, Document, Keys, RigKind, Timeline};
+use crate::document::{Channel, Document, Keys, Quantity, RigKind, Timeline};
 use crate::kinematics::skeleton::JointRemap;
+use crate::kinematics::spline::{Interpolation, Knot, Slopes};
 
 /// Keys of the timeline.
 impl Session {
@@ -126,27 +127,48 @@ impl Session {
         });
     }
 
-    /// Moves `keys`, given with their times before the transaction, by `by` seconds. Replaces other
-    /// keys at the new times.
-    pub(super) fn move_keys(&mut self, keys: &[Key], by: f64) {
+    /// Moves `keys`, given with their times before the transaction, by `by` seconds, and adds `raise`
+    /// to their values. Replaces other keys at the new times.
+    pub(super) fn move_keys(&mut self, keys: &[Key], by: f64, raise: Vec3) {
         let farthest = Timeline::MAX_TIME;
         let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
+        let raise = if raise.is_finite() { raise } else { Vec3::ZERO };
         let before = self.editing.shown_before().keys.clone();
-        let to = |time: f64| self.moved_to(time, by);
-        let moved: Vec<_> = keys
+        let moved: Clipboard = keys
             .iter()
             .filter_map(|(channel, time)| {
-                let value = before.track(*channel)?.get(*time)?;
-                Some((*channel, to(*time), value))
+                let key = before.key(*channel, *time)?;
+                let (time, value) = (self.moved_to(*time, by), raised(*channel, key.value, raise));
+                Some((*channel, Knot { time, value, ..key }))
             })
             .collect();
-        self.selection.set_keys(moved.iter().map(|(channel, time, _)| (*channel, *time)).collect());
+        self.selection.set_keys(moved.iter().map(|(channel, key)| (*channel, key.time)).collect());
         let mut after = before.clone();
         after.remove_all(keys);
         insert(&mut after, &moved);
         self.edit_keys(|document| document.keys = after);
         // The next move of this drag starts from the same keys.
         self.editing.restart_keys_from(before);
+    }
+
+    /// Sets the curve from each of `keys` to the next key of its channel.
+    pub(super) fn set_interpolation(&mut self, keys: &[Key], interpolation: Interpolation) {
+        self.change_keys(keys, |key| Knot { interpolation, ..key });
+    }
+
+    /// Sets the slopes of `keys`, per second; `None` for Catmull–Rom tangents.
+    pub(super) fn set_slopes(&mut self, keys: &[Key], slopes: Option<Slopes<Vec3>>) {
+        self.change_keys(keys, |key| Knot { slopes, ..key });
+    }
+
+    fn change_keys(&mut self, keys: &[Key], change: impl Fn(Knot<Vec3>) -> Knot<Vec3>) {
+        self.edit_keys(|document| {
+            for (channel, time) in keys {
+                if let Some(key) = document.keys.key(*channel, *time) {
+                    document.keys.insert_key(*channel, change(key));
+                }
+            }
+        });
     }
 
     /// The time of a key after a move by `by`, in seconds. A move from one frame to another ends
@@ -161,12 +183,11 @@ impl Session {
     /// Copies the selected keys, also as text to the system's clipboard, which sends paste events
     /// only for text. Returns `None` if no keys are selected.
     pub(super) fn copy_keys(&mut self) -> Option<Effect> {
-        let copied = |(channel, time): &Key| {
-            Some((*channel, *time, self.document().keys.track(*channel)?.get(*time)?))
-        };
+        let copied =
+            |(channel, time): &Key| Some((*channel, self.document().keys.key(*channel, *time)?));
         let mut copies: Clipboard = self.selection.keys().iter().filter_map(copied).collect();
-        let first = copies.iter().map(|(_, time, _)| *time).fold(f64::INFINITY, f64::min);
-        copies.iter_mut().for_each(|(_, time, _)| *time -= first);
+        let first = copies.iter().map(|(_, key)| key.time).fold(f64::INFINITY, f64::min);
+        copies.iter_mut().for_each(|(_, key)| key.time -= first);
         self.say(match copies.len() {
             0 => "Select keys to copy them".to_owned(),
             1 => "1 key copied".to_owned(),
@@ -175,7 +196,7 @@ impl Session {
         if copies.is_empty() {
             return None;
         }
-        let line = |(channel, time, value): &(Channel, f64, Vec3)| {
+        let line = |(channel, Knot { time, value, .. }): &(Channel, Knot<Vec3>)| {
             format!("{channel:?} {time} {} {} {}\n", value.x, value.y, value.z)
         };
         let text = copies.iter().map(line).collect();
@@ -185,15 +206,16 @@ impl Session {
 
     /// Pastes the copied keys at the playhead, except those of missing joints.
     pub(super) fn paste_keys(&mut self) {
-        let pasted: Vec<_> = self
+        let pasted: Clipboard = self
             .selection
             .clipboard()
             .iter()
-            .filter(|(channel, ..)| channel.value(self.shown()).is_some())
-            .map(|(channel, time, value)| (*channel, self.moved_to(self.time(), *time), *value))
+            .filter(|(channel, _)| channel.value(self.shown()).is_some())
+            .map(|(channel, key)| {
+                (*channel, Knot { time: self.moved_to(self.time(), key.time), ..*key })
+            })
             .collect();
-        self.selection
-            .set_keys(pasted.iter().map(|(channel, time, _)| (*channel, *time)).collect());
+        self.selection.set_keys(pasted.iter().map(|(channel, key)| (*channel, key.time)).collect());
         self.edit_keys(|document| insert(&mut document.keys, &pasted));
     }
 
@@ -226,8 +248,21 @@ impl Session {
     }
 }
 
-fn insert(keys: &mut Keys, all: &[(Channel, f64, Vec3)]) {
-    for (channel, time, value) in all {
-        keys.insert(*channel, *time, *value);
+fn insert(keys: &mut Keys, all: &Clipboard) {
+    for (channel, key) in all {
+        keys.insert_key(*channel, *key);
+    }
+}
+
+/// The sum of a key's value and `by`, within the values that the channel can have.
+fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
+    /// Smallest part of a length that a move of its key leaves.
+    const LEAST: f32 = 1e-3;
+    let sum = (value + by).clamp(Vec3::MIN, Vec3::MAX);
+    match channel.quantity() {
+        Quantity::Switch => value,
+        Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
+        Quantity::Length => sum.max(value * LEAST),
+        Quantity::Point | Quantity::Angle | Quantity::Angles => sum,
     }
 }

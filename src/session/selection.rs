@@ -6,9 +6,10 @@ use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::{JointId, JointRemap};
+use crate::kinematics::spline::Knot;
 
-/// Copied keys: channel, time in seconds after the first key, and value.
-pub(super) type Clipboard = Vec<(Channel, f64, Vec3)>;
+/// Copied keys with their channels. Their times are those after the first key, in seconds.
+pub(super) type Clipboard = Vec<(Channel, Knot<Vec3>)>;
 
 /// Selected joints, keys and channels, and the copied keys.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,8 +94,7 @@ impl Selection {
             keys.filter_map(|(channel, time)| Some((channel.remapped(moved)?, time))).collect();
         self.set_channels(channels.into_iter().filter_map(|channel| channel.remapped(moved)));
         let copies = std::mem::take(&mut self.clipboard).into_iter();
-        let copies = copies
-            .filter_map(|(channel, time, value)| Some((channel.remapped(moved)?, time, value)));
+        let copies = copies.filter_map(|(channel, key)| Some((channel.remapped(moved)?, key)));
         self.clipboard = copies.collect();
     }
 

@@ -221,7 +221,7 @@ fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
 }
 
 fn spline() -> Spline<Vec3> {
-    HAND.into_iter().map(|(time, value)| Knot { time, value }).collect()
+    HAND.into_iter().map(|(time, value)| Knot::new(time, value)).collect()
 }
 
 #[test]

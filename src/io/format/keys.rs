@@ -5,10 +5,11 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::check;
-use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
+use super::key::KeyFields;
+use crate::document::{Channel, Document, Keys, Overlay, Timeline};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
-use crate::io::value::{JsonNumber, JsonObject, KeyRow, Seconds, Whole};
+use crate::io::value::{JsonObject, Seconds, Whole};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Spline;
 
@@ -20,7 +21,7 @@ pub struct ChannelFields {
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     overlay: Option<Overlay>,
-    keys: Vec<KeyRow>,
+    keys: Vec<KeyFields>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -41,16 +42,12 @@ impl ChannelFields {
             _ => None,
         };
         let width = channel.quantity().width();
-        let row = |time, value: Vec3| KeyRow {
-            time: Seconds(time),
-            values: value.to_array().into_iter().take(width).map(JsonNumber).collect(),
-        };
         let joint = channel.joint().and_then(|joint| u32::try_from(joint.index()).ok());
         Self {
             channel: channel.name().to_owned(),
             joint: joint.map(Whole),
             overlay,
-            keys: track.knots().iter().map(|it| row(it.time, it.value)).collect(),
+            keys: track.knots().iter().map(|key| KeyFields::new(key, width)).collect(),
         }
     }
 
@@ -97,34 +94,12 @@ pub fn keys(
         if keys.has(channel) {
             return Err(FieldError::new(at, "channel must have one entry, got a second"));
         }
-        for (index, row) in fields.keys.iter().enumerate() {
-            let value = value(channel.quantity(), row)
-                .map_err(|reason| FieldError::new(at.clone().key("keys").index(index), reason))?;
-            keys.insert(channel, row.time.0, value);
+        for (index, key) in fields.keys.iter().enumerate() {
+            let at = at.clone().key("keys").index(index);
+            keys.insert_key(channel, key.key(channel.quantity(), &at)?);
         }
     }
     Ok(keys)
-}
-
-fn value(quantity: Quantity, row: &KeyRow) -> Result<Vec3, String> {
-    let width = quantity.width();
-    if row.values.len() != width {
-        let numbers = if width == 1 { "one number" } else { "three numbers" };
-        return Err(format!("must have {numbers} after the time, got {}", row.values.len()));
-    }
-    let mut value = [0.0; 3];
-    for (component, JsonNumber(number)) in value.iter_mut().zip(&row.values) {
-        *component = *number;
-    }
-    let x = value[0];
-    match quantity {
-        Quantity::Switch if x != 0.0 && x != 1.0 => Err(format!("switch must be 0 or 1, got {x}")),
-        Quantity::Fraction if !(0.0..=1.0).contains(&x) => {
-            Err(format!("fraction must be from 0 to 1, got {x}"))
-        }
-        Quantity::Length if x <= 0.0 => Err(format!("length must be above 0, got {x}")),
-        _ => Ok(Vec3::from_array(value)),
-    }
 }
 
 impl TimelineFields {

@@ -11,6 +11,7 @@ mod check;
 mod file;
 mod follow_path;
 mod header;
+mod key;
 mod keys;
 mod mesh_skin;
 mod read;

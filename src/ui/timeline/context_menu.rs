@@ -1,11 +1,12 @@
 //! Context menus of the timeline.
 
-use egui::{Id, Response, Ui};
+use egui::{Button, Id, Response, Ui};
 
 use super::drag;
 use super::mouse::DopeSheetView;
 use super::row::DopeSheetRow;
 use crate::document::Channel;
+use crate::kinematics::spline::Interpolation;
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
@@ -71,7 +72,42 @@ pub(in crate::ui) fn of_channel(
     });
 }
 
+/// Shows the context menu of the graph editor.
+pub(in crate::ui) fn of_curves(area: &Response, session: &Session, actions: &mut Actions) {
+    area.context_menu(|ui| of_keys(ui, session, actions));
+}
+
+/// Shows the items that choose the curve after the selected keys and their tangents.
+fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let keys = session.selected_keys();
+    let none = keys.is_empty().then_some("Select keys first: click or draw a box");
+    let document = session.document();
+    let chosen = |interpolation| {
+        let mut all = keys.iter().filter_map(|(channel, time)| document.keys.key(*channel, *time));
+        !keys.is_empty() && all.all(|key| key.interpolation == interpolation)
+    };
+    for (interpolation, tooltip) in [
+        (Interpolation::Smooth, "Let the values follow a smooth curve to the next key"),
+        (Interpolation::Linear, "Let the values follow a straight line to the next key"),
+        (Interpolation::Step, "Keep the value until the next key"),
+    ] {
+        let button = Button::selectable(chosen(interpolation), interpolation.title());
+        let button = ui.add_enabled(none.is_none(), button).on_hover_text(tooltip);
+        if button.on_disabled_hover_text(none.unwrap_or_default()).clicked() {
+            actions.push(EditAction::SetInterpolation(keys.to_vec(), interpolation));
+            ui.close();
+        }
+    }
+    let tooltip = "Let the neighbouring keys set the slopes again";
+    if widgets::button(ui, "Automatic tangents", tooltip, none) {
+        actions.push(EditAction::SetSlopes(keys.to_vec(), None));
+        ui.close();
+    }
+    ui.separator();
+}
+
 fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    shape(ui, session, actions);
     let keys = session.selected_keys();
     let none = keys.is_empty().then_some("Select keys first: click or draw a box");
     if widgets::button(ui, "Copy keys", "Copy the selected keys (Ctrl+C)", none) {

@@ -12,6 +12,10 @@ pub(in crate::ui) enum TimelineDrag {
     Playhead { before: f64 },
     /// Selected keys.
     Keys(KeyDrag),
+    /// Selected keys in the graph editor, in time and value.
+    Points(PointsDrag),
+    /// A tangent handle in the graph editor.
+    Tangent(TangentDrag),
     /// A selection box.
     Box(BoxDrag),
     /// The visible time range.
@@ -29,6 +33,40 @@ pub(in crate::ui) struct KeyDrag {
     pub moved: bool,
     /// Keys to select if the press turns out to be a click.
     pub clicked: Vec<KeyOf>,
+}
+
+#[derive(Clone, Debug)]
+pub(in crate::ui) struct PointsDrag {
+    /// The dragged keys, with their times before the drag.
+    pub keys: Vec<KeyOf>,
+    /// Component of the values that is dragged: 0, 1 or 2.
+    pub axis: usize,
+    /// Displayed values per value: degrees per radian for angles.
+    pub unit: f64,
+    /// Time of the pressed key before the drag, in seconds.
+    pub time: f64,
+    pub pressed: Pos2,
+    /// True once the mouse has moved far enough that the press is a drag, not a click.
+    pub moved: bool,
+    /// Keys to select if the press turns out to be a click.
+    pub clicked: Vec<KeyOf>,
+    /// The displayed values at the top and the bottom of the plot, kept during the drag.
+    pub values: (f64, f64),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(in crate::ui) struct TangentDrag {
+    pub key: KeyOf,
+    /// Component of the value: 0, 1 or 2.
+    pub axis: usize,
+    /// Displayed values per value.
+    pub unit: f64,
+    /// Whether the handle is on the side after the key.
+    pub is_leaving: bool,
+    /// True once the transaction is open.
+    pub moved: bool,
+    /// The displayed values at the top and the bottom of the plot, kept during the drag.
+    pub values: (f64, f64),
 }
 
 #[derive(Clone, Debug)]

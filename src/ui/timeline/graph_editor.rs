@@ -8,8 +8,9 @@ use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 use super::areas::{ROW, TimelineAreas, take_keyboard};
 use super::drag::{self, TimelineDrag};
+use super::graph_mouse::{self, GraphView};
 use super::time_scale::TimeScale;
-use super::{row, ruler, text};
+use super::{context_menu, row, ruler, text};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::chain_ik::Method;
 use crate::session::{Actions, Session};
@@ -27,7 +28,12 @@ const VALUES: f32 = 42.0;
 const BETWEEN_VALUES: f32 = 15.0;
 
 /// The curve of one component of a channel.
-struct ChannelCurve {
+pub(super) struct ChannelCurve {
+    pub channel: Channel,
+    /// Component of the channel's values: 0, 1 or 2.
+    pub axis: usize,
+    /// Displayed values per value: degrees per radian for angles.
+    pub unit: f64,
     name: String,
     colour: Color32,
     style: LineStyle,
@@ -54,14 +60,20 @@ pub(in crate::ui) fn ui(
         .flat_map(|(index, channel)| curves(ui, session, scale, *channel, index))
         .collect();
     legend(ui, session, areas, &channels);
-    plot(ui, scale, areas, &curves);
+    let values = graph_mouse::held_values(ui).unwrap_or_else(|| values(&curves));
+    plot(ui, scale, areas, &curves, values);
+    let graph = GraphView { session, scale, area: areas.keys, values, curves: &curves };
+    graph_mouse::paint(ui, &graph);
 
     let area = ui.interact(areas.keys, Id::unique("timeline curves"), Sense::click_and_drag());
     let names: Vec<String> = channels.iter().map(|it| labels::channel(session, *it)).collect();
     let said = format!("Curves of {}", names.join(", "));
     area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
     take_keyboard(ui, &area, ruler);
-    if ruler::is_pressed(ui, &area) {
+    graph_mouse::press(ui, &graph, &area, actions);
+    graph_mouse::follow(ui, &graph, actions);
+    context_menu::of_curves(&area, session, actions);
+    if ruler::is_pressed(ui, &area) && drag::get(ui).is_none() {
         drag::grab_playhead(ui, session, actions);
         drag::follow_playhead(ui, session, scale, actions);
     }
@@ -129,6 +141,9 @@ fn curves(
     let values: Vec<_> =
         times.iter().filter_map(|time| Some((*time, keys.value(channel, *time)?))).collect();
     let curve = |(axis, colour): (usize, Color32)| ChannelCurve {
+        channel,
+        axis,
+        unit,
         name: format!("{name} {axis}"),
         colour,
         style,
@@ -150,8 +165,8 @@ fn times(scale: TimeScale) -> Vec<f64> {
     (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
 }
 
-fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelCurve]) {
-    let (from, to) = scale.range();
+/// The displayed values at the bottom and the top of the plot.
+fn values(curves: &[ChannelCurve]) -> (f64, f64) {
     let values = curves.iter().flat_map(|curve| &curve.line).map(|point| point[1]);
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
@@ -159,7 +174,18 @@ fn plot(ui: &mut Ui, scale: TimeScale, areas: &TimelineAreas, curves: &[ChannelC
     let room = (0.12 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
     // A constant value lies in the middle.
     let room = if high - low < room { 0.5 * room + 0.5 } else { room };
-    let bounds = PlotBounds::from_min_max([from, low - room], [to, high + room]);
+    (low - room, high + room)
+}
+
+fn plot(
+    ui: &mut Ui,
+    scale: TimeScale,
+    areas: &TimelineAreas,
+    curves: &[ChannelCurve],
+    (low, high): (f64, f64),
+) {
+    let (from, to) = scale.range();
+    let bounds = PlotBounds::from_min_max([from, low], [to, high]);
     let left = areas.keys.left() - VALUES;
     let rect = Rect::from_min_max(pos2(left, areas.keys.top()), areas.keys.max);
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));

@@ -5,6 +5,7 @@ mod context_menu;
 mod dope_sheet;
 mod drag;
 mod graph_editor;
+mod graph_mouse;
 mod keyboard;
 mod mouse;
 mod row;

@@ -2,6 +2,8 @@
 
 use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
 
+use glam::Vec3;
+
 use super::areas::{ROW, take_keyboard};
 use super::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
 use super::row::{DopeSheetRow, SelectedKeys};
@@ -177,7 +179,7 @@ pub(in crate::ui) fn follow(ui: &Ui, sheet: &DopeSheetView<'_>, actions: &mut Ac
         Some(TimelineDrag::Keys(drag)) => move_keys(ui, sheet, drag, mouse, actions),
         Some(TimelineDrag::Box(drag)) => draw_box(ui, sheet, &drag, mouse, actions),
         Some(TimelineDrag::Pan) if drag::is_released(ui) => drag::clear(ui),
-        Some(TimelineDrag::Pan | TimelineDrag::Playhead { .. }) | None => {}
+        Some(_) | None => {}
     }
 }
 
@@ -205,7 +207,7 @@ fn move_keys(
         let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
         let count = labels::count_of_keys(drag.keys.len());
         let said = format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel");
-        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by });
+        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
         actions.push(ShellAction::Report(said));
     }
     if drag::is_released(ui) {
