@@ -12,6 +12,7 @@ use ik_arm::document::{Arm, Camera, Channel, Cursor, Document, Overlay, RigKind,
 use ik_arm::io::{self, Example, Group, Opened};
 use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{Joint, JointId};
+use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 
 fn open(text: &str) -> Opened {
     io::parse("test.json", text, None).unwrap_or_else(|error| panic!("{error}"))
@@ -629,6 +630,30 @@ fn a_key_has_one_number_or_three_and_an_absent_channel_has_no_keys() {
 }
 
 #[test]
+fn a_key_with_a_curve_of_its_own_is_an_object_and_is_saved_as_one() {
+    let opened = open(&with(
+        r#""channels":[{"channel":"hand","keys":[
+               {"key":[0,1,2,3],"interpolation":"linear"},
+               {"key":[1,4,5,6],"arriving":[1,0,0],"leaving":[0,2,0]},
+               [2,7,8,9]]},
+             {"channel":"twist","keys":[{"key":[0,1],"interpolation":"step","leaving":[3]}]}]"#,
+    ));
+    assert_eq!(opened.warnings, []);
+    let keys = &opened.document.keys;
+    let key = |channel, time| keys.key(channel, time).expect("a key");
+    let slopes = |arriving, leaving| Some(Slopes { arriving, leaving });
+    assert_eq!(key(Channel::Hand, 0.0).interpolation, Interpolation::Linear);
+    assert_eq!(key(Channel::Hand, 1.0).slopes, slopes(Vec3::X, Vec3::Y * 2.0));
+    assert_eq!(key(Channel::Hand, 2.0), Knot::new(2.0, Vec3::new(7.0, 8.0, 9.0)));
+    assert_eq!(key(Channel::Twist, 0.0).interpolation, Interpolation::Step);
+    assert_eq!(key(Channel::Twist, 0.0).slopes, slopes(Vec3::X * 3.0, Vec3::X * 3.0));
+    let text = io::to_json(&opened.document).expect("it can be saved");
+    let again = io::parse("again.json", &text, None).expect("it opens").document;
+    assert_eq!(again.keys, opened.document.keys);
+    assert_eq!(text.matches("\"key\"").count(), 3, "a plain key stays a row: {text}");
+}
+
+#[test]
 fn invalid_keys_are_named() {
     let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"channels":"#;
     for (keys, reason) in [
@@ -661,6 +686,22 @@ fn invalid_keys_are_named() {
         (
             r#"[{"channel":"hand","keys":[[0,1,2,3]]},{"channel":"hand","keys":[[0,1,2,3]]}]"#,
             "channels[1]: channel must have one entry, got a second",
+        ),
+        (
+            r#"[{"channel":"twist","keys":[{"key":[0,1],"interpolation":"curly"}]}]"#,
+            "channels[0].keys[0].interpolation: unknown variant `curly`, expected one of",
+        ),
+        (
+            r#"[{"channel":"twist","keys":[{"key":[0,1],"leaving":[1,2,3]}]}]"#,
+            "channels[0].keys[0].leaving: must have one number, got 3",
+        ),
+        (
+            r#"[{"channel":"twist","keys":[{"interpolation":"step"}]}]"#,
+            "channels[0].keys[0]: missing field `key`",
+        ),
+        (
+            r#"[{"channel":"twist","keys":["soon"]}]"#,
+            "expected a time and the value at it: [seconds, x, …], or an object with `key`",
         ),
         (r#"[{"channel":"hand","keys":[[]]}]"#, "channels[0].keys[0]: invalid length 0"),
         (

@@ -4,7 +4,7 @@ mod common;
 
 use common::strategies::config;
 use glam::Vec3;
-use ik_arm::kinematics::spline::{Knot, Spline};
+use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -197,4 +197,81 @@ fn it_overshoots_as_the_documentation_says() {
     let lengths = spline(&[(0.0, 1000.0), (1.0, 10.0), (2.0, 10.0), (3.0, 1000.0)]);
     let lowest = (0..=300).map(|step| at(&lengths, f64::from(step) / 100.0)).fold(1e9, f32::min);
     assert!((lowest + 113.75).abs() < 0.01, "{lowest}");
+}
+
+/// A spline whose knots have shapes and slopes of their own.
+fn shaped() -> impl Strategy<Value = Vec<Knot<f32>>> {
+    let slope = -50.0..50.0_f32;
+    let shape = (0..3_usize, proptest::option::of((slope.clone(), slope)));
+    (knots(), vec(shape, 12)).prop_map(|(knots, shapes)| {
+        let knot = |((time, value), (kind, slopes)): ((f64, f32), (usize, Option<(f32, f32)>))| {
+            let slopes = slopes.map(|(arriving, leaving)| Slopes { arriving, leaving });
+            Knot { time, value, interpolation: Interpolation::ALL[kind], slopes }
+        };
+        knots.into_iter().zip(shapes).map(knot).collect()
+    })
+}
+
+/// The curve between two knots as a Bézier curve by de Casteljau's construction, in f64.
+fn bezier(from: (f64, f64), leaving: f64, arriving: f64, to: (f64, f64), time: f64) -> f64 {
+    let h = to.0 - from.0;
+    let s = (time - from.0) / h;
+    let mut points = [from.1, from.1 + leaving * h / 3.0, to.1 - arriving * h / 3.0, to.1];
+    for last in (1..4).rev() {
+        for i in 0..last {
+            points[i] += (points[i + 1] - points[i]) * s;
+        }
+    }
+    points[0]
+}
+
+proptest! {
+    #![proptest_config(config(500, 0x5b11_4e01))]
+
+    #[test]
+    fn shapes_and_slopes_of_knots_give_lines_steps_and_the_cubic_with_these_slopes(
+        knots in shaped(),
+        part in 0.001..0.999_f64,
+    ) {
+        let spline: Spline<f32> = knots.iter().copied().collect();
+        let plain: Vec<(f64, f32)> = knots.iter().map(|knot| (knot.time, knot.value)).collect();
+        for pair in knots.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let time = from.time + part * (to.time - from.time);
+            let found = f64::from(spline.at(time).unwrap());
+            let [a, b] = [from, to].map(|knot| (knot.time, f64::from(knot.value)));
+            let automatic = |at: f64| {
+                let step = 1e-4 * (to.time - from.time);
+                let inwards = if at == from.time { step } else { -step };
+                (twin(&plain, at + inwards) - twin(&plain, at)) / inwards
+            };
+            let expected = match from.interpolation {
+                Interpolation::Step => a.1,
+                Interpolation::Linear => a.1 + (b.1 - a.1) * part,
+                Interpolation::Smooth => {
+                    let leaving = from.slopes.map(|it| f64::from(it.leaving));
+                    let arriving = to.slopes.map(|it| f64::from(it.arriving));
+                    let leaving = leaving.unwrap_or_else(|| automatic(from.time));
+                    let arriving = arriving.unwrap_or_else(|| automatic(to.time));
+                    bezier(a, leaving, arriving, b, time)
+                }
+            };
+            prop_assert!((found - expected).abs() < 2e-2, "{found} {expected} {:?}", from.interpolation);
+        }
+        for knot in &knots {
+            prop_assert_eq!(spline.at(knot.time), Some(knot.value), "passes through its knots");
+        }
+    }
+}
+
+#[test]
+fn a_new_value_at_a_knot_keeps_its_shape() {
+    let slopes = Some(Slopes { arriving: 1.0, leaving: -2.0 });
+    let knot = Knot { time: 1.0, value: 5.0, interpolation: Interpolation::Linear, slopes };
+    let mut spline: Spline<f32> = [knot, Knot::new(2.0, 0.0)].into_iter().collect();
+    spline.insert(1.0, 7.0);
+    assert_eq!(spline.knot(1.0), Some(&Knot { value: 7.0, ..knot }));
+    assert_eq!(spline.slopes(1.0), slopes);
+    assert_eq!(spline.slopes(2.0), Some(Slopes { arriving: -7.0, leaving: -7.0 }));
+    assert_eq!(spline.slopes(1.5), None);
 }

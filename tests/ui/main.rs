@@ -14,6 +14,7 @@ mod export;
 mod first_click;
 mod gallery;
 mod glossary;
+mod graph_editor;
 mod habits;
 mod hand;
 mod hand_keys;

@@ -42,7 +42,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn legend(ui: &mut Ui) {
     let colour = ui.visuals().weak_text_color();
     ui.horizontal(|ui| {
-        for (is_filled, meaning) in [(true, "converged"), (false, "running or not converged")] {
+        for (is_filled, meaning) in [(true, "converged"), (false, "not converged")] {
             ui.spacing_mut().item_spacing.x = 6.0;
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             square(ui, rect, colour, is_filled);

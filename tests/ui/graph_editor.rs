@@ -1,0 +1,171 @@
+//! The graph editor: keys and tangents dragged, interpolation chosen.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use ik_arm::document::Channel;
+use ik_arm::kinematics::spline::{Interpolation, Knot};
+use ik_arm::session::{
+    Action, EditAction, PlaybackAction, SelectAction, TransactionAction, ViewAction,
+};
+
+use crate::bench::{Bench, LARGE};
+use glam::Vec3;
+
+const LEFT: PointerButton = PointerButton::Primary;
+const RIGHT: PointerButton = PointerButton::Secondary;
+/// Times and values of the keys, in seconds and degrees.
+const KEYS: [(f64, f32); 3] = [(1.0, 0.0), (3.0, 60.0), (5.0, 0.0)];
+
+/// The curve of the Socket twist with three keys.
+fn graph() -> Bench {
+    let mut bench = Bench::with_timeline(LARGE);
+    for (time, degrees) in KEYS {
+        bench.apply([
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::SetTwist(degrees.to_radians()).into(),
+            EditAction::Key(vec![Channel::Twist]).into(),
+        ]);
+    }
+    bench.apply([ViewAction::ShowGraphEditor(true)]);
+    bench.apply([PlaybackAction::SetTime(0.0)]);
+    bench
+}
+
+/// Screen position of a time and a value in degrees, with the room that the plot leaves above and
+/// below its curves.
+fn place(bench: &Bench, time: f64, degrees: f32) -> Pos2 {
+    let area = bench.rect(Role::Image, "Curves of Socket twist");
+    let seconds = bench.session().document().timeline.duration();
+    let (low, high) = (-0.12 * 60.0, 1.12 * 60.0);
+    // The dope sheet's scale: the timeline with a margin at both sides.
+    let x = scale(bench, time).unwrap_or(area.left() + area.width() * (time / seconds) as f32);
+    pos2(x, area.bottom() - area.height() * (degrees - low) / (high - low))
+}
+
+/// Screen x of a time, from the keys in the dope sheet.
+fn scale(bench: &Bench, time: f64) -> Option<f32> {
+    let mut sheet = Bench::with_timeline(LARGE);
+    for (time, _) in KEYS {
+        let key = EditAction::Key(vec![Channel::Hand]);
+        sheet.apply([Action::from(PlaybackAction::SetTime(time)), key.into()]);
+    }
+    let x = |time: f64| sheet.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center().x;
+    let (a, b) = (x(1.0), x(5.0));
+    assert_eq!(sheet.session().document().timeline, bench.session().document().timeline);
+    Some(a + (b - a) * ((time - 1.0) / 4.0) as f32)
+}
+
+fn keys(bench: &Bench) -> Vec<Knot<Vec3>> {
+    let track = bench.session().document().keys.track(Channel::Twist).expect("keys");
+    track.knots().to_vec()
+}
+
+#[test]
+fn a_key_is_dragged_in_time_and_value_in_one_undo_step() {
+    let mut bench = graph();
+    let before = keys(&bench);
+    let from = place(&bench, 3.0, 60.0);
+    let to = place(&bench, 4.0, 30.0);
+    bench.drag_and_drop(LEFT, from, to);
+    bench.settle();
+    let moved = keys(&bench)[1];
+    assert!((moved.time - 4.0).abs() < 1e-9, "on a frame: {}", moved.time);
+    assert!((moved.value.x.to_degrees() - 30.0).abs() < 1.5, "{}", moved.value.x.to_degrees());
+    assert_eq!([keys(&bench)[0], keys(&bench)[2]], [before[0], before[2]]);
+    assert_eq!(bench.session().undo_label(), Some("Move keys"));
+    bench.apply([TransactionAction::Undo]);
+    assert_eq!(keys(&bench), before);
+}
+
+#[test]
+fn shift_keeps_a_drag_to_one_direction_and_esc_cancels_it() {
+    let mut bench = graph();
+    let before = keys(&bench);
+    let from = place(&bench, 3.0, 60.0);
+    bench.hold(Modifiers::SHIFT);
+    bench.drag(LEFT, from, from + vec2(8.0, 40.0));
+    assert_eq!(keys(&bench)[1].time, 3.0);
+    assert!(keys(&bench)[1].value.x < before[1].value.x);
+    bench.key(Key::Escape);
+    bench.release(LEFT);
+    bench.hold(Modifiers::NONE);
+    bench.settle();
+    assert_eq!(keys(&bench), before);
+}
+
+#[test]
+fn a_click_selects_and_shift_adds_and_removes() {
+    let mut bench = graph();
+    bench.click_at(place(&bench, 3.0, 60.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)]);
+    bench.hold(Modifiers::SHIFT);
+    bench.click_at(place(&bench, 5.0, 0.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0), (Channel::Twist, 5.0)]);
+    bench.click_at(place(&bench, 5.0, 0.0));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)]);
+}
+
+#[test]
+fn a_drag_of_a_handle_turns_the_tangent_and_alt_turns_one_side_of_it() {
+    let mut bench = graph();
+    bench.click_at(place(&bench, 3.0, 60.0));
+    bench.settle();
+    // The tangent of the highest key is level.
+    let handle = place(&bench, 3.0, 60.0) + vec2(40.0, 0.0);
+    bench.drag_and_drop(LEFT, handle, handle + vec2(0.0, 20.0));
+    bench.settle();
+    let slopes = keys(&bench)[1].slopes.expect("its own slopes");
+    assert!(slopes.leaving.x < -0.01 && slopes.arriving == slopes.leaving, "{slopes:?}");
+    assert_eq!(bench.session().undo_label(), Some("Set tangents"));
+    assert_eq!(keys(&bench)[1].value, keys(&graph())[1].value, "the key stays");
+
+    let mut bench = graph();
+    bench.click_at(place(&bench, 3.0, 60.0));
+    bench.settle();
+    bench.hold(Modifiers::ALT);
+    bench.drag_and_drop(LEFT, handle, handle + vec2(0.0, 20.0));
+    bench.hold(Modifiers::NONE);
+    bench.settle();
+    let slopes = keys(&bench)[1].slopes.expect("its own slopes");
+    assert!(slopes.leaving.x < -0.01 && slopes.arriving.x.abs() < 1e-6, "{slopes:?}");
+
+    bench.move_to(place(&bench, 3.0, 60.0));
+    bench.press(RIGHT);
+    bench.release(RIGHT);
+    bench.settle();
+    bench.click(Role::Button, "Automatic tangents");
+    assert_eq!(keys(&bench)[1].slopes, None);
+}
+
+#[test]
+fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
+    for interpolation in [Interpolation::Linear, Interpolation::Step] {
+        let mut bench = graph();
+        bench.move_to(place(&bench, 3.0, 60.0));
+        bench.press(RIGHT);
+        bench.release(RIGHT);
+        bench.settle();
+        assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)], "selects it");
+        bench.click(Role::Button, interpolation.title());
+        assert_eq!(keys(&bench)[1].interpolation, interpolation);
+        bench.apply([PlaybackAction::SetTime(4.0)]);
+        let degrees = bench.session().arm().twist.to_degrees();
+        let expected = if interpolation == Interpolation::Linear { 30.0 } else { 60.0 };
+        assert!((degrees - expected).abs() < 1e-3, "{interpolation:?}: {degrees}");
+        bench.apply([TransactionAction::Undo]);
+        assert_eq!(keys(&bench)[1].interpolation, Interpolation::Smooth);
+    }
+}
+
+#[test]
+fn copied_and_moved_keys_keep_their_shape() {
+    let mut bench = graph();
+    let key = (Channel::Twist, 3.0);
+    bench.apply([EditAction::SetInterpolation(vec![key], Interpolation::Step)]);
+    bench.apply([Action::from(SelectAction::Keys(vec![key])), SelectAction::CopyKeys.into()]);
+    bench.apply([Action::from(PlaybackAction::SetTime(7.0)), EditAction::PasteKeys.into()]);
+    bench.apply([EditAction::MoveKeys { keys: vec![key], by: 0.5, raise: Vec3::ZERO }]);
+    let shapes: Vec<_> = keys(&bench).iter().map(|key| (key.time, key.interpolation)).collect();
+    let (smooth, step) = (Interpolation::Smooth, Interpolation::Step);
+    assert_eq!(shapes, [(1.0, smooth), (3.5, step), (5.0, smooth), (7.0, step)]);
+}
