@@ -1,9 +1,11 @@
 //! Pictures of joint names, with letters that fonts have and letters that no font has.
 #![cfg(feature = "render")]
 
+mod common;
 mod pictures;
 
-use glam::Vec3;
+use common::Random;
+use glam::{Vec2, Vec3};
 use ik_arm::document::{Display, Document, Overlay, RigKind, Theme};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, PictureRenderer, Renderer};
@@ -116,4 +118,53 @@ fn a_picture_does_not_depend_on_what_was_drawn_before() {
         renderer.draw(&gpu, scene, &canvas, 1.0);
         assert!(canvas.read(&gpu).expect("read") == draw(scene));
     }
+}
+
+#[test]
+fn names_of_the_arm_are_on_a_side_without_limbs() {
+    let mut random = Random(0x1abe);
+    let mut number =
+        |low: f32, high: f32| low + (high - low) * (random.below(1_000_000) as f32 * 1e-6);
+    for _ in 0..500 {
+        let mut document =
+            Document { display: Display::from_iter([Overlay::Labels]), ..Document::default() };
+        document.arm.set_cursor(Vec3::from([0; 3].map(|_| number(-350.0, 350.0))));
+        document.arm.twist = number(-3.0, 3.0);
+        (document.camera.yaw, document.camera.pitch) = (number(-3.0, 3.0), number(-1.4, 1.4));
+        let scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+        let pose = document.arm.pose();
+        let projection = document.camera.projection(1.0);
+        let [right, up] = [projection.right, projection.up].map(Vec3::normalize);
+        let seen = |from: Vec3, to: Vec3| {
+            Vec2::new((to - from).dot(right), (to - from).dot(up)).normalize_or_zero()
+        };
+        for (name, at, limbs) in [
+            ("Root", Vec3::ZERO, vec![pose.elbow]),
+            ("Elbow", pose.elbow, vec![Vec3::ZERO, pose.hand]),
+            ("Hand", pose.hand, vec![pose.elbow]),
+        ] {
+            let label = scene.labels.iter().find(|it| scene.text(it) == name).expect("a label");
+            let side = Vec2::new(
+                if label.side.is_left() { -1.0 } else { 1.0 },
+                if label.side.is_above() { 1.0 } else { -1.0 },
+            );
+            for limb in limbs {
+                let nearness = seen(at, limb).dot(side.normalize());
+                // Two limbs cannot be within 45° of all four corners.
+                assert!(nearness < 0.71, "{name} at {at}, limb to {limb}: {nearness}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hand_with_handles_has_no_name_and_the_others_keep_theirs() {
+    let document = Document::default();
+    let names = |has_handles| {
+        let overlays = Overlays { has_handles, ..Overlays::default() };
+        let scene = Scene::new(&document, &overlays, Theme::Dark);
+        scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(false), ["Root", "Elbow", "Hand"]);
+    assert_eq!(names(true), ["Root", "Elbow"]);
 }

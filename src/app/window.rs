@@ -370,6 +370,7 @@ impl AppWindow {
         let mut lap = lap_timer();
         let (document, theme) = (session.shown(), session.preferences().theme);
         session.write_overlays(&mut self.overlays);
+        self.overlays.has_handles = true;
         match &mut self.scene {
             Some(scene) => self.builder.refill(scene, document, &self.overlays, theme),
             None => self.scene = Some(self.builder.build(document, &self.overlays, theme)),

@@ -133,6 +133,12 @@ impl Font {
         })
     }
 
+    /// Width of a text in pixels.
+    pub fn width(&self, text: &str) -> f32 {
+        let ends = self.lay_out(text, Vec2::ZERO).map(|(target, _)| target.at.x + target.size.x);
+        ends.fold(0.0, f32::max)
+    }
+
     /// Rasterizes the box and the letters in `FIRST` into an empty atlas.
     fn fill(&mut self) {
         self.missing = self.rasterize_box();

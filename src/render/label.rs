@@ -5,7 +5,7 @@ use super::Gpu;
 use super::font::Rectangle;
 use super::glyph_sheet::{self, GlyphSheet, LINE_HEIGHT};
 use super::quads::{self, Quads};
-use crate::scene::{Label, LabelSide, Scene};
+use crate::scene::{Label, Scene};
 
 pub(super) const SHADER: &str =
     concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/label.wgsl"),);
@@ -129,11 +129,15 @@ fn pen(sheet: &GlyphSheet, scene: &Scene, label: &Label, size: Vec2) -> Option<V
     let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
     let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
     let away = ball * DIAGONAL + GAP * sheet.scale;
-    let drop = match label.side {
-        LabelSide::Above => -away,
-        LabelSide::Below => away + 0.6 * LINE_HEIGHT * sheet.scale,
+    let across = match label.side.is_left() {
+        true => -away - sheet.font.width(scene.text(label)),
+        false => away,
     };
-    Some(point + Vec2::new(away, drop))
+    let drop = match label.side.is_above() {
+        true => -away,
+        false => away + 0.6 * LINE_HEIGHT * sheet.scale,
+    };
+    Some(point + Vec2::new(across, drop))
 }
 
 fn glyph_instance(

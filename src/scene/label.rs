@@ -1,6 +1,7 @@
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::Colour;
+use crate::document::Camera;
 
 /// A label beside a point; [`Scene::text`](super::Scene::text) returns its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +24,43 @@ pub enum LabelSide {
     Above,
     /// Below and to the right.
     Below,
+    /// Above and to the left.
+    AboveLeft,
+    /// Below and to the left.
+    BelowLeft,
+}
+
+impl LabelSide {
+    const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
+
+    /// Whether the text is to the left of the point.
+    pub fn is_left(self) -> bool {
+        matches!(self, Self::AboveLeft | Self::BelowLeft)
+    }
+
+    /// Whether the text is above the point.
+    pub fn is_above(self) -> bool {
+        matches!(self, Self::Above | Self::AboveLeft)
+    }
+
+    /// The side of the point `at` that is farthest from the directions in which `others` are seen.
+    pub(super) fn clear_of(others: &[Vec3], at: Vec3, camera: &Camera) -> Self {
+        let projection = camera.projection(1.0);
+        let [right, up] = [projection.right, projection.up].map(Vec3::normalize_or_zero);
+        let seen = |other: &Vec3| {
+            let away = *other - at;
+            Vec2::new(away.dot(right), away.dot(up)).normalize_or_zero()
+        };
+        let nearness = |side: Self| {
+            let x = if side.is_left() { -1.0 } else { 1.0 };
+            let y = if side.is_above() { 1.0 } else { -1.0 };
+            others.iter().map(|other| seen(other).dot(Vec2::new(x, y))).fold(f32::MIN, f32::max)
+        };
+        let sides = Self::ALL.into_iter();
+        sides
+            .min_by(|one, other| nearness(*one).total_cmp(&nearness(*other)))
+            .unwrap_or(Self::Above)
+    }
 }
 
 /// Byte range of a label's text in the string of its scene. One string holds the texts of all

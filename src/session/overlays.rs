@@ -29,6 +29,8 @@ pub struct Overlays {
     pub trail: Vec<Vec3>,
     /// The rig in frames before and after the playhead.
     pub onion_skins: Vec<OnionSkin>,
+    /// Whether handles are drawn over the picture. Names that they would cover are left out.
+    pub has_handles: bool,
     /// The crowd that is shown instead of the rig; `None` to show the rig.
     pub crowd: Option<Crowd>,
 }

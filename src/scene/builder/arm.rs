@@ -18,8 +18,15 @@ const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the arm with the guides, labels and shadows that `display` shows.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Display) {
+/// Adds the arm with the guides, labels and shadows that `display` shows. A hand with handles has no
+/// label.
+pub(super) fn add(
+    scene: &mut Scene,
+    arm: &Arm,
+    pose: &TwoBonePose,
+    display: Display,
+    has_handles: bool,
+) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
     let has_hand = display.shows(Overlay::Hand);
@@ -45,7 +52,11 @@ pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, display: Dis
         add_pole(scene, &rig, arm.root + arm.pole, thickness, display);
     }
     if display.shows(Overlay::Labels) {
-        add_labels(scene, &rig, thickness, display.shows(Overlay::TwistReferences));
+        add_labels(scene, &rig, thickness, |part| match part {
+            ArmPart::Elbow => display.shows(Overlay::TwistReferences),
+            ArmPart::Hand => has_handles && arm.uses_ik(),
+            _ => false,
+        });
     }
     if display.shows(Overlay::Shadow) {
         add_shadows(scene, &rig, thickness);
@@ -135,24 +146,37 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
     let (hand, cursor) = (rig.origin(ArmPart::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
-    let label = Label::new(cursor, CURSOR_BALL * thickness, LabelSide::Above, colour);
+    // The fingers are on the same line, beyond the hand.
+    let side = LabelSide::clear_of(&[hand, cursor + (cursor - hand)], cursor, &scene.camera);
+    let label = Label::new(cursor, CURSOR_BALL * thickness, side, colour);
     let (length, digits) = (hand.distance(cursor), arm.length_decimals());
     scene.add_label(label, format_args!("{length:.digits$}"));
 }
 
-/// Adds the names of the joints. If the elbow has the label of a twist reference, its name is left
-/// out.
-fn add_labels(scene: &mut Scene, rig: &ArmRig, thickness: f32, has_references: bool) {
+/// Adds the names of the joints, clear of the limbs and the Pointer. If the elbow has the label of a
+/// twist reference, its name is left out, and so is that of a hand with handles.
+fn add_labels(
+    scene: &mut Scene,
+    rig: &ArmRig,
+    thickness: f32,
+    leaves_out: impl Fn(ArmPart) -> bool,
+) {
     let colour = scene.palette.text;
+    let [root, elbow, hand] =
+        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+    // The hand goes on beyond the wrist, and the Pointer beyond the hand.
+    let (fingers, pointer) = (hand + (hand - elbow), hand + (hand - root));
     let named = [
-        (ArmPart::Root, SHOULDER_BALL, LabelSide::Below, "Root"),
-        (ArmPart::Elbow, ELBOW_BALL, LabelSide::Above, "Elbow"),
-        (ArmPart::Hand, HAND_BALL, LabelSide::Below, "Hand"),
+        (ArmPart::Root, root, SHOULDER_BALL, [elbow, pointer], "Root"),
+        (ArmPart::Elbow, elbow, ELBOW_BALL, [root, hand], "Elbow"),
+        (ArmPart::Hand, hand, HAND_BALL, [elbow, fingers], "Hand"),
     ];
-    let named = named.into_iter().filter(|(part, ..)| !(has_references && *part == ArmPart::Elbow));
-    for (part, radius, side, name) in named {
-        let label = Label::new(rig.origin(part), radius * thickness, side, colour);
-        scene.add_label(label, format_args!("{name}"));
+    for (part, at, radius, others, name) in named {
+        if !leaves_out(part) {
+            let side = LabelSide::clear_of(&others, at, &scene.camera);
+            let label = Label::new(at, radius * thickness, side, colour);
+            scene.add_label(label, format_args!("{name}"));
+        }
     }
 }
 

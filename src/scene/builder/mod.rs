@@ -80,7 +80,7 @@ impl SceneBuilder {
         match document.rig {
             RigKind::Arm => {
                 let pose = document.arm.pose();
-                arm::add(scene, &document.arm, &pose, display);
+                arm::add(scene, &document.arm, &pose, display, overlays.has_handles);
                 if display.shows(Overlay::ElbowCircle) {
                     elbow_circle::add(scene, &document.arm, &pose);
                 }
