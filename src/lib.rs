@@ -80,3 +80,8 @@ pub mod scene;
 pub mod session;
 #[cfg(feature = "app")]
 pub mod ui;
+
+/// Compiles the code in README.md.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -135,9 +135,9 @@ kinds! {
         Key: Keys 6, |v| EditAction::Key(v.channels());
         DeleteKeys: Keys 2, |v| EditAction::DeleteKeys(v.keys());
         ClearChannels: Keys 1, |v| EditAction::ClearChannels(v.channels());
-        MoveKeys: Keys 4, |v| EditAction::MoveKeys { keys: v.keys(), by: v.shift(), raise: if v.coin() { glam::Vec3::ZERO } else { v.point() } };
+        MoveKeys: Keys 4, |v| EditAction::MoveKeys { keys: v.keys(), by: v.shift(), raise: if v.coin() { glam::Vec3::ZERO } else { v.small_point() } };
         SetInterpolation: Keys 2, |v| EditAction::SetInterpolation(v.keys(), v.one_of(&Interpolation::ALL));
-        SetSlopes: Keys 2, |v| EditAction::SetSlopes(v.keys(), v.coin().then(|| Slopes { arriving: v.point(), leaving: v.point() }));
+        SetSlopes: Keys 2, |v| EditAction::SetSlopes(v.keys(), v.coin().then(|| Slopes { arriving: v.small_point(), leaving: v.small_point() }));
         PasteKeys: Keys 2, |_| EditAction::PasteKeys;
         Bake: Keys 1, |v| EditAction::Bake(v.baked());
         SetTimeline: Keys 2, |v| EditAction::SetTimeline(v.timeline());

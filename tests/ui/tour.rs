@@ -381,3 +381,26 @@ fn a_run_of_one_solver_is_no_race() {
     bench.apply([SolverAction::Reset]);
     bench.apply([PlaybackAction::Play(false)]);
 }
+
+#[test]
+fn tab_reaches_the_whole_card_in_reading_order() {
+    let mut bench = in_step(1, SMALL, Theme::Dark);
+    let mut visited = Vec::new();
+    for _ in 0..80 {
+        bench.key(Key::Tab);
+        bench.settle();
+        let focused = bench.focused().expect("something has the focus");
+        if visited.first() == Some(&focused) {
+            break;
+        }
+        visited.push(focused);
+    }
+    let step = step(1);
+    let answers = step.guess.answers.iter().map(String::as_str);
+    let dot = format!("Step 1: {}", step.title);
+    let card: Vec<&str> = ["Leave"].into_iter().chain(answers).chain([&dot, "Next"]).collect();
+    let places: Vec<_> =
+        card.iter().map(|name| visited.iter().position(|(_, it)| it == name)).collect();
+    assert!(places.iter().all(Option::is_some), "{card:?} in {visited:?}");
+    assert!(places.is_sorted(), "{card:?} in {visited:?}");
+}

@@ -1,7 +1,7 @@
 //! The card of a step: what there is to see, a question, a task, and at last the result.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Align, FontId, Id, Label, Layout, RichText, ScrollArea, Ui};
+use egui::{Align, FontId, Id, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::progress::progress;
 use crate::session::{Actions, Session, TourAction, TourState, TourStep, filled};
@@ -12,6 +12,9 @@ use crate::ui::widgets;
 const WIDE: f32 = 560.0;
 /// Width of the text, which long lines would make hard to read.
 const TEXT_WIDTH: f32 = 720.0;
+
+/// Height of the lower row of buttons, with the space around it, in points.
+const FOOTER: f32 = 38.0;
 
 /// Height of the card in a window in which it has a width. It is the same for all steps, so that the
 /// view does not change its size.
@@ -38,11 +41,13 @@ pub(in crate::ui) fn open_section(ui: &Ui, session: &Session) {
 pub(in crate::ui) fn card(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions) {
     ui.add_space(4.0);
     header(ui, tour, actions);
-    ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
-        ui.add_space(6.0);
-        ui.horizontal(|ui| footer(ui, tour, actions));
-        ui.with_layout(Layout::top_down(Align::Min), |ui| body(ui, session, tour, actions));
+    // The body comes first, as in the order of reading, and leaves room for the buttons.
+    let size = vec2(ui.available_width(), ui.available_height() - FOOTER);
+    ui.allocate_ui(size, |ui| {
+        ui.set_min_size(size);
+        body(ui, session, tour, actions);
     });
+    ui.horizontal(|ui| footer(ui, tour, actions));
 }
 
 fn header(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
