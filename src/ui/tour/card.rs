@@ -132,11 +132,14 @@ fn task(ui: &mut Ui, session: &Session, step: &TourStep, actions: &mut Actions) 
 
 fn result(ui: &mut Ui, session: &Session, tour: &TourState) {
     let step = tour.step();
-    caption(ui, "What happened");
+    ui.horizontal(|ui| {
+        caption(ui, "What happened");
+        if let Some(answer) = tour.guess().and_then(|guess| step.guess.answers.get(guess)) {
+            let guessed = RichText::new(format!("You guessed: {answer}")).weak().size(12.0);
+            ui.add(Label::new(guessed).truncate().selectable(false));
+        }
+    });
     paragraph(ui, &filled(&step.result, session));
-    if let Some(answer) = tour.guess().and_then(|guess| step.guess.answers.get(guess)) {
-        ui.label(RichText::new(format!("You guessed: {answer}")).weak());
-    }
 }
 
 fn caption(ui: &mut Ui, text: &str) {
