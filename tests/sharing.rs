@@ -6,6 +6,7 @@ use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::kinematics::spline::Knot;
 use ik_arm::session::{
     Action, EditAction, PlaybackAction, Preferences, Session, TransactionAction,
 };
@@ -103,7 +104,7 @@ fn undo_steps_share_what_they_have_in_common() {
     });
     let kept = keyed.bytes_current.unsigned_abs();
     // Every step has the knots of its tracks alone.
-    let knots = KEYED as u64 * 24 * (1..=20).sum::<u64>();
+    let knots = KEYED as u64 * size_of::<Knot<Vec3>>() as u64 * (1..=20).sum::<u64>();
     assert!(kept < 3 * knots, "{kept} bytes, of which {knots} are knots");
 
     for _ in 0..20 {

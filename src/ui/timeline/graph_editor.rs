@@ -7,6 +7,7 @@ use egui::{Rangef, Vec2b, pos2, vec2};
 use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 use super::areas::{ROW, TimelineAreas, take_keyboard};
+use super::channel_curve::ChannelCurve;
 use super::drag::{self, TimelineDrag};
 use super::graph_mouse::{self, GraphView};
 use super::time_scale::TimeScale;
@@ -26,20 +27,6 @@ const VALUES: f32 = 42.0;
 
 /// Minimum distance in points between labels of the value axis.
 const BETWEEN_VALUES: f32 = 15.0;
-
-/// The curve of one component of a channel.
-pub(super) struct ChannelCurve {
-    pub channel: Channel,
-    /// Component of the channel's values: 0, 1 or 2.
-    pub axis: usize,
-    /// Displayed values per value: degrees per radian for angles.
-    pub unit: f64,
-    name: String,
-    colour: Color32,
-    style: LineStyle,
-    line: Vec<[f64; 2]>,
-    knots: Vec<[f64; 2]>,
-}
 
 pub(in crate::ui) fn ui(
     ui: &mut Ui,

@@ -3,8 +3,8 @@
 use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
 use glam::Vec3;
 
+use super::channel_curve::ChannelCurve;
 use super::drag::{self, PointsDrag, TangentDrag, TimelineDrag};
-use super::graph_editor::ChannelCurve;
 use super::time_scale::TimeScale;
 use crate::document::{Channel, Quantity};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};

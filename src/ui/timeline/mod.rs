@@ -1,6 +1,7 @@
 //! The transport bar, and above it the timeline: ruler, and dope sheet or graph editor.
 
 mod areas;
+mod channel_curve;
 mod context_menu;
 mod dope_sheet;
 mod drag;
