@@ -153,19 +153,25 @@ impl Session {
 
     /// Sets the curve from each of `keys` to the next key of its channel.
     pub(super) fn set_interpolation(&mut self, keys: &[Key], interpolation: Interpolation) {
-        self.change_keys(keys, |key| Knot { interpolation, ..key });
+        self.change_keys(keys, |_, key| Knot { interpolation, ..key });
     }
 
     /// Sets the slopes of `keys`, per second; `None` for Catmull–Rom tangents.
     pub(super) fn set_slopes(&mut self, keys: &[Key], slopes: Option<Slopes<Vec3>>) {
-        self.change_keys(keys, |key| Knot { slopes, ..key });
+        self.change_keys(keys, |channel, key| {
+            let slopes = slopes.map(|Slopes { arriving, leaving }| Slopes {
+                arriving: of_width(channel, arriving),
+                leaving: of_width(channel, leaving),
+            });
+            Knot { slopes, ..key }
+        });
     }
 
-    fn change_keys(&mut self, keys: &[Key], change: impl Fn(Knot<Vec3>) -> Knot<Vec3>) {
+    fn change_keys(&mut self, keys: &[Key], change: impl Fn(Channel, Knot<Vec3>) -> Knot<Vec3>) {
         self.edit_keys(|document| {
             for (channel, time) in keys {
                 if let Some(key) = document.keys.key(*channel, *time) {
-                    document.keys.insert_key(*channel, change(key));
+                    document.keys.insert_key(*channel, change(*channel, key));
                 }
             }
         });
@@ -258,11 +264,18 @@ fn insert(keys: &mut Keys, all: &Clipboard) {
 fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
     /// Smallest part of a length that a move of its key leaves.
     const LEAST: f32 = 1e-3;
-    let sum = (value + by).clamp(Vec3::MIN, Vec3::MAX);
+    let sum = (value + of_width(channel, by)).clamp(Vec3::MIN, Vec3::MAX);
     match channel.quantity() {
         Quantity::Switch => value,
         Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
         Quantity::Length => sum.max(value * LEAST),
         Quantity::Point | Quantity::Angle | Quantity::Angles => sum,
     }
+}
+
+/// The vector without the components that values of the channel do not have.
+fn of_width(channel: Channel, vector: Vec3) -> Vec3 {
+    let mut components = vector.to_array();
+    components.iter_mut().skip(channel.quantity().width()).for_each(|it| *it = 0.0);
+    Vec3::from_array(components)
 }

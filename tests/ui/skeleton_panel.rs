@@ -302,7 +302,7 @@ fn comma_and_full_stop_go_through_the_iterations() {
     }
     bench.key(Key::F1);
     bench.wait(0.5);
-    assert!(bench.shows(Role::Label, "Previous, next iteration"));
+    assert!(bench.shows(Role::Label, "Previous iteration"));
 }
 
 #[test]

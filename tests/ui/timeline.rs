@@ -461,7 +461,7 @@ fn a_screen_reader_selects_keys_and_scrubs() {
 #[test]
 fn dragging_in_the_graph_editor_scrubs() {
     let mut bench = keyed();
-    let (from, to) = (ruler_position(&bench, 1.0), ruler_position(&bench, 4.0));
+    let (from, to) = (ruler_position(&bench, 1.5), ruler_position(&bench, 4.0));
     bench.click(Role::Button, "Graph editor");
     assert!(bench.session().preferences().curves);
     let middle = bench.rect(Role::Image, "Curves of Hand, Socket twist").center().y;
