@@ -245,7 +245,7 @@ kinds! {
         CopyPose: Look 1, |_| ShellAction::CopyPose;
     }
     Tour(TourAction) {
-        Enter: Files 1, |v| TourAction::Enter(if v.random.below(20) == 0 { 13 } else { v.random.below(11) });
+        Enter: Files 1, |v| TourAction::Enter(if v.random.below(40) == 0 { 10 + v.random.below(4) } else { v.random.below(10) });
         Guess: Look 1, |v| TourAction::Guess(v.random.below(5));
         Demonstrate: Edit 1, |_| TourAction::Demonstrate;
         Leave: Files 2, |_| TourAction::Leave;
