@@ -204,11 +204,12 @@ fn shaped() -> impl Strategy<Value = Vec<Knot<f32>>> {
     let slope = -50.0..50.0_f32;
     let shape = (0..3_usize, proptest::option::of((slope.clone(), slope)));
     (knots(), vec(shape, 12)).prop_map(|(knots, shapes)| {
-        let knot = |((time, value), (kind, slopes)): ((f64, f32), (usize, Option<(f32, f32)>))| {
+        let knots = knots.into_iter().zip(shapes);
+        let shaped = knots.map(|((time, value), (kind, slopes))| {
             let slopes = slopes.map(|(arriving, leaving)| Slopes { arriving, leaving });
             Knot { time, value, interpolation: Interpolation::ALL[kind], slopes }
-        };
-        knots.into_iter().zip(shapes).map(knot).collect()
+        });
+        shaped.collect()
     })
 }
 

@@ -11,8 +11,8 @@ use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, PoseMode,
-    Preferences, Session, SolverAction, TourAction, TourStep, TransactionAction, ViewAction,
-    filled,
+    Preferences, Session, SolverAction, TourAction, TourState, TourStep, TransactionAction,
+    ViewAction, filled,
 };
 
 fn session() -> Session {
@@ -27,7 +27,7 @@ fn in_step(number: usize) -> Session {
 }
 
 fn shows_result(session: &Session) -> bool {
-    session.tour().is_some_and(|tour| tour.shows_result())
+    session.tour().is_some_and(TourState::shows_result)
 }
 
 /// Does what the step asks for, and waits for the end of a race.
@@ -124,10 +124,15 @@ fn a_step_does_not_take_another_move_for_its_task() {
     assert!(!shows_result(&session), "step 12");
 }
 
+fn example(name: &str) -> Document {
+    let example = Example::find(name).expect("an example");
+    example.open().expect("it opens").document
+}
+
 /// A session with a changed document, a history, a file and a moved playhead.
 fn changed() -> Session {
     let mut session = session();
-    let document = Box::new(Example::find("walk").unwrap().open().unwrap().document);
+    let document = Box::new(example("walk"));
     let file = Some(PathBuf::from("/tmp/walk.json"));
     session.apply(FileAction::Opened { document, file });
     session.apply(PlaybackAction::SetTime(0.5));

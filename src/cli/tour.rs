@@ -4,7 +4,9 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use super::report::fail;
-use crate::session::{PlaybackAction, Preferences, Session, TourAction, TourStep, filled};
+use crate::session::{
+    Comparison, PlaybackAction, Preferences, Session, TourAction, TourStep, filled,
+};
 
 const WIDTH: usize = 88;
 const INDENT: &str = "   ";
@@ -45,7 +47,7 @@ fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> i
 fn demonstrate(session: &mut Session) {
     const MOST_FRAMES: u16 = 1000;
     session.apply(TourAction::Demonstrate);
-    let is_racing = |session: &Session| session.comparison().is_some_and(|race| race.is_running());
+    let is_racing = |session: &Session| session.comparison().is_some_and(Comparison::is_running);
     for frame in 0..MOST_FRAMES {
         if !is_racing(session) {
             return;

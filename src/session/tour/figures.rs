@@ -5,6 +5,7 @@ use crate::kinematics::chain_ik::{Method, Status};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::session::pops::Spike;
 use crate::session::session::Session;
+use crate::session::solver_run::SolverRun;
 
 /// A number of the scene, as text; `None` while the scene does not have it.
 type Figure = fn(&Session) -> Option<String>;
@@ -142,7 +143,7 @@ fn bow(session: &Session, influence: f32) -> Option<String> {
 /// The solvers of the race that have reached the target, each with its iterations.
 fn racers(session: &Session) -> Option<impl Iterator<Item = (Method, u32)> + '_> {
     let race = session.comparison().filter(|race| !race.is_running())?;
-    let reports = race.runs().map(|run| run.report());
+    let reports = race.runs().map(SolverRun::report);
     let reached = reports.filter(|report| report.status == Status::Converged);
     Some(reached.map(|report| (report.method, report.iterations)))
 }
