@@ -1,6 +1,6 @@
 //! The layout of the window.
 
-use egui::{CentralPanel, Panel, Rect, TextureId, Ui};
+use egui::{CentralPanel, Panel, Rect, TextureId, Ui, UiBuilder};
 
 use super::panels::{crowd, left, right};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, tour, viewport};
@@ -22,29 +22,23 @@ pub fn show(
     keyboard::global(ui, session, actions);
     tour::open_section(ui, session);
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
-    Panel::bottom("status").show(ui, |ui| status_bar::ui(ui, session, actions));
-    Panel::bottom("transport").show(ui, |ui| timeline::transport(ui, session, actions));
-    if session.shows_timeline() {
+    let status = reserve(Panel::bottom("status"), ui, Some(status_bar::HEIGHT));
+    let transport = reserve(Panel::bottom("transport"), ui, Some(timeline::TRANSPORT_HEIGHT));
+    let keys = session.shows_timeline().then(|| {
         // In a low window the timeline gives way to the view.
         let most = (ui.available_height() - VIEW_HEIGHT).clamp(88.0, 328.0);
-        Panel::bottom("keys")
-            .resizable(true)
-            .default_size(120.0)
-            .size_range(88.0..=most)
-            .show(ui, |ui| timeline::ui(ui, session, actions));
-    }
+        let panel = Panel::bottom("keys").default_size(120.0).size_range(88.0..=most);
+        reserve(panel.resizable(true), ui, None)
+    });
     Panel::left("controls")
         .resizable(true)
         .default_size(272.0)
         .size_range(232.0..=420.0)
         .show(ui, |ui| left::ui(ui, session, actions));
-    if session.preferences().explain && right::has_room(ui) {
-        Panel::right("explain")
-            .resizable(true)
-            .default_size(272.0)
-            .size_range(232.0..=460.0)
-            .show(ui, |ui| right::ui(ui, session, actions));
-    }
+    let explain = (session.preferences().explain && right::has_room(ui)).then(|| {
+        let panel = Panel::right("explain").default_size(284.0).size_range(284.0..=460.0);
+        reserve(panel.resizable(true), ui, None)
+    });
     if let Some(step) = session.tour() {
         let height = tour::height(ui.available_width());
         Panel::bottom("tour").exact_size(height).show(ui, |ui| {
@@ -53,6 +47,14 @@ pub fn show(
     }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    if let Some(explain) = explain {
+        right::ui(&mut explain.ui(ui), session, actions);
+    }
+    if let Some(keys) = keys {
+        timeline::ui(&mut keys.ui(ui), session, actions);
+    }
+    timeline::transport(&mut transport.ui(ui), session, actions);
+    status_bar::ui(&mut status.ui(ui), session, actions);
     if session.preferences().offers_tour && session.tour().is_none() {
         tour::offer(ui, viewport, actions);
     }
@@ -60,4 +62,35 @@ pub fn show(
     dialogs::ui(ui, session, machine, viewport, actions);
     keyboard::focus::end(ui);
     viewport
+}
+
+/// The inside of a panel whose contents come later.
+///
+/// egui lays panels out from the edges of the window to its centre, but Tab goes through widgets in
+/// the order in which they are added, and that should be the order of reading.
+struct Reserved {
+    rect: Rect,
+    clip: Rect,
+}
+
+/// Shows an empty panel. `height` is that of its contents; `None` if the panel is resizable.
+fn reserve(panel: Panel, ui: &mut Ui, height: Option<f32>) -> Reserved {
+    let shown = panel.show(ui, |ui| {
+        if let Some(height) = height {
+            ui.set_height(height);
+        }
+        let rect = ui.max_rect();
+        ui.expand_to_include_rect(rect);
+        Reserved { rect, clip: ui.clip_rect() }
+    });
+    shown.inner
+}
+
+impl Reserved {
+    /// A part of `ui` for the contents of the panel.
+    fn ui(self, ui: &mut Ui) -> Ui {
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(self.rect));
+        inside.set_clip_rect(self.clip);
+        inside
+    }
 }

@@ -12,6 +12,9 @@ use crate::session::{
     Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction, TurnDrag,
 };
 
+/// Height in points.
+pub(in crate::ui) const HEIGHT: f32 = 24.0;
+
 /// Seconds for which a message stays, and for which an error does.
 const MESSAGE_SECONDS: f64 = 12.0;
 const ERROR_SECONDS: f64 = 30.0;
@@ -26,7 +29,7 @@ struct ShownMessage {
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     expire(ui, session, actions);
     ui.horizontal(|ui| {
-        ui.set_height(24.0);
+        ui.set_height(HEIGHT);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The keys of a drag need the whole line.
             if session.drag().is_none() {

@@ -175,6 +175,12 @@ impl Bench {
         }
     }
 
+    /// Lets time pass in one frame.
+    pub fn skip(&mut self, seconds: f64) {
+        self.now += seconds - SECONDS_PER_FRAME;
+        self.frame([]);
+    }
+
     /// Runs until the window would sleep.
     pub fn settle(&mut self) {
         let moves = (0..60).all(|_| {

@@ -8,6 +8,7 @@ mod arm_pin;
 mod arm_posing;
 mod bake;
 mod bench;
+mod controls;
 mod crowd;
 mod dialogs;
 mod export;

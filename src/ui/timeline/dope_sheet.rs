@@ -154,7 +154,7 @@ impl DopeSheet<'_> {
             actions.push(SelectAction::Channels(channels.into_iter().collect()));
         }
         context_menu::of_channel(&response, session, channel, actions);
-        response.on_hover_text(shown);
+        response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));
     }
 
     fn keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
@@ -217,7 +217,7 @@ impl DopeSheet<'_> {
             actions.push(SelectAction::Keys(row.keys(self.session, time)));
         }
         let hovered = response.hovered();
-        response.on_hover_text(said);
+        response.on_hover_text(format!("Click to select, drag to move. {said}"));
         hovered
     }
 

@@ -24,6 +24,7 @@ use time_scale::TimeScale;
 use crate::session::{Actions, Session};
 
 pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
+pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
 pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -15,7 +15,8 @@ const ROOMY: f32 = 1180.0;
 const GAP: f32 = 8.0;
 /// Space between groups where numbers have no labels.
 const NARROW_GAP: f32 = 2.0;
-const HEIGHT: f32 = 28.0;
+/// Height of the bar in points.
+pub(in crate::ui) const HEIGHT: f32 = 28.0;
 
 /// Shows the bar of the closed timeline.
 pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions) {

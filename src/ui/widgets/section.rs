@@ -3,7 +3,7 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, CollapsingHeader, FontId, Id, InnerResponse, Label, Layout, Rect, Ui, UiBuilder,
-    WidgetText,
+    WidgetText, vec2,
 };
 
 use crate::session::Actions;
@@ -26,18 +26,30 @@ pub(in crate::ui) fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mu
     named_section(ui, title, title, contents);
 }
 
-/// Shows a section with the widgets of `aside` at the right end of its title row.
+/// Shows a section with the widgets of `aside` over its title row.
 pub(in crate::ui) fn section_with(
     ui: &mut Ui,
     title: &str,
     aside: impl FnOnce(&mut Ui),
     contents: impl FnOnce(&mut Ui),
 ) {
-    let header = show_section(ui, title, title, true, contents);
-    let row = Rect::from_x_y_ranges(ui.max_rect().x_range(), header.y_range());
-    let right = Layout::right_to_left(Align::Center);
-    // The widgets are laid over the title row.
-    aside(&mut ui.new_child(UiBuilder::new().max_rect(row).layout(right)));
+    let (whole, clip, top) = (ui.max_rect().x_range(), ui.clip_rect(), ui.cursor().top());
+    let mut aside = Some(aside);
+    let mut show_aside = |ui: &mut Ui, bottom: f32| {
+        let row = Rect::from_x_y_ranges(whole, top..=bottom);
+        let row = UiBuilder::new().max_rect(row).layout(Layout::left_to_right(Align::Center));
+        let mut row = ui.new_child(row);
+        row.set_clip_rect(clip);
+        if let Some(aside) = aside.take() {
+            aside(&mut row);
+        }
+    };
+    let header = show_section(ui, title, title, true, |ui| {
+        // Tab comes to the title row before it comes to the contents.
+        show_aside(ui, ui.max_rect().top() - ui.spacing().item_spacing.y);
+        contents(ui);
+    });
+    show_aside(ui, header.bottom());
 }
 
 /// Shows a section that is folded at first.
@@ -85,7 +97,27 @@ fn cut(ui: &Ui, title: &str) -> WidgetText {
     ui.fonts_mut(|fonts| fonts.layout_job(job)).into()
 }
 
-/// Shows a row with a name on the left and the widgets of `contents` on the right.
+/// Lays out `contents` from left to right, so that they end at the right edge.
+///
+/// A layout from right to left would add the last widget first, and Tab would go backwards.
+pub(in crate::ui) fn at_right<T>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> T) -> T {
+    let id = ui.next_auto_id().with("width");
+    let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let height = ui.spacing().interact_size.y;
+    let (_, mut rect) = ui.allocate_space(vec2(ui.available_width(), height));
+    rect.min.x = rect.left().max(rect.right() - before);
+    let forwards = Layout::left_to_right(Align::Center);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect).layout(forwards));
+    let shown = contents(&mut inside);
+    let width = inside.min_rect().width();
+    if width != before {
+        ui.data_mut(|data| data.insert_temp(id, width));
+        ui.request_discard("the width of a row has changed");
+    }
+    shown
+}
+
+/// Shows a row with a name on the left and the widget of `contents` on the right.
 pub(in crate::ui) fn pair<T>(
     ui: &mut Ui,
     name: &str,

@@ -71,18 +71,19 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     pinned.show(ui, session, actions, EditAction::SetPin);
 }
 
-/// Shows the switch of the pin and its diamond, which also keys the point that the Cursor has, from
-/// right to left.
+/// Shows the switch of the pin and its diamond, which also keys the point that the Cursor has.
 fn pin(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let others = vec![Channel::of_cursor(session.arm())];
-    KeyButton { channel: Channel::Pinned, others }.show(ui, session, PINNED, actions);
-    let mut pinned = session.arm().is_pinned();
-    let check = ui
-        .checkbox(&mut pinned, PINNED)
-        .on_hover_text("Keep the hand in place when the Root moves");
-    if check.changed() {
-        actions.push(EditAction::PinHand(pinned));
-    }
+    widgets::at_right(ui, |ui| {
+        let mut pinned = session.arm().is_pinned();
+        let check = ui
+            .checkbox(&mut pinned, PINNED)
+            .on_hover_text("Keep the hand in place when the Root moves");
+        if check.changed() {
+            actions.push(EditAction::PinHand(pinned));
+        }
+        let others = vec![Channel::of_cursor(session.arm())];
+        KeyButton { channel: Channel::Pinned, others }.show(ui, session, PINNED, actions);
+    });
 }
 
 fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -7,7 +7,7 @@ use egui::{ComboBox, Ui};
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Actions, EditAction, Session};
-use crate::ui::widgets::{PointSliders, Slider};
+use crate::ui::widgets::{self, PointSliders, Slider};
 use crate::ui::{glossary, labels};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -34,9 +34,18 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the combo box of the twist references, for the title row of the section.
 pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    /// Width in points of the section's title and the label "reference".
-    const TITLES: f32 = 170.0;
-    let chosen = session.arm().twist_reference;
+    /// Width in points of the section's title, the label "reference" and the combo box.
+    const ALL: f32 = 244.0;
+    let has_room = ui.available_width() > ALL;
+    widgets::at_right(ui, |ui| {
+        if has_room {
+            glossary::term_label(ui, "reference", "Twist reference", actions);
+        }
+        choice(ui, session.arm().twist_reference, actions);
+    });
+}
+
+fn choice(ui: &mut Ui, chosen: TwistReferenceKind, actions: &mut Actions) {
     let combo = ComboBox::from_id_salt("twist reference").width(60.0).selected_text(chosen.name());
     let response = combo.show_ui(ui, |ui| {
         for twist_reference in TwistReferenceKind::ALL {
@@ -49,10 +58,7 @@ pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Act
     });
     let response = response.response;
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Twist reference"));
-    response.on_hover_text(format!("Twist reference: {}", labels::twist_reference(chosen)));
-    if ui.available_width() > TITLES {
-        glossary::term_label(ui, "reference", "Twist reference", actions);
-    }
+    response.on_hover_text(labels::twist_reference(chosen));
 }
 
 fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {

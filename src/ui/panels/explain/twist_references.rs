@@ -87,13 +87,15 @@ fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame, actions: &mut Ac
 
 fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::term_pair(ui, "Holonomy", "Holonomy", actions, |ui, actions| {
-        if widgets::button(ui, "Reset", "Restart the loop from the current pose", None) {
-            actions.push(ViewAction::ResetTransport);
-        }
-        let turned = turn_in_words(session.transport_path().holonomy());
-        ui.label(RichText::new(turned).monospace()).on_hover_text(
-            "Elbow rotation after the hand's path so far: its solid angle about the shoulder",
-        );
+        widgets::at_right(ui, |ui| {
+            let turned = turn_in_words(session.transport_path().holonomy());
+            ui.label(RichText::new(turned).monospace()).on_hover_text(
+                "Elbow rotation after the hand's path so far: its solid angle about the shoulder",
+            );
+            if widgets::button(ui, "Reset", "Restart the loop from the current pose", None) {
+                actions.push(ViewAction::ResetTransport);
+            }
+        });
     });
 }
 

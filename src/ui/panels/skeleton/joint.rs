@@ -88,13 +88,13 @@ fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: 
                 actions.push(set(limited.then_some(wide)));
             }
             let Some(limit) = limit else { return };
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                angle(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
-                    set(Some(Limit { min: limit.min.min(max), max }))
-                });
-                ui.weak("to");
+            widgets::at_right(ui, |ui| {
                 angle(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
                     set(Some(Limit { min, max: limit.max.max(min) }))
+                });
+                ui.weak("to");
+                angle(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
+                    set(Some(Limit { min: limit.min.min(max), max }))
                 });
             });
         });
@@ -124,23 +124,25 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
     let step = session.shown().grid_cell() * 0.1;
     let tooltip = "Set the vector from base to tip, in joint space";
     widgets::pair(ui, "Bone", |ui| {
-        for axis in (0..3).rev() {
-            let name = format!("Bone {}", AXES[axis]);
-            let value = joint.axis[axis];
-            NumberField {
-                name: &name,
-                value,
-                unit: "",
-                step,
-                digits: format::decimals(step),
-                tooltip,
+        widgets::at_right(ui, |ui| {
+            for (axis, label) in AXES.into_iter().enumerate() {
+                let name = format!("Bone {label}");
+                let value = joint.axis[axis];
+                NumberField {
+                    name: &name,
+                    value,
+                    unit: "",
+                    step,
+                    digits: format::decimals(step),
+                    tooltip,
+                }
+                .show(ui, session, actions, |value| {
+                    let mut bone = joint.axis;
+                    bone[axis] = value;
+                    EditAction::SetAxis { joint: index, axis: bone }
+                });
             }
-            .show(ui, session, actions, |value| {
-                let mut bone = joint.axis;
-                bone[axis] = value;
-                EditAction::SetAxis { joint: index, axis: bone }
-            });
-        }
+        });
     });
     let length = joint.axis.length();
     widgets::pair(ui, "Length", |ui| {

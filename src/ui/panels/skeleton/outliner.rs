@@ -147,7 +147,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         target_mark(painter, centre, colour);
     }
     reveal(ui, session, row, &response);
-    let mut said = vec![joint.name.clone()];
+    let mut said = vec![format!("Select {}", joint.name)];
     if joint.locked {
         said.push("locked".to_owned());
     }
@@ -157,7 +157,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     if row.target.is_some() {
         said.push("has a target".to_owned());
     }
-    response.on_hover_text(said.join(", "))
+    response.on_hover_text(format!("{}. Double-click to rename", said.join(", ")))
 }
 
 fn free_dot(painter: &Painter, at: Pos2, colour: Color32) {

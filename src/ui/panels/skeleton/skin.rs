@@ -1,5 +1,7 @@
 //! The skin of the skeleton: how it is shown, blended and made.
 
+use std::time::Duration;
+
 use egui::Ui;
 
 use super::choice::Choice;
@@ -28,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         SkinSource::Mesh(mesh) => file(ui, mesh, actions),
     }
     colour(ui, session, skin, actions);
-    summary(ui, skin);
+    summary(ui, session, skin);
     if widgets::button(ui, "Remove skin", "Show the bones alone again", None) {
         actions.push(EditAction::SetSkin(None));
     }
@@ -77,7 +79,7 @@ fn skinning(ui: &mut Ui, skin: &Skin, actions: &mut Actions) {
         (Skinning::DualQuaternion, "Blend rigid motions; keeps the volume, bulges at bends"),
         (Skinning::SpreadTwist, "Spread each bone's roll along it, then blend linearly"),
     ];
-    let tooltip = "How a vertex between joints follows them";
+    let tooltip = "Choose how a vertex between joints follows them";
     let shown = skin.skinning.title();
     Choice { label: "Blend", name: "Blend", tooltip, shown }.show(ui, |list| {
         for (skinning, tooltip) in choices {
@@ -180,7 +182,8 @@ fn is_change_open(session: &Session) -> bool {
     session.is_editing() && session.undo_label() == Some(label)
 }
 
-fn summary(ui: &mut Ui, skin: &Skin) {
+fn summary(ui: &mut Ui, session: &Session, skin: &Skin) {
+    const SOON: Duration = Duration::from_millis(50);
     // The viewport makes the mesh; the panel does not wait for it.
     match skin.made_mesh() {
         Some(Ok(mesh)) => {
@@ -189,6 +192,12 @@ fn summary(ui: &mut Ui, skin: &Skin) {
             ui.weak(format!("{vertices} vertices, {triangles} triangles"));
         }
         Some(Err(SkinMeshError::Shape(error))) => widgets::error_label(ui, &error.to_string()),
-        Some(Err(SkinMeshError::File(_))) | None => {}
+        Some(Err(SkinMeshError::File(_))) => {}
+        None => {
+            ui.weak("The mesh is made when the skin is shown");
+            if session.shown().display.shows(Overlay::Skin) {
+                ui.ctx().request_repaint_after(SOON);
+            }
+        }
     }
 }

@@ -137,42 +137,55 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
+    let mut chosen = None;
     widgets::pair(ui, "Root", |ui| {
-        // A pair is laid out from the right.
-        for root in Root::ALL.into_iter().rev() {
-            let (name, tooltip) = match root {
-                Root::Locked => ("Locked", "Keep the roots' angles and positions"),
-                Root::Turns => ("Turns", "Let the solver turn the roots in place"),
-                Root::Free => ("Free", "Let the solver turn and move the roots"),
-            };
-            let is_chosen = root == options.root;
-            let button = Button::selectable(is_chosen, name).frame_when_inactive(true);
-            if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
-                actions.push(EditAction::SetSolver(SolverOptions { root, ..options }));
+        widgets::at_right(ui, |ui| {
+            for root in Root::ALL {
+                let (name, tooltip) = match root {
+                    Root::Locked => ("Locked", "Keep the roots' angles and positions"),
+                    Root::Turns => ("Turns", "Let the solver turn the roots in place"),
+                    Root::Free => ("Free", "Let the solver turn and move the roots"),
+                };
+                let button = Button::selectable(root == options.root, name);
+                let button = ui.add(button.frame_when_inactive(true)).on_hover_text(tooltip);
+                if button.clicked() && root != options.root {
+                    chosen = Some(root);
+                }
             }
-        }
+        });
     });
+    let set = |root| EditAction::SetSolver(SolverOptions { root, ..options });
+    actions.extend(chosen.map(set));
 }
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     widgets::term_pair(ui, "Tolerance", "Tolerance", actions, |ui, actions| {
         let auto = session.solver_tolerance();
-        if let Some(tolerance) = options.tolerance {
-            let tooltip = "Set the distance at which a tip has converged";
-            let step = 0.05 * tolerance;
-            let short = |value: f64| format::short(value as f32);
-            NumberField { name: "Tolerance", value: tolerance, unit: "", step, digits: 0, tooltip }
+        widgets::at_right(ui, |ui| {
+            let mut is_auto = options.tolerance.is_none();
+            let tooltip = "Use 1/10,000 of the chain length";
+            if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
+                let tolerance = (!is_auto).then_some(auto);
+                actions.push(EditAction::SetSolver(SolverOptions { tolerance, ..options }));
+            }
+            if let Some(tolerance) = options.tolerance {
+                let tooltip = "Set the distance at which a tip has converged";
+                let step = 0.05 * tolerance;
+                let short = |value: f64| format::short(value as f32);
+                NumberField {
+                    name: "Tolerance",
+                    value: tolerance,
+                    unit: "",
+                    step,
+                    digits: 0,
+                    tooltip,
+                }
                 .show_as(ui, session, actions, &short, |tolerance| {
                     EditAction::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
                 });
-        }
-        let mut is_auto = options.tolerance.is_none();
-        let tooltip = "Use 1/10,000 of the chain length";
-        if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
-            let tolerance = (!is_auto).then_some(auto);
-            actions.push(EditAction::SetSolver(SolverOptions { tolerance, ..options }));
-        }
+            }
+        });
     });
 }
 
