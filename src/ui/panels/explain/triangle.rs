@@ -212,6 +212,6 @@ impl Labels<'_> {
         };
         self.room.contains_rect(rect)
             && !self.lines.iter().any(is_crossed)
-            && !self.written.iter().any(|other| other.intersects(rect))
+            && !self.written.iter().any(|other| other.expand2(vec2(6.0, 0.0)).intersects(rect))
     }
 }
