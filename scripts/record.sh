@@ -7,55 +7,81 @@ source scripts/setup.sh
 # shellcheck source=scripts/window.sh
 source scripts/window.sh
 
-# Closed curve of the hand on screen: centre and radii, in pixels.
-middle=(733 376)
-across=90
-up=75
-steps=72
+# The scene of the tour's first step.
+scene=assets/tour/over-the-shoulder.json
+# Places on screen, in pixels: the hand's red arrow, how far it is dragged, and the ellipse that the
+# circle of elbows is there, by its centre and half axes.
+arrow=(822 285)
+way=(-300 -46)
+centre=(667 420)
+long_axis=(88 66)
+short_axis=(-33 44)
+steps=30
 
 frames=$target/record
 film=assets/demo.gif
+frame=0
 
 main() {
     set_up virtual-display
     require_tools ffmpeg:ffmpeg
     cargo build --release --locked
     trap clean_up EXIT
-    open_window
-    press_just_play_and_elbow_circle
+    open_window "$scene"
+    press 439 697 # "Just play"
     rm -rf "$frames"
     mkdir -p "$frames"
-    drag_around
+    drag_hand_over_shoulder_and_back
+    drag_elbow_around
     close_window
     join_frames
     printf 'The film is %s\n' "$film"
 }
 
-press_just_play_and_elbow_circle() {
-    local place
-    for place in '439 697' '16 336'; do
-        # shellcheck disable=SC2086 # two numbers
-        xdotool mousemove $place click 1
-        wait_for_rest
-    done
+press() {
+    xdotool mousemove "$1" "$2" click 1
+    wait_for_rest
 }
 
-# One picture per step, taken when the window is at rest, so that the film is smooth on a slow machine.
-drag_around() {
+# The elbow jumps on the way, and jumps back.
+drag_hand_over_shoulder_and_back() {
+    drag "${arrow[@]}" $((2 * steps)) '
+        part = (1 - cos(turn)) / 2
+        printf "%d %d", x + part * wx, y + part * wy'
+}
+
+# Once around its circle.
+drag_elbow_around() {
+    local start
+    start=$(along_ellipse 0)
+    # shellcheck disable=SC2086 # two numbers
+    drag $start $((2 * steps)) '
+        printf "%d %d", cx - cos(turn) * lx - sin(turn) * sx, cy - cos(turn) * ly - sin(turn) * sy'
+}
+
+along_ellipse() {
+    awk -v turn="$1" -v cx="${centre[0]}" -v cy="${centre[1]}" -v lx="${long_axis[0]}" -v ly="${long_axis[1]}" \
+        'BEGIN { printf "%d %d", cx - cos(turn) * lx, cy - cos(turn) * ly }'
+}
+
+# drag X Y STEPS PATH: presses at the place and follows the path, an awk program that prints the place
+# for `turn` from 0 to a full turn. One picture per step, taken when the window is at rest, so that the
+# film is smooth on a slow machine.
+drag() {
     local step place
-    xdotool mousemove "${middle[@]}"
+    xdotool mousemove "$1" "$2"
     wait_for_rest
     xdotool mousedown 1
-    for ((step = 0; step <= steps; step++)); do
-        place=$(awk -v t="$step" -v n="$steps" -v x="${middle[0]}" -v y="${middle[1]}" \
-            -v a="$across" -v b="$up" 'BEGIN {
-                turn = 6.2831853 * t / n
-                printf "%d %d", x + a * sin(turn), y - b * (1 - cos(turn)) + 0.4 * b * sin(2 * turn)
-            }')
+    for ((step = 0; step <= $3; step++)); do
+        place=$(awk -v t="$step" -v n="$3" -v x="$1" -v y="$2" -v wx="${way[0]}" -v wy="${way[1]}" \
+            -v cx="${centre[0]}" -v cy="${centre[1]}" -v lx="${long_axis[0]}" -v ly="${long_axis[1]}" \
+            -v sx="${short_axis[0]}" -v sy="${short_axis[1]}" \
+            "BEGIN { turn = 6.2831853 * t / n; $4 }")
         # shellcheck disable=SC2086 # two numbers
         xdotool mousemove $place
         wait_for_rest
-        import -window root "$frames/$(printf %03d "$step").png"
+        import -window root "$frames/$(printf %03d "$frame").png"
+        frame=$((frame + 1))
     done
     xdotool mouseup 1
 }
